@@ -1,0 +1,2 @@
+//! tests
+pub use vi_core::*;

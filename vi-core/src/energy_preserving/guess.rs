@@ -1,0 +1,39 @@
+//! Where Newton's iteration starts.
+//!
+//! In: a node and the interval that led to it. Out: a trial `(v, h)`: v extrapolated and improved by one Newton step on the
+//! momentum equation at the last h; then h by the step law, `h = h_last (D_last/D)^(1/3)`, within the factor allowed;
+//! then v carried along `dv/dh` of the momentum equation. No prediction is made where D has changed its sign.
+
+use super::newton::{Elimination, Trial};
+use super::{Last, RATIO};
+use crate::{Node, Scalar, Stepping};
+use nalgebra::SVector;
+
+/// The trial that follows `last`.
+#[inline]
+pub(super) fn predict<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    last: &Last<N, T>,
+) -> Trial<N, T> {
+    let extrapolated = Trial { v: last.v + last.slope * last.h, h: last.h };
+    improve(system, node, last, extrapolated)
+        .or_else(|| improve(system, node, last, Trial { v: last.v, h: last.h }))
+        .unwrap_or(extrapolated)
+}
+
+#[inline]
+fn improve<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    last: &Last<N, T>,
+    trial: Trial<N, T>,
+) -> Option<Trial<N, T>> {
+    let equations = system.extended_system(node, trial.h, &trial.v);
+    let elimination = Elimination::of(&equations)?;
+    let ratio = last.density.to_f64() / elimination.density().to_f64();
+    let factor = if ratio > 0.0 && ratio.is_finite() { ratio.cbrt().clamp(1.0 / RATIO, RATIO) } else { 1.0 };
+    let h = last.h * T::real(factor);
+    let v: SVector<T, N> = trial.v - elimination.residual - elimination.residual_dh * (h - trial.h);
+    Some(Trial { v, h })
+}

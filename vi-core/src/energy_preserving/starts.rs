@@ -1,0 +1,104 @@
+//! Where the first step comes from.
+//!
+//! In: the middle of the first interval, or its two ends, or the state of an earlier run. Out: an integrator whose node is
+//! the end of that interval, with the p1 and E1 of the slot derivatives.
+
+use super::{EnergyPreserving, Last, newton};
+use crate::{Node, Scalar, State, StepError, Stepping};
+use nalgebra::SVector;
+
+impl<S, const N: usize, T> EnergyPreserving<S, N, T>
+where
+    S: Stepping<N, T>,
+    T: Scalar,
+{
+    /// The midpoint start: `(t0, q0, v0)` becomes the middle of the first interval, of length `h0`. For the midpoint rule
+    ///
+    /// ```text
+    /// t1 = t0 + h0/2      q1 = q0 + (h0/2) v0      p1 = L_v + (h0/2)(L_q + f)      E1 = H0 − (h0/2)(L_t − f·v)
+    /// ```
+    ///
+    /// Explicit, and without the paper's bias of `h0² D/8` in the energy: every midpoint lies on `H = H0` to rounding.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an h0 that is not positive and finite; [`StepError::NonFinite`] where an input is
+    /// not finite or the system has no value there; [`StepError::Singular`].
+    pub fn from_midpoint(
+        system: S,
+        t0: T,
+        q0: impl Into<SVector<T, N>>,
+        v0: impl Into<SVector<T, N>>,
+        h0: T,
+    ) -> Result<Self, StepError> {
+        check_step("the step h0", h0)?;
+        let (q, v) = (q0.into(), v0.into());
+        let mut start = Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero());
+        start.shift(h0 * T::real(-0.5), &v);
+        Self::after(system, start, h0, v)
+    }
+
+    /// The paper's start: the first interval by its ends `(t0, q0)` and `(t1, q1)`, q1 from an accurate solution.
+    /// `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for a t1 − t0 that is not positive and finite; otherwise as
+    /// [`EnergyPreserving::from_midpoint`].
+    pub fn from_points(
+        system: S,
+        (t0, q0): (T, impl Into<SVector<T, N>>),
+        (t1, q1): (T, impl Into<SVector<T, N>>),
+    ) -> Result<Self, StepError> {
+        let (h, q, q1) = (t1 - t0, q0.into(), q1.into());
+        check_step("the interval t1 − t0", h)?;
+        let v = (q1 - q).map(|distance| distance / h);
+        let mut integrator = Self::after(system, Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero()), h, v)?;
+        // The end is the point given, not the start plus h v with its roundings.
+        let node = &mut integrator.node;
+        (node.t, node.t_low, node.q, node.q_low) = (t1, T::zero(), q1, SVector::zeros());
+        Ok(integrator)
+    }
+
+    /// Resumes from a node with its discrete energy, and the length `h` and velocity `v` of the interval that led there.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an h that is not positive and finite; otherwise as
+    /// [`EnergyPreserving::from_midpoint`].
+    pub fn from_state(
+        system: S,
+        state: State<N, T>,
+        energy: T,
+        h: T,
+        v: impl Into<SVector<T, N>>,
+    ) -> Result<Self, StepError> {
+        check_step("the step h", h)?;
+        let (node, v) = (Node::new(state, energy), v.into());
+        let mut start = node;
+        start.shift(-h, &v);
+        Ok(Self { node, ..Self::after(system, start, h, v)? })
+    }
+
+    /// The integrator at the end of the step `(v, h)` from the place of `start`.
+    fn after(system: S, start: Node<N, T>, h: T, v: SVector<T, N>) -> Result<Self, StepError> {
+        let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
+        start.check_finite(t)?;
+        let start = start.leaving(&system, h, &v);
+        let node = start.advanced(h, &v, &system.increment(&start, h, &v));
+        node.check_finite(t)?;
+        let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
+        let density = newton::density(&system.extended_system(&start, h, &v)).ok_or(singular)?;
+        let (t_mid, q_mid) = start.midpoint(h, &v);
+        // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
+        let slope = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
+        Ok(Self { system, node, last: Last { v, h, density, slope }, failure: None })
+    }
+}
+
+/// A step must lead forward.
+fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
+    let value = h.to_f64();
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(StepError::InvalidInput { input, allowed: "positive and finite", value })
+    }
+}

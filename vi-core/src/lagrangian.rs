@@ -1,0 +1,239 @@
+//! What a system says of itself: the traits that `lagrangian!` implements.
+//!
+//! Signs and slots are those of `docs/mathematics.md`. Over one interval `(t0, q0) → (t1, q1)`, `h = t1 − t0`:
+//!
+//! ```text
+//! −D2 L_d − f_d⁻ = p0          momentum equation
+//!  D1 L_d + g_d⁻ = E0          energy equation
+//!  p1 =  D4 L_d + f_d⁺
+//!  E1 = −D3 L_d − g_d⁺
+//! ```
+
+use crate::{Interval, Node, Real, StepError};
+use nalgebra::{SMatrix, SVector};
+
+/// The continuous system: Lagrangian `L(t, q, v)` and generalized force `f(t, q, v)`.
+pub trait Lagrangian<const N: usize, T: Real = f64> {
+    /// Name of the system, as declared.
+    const NAME: &'static str;
+    /// Names of the coordinates, as declared.
+    const COORDINATES: [&'static str; N];
+    /// Whether neither L nor f depends on the time.
+    const AUTONOMOUS: bool;
+    /// Whether there is a generalized force.
+    const FORCED: bool;
+    /// Which coordinates do not appear in L and have no force: their momenta are conserved.
+    const CYCLIC: [bool; N];
+
+    /// L(t, q, v).
+    fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
+    /// Energy `v·∂L/∂v − L`.
+    fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
+    /// Momentum `∂L/∂v`.
+    fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
+    /// Generalized force f; zero where none is declared.
+    fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N>;
+    /// Acceleration `a = (∂²L/∂v²)⁻¹ (L_q + f − L_vt − L_vq v)`.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] where the mass matrix cannot be inverted.
+    fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError>;
+    /// Step density `D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)`, derivatives along the motion.
+    /// An energy-preserving step exists, for small h, while D keeps its sign.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] where the mass matrix cannot be inverted.
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError>;
+}
+
+/// The discrete system: the discrete Lagrangian, its slot derivatives, discrete forces and powers.
+pub trait DiscreteLagrangian<const N: usize, T: Real = f64>: Lagrangian<N, T> {
+    /// Discrete Lagrangian `L_d(t0, q0, t1, q1)`.
+    fn ld(&self, interval: &Interval<N, T>) -> T;
+    /// `∂L_d/∂t0`.
+    fn d1_ld(&self, interval: &Interval<N, T>) -> T;
+    /// `∂L_d/∂q0`.
+    fn d2_ld(&self, interval: &Interval<N, T>) -> SVector<T, N>;
+    /// `∂L_d/∂t1`.
+    fn d3_ld(&self, interval: &Interval<N, T>) -> T;
+    /// `∂L_d/∂q1`.
+    fn d4_ld(&self, interval: &Interval<N, T>) -> SVector<T, N>;
+    /// Discrete force on `δq0`.
+    fn fd_minus(&self, interval: &Interval<N, T>) -> SVector<T, N>;
+    /// Discrete force on `δq1`.
+    fn fd_plus(&self, interval: &Interval<N, T>) -> SVector<T, N>;
+    /// Discrete power on `δt0`.
+    fn gd_minus(&self, interval: &Interval<N, T>) -> T;
+    /// Discrete power on `δt1`.
+    fn gd_plus(&self, interval: &Interval<N, T>) -> T;
+}
+
+/// The equations of one step from a node, in the unknowns `(v, h)`: `q1 = q0 + h v`, `t1 = t0 + h`.
+pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> {
+    /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the
+    /// velocity that belongs to `p`.
+    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T>;
+    /// Momentum and energy equation at the trial `(v, h)`.
+    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T>;
+    /// What momentum and energy gain over the solved step.
+    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T>;
+}
+
+/// The momentum equation at a trial velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentumEquation<const N: usize, T = f64> {
+    /// `−D2 L_d − f_d⁻ − p0`.
+    pub residual: SVector<T, N>,
+    /// Sum of the absolute values of the terms of each residual: rounding is measured in it.
+    pub magnitude: SVector<T, N>,
+    /// `A`, the derivative of the residual by `v`: row i, column j is `∂r_i/∂v_j`.
+    pub jacobian: SMatrix<T, N, N>,
+}
+
+/// Momentum and energy equation at a trial `(v, h)`, rows combined and scaled so that the condition number does not
+/// depend on `h`.
+///
+/// With the momentum row `r` and the energy row `e = D1 L_d + g_d⁻ − E0`, the combined row is `c = e − v·r`; its
+/// leading terms, of order one, are cancelled symbolically. A Newton step `(δv, δh)` solves
+///
+/// ```text
+/// [ A                 ∂r/∂h               ] [ δv/h ]     [ r/h  ]
+/// [ (∂e/∂v − v·A)/h   (∂e/∂h − v·∂r/∂h)/h ] [ δh/h ] = − [ c/h² ]
+/// ```
+///
+/// whose Schur complement of `A` is `−D/4` to leading order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtendedSystem<const N: usize, T = f64> {
+    /// The momentum row `r` and its block `A`.
+    pub momentum: MomentumEquation<N, T>,
+    /// `∂r/∂h`.
+    pub residual_dh: SVector<T, N>,
+    /// `c = e − v·r`, unscaled.
+    pub energy_residual: T,
+    /// Sum of the absolute values of the terms of `c`.
+    pub energy_magnitude: T,
+    /// `(∂e/∂v − v·A)/h`.
+    pub energy_dv: SVector<T, N>,
+    /// `(∂e/∂h − v·∂r/∂h)/h`.
+    pub energy_dh: T,
+}
+
+/// What momentum and energy gain over one solved step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Increment<const N: usize, T = f64> {
+    /// `p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺`; for the midpoint rule `h (L_q + f)`.
+    pub momentum: SVector<T, N>,
+    /// `E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺`; for the midpoint rule `−h (L_t − f·v)`.
+    pub energy: T,
+}
+
+/// The parameters of a system, by name.
+pub trait Parameters<T: Real = f64> {
+    /// Names of the parameters, as declared.
+    const PARAMETERS: &'static [&'static str];
+    /// The parameter of this name, for reading and writing.
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut T>;
+}
+
+/// A system may be lent as well as given.
+impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for &S {
+    const NAME: &'static str = S::NAME;
+    const COORDINATES: [&'static str; N] = S::COORDINATES;
+    const AUTONOMOUS: bool = S::AUTONOMOUS;
+    const FORCED: bool = S::FORCED;
+    const CYCLIC: [bool; N] = S::CYCLIC;
+
+    #[inline]
+    fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+        S::lagrangian(self, t, q, v)
+    }
+
+    #[inline]
+    fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+        S::energy(self, t, q, v)
+    }
+
+    #[inline]
+    fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        S::momentum(self, t, q, v)
+    }
+
+    #[inline]
+    fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        S::force(self, t, q, v)
+    }
+
+    #[inline]
+    fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
+        S::acceleration(self, t, q, v)
+    }
+
+    #[inline]
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+        S::step_density(self, t, q, v)
+    }
+}
+
+impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N, T> for &S {
+    #[inline]
+    fn ld(&self, interval: &Interval<N, T>) -> T {
+        S::ld(self, interval)
+    }
+
+    #[inline]
+    fn d1_ld(&self, interval: &Interval<N, T>) -> T {
+        S::d1_ld(self, interval)
+    }
+
+    #[inline]
+    fn d2_ld(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        S::d2_ld(self, interval)
+    }
+
+    #[inline]
+    fn d3_ld(&self, interval: &Interval<N, T>) -> T {
+        S::d3_ld(self, interval)
+    }
+
+    #[inline]
+    fn d4_ld(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        S::d4_ld(self, interval)
+    }
+
+    #[inline]
+    fn fd_minus(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        S::fd_minus(self, interval)
+    }
+
+    #[inline]
+    fn fd_plus(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        S::fd_plus(self, interval)
+    }
+
+    #[inline]
+    fn gd_minus(&self, interval: &Interval<N, T>) -> T {
+        S::gd_minus(self, interval)
+    }
+
+    #[inline]
+    fn gd_plus(&self, interval: &Interval<N, T>) -> T {
+        S::gd_plus(self, interval)
+    }
+}
+
+impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
+    #[inline]
+    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
+        S::momentum_equation(self, node, h, v)
+    }
+
+    #[inline]
+    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
+        S::extended_system(self, node, h, v)
+    }
+
+    #[inline]
+    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
+        S::increment(self, node, h, v)
+    }
+}

@@ -1,0 +1,43 @@
+//! Run time of generated variational integrators.
+//!
+//! In: a system that `lagrangian!` generated, an initial state, a step length.
+//! Out: an iterator of states, each solved to the rounding floor, or a typed [`StepError`].
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`real`] | the numbers that generated code computes with |
+//! | [`lagrangian`] | what a system says of itself, continuous and discrete |
+//! | [`state`] | states, intervals, steps |
+//! | [`node`] | nodes as the steppers carry them |
+//! | [`linear`] | small dense linear systems |
+//! | [`fixed_step`] | the variational integrator with a given step |
+//! | [`energy_preserving`] | the integrator that solves for its own step |
+//! | [`condition`] | condition numbers of the equations that a step solves |
+//! | [`error`] | every way in which a step can fail, with its numbers |
+//!
+//! Nothing here panics, allocates in a step, or prints.
+
+mod compensated;
+pub mod condition;
+pub mod energy_preserving;
+pub mod error;
+pub mod fixed_step;
+pub mod lagrangian;
+pub mod linear;
+mod momentum;
+pub mod node;
+pub mod real;
+pub mod state;
+
+pub use energy_preserving::EnergyPreserving;
+pub use error::StepError;
+pub use fixed_step::FixedStep;
+pub use lagrangian::{
+    DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, MomentumEquation, Parameters, Stepping,
+};
+pub use nalgebra;
+pub use nalgebra::{SMatrix, SVector};
+pub use node::Node;
+pub use real::{Real, Scalar};
+pub use state::{Interval, State, Step};
+pub use vi_macros::lagrangian;

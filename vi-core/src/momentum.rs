@@ -1,0 +1,132 @@
+//! Newton's iteration on the momentum equation, the step h given.
+//!
+//! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor: each residual is at most
+//! one ulp of the sum of the absolute values of its terms, or stopped decreasing within [`FLOOR`] of it.
+//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
+
+use crate::{Node, Scalar, StepError, Stepping, linear};
+use nalgebra::SVector;
+
+/// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
+/// cancellation inside a term.
+const FLOOR: f64 = 256.0;
+const ITERATIONS: u32 = 40;
+const HALVINGS: u32 = 12;
+
+/// A velocity that solves the momentum equation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solution<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    pub(crate) iterations: u32,
+}
+
+/// Why no velocity was found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Failure {
+    Singular,
+    NonFinite,
+    Stalled { iterations: u32, residual: f64 },
+}
+
+impl Failure {
+    /// The error that this is, for the step h from time t.
+    pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str) -> StepError {
+        match self {
+            Self::Singular => StepError::Singular { t, matrix },
+            Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation" },
+            Self::Stalled { iterations, residual } => StepError::NotConverged { t, h, iterations, residual },
+        }
+    }
+}
+
+/// Whether a row is solved: its residual is one rounding, or small and no longer halved by a Newton step, which close to
+/// a root squares what is not rounding.
+#[inline]
+pub(crate) fn is_at_floor(residual: f64, before: f64) -> bool {
+    residual <= 1.0 || (residual <= FLOOR && before <= FLOOR && residual >= 0.5 * before)
+}
+
+/// `|residual|` in units of one ulp of `magnitude`. Not a number where either is not finite.
+#[inline]
+pub(crate) fn roundings<T: Scalar>(residual: T, magnitude: T) -> f64 {
+    let (residual, magnitude) = (residual.to_f64().abs(), magnitude.to_f64());
+    if residual == 0.0 && magnitude.is_finite() {
+        return 0.0;
+    }
+    // ∞/∞ is not a number, and x/∞ shall be none either: a magnitude that overflows proves nothing about x.
+    if magnitude.is_finite() { residual / magnitude / T::EPSILON } else { f64::NAN }
+}
+
+/// The larger of two numbers; not a number where either is not.
+#[inline]
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
+/// The largest residual in units of one ulp of its magnitude.
+#[inline]
+pub(crate) fn worst<T: Scalar, const N: usize>(residual: &SVector<T, N>, magnitude: &SVector<T, N>) -> f64 {
+    residual.iter().zip(magnitude.iter()).fold(0.0, |worst, (r, m)| worse(roundings(*r, *m), worst))
+}
+
+/// The velocity that solves the momentum equation at `h`, from the guess `v`.
+#[inline]
+pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    mut v: SVector<T, N>,
+) -> Result<Solution<N, T>, Failure> {
+    let mut equation = system.momentum_equation(node, h, &v);
+    let mut iterations = 0;
+    loop {
+        let residual = worst(&equation.residual, &equation.magnitude);
+        if residual <= 1.0 {
+            return Ok(Solution { v, iterations });
+        }
+        if !residual.is_finite() {
+            return Err(Failure::NonFinite);
+        }
+        if iterations == ITERATIONS {
+            return Err(Failure::Stalled { iterations, residual });
+        }
+        iterations += 1;
+        let mut step = linear::solve(&equation.jacobian, &equation.residual).ok_or(Failure::Singular)?;
+        let mut halvings = 0;
+        loop {
+            let trial_v = v - step;
+            let trial = system.momentum_equation(node, h, &trial_v);
+            // Measured in the magnitude at v: one far away would make any residual look small.
+            if worst(&trial.residual, &equation.magnitude) < residual
+                && worst(&trial.residual, &trial.magnitude).is_finite()
+            {
+                (v, equation) = (trial_v, trial);
+                break;
+            }
+            if residual <= FLOOR {
+                return Ok(Solution { v, iterations });
+            }
+            if halvings == HALVINGS {
+                return Err(Failure::Stalled { iterations, residual });
+            }
+            halvings += 1;
+            step *= T::real(0.5);
+        }
+    }
+}
+
+/// The velocity that belongs to the momenta of a node: the root at h = 0.
+///
+/// # Errors
+/// [`StepError::Singular`], [`StepError::NonFinite`] or [`StepError::NotConverged`] from the last guess.
+pub(crate) fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    guesses: [SVector<T, N>; 2],
+) -> Result<SVector<T, N>, StepError> {
+    let [first, second] = guesses;
+    solve(system, node, T::zero(), first)
+        .or_else(|_| solve(system, node, T::zero(), second))
+        .map(|solution| solution.v)
+        .map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix"))
+}

@@ -1,0 +1,95 @@
+//! Nodes as the steppers carry them, and how one follows from another.
+//!
+//! In: a node, the solved `(v, h)` of a step and what momentum and energy gain over it. Out: the next node, every sum
+//! compensated. AFTER A STEP each low part is below half an ulp of its number.
+
+use crate::{Increment, Real, Scalar, State, StepError, Stepping, compensated};
+use nalgebra::SVector;
+
+/// A node as the steppers carry it: each quantity as the unevaluated sum of a number and its low part, so that
+/// ten million additions cost no digit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node<const N: usize, T = f64> {
+    /// Time.
+    pub t: T,
+    /// What rounding took from `t`.
+    pub t_low: T,
+    /// Coordinates.
+    pub q: SVector<T, N>,
+    /// What rounding took from `q`.
+    pub q_low: SVector<T, N>,
+    /// Momenta.
+    pub p: SVector<T, N>,
+    /// What rounding took from `p`.
+    pub p_low: SVector<T, N>,
+    /// Discrete energy.
+    pub energy: T,
+    /// What rounding took from `energy`.
+    pub energy_low: T,
+}
+
+impl<const N: usize, T: Real> Node<N, T> {
+    /// The node at a state, with its discrete energy (of no meaning to the fixed-step integrator) and low parts zero.
+    pub fn new(state: State<N, T>, energy: T) -> Self {
+        let (zero, zeros) = (T::zero(), SVector::zeros());
+        let State { t, q, p } = state;
+        Self { t, t_low: zero, q, q_low: zeros, p, p_low: zeros, energy, energy_low: zero }
+    }
+
+    /// Time, coordinates and momenta, low parts left out.
+    pub fn state(&self) -> State<N, T> {
+        State { t: self.t, q: self.q, p: self.p }
+    }
+
+    /// Middle of the step `(v, h)` from here: `(t + h/2, q + (h/2) v)`.
+    #[inline]
+    pub fn midpoint(&self, h: T, v: &SVector<T, N>) -> (T, SVector<T, N>) {
+        let half = h * T::real(0.5);
+        (self.t + (self.t_low + half), self.q + (self.q_low + v * half))
+    }
+
+    /// Moves time by `h` and coordinates by `h v`; momenta and energy stay.
+    #[inline]
+    pub(crate) fn shift(&mut self, h: T, v: &SVector<T, N>) {
+        compensated::add(&mut self.t, &mut self.t_low, h);
+        compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
+    }
+
+    /// The node at the end of the step `(v, h)`.
+    #[inline]
+    pub(crate) fn advanced(mut self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
+        self.shift(h, v);
+        compensated::add_vector(&mut self.p, &mut self.p_low, &gain.momentum);
+        compensated::add(&mut self.energy, &mut self.energy_low, gain.energy);
+        self
+    }
+
+    /// The same place with the momenta and the energy that make `(v, h)` the step from here:
+    /// `p0 = −D2 L_d − f_d⁻`, `E0 = D1 L_d + g_d⁻`.
+    pub(crate) fn leaving<S: Stepping<N, T>>(self, system: &S, h: T, v: &SVector<T, N>) -> Self {
+        let zeros = SVector::zeros();
+        let bare = Self { p: zeros, p_low: zeros, energy: T::zero(), energy_low: T::zero(), ..self };
+        let equations = system.extended_system(&bare, h, v);
+        let p = equations.momentum.residual;
+        // The energy row is e = c + v·r, and r is all of p0 where the node has no momentum.
+        Self { p, energy: equations.energy_residual + v.dot(&p), ..bare }
+    }
+}
+
+impl<const N: usize, T: Scalar> Node<N, T> {
+    /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
+    /// the last good node.
+    pub(crate) fn check_finite(&self, t: T) -> Result<(), StepError> {
+        let entries = |vector: &SVector<T, N>| vector.iter().all(|entry| entry.is_finite());
+        let quantities = [
+            (self.t.is_finite() && self.t_low.is_finite(), "time"),
+            (entries(&self.q) && entries(&self.q_low), "position"),
+            (entries(&self.p) && entries(&self.p_low), "momentum"),
+            (self.energy.is_finite() && self.energy_low.is_finite(), "energy"),
+        ];
+        match quantities.into_iter().find(|(finite, _)| !finite) {
+            Some((_, quantity)) => Err(StepError::NonFinite { t: t.to_f64(), quantity }),
+            None => Ok(()),
+        }
+    }
+}

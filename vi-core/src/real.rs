@@ -1,0 +1,168 @@
+//! The numbers that generated code computes with.
+//!
+//! In: formulas written once, generic over [`Real`]. Out: the same formulas in `f64`, `f32`, and later in SIMD lanes.
+//! [`Real`] holds what a formula needs and nothing that a lane of several numbers could not answer;
+//! [`Scalar`] adds what the control flow of a stepper needs: order, precision, conversion to `f64`.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A number that generated formulas can be evaluated with.
+pub trait Real:
+    Copy
+    + Debug
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + num_traits::Zero
+    + num_traits::One
+{
+    /// The constant `value`, rounded to this type.
+    fn real(value: f64) -> Self;
+    /// 1/x.
+    #[must_use]
+    fn recip(self) -> Self;
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// e^x.
+    #[must_use]
+    fn exp(self) -> Self;
+    /// Natural logarithm.
+    #[must_use]
+    fn ln(self) -> Self;
+    /// Sine of an angle in radians.
+    #[must_use]
+    fn sin(self) -> Self;
+    /// Cosine of an angle in radians.
+    #[must_use]
+    fn cos(self) -> Self;
+    /// Sine and cosine of one angle in radians, in this order.
+    fn sin_cos(self) -> (Self, Self);
+    /// Tangent of an angle in radians.
+    #[must_use]
+    fn tan(self) -> Self;
+    /// Arc sine, in [−π/2, π/2].
+    #[must_use]
+    fn asin(self) -> Self;
+    /// Arc cosine, in [0, π].
+    #[must_use]
+    fn acos(self) -> Self;
+    /// Arc tangent, in [−π/2, π/2].
+    #[must_use]
+    fn atan(self) -> Self;
+    /// Angle of the point (x = `other`, y = `self`), in [−π, π].
+    #[must_use]
+    fn atan2(self, other: Self) -> Self;
+    /// Hyperbolic sine.
+    #[must_use]
+    fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
+    #[must_use]
+    fn cosh(self) -> Self;
+    /// Hyperbolic tangent.
+    #[must_use]
+    fn tanh(self) -> Self;
+    /// Absolute value.
+    #[must_use]
+    fn abs(self) -> Self;
+    /// −1, 0 or 1; `sign(0) = 0`, unlike `signum`.
+    #[must_use]
+    fn sign(self) -> Self;
+    /// √(x² + y²) without overflow.
+    #[must_use]
+    fn hypot(self, other: Self) -> Self;
+    /// x^y for a real exponent.
+    #[must_use]
+    fn pow(self, exponent: Self) -> Self;
+    /// The larger of two numbers.
+    #[must_use]
+    fn max(self, other: Self) -> Self;
+    /// Whether every lane is finite.
+    fn is_finite(self) -> bool;
+    /// The value, of several lanes the first, as it stands in errors and tables.
+    fn to_f64(self) -> f64;
+    /// The smallest absolute value among the lanes: what a pivot is chosen by.
+    fn least_magnitude(self) -> f64;
+}
+
+/// One number: what the control flow of a stepper needs beside the formulas.
+pub trait Scalar: Real + PartialOrd {
+    /// Distance from 1 to the next larger number.
+    const EPSILON: f64;
+}
+
+macro_rules! impl_real {
+    ($($float:ident),*) => {$(
+        impl Real for $float {
+            // A constant of a formula is rounded to the type it is evaluated in: that is what `real` says.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
+            #[inline]
+            fn real(value: f64) -> Self { value as $float }
+            #[inline]
+            fn recip(self) -> Self { $float::recip(self) }
+            #[inline]
+            fn sqrt(self) -> Self { $float::sqrt(self) }
+            #[inline]
+            fn exp(self) -> Self { $float::exp(self) }
+            #[inline]
+            fn ln(self) -> Self { $float::ln(self) }
+            #[inline]
+            fn sin(self) -> Self { $float::sin(self) }
+            #[inline]
+            fn cos(self) -> Self { $float::cos(self) }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) { $float::sin_cos(self) }
+            #[inline]
+            fn tan(self) -> Self { $float::tan(self) }
+            #[inline]
+            fn asin(self) -> Self { $float::asin(self) }
+            #[inline]
+            fn acos(self) -> Self { $float::acos(self) }
+            #[inline]
+            fn atan(self) -> Self { $float::atan(self) }
+            #[inline]
+            fn atan2(self, other: Self) -> Self { $float::atan2(self, other) }
+            #[inline]
+            fn sinh(self) -> Self { $float::sinh(self) }
+            #[inline]
+            fn cosh(self) -> Self { $float::cosh(self) }
+            #[inline]
+            fn tanh(self) -> Self { $float::tanh(self) }
+            #[inline]
+            fn abs(self) -> Self { $float::abs(self) }
+            #[inline]
+            fn sign(self) -> Self { if self == 0.0 { 0.0 } else { $float::signum(self) } }
+            #[inline]
+            fn hypot(self, other: Self) -> Self { $float::hypot(self, other) }
+            #[inline]
+            fn pow(self, exponent: Self) -> Self { $float::powf(self, exponent) }
+            #[inline]
+            fn max(self, other: Self) -> Self { $float::max(self, other) }
+            #[inline]
+            fn is_finite(self) -> bool { $float::is_finite(self) }
+            #[allow(clippy::cast_lossless)]
+            #[inline]
+            fn to_f64(self) -> f64 { self as f64 }
+            #[allow(clippy::cast_lossless)]
+            #[inline]
+            fn least_magnitude(self) -> f64 { $float::abs(self) as f64 }
+        }
+
+        impl Scalar for $float {
+            #[allow(clippy::cast_lossless)]
+            const EPSILON: f64 = $float::EPSILON as f64;
+        }
+    )*};
+}
+
+impl_real!(f64, f32);

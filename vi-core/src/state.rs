@@ -1,0 +1,62 @@
+//! States, intervals and steps.
+//!
+//! `q`, `p` and `v` are column vectors of N entries, in the order in which the system declares its coordinates and
+//! in the system's own units.
+
+use crate::{Lagrangian, Real};
+use nalgebra::SVector;
+
+/// Where a system is: time, coordinates, momenta.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<const N: usize, T = f64> {
+    /// Time.
+    pub t: T,
+    /// Coordinates.
+    pub q: SVector<T, N>,
+    /// Momenta, `p = ∂L/∂v`.
+    pub p: SVector<T, N>,
+}
+
+impl<const N: usize, T: Real> State<N, T> {
+    /// The state at time `t` with coordinates `q` and velocities `v`: `p = ∂L/∂v(t, q, v)`.
+    pub fn at<S: Lagrangian<N, T>>(system: &S, t: T, q: impl Into<SVector<T, N>>, v: impl Into<SVector<T, N>>) -> Self {
+        let (q, v) = (q.into(), v.into());
+        Self { t, q, p: system.momentum(t, &q, &v) }
+    }
+}
+
+/// The pair of nodes between which one discrete Lagrangian lives: `(t0, q0) → (t1, q1)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval<const N: usize, T = f64> {
+    /// Time at the start.
+    pub t0: T,
+    /// Coordinates at the start.
+    pub q0: SVector<T, N>,
+    /// Time at the end.
+    pub t1: T,
+    /// Coordinates at the end.
+    pub q1: SVector<T, N>,
+}
+
+/// One step of the energy-preserving integrator: the node reached, and the midpoint it was reached through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<const N: usize, T = f64> {
+    /// Time of the node reached.
+    pub t: T,
+    /// Coordinates of the node reached.
+    pub q: SVector<T, N>,
+    /// Momenta of the node reached.
+    pub p: SVector<T, N>,
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the node reached, as the integrator carries it.
+    pub energy: T,
+    /// Length of the step.
+    pub h: T,
+    /// Middle of the interval: `(t0 + h/2, q0 + (h/2) v, v)`. The energy equation holds here.
+    pub midpoint: (T, SVector<T, N>, SVector<T, N>),
+    /// Step density D of the interval, from the determinant that the solution was found with.
+    pub density: T,
+    /// Newton iterations on the n + 1 equations that found the step.
+    pub iterations: u32,
+    /// Largest residual left, in units of rounding: 1 is one ulp of the sum of the absolute values of the terms.
+    pub residual: T,
+}

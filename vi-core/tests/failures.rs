@@ -1,0 +1,219 @@
+//! Where there is no step: a typed error, the last good state, the same error again. Never a value that is not a number,
+//! never a hang.
+
+mod systems;
+
+use systems::{DoubleWell, FreeParticle, Kepler, UnitMass, point_after};
+use vi_core::{EnergyPreserving, FixedStep, SVector, State, Step, StepError};
+
+type DoubleWellRun<'a> = EnergyPreserving<&'a UnitMass<DoubleWell>, 1>;
+
+fn above_the_barrier(system: &UnitMass<DoubleWell>, q0: f64) -> DoubleWellRun<'_> {
+    let q1 = point_after(&system.0, q0, 0.01);
+    EnergyPreserving::from_points(system, (0.0, [q0]), (0.01, [q1])).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The steps taken, at most `limit`, and the error that ended the run.
+fn until_error<const N: usize>(
+    run: &mut impl Iterator<Item = Result<Step<N>, StepError>>,
+    limit: usize,
+) -> (usize, Option<StepError>) {
+    let mut steps = 0;
+    for result in run.take(limit) {
+        match result {
+            Ok(step) => {
+                let numbers = [step.t, step.energy, step.h, step.density, step.residual];
+                assert!(numbers.into_iter().chain(step.q.iter().chain(step.p.iter()).copied()).all(f64::is_finite));
+                steps += 1;
+            }
+            Err(error) => {
+                assert_typed(error);
+                return (steps, Some(error));
+            }
+        }
+    }
+    (steps, None)
+}
+
+#[test]
+fn above_the_barrier_the_step_ends_where_the_density_vanishes() {
+    for (q0, last) in [(1.0001, 151), (1.001, 145), (1.05, 114), (1.2, 88), (1.5, 66)] {
+        let system = UnitMass(DoubleWell);
+        let mut run = above_the_barrier(&system, q0);
+        let (steps, error) = until_error(&mut run, 1000);
+        // The step that fails, counted from 1. Measured: exactly these.
+        assert_eq!(steps + 1, last, "{q0}");
+        assert!(matches!(error, Some(StepError::NoForwardStep { excess, .. }) if excess > 0.0), "{q0}: {error:?}");
+    }
+}
+
+#[test]
+fn kepler_ends_beyond_the_eccentricity_that_the_method_can_follow() {
+    let system = UnitMass(Kepler { mu: 1.0 });
+    let run = EnergyPreserving::from_midpoint(&system, 0.0, [0.2, 0.0], [0.0, 3.0], 0.0035);
+    let (steps, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 1000);
+    assert_eq!(steps + 1, 37);
+    assert!(matches!(error, Some(StepError::NoForwardStep { .. })), "{error:?}");
+}
+
+#[test]
+fn after_an_error_the_last_state_stays_and_the_error_repeats() {
+    let system = UnitMass(DoubleWell);
+    let mut run = above_the_barrier(&system, 1.5);
+    let mut last = None;
+    let error = loop {
+        match run.step() {
+            Ok(step) => last = Some(State { t: step.t, q: step.q, p: step.p }),
+            Err(error) => break error,
+        }
+    };
+    assert_eq!(last, Some(run.state()));
+    assert_eq!((run.step(), run.next()), (Err(error), Some(Err(error))));
+    assert_eq!(last, Some(run.state()));
+
+    let falling = State { t: 0.0, q: SVector::from([0.1, 0.0]), p: SVector::from([0.0, 0.0]) };
+    let mut fixed =
+        FixedStep::new(UnitMass(Kepler { mu: 1.0 }), falling, 1.0).unwrap_or_else(|error| panic!("{error}"));
+    let error = fixed.step();
+    assert!(error.is_err());
+    assert_eq!((fixed.step(), fixed.next(), fixed.state()), (error, Some(error), falling));
+}
+
+#[test]
+fn the_fixed_step_of_kepler_exists_up_to_its_bound() {
+    // On a radial line |q + h p/2|³ ≥ (27/16) μ h² decides.
+    let (mu, h) = (1.0, 0.5_f64);
+    let bound = (27.0 / 16.0 * mu * h * h).cbrt();
+    for (distance, exists) in [(0.999, false), (0.9, false), (0.5, false), (1.001, true), (1.1, true), (3.0, true)] {
+        let start = State { t: 0.0, q: SVector::from([distance * bound, 0.0]), p: SVector::zeros() };
+        let mut run = FixedStep::new(UnitMass(Kepler { mu }), start, h).unwrap_or_else(|error| panic!("{error}"));
+        let result = run.step();
+        match result {
+            Ok(state) => assert!(exists && state.q[0] > 0.0, "{distance}: {state:?}"),
+            Err(error) => assert!(!exists && matches!(error, StepError::NotConverged { .. }), "{distance}: {error:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_length_that_nothing_determines_is_an_error() {
+    let mut run = EnergyPreserving::from_midpoint(UnitMass(FreeParticle), 0.0_f64, [0.0], [1.0], 0.1)
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(matches!(run.step(), Err(StepError::DegenerateStep { .. })));
+    // At rest in the middle of the well.
+    let mut run = EnergyPreserving::from_midpoint(UnitMass(DoubleWell), 0.0_f64, [0.0], [0.0], 0.1)
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(matches!(run.step(), Err(StepError::DegenerateStep { .. })));
+}
+
+#[test]
+fn a_state_without_room_for_a_step_has_none() {
+    // H = E: the last node lies on the level of its own energy, and the step would have no length.
+    let system = UnitMass(DoubleWell);
+    let state = State::at(&system, 0.0_f64, [0.74], [0.1]);
+    let energy = vi_core::Lagrangian::energy(&system, 0.0, &state.q, &SVector::from([0.1]));
+    let run = EnergyPreserving::from_state(&system, state, energy, 0.01, [0.1]);
+    let (steps, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 10);
+    assert!(steps == 0 && matches!(error, Some(StepError::NoForwardStep { .. })), "{error:?}");
+}
+
+#[test]
+fn a_step_beyond_the_factor_is_named_with_its_length() {
+    // As if the last step had been ten times as long as the energy allows.
+    let system = UnitMass(DoubleWell);
+    let mut short = EnergyPreserving::from_midpoint(&system, 0.0_f64, [0.74], [0.0], 0.01)
+        .unwrap_or_else(|error| panic!("{error}"));
+    let h = short.step().map_or(f64::NAN, |step| step.h);
+    let (state, energy, v) = (short.state(), short.energy(), short.v());
+    let run = EnergyPreserving::from_state(&system, state, energy, 0.05, v);
+    let (_, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 1);
+    let Some(StepError::StepRatio { previous, found, .. }) = error else { panic!("{error:?}") };
+    assert!(previous.to_bits() == 0.05_f64.to_bits() && (found / h - 1.0).abs() < 1e-2, "{found}");
+}
+
+/// Numbers that no one should give, and everyone does.
+const STRANGE: [f64; 12] = [
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    0.0,
+    -0.01,
+    f64::MIN_POSITIVE,
+    5e-324,
+    1e-150,
+    1e-20,
+    1e6,
+    1e150,
+    f64::MAX,
+];
+
+#[test]
+fn strange_numbers_give_typed_errors_and_never_not_a_number() {
+    let system = UnitMass(DoubleWell);
+    for x in STRANGE {
+        for (t0, q0, v0, h0) in [(0.0, 0.74, 0.1, x), (x, 0.74, 0.1, 0.01), (0.0, x, 0.1, 0.01), (0.0, 0.74, x, 0.01)] {
+            let runs = [
+                EnergyPreserving::from_midpoint(&system, t0, [q0], [v0], h0),
+                EnergyPreserving::from_points(&system, (t0, [q0]), (t0 + h0, [q0 + h0 * v0])),
+                EnergyPreserving::from_state(&system, State::at(&system, t0, [q0], [v0]), x, h0, [v0]),
+            ];
+            for run in runs {
+                match run {
+                    Ok(mut run) => _ = until_error(&mut run, 20),
+                    Err(error) => assert_typed(error),
+                }
+            }
+            match FixedStep::new(&system, State::at(&system, t0, [q0], [v0]), h0) {
+                Ok(run) => {
+                    for result in run.take(20) {
+                        match result {
+                            Ok(state) => assert!([state.t, state.q[0], state.p[0]].iter().all(|x| x.is_finite())),
+                            Err(error) => assert_typed(error),
+                        }
+                    }
+                }
+                Err(error) => assert_typed(error),
+            }
+        }
+    }
+}
+
+/// What went wrong is named, and every number in it is one.
+fn assert_typed(error: StepError) {
+    let numbers = match error {
+        // The value given may be anything.
+        StepError::InvalidInput { .. } => vec![],
+        StepError::NoForwardStep { t, h, excess, density } => vec![t, h, excess, density],
+        StepError::DegenerateStep { t, h, density } => vec![t, h, density],
+        StepError::StepRatio { t, previous, found } => vec![t, previous, found],
+        StepError::NotConverged { t, h, residual, .. } => vec![t, h, residual],
+        StepError::Singular { t, .. } | StepError::NonFinite { t, .. } => vec![t],
+        other => panic!("{other:?}"),
+    };
+    assert!(numbers.into_iter().all(f64::is_finite), "{error:?}");
+}
+
+#[test]
+fn a_step_must_be_a_step() {
+    let system = UnitMass(DoubleWell);
+    let state = State::at(&system, 0.0_f64, [0.74], [0.0]);
+    for h in [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(matches!(FixedStep::new(&system, state, h), Err(StepError::InvalidInput { .. })), "{h}");
+    }
+    for h in [0.0, -0.01, f64::NAN, f64::INFINITY] {
+        let start = EnergyPreserving::from_midpoint(&system, 0.0, [0.74], [0.0], h);
+        assert!(matches!(start, Err(StepError::InvalidInput { .. })), "{h}");
+    }
+}
+
+#[test]
+fn a_negative_step_leads_back() {
+    let system = UnitMass(DoubleWell);
+    let start = State::at(&system, 0.0_f64, [0.74], [0.1]);
+    let there = FixedStep::new(&system, start, 0.1).ok().and_then(|run| run.take(1000).last());
+    let there = there.and_then(Result::ok).unwrap_or(start);
+    let back = FixedStep::new(&system, there, -0.1).ok().and_then(|run| run.take(1000).last());
+    let back = back.and_then(Result::ok).unwrap_or(there);
+    // Measured: 4e-14.
+    assert!(back.t.abs().max((back.q - start.q).amax()).max((back.p - start.p).amax()) < 1e-13, "{back:?}");
+}

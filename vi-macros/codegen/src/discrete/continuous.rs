@@ -1,0 +1,115 @@
+//! The continuous functions of the system.
+//!
+//! In: L and f. Out, with `a` the acceleration and derivatives along the motion:
+//!
+//!     momentum p = L_v          energy = v·L_v − L          mass M = L_vv
+//!     M a = L_q + f − L_vt − L_vq v
+//!     D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
+
+use super::Fields;
+use crate::model::Model;
+use crate::symbol::{Quantity, Symbol, Variable};
+use vi_expr::{Expr, Pool};
+
+/// Expressions in time, coordinates, velocities and parameters; the density in accelerations too.
+pub struct Continuous {
+    /// L.
+    pub lagrangian: Expr,
+    /// v·L_v − L.
+    pub energy: Expr,
+    /// L_v.
+    pub momentum: Vec<Expr>,
+    /// f.
+    pub force: Vec<Expr>,
+    /// M, row by row.
+    pub mass: Vec<Vec<Expr>>,
+    /// M a.
+    pub mass_times_acceleration: Vec<Expr>,
+    /// D.
+    pub step_density: Expr,
+    /// Neither L nor f depends on the time.
+    pub autonomous: bool,
+    /// Per coordinate: it does not appear in L and has no force.
+    pub cyclic: Vec<bool>,
+}
+
+/// Derives the continuous functions.
+pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model) -> Continuous {
+    let dimension = model.dimension();
+    let mut l = |pool: &mut Pool<Symbol>, by: &[Variable]| fields.partial(pool, Quantity::Lagrangian, by.to_vec());
+    let coordinate = Variable::Coordinate;
+    let velocity = Variable::Velocity;
+    let momentum: Vec<Expr> = (0..dimension).map(|i| l(pool, &[velocity(i)])).collect();
+    let mut mass = Vec::with_capacity(dimension);
+    let mut mass_times_acceleration = Vec::with_capacity(dimension);
+    let mut density = Vec::new();
+    for i in 0..dimension {
+        mass.push((0..dimension).map(|j| l(pool, &[velocity(i), velocity(j)])).collect());
+        let (lq, lvt) = (l(pool, &[coordinate(i)]), l(pool, &[velocity(i), Variable::Time]));
+        let applied = pool.add(lq, model.forces[i]);
+        let mut inertial = vec![lvt];
+        let mut along = vec![l(pool, &[coordinate(i), Variable::Time])];
+        for j in 0..dimension {
+            let (v, a) = (moving(pool, j), pool.symbol(Symbol::Acceleration(j)));
+            let (lvq, lqq) = (l(pool, &[velocity(i), coordinate(j)]), l(pool, &[coordinate(i), coordinate(j)]));
+            let lqv = l(pool, &[coordinate(i), velocity(j)]);
+            inertial.push(pool.mul(lvq, v));
+            along.push(pool.mul(lqq, v));
+            along.push(pool.mul(lqv, a));
+        }
+        let (inertial, along) = (pool.sum(&inertial), pool.sum(&along));
+        mass_times_acceleration.push(pool.sub(applied, inertial));
+        let (v, a) = (moving(pool, i), pool.symbol(Symbol::Acceleration(i)));
+        let (ltq, ltv) = (l(pool, &[Variable::Time, coordinate(i)]), l(pool, &[Variable::Time, velocity(i)]));
+        for (sign, left, right) in [(1, a, applied), (-1, v, along), (-1, v, ltq), (-1, a, ltv)] {
+            let product = pool.mul(left, right);
+            density.push(if sign > 0 { product } else { pool.neg(product) });
+        }
+    }
+    let ltt = l(pool, &[Variable::Time, Variable::Time]);
+    density.push(pool.neg(ltt));
+    let (forced_time, autonomous) = dependence(pool, model);
+    Continuous {
+        lagrangian: model.lagrangian,
+        energy: energy(pool, &momentum, model.lagrangian),
+        cyclic: cyclic(pool, model),
+        force: model.forces.clone(),
+        momentum,
+        mass,
+        mass_times_acceleration,
+        step_density: pool.sum(&density),
+        autonomous: autonomous && !forced_time,
+    }
+}
+
+fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {
+    pool.symbol(Symbol::Continuous(Variable::Velocity(index)))
+}
+
+/// v·L_v − L.
+fn energy(pool: &mut Pool<Symbol>, momentum: &[Expr], lagrangian: Expr) -> Expr {
+    let mut terms = vec![pool.neg(lagrangian)];
+    for (index, momentum) in momentum.iter().enumerate() {
+        let v = moving(pool, index);
+        terms.push(pool.mul(v, *momentum));
+    }
+    let closed = pool.sum(&terms);
+    // Multiplied out, `m v² − m v²/2` becomes `m v²/2`; where that is too long, the closed form is as right.
+    pool.expand(closed).unwrap_or(closed)
+}
+
+/// Whether f, and whether L, depend on the time: (f does, L does not).
+fn dependence(pool: &Pool<Symbol>, model: &Model) -> (bool, bool) {
+    let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
+    let forced = model.forces.iter().any(|force| pool.depends_on(*force, &time));
+    (forced, !pool.depends_on(model.lagrangian, &time))
+}
+
+fn cyclic(pool: &Pool<Symbol>, model: &Model) -> Vec<bool> {
+    (0..model.dimension())
+        .map(|index| {
+            let itself = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Coordinate(index));
+            !pool.depends_on(model.lagrangian, &itself) && pool.is_zero(model.forces[index])
+        })
+        .collect()
+}

@@ -1,0 +1,134 @@
+//! Fields: partial derivatives of L and f at the points of a rule, and the chain rule through them.
+//!
+//! In: L and f. Out: their partial derivatives as far as they are asked for, and total derivatives of expressions
+//! that contain fields:
+//!
+//!     d/dx F(t_k, q_k, v_k) = F_t dt_k/dx + Σ_i F_{q_i} dq_{k,i}/dx + Σ_i F_{v_i} dv_{k,i}/dx
+//!
+//! A partial derivative that depends on parameters only is put in place, so that zeros and constants act at once.
+
+use super::Point;
+use crate::model::Model;
+use crate::symbol::{Field, Quantity, Symbol, Variable};
+use std::collections::BTreeMap;
+use vi_expr::{Expr, Pool};
+
+/// Partial derivatives of L and f in `(t, q, v)`.
+pub struct Fields {
+    definitions: BTreeMap<(Quantity, Vec<Variable>), Expr>,
+}
+
+/// How the arguments of the points change with one variable: per point, the nonzero ones.
+pub(super) type Changes = Vec<Vec<(Variable, Expr)>>;
+
+impl Fields {
+    /// L and f themselves.
+    pub(super) fn new(model: &Model) -> Self {
+        let forces = model.forces.iter().enumerate().map(|(index, force)| ((Quantity::Force(index), vec![]), *force));
+        let lagrangian = ((Quantity::Lagrangian, vec![]), model.lagrangian);
+        Self { definitions: forces.chain([lagrangian]).collect() }
+    }
+
+    /// A partial derivative of L or f in `(t, q, v)`: `derivatives` in any order.
+    pub(super) fn partial(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        quantity: Quantity,
+        mut derivatives: Vec<Variable>,
+    ) -> Expr {
+        derivatives.sort_unstable();
+        let key = (quantity, derivatives);
+        if let Some(known) = self.definitions.get(&key) {
+            return *known;
+        }
+        let (quantity, mut derivatives) = key;
+        // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
+        let derived = match derivatives.pop() {
+            Some(last) => {
+                let basic = self.partial(pool, quantity, derivatives.clone());
+                derivatives.push(last);
+                pool.derivative(basic, &mut |pool, symbol| {
+                    if *symbol == Symbol::Continuous(last) { pool.one() } else { pool.zero() }
+                })
+            }
+            None => pool.zero(),
+        };
+        self.definitions.insert((quantity, derivatives), derived);
+        derived
+    }
+
+    /// The definition of a field in `(t, q, v)`.
+    #[must_use]
+    pub fn definition(&self, field: &Field) -> Option<Expr> {
+        self.definitions.get(&(field.quantity, field.derivatives.clone())).copied()
+    }
+
+    /// A partial derivative at a point: a field, or its value in place where that depends on parameters only.
+    fn at_point(&mut self, pool: &mut Pool<Symbol>, field: Field) -> Expr {
+        let value = self.partial(pool, field.quantity, field.derivatives.clone());
+        if pool.depends_on(value, &|symbol| matches!(symbol, Symbol::Continuous(_))) {
+            pool.symbol(Symbol::Field(field))
+        } else {
+            value
+        }
+    }
+
+    /// The fields of an expression that depend on parameters only, put in place.
+    pub(super) fn settle(&mut self, pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+        pool.substitute(expr, &mut |pool, symbol| match symbol {
+            Symbol::Field(field) => Some(self.at_point(pool, field.clone())),
+            _ => None,
+        })
+    }
+
+    /// The total derivative of an expression by a variable that changes symbols by `direct` and points by `changes`.
+    pub(super) fn derivative(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        expr: Expr,
+        direct: &dyn Fn(&mut Pool<Symbol>, &Symbol) -> Expr,
+        changes: &Changes,
+    ) -> Expr {
+        pool.derivative(expr, &mut |pool, symbol| {
+            let Symbol::Field(field) = symbol else {
+                return direct(pool, symbol);
+            };
+            let terms: Vec<Expr> = changes[field.point]
+                .iter()
+                .map(|(variable, change)| {
+                    let mut derivatives = field.derivatives.clone();
+                    derivatives.push(*variable);
+                    derivatives.sort_unstable();
+                    let partial = self.at_point(pool, Field { derivatives, ..field.clone() });
+                    pool.mul(partial, *change)
+                })
+                .collect();
+            pool.sum(&terms)
+        })
+    }
+}
+
+/// How the arguments of the points change with one variable, which changes symbols by `direct`.
+pub(super) fn changes(
+    pool: &mut Pool<Symbol>,
+    points: &[Point],
+    direct: &dyn Fn(&mut Pool<Symbol>, &Symbol) -> Expr,
+) -> Changes {
+    points
+        .iter()
+        .map(|point| {
+            let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
+            let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
+            let arguments: Vec<_> =
+                [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities).collect();
+            let mut found = Vec::new();
+            for (variable, argument) in arguments {
+                let change = pool.derivative(argument, &mut |pool, symbol| direct(pool, symbol));
+                if !pool.is_zero(change) {
+                    found.push((variable, change));
+                }
+            }
+            found
+        })
+        .collect()
+}

@@ -1,0 +1,56 @@
+//! The forced discrete system, from a checked model and its rule.
+//!
+//! In: a [`Model`](crate::model::Model). Out: a [`DiscreteSystem`]. The rule is differentiated with L and f closed:
+//! their partial derivatives at the points of the rule are symbols, [`Field`](crate::symbol::Field)s. So the leading
+//! terms of the equations cancel exactly, whatever L is, and L itself is differentiated once, in `(t, q, v)`.
+//! AFTER THIS every expression is one in fields, slots, the unknowns `(v, h)` and parameters.
+
+mod continuous;
+mod fields;
+mod midpoint;
+mod rule;
+mod slots;
+mod step;
+pub mod system;
+
+pub use continuous::Continuous;
+pub use fields::Fields;
+pub use slots::Slots;
+pub use step::Equations;
+
+use crate::syntax::{Rule, parse};
+use vi_expr::Expr;
+
+/// The rules that have a name.
+pub(crate) const RULES: [&str; 1] = ["midpoint"];
+
+/// A rule by its name.
+pub(crate) fn named_rule(name: &str) -> Option<syn::Result<Rule>> {
+    match name {
+        "midpoint" => Some(parse::rule(midpoint::RULE)),
+        _ => None,
+    }
+}
+
+/// A discretized system.
+pub struct DiscreteSystem {
+    /// The continuous functions: momentum, mass matrix, …
+    pub continuous: Continuous,
+    /// Partial derivatives of L and f, as far as they were asked for.
+    pub fields: Fields,
+    /// L_d, its slot derivatives, discrete forces and powers.
+    pub slots: Slots,
+    /// The equations of a step in the unknowns `(v, h)`.
+    pub equations: Equations,
+}
+
+/// Where a rule evaluates L and f.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Point {
+    /// Time.
+    pub time: Expr,
+    /// Coordinates.
+    pub coordinates: Vec<Expr>,
+    /// Velocities.
+    pub velocities: Vec<Expr>,
+}

@@ -1,0 +1,172 @@
+//! The equations of one step, in the unknowns (v, h).
+//!
+//! In: the slot derivatives. Out, with `q1 = q0 + h v`, `t1 = t0 + h` and the low parts of what is carried:
+//!
+//!     r = −D2 L_d − f_d⁻ − p0            momentum row
+//!     e =  D1 L_d + g_d⁻ − E0            energy row
+//!     c =  e − v·r                       combined row; its terms of order one have cancelled
+//!     A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
+//!     p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
+
+use super::fields::changes;
+use super::{Fields, Point, Slots};
+use crate::symbol::Symbol;
+use vi_expr::{Expr, Pool, Rational, TooLarge};
+
+/// The equations of one step.
+pub struct Equations {
+    /// Where L and f are evaluated, in the node and the unknowns.
+    pub points: Vec<Point>,
+    /// r.
+    pub residual: Vec<Expr>,
+    /// A, row by row: entry (i, j) is ∂r_i/∂v_j.
+    pub residual_dv: Vec<Vec<Expr>>,
+    /// ∂r/∂h.
+    pub residual_dh: Vec<Expr>,
+    /// c.
+    pub energy_residual: Expr,
+    /// (∂e/∂v − v·A)/h.
+    pub energy_dv: Vec<Expr>,
+    /// (∂e/∂h − v·∂r/∂h)/h.
+    pub energy_dh: Expr,
+    /// p1 − p0.
+    pub momentum_increment: Vec<Expr>,
+    /// E1 − E0.
+    pub energy_increment: Expr,
+}
+
+/// Derives the equations of a step.
+pub(super) fn equations(
+    pool: &mut Pool<Symbol>,
+    fields: &mut Fields,
+    slots: &Slots,
+) -> Result<Equations, TooLarge> {
+    let dimension = slots.d2_ld.len();
+    let points: Vec<Point> = slots.points.iter().map(|point| at_node(pool, point)).collect();
+    let velocities: Vec<Expr> = (0..dimension).map(|i| pool.symbol(Symbol::StepVelocity(i))).collect();
+    let mut residual = Vec::with_capacity(dimension);
+    for i in 0..dimension {
+        let start = carried(pool, Symbol::P0(i));
+        let terms = [slots.d2_ld[i], slots.fd_minus[i], start];
+        residual.push(negative_sum(pool, &terms)?);
+    }
+    let start = carried(pool, Symbol::E0);
+    let power = pool.add(slots.d1_ld, slots.gd_minus);
+    let energy = pool.sub(power, start);
+    let energy_residual = combined(pool, energy, &velocities, &residual)?;
+
+    let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
+    let mut energy_dv = Vec::with_capacity(dimension);
+    for j in 0..dimension {
+        let column = by_unknown(pool, fields, &points, &residual, energy, &Symbol::StepVelocity(j))?;
+        energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
+        residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
+    }
+    let column = by_unknown(pool, fields, &points, &residual, energy, &Symbol::Step)?;
+    let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
+
+    let mut momentum_increment = Vec::with_capacity(dimension);
+    for i in 0..dimension {
+        let gain = pool.sum(&[slots.d2_ld[i], slots.d4_ld[i], slots.fd_minus[i], slots.fd_plus[i]]);
+        momentum_increment.push(pool.expand(gain)?);
+    }
+    let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
+    Ok(Equations {
+        points,
+        residual,
+        residual_dv,
+        residual_dh: column.residual,
+        energy_residual,
+        energy_dv,
+        energy_dh,
+        momentum_increment,
+        energy_increment,
+    })
+}
+
+/// A carried quantity: the number and its low part.
+fn carried(pool: &mut Pool<Symbol>, symbol: Symbol) -> Expr {
+    let low = pool.symbol(Symbol::Low(Box::new(symbol.clone())));
+    let high = pool.symbol(symbol);
+    pool.add(high, low)
+}
+
+fn negative_sum(pool: &mut Pool<Symbol>, terms: &[Expr]) -> Result<Expr, TooLarge> {
+    let sum = pool.sum(terms);
+    let negative = pool.neg(sum);
+    pool.expand(negative)
+}
+
+/// A point of the rule in the node and the unknowns.
+fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
+    let mut place = |expr: Expr| {
+        pool.substitute(expr, &mut |pool, symbol| {
+            let step = pool.symbol(Symbol::Step);
+            match symbol {
+                Symbol::T0 | Symbol::Q0(_) => Some(carried(pool, symbol.clone())),
+                Symbol::T1 => {
+                    let start = carried(pool, Symbol::T0);
+                    Some(pool.add(start, step))
+                }
+                Symbol::Q1(index) => {
+                    let start = carried(pool, Symbol::Q0(*index));
+                    let velocity = pool.symbol(Symbol::StepVelocity(*index));
+                    let way = pool.mul(step, velocity);
+                    Some(pool.add(start, way))
+                }
+                _ => None,
+            }
+        })
+    };
+    let time = place(point.time);
+    let coordinates = point.coordinates.iter().map(|e| place(*e)).collect();
+    let velocities: Vec<Expr> = point.velocities.iter().map(|e| place(*e)).collect();
+    // (q0 + h v − q0)/h is v once multiplied out.
+    let velocities = velocities.into_iter().map(|e| pool.expand(e).unwrap_or(e)).collect();
+    Point { time, coordinates, velocities }
+}
+
+/// The derivatives of all rows by one unknown.
+struct Column {
+    residual: Vec<Expr>,
+    energy: Expr,
+}
+
+fn by_unknown(
+    pool: &mut Pool<Symbol>,
+    fields: &mut Fields,
+    points: &[Point],
+    residual: &[Expr],
+    energy: Expr,
+    unknown: &Symbol,
+) -> Result<Column, TooLarge> {
+    let direct = |pool: &mut Pool<Symbol>, symbol: &Symbol| {
+        if symbol == unknown { pool.one() } else { pool.zero() }
+    };
+    let changes = changes(pool, points, &direct);
+    let mut derive = |expr: Expr| {
+        let slope = fields.derivative(pool, expr, &direct, &changes);
+        pool.expand(slope)
+    };
+    Ok(Column { residual: residual.iter().map(|row| derive(*row)).collect::<Result<_, _>>()?, energy: derive(energy)? })
+}
+
+/// `row − v·column`, multiplied out.
+fn combined(pool: &mut Pool<Symbol>, row: Expr, velocities: &[Expr], column: &[Expr]) -> Result<Expr, TooLarge> {
+    let mut terms = vec![row];
+    for (velocity, entry) in velocities.iter().zip(column) {
+        let product = pool.mul(*velocity, *entry);
+        terms.push(pool.neg(product));
+    }
+    let sum = pool.sum(&terms);
+    pool.expand(sum)
+}
+
+/// `(row − v·column)/h`, multiplied out.
+fn over_step(pool: &mut Pool<Symbol>, row: Expr, velocities: &[Expr], column: &[Expr]) -> Result<Expr, TooLarge> {
+    let row = combined(pool, row, velocities, column)?;
+    let step = pool.symbol(Symbol::Step);
+    let inverse = pool.power(step, &Rational::from_integer((-1).into()));
+    let scaled = pool.mul(row, inverse);
+    pool.expand(scaled)
+}

@@ -1,0 +1,181 @@
+//! The body of a function: inputs named, shared terms bound once, results as formulas.
+//!
+//! In: a [`Function`]. Out: statements, and one formula per result. A term that is used more than once, is an argument
+//! of the rule, or makes a line too long, gets a name; everything else is written where it is used.
+
+use super::formula::Formula;
+use super::names::Names;
+use crate::model::Model;
+use crate::program::{Function, Operation, OperationId};
+use crate::symbol::{Symbol, Variable};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::quote;
+use std::collections::{BTreeMap, BTreeSet};
+use vi_expr::Function as Elementary;
+
+/// Operations that one line may hold.
+const LINE: usize = 10;
+
+/// A printed body.
+pub(super) struct Body {
+    /// The statements before the results.
+    pub(super) statements: TokenStream,
+    /// The results, in their groups.
+    pub(super) results: Vec<Vec<TokenStream>>,
+    /// What is read of the inputs, with its names.
+    pub(super) inputs: BTreeMap<Symbol, Ident>,
+}
+
+struct Printer<'a> {
+    model: &'a Model,
+    function: &'a Function,
+    names: Names<'a>,
+    uses: BTreeMap<OperationId, usize>,
+    written: BTreeMap<OperationId, Formula>,
+    inputs: BTreeMap<Symbol, Ident>,
+    statements: TokenStream,
+}
+
+/// Prints a function of a system whose rule has so many points.
+pub(super) fn body(model: &Model, function: &Function, points: usize) -> Body {
+    let needed = function.operations.needed(&function.results);
+    let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
+    for id in function.results.iter().flatten() {
+        *uses.entry(*id).or_default() += 1;
+    }
+    for id in &needed {
+        for operand in function.operations.get(*id).operands() {
+            *uses.entry(operand).or_default() += 1;
+        }
+    }
+    let mut printer = Printer {
+        model,
+        function,
+        names: Names::new(model, points),
+        uses,
+        written: BTreeMap::new(),
+        inputs: BTreeMap::new(),
+        statements: TokenStream::new(),
+    };
+    printer.name_inputs(&needed);
+    let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
+    for id in needed {
+        printer.write(id);
+    }
+    let results = function.results.iter().map(|group| group.iter().map(|id| printer.result(*id)).collect()).collect();
+    let statements = printer.statements;
+    let prelude = constants.then(|| quote!(let real = T::real;));
+    Body { statements: quote!(#prelude #statements), results, inputs: printer.inputs }
+}
+
+impl Printer<'_> {
+    /// Inputs take their names before shared terms do, in the order of the symbols.
+    fn name_inputs(&mut self, needed: &[OperationId]) {
+        let symbols: BTreeSet<&Symbol> = needed
+            .iter()
+            .filter_map(|id| match self.function.operations.get(*id) {
+                Operation::Input(symbol) if !matches!(symbol, Symbol::Parameter(_)) => Some(symbol),
+                _ => None,
+            })
+            .collect();
+        for symbol in symbols {
+            let ident = self.names.of(symbol);
+            self.inputs.insert(symbol.clone(), ident);
+        }
+    }
+
+    fn write(&mut self, id: OperationId) {
+        let operation = self.function.operations.get(id).clone();
+        let formula = match &operation {
+            Operation::Input(Symbol::Parameter(index)) => Formula::parameter(&self.model.parameters[*index].name),
+            Operation::Input(symbol) => Formula::name(&self.names.of(symbol)),
+            Operation::Call(function @ (Elementary::Sin | Elementary::Cos), angle) => {
+                if let Some(formula) = self.sine(id, *function, *angle) {
+                    formula
+                } else {
+                    Formula::of(&operation, &mut |operand| self.operand(operand))
+                }
+            }
+            _ => Formula::of(&operation, &mut |operand| self.operand(operand)),
+        };
+        if self.written.contains_key(&id) {
+            return;
+        }
+        let shared = self.uses.get(&id).copied().unwrap_or(0) > 1 && formula.operations > 0;
+        let name = match self.function.operations.name(id) {
+            Some(symbol) => Some(self.names.of(symbol)),
+            None if shared || formula.operations > LINE => Some(self.names.next_shared()),
+            None => None,
+        };
+        let formula = match name {
+            Some(name) => {
+                let tokens = formula.tokens();
+                self.statements.extend(quote!(let #name = #tokens;));
+                Formula::name(&name)
+            }
+            None => formula,
+        };
+        self.written.insert(id, formula);
+    }
+
+    /// Sine and cosine of one angle are computed together.
+    fn sine(&mut self, id: OperationId, function: Elementary, angle: OperationId) -> Option<Formula> {
+        if let Some(written) = self.written.get(&id) {
+            return Some(written.clone());
+        }
+        let other = if function == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
+        let wanted = Operation::Call(other, angle);
+        let (partner, _) = self.function.operations.iter().find(|(_, operation)| **operation == wanted)?;
+        self.uses.get(&partner)?;
+        let (sine, cosine) = self.names.next_sine();
+        let argument = self.operand(angle);
+        let argument = argument.receiver();
+        self.statements.extend(quote!(let (#sine, #cosine) = #argument.sin_cos();));
+        let (own, partners) = if function == Elementary::Sin { (sine, cosine) } else { (cosine, sine) };
+        self.written.insert(partner, Formula::name(&partners));
+        self.written.insert(id, Formula::name(&own));
+        Some(Formula::name(&own))
+    }
+
+    fn operand(&self, id: OperationId) -> Formula {
+        self.written.get(&id).cloned().unwrap_or_else(|| {
+            // Operands come before results, so this is a constant or never reached.
+            Formula::of(self.function.operations.get(id), &mut |inner| self.operand(inner))
+        })
+    }
+
+    fn result(&self, id: OperationId) -> TokenStream {
+        self.operand(id).tokens().clone()
+    }
+}
+
+/// The parts of vector inputs: `let [x, y]: [T; 2] = (*q).into();`, `_` for what is not read.
+pub(super) fn parts(
+    body: &Body,
+    model: &Model,
+    symbol: impl Fn(usize) -> Symbol,
+    vector: &TokenStream,
+) -> TokenStream {
+    let dimension = Literal::usize_unsuffixed(model.dimension());
+    let names: Vec<Option<&Ident>> = (0..model.dimension()).map(|index| body.inputs.get(&symbol(index))).collect();
+    if names.iter().all(Option::is_none) {
+        return TokenStream::new();
+    }
+    let names = names.into_iter().map(|name| name.map_or_else(|| quote!(_), |name| quote!(#name)));
+    quote!(let [#(#names),*]: [T; #dimension] = #vector.into();)
+}
+
+/// A number among the inputs: `let t0 = node.t;`.
+pub(super) fn part(body: &Body, symbol: &Symbol, value: &TokenStream) -> TokenStream {
+    body.inputs.get(symbol).map(|name| quote!(let #name = #value;)).unwrap_or_default()
+}
+
+/// The parts of `q` and `v`, and of the accelerations where they are read.
+pub(super) fn state_parts(body: &Body, model: &Model) -> TokenStream {
+    let velocity = |index| Symbol::Continuous(Variable::Velocity(index));
+    let coordinate = |index| Symbol::Continuous(Variable::Coordinate(index));
+    let acceleration = parts(body, model, Symbol::Acceleration, &quote!(self.acceleration(t, q, v)?));
+    let velocities = parts(body, model, velocity, &quote!((*v)));
+    let coordinates = parts(body, model, coordinate, &quote!((*q)));
+    quote!(#acceleration #velocities #coordinates)
+}

@@ -1,0 +1,89 @@
+//! `impl DiscreteLagrangian`: L_d, its slot derivatives, discrete forces and powers.
+
+use super::Source;
+use super::body::{Body, part, parts};
+use crate::symbol::Symbol;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use vi_expr::Expr;
+
+/// The implementation of `DiscreteLagrangian`.
+pub(super) fn item(source: &Source) -> TokenStream {
+    let (name, dimension, of) = (&source.model.name, source.dimension(), &source.system.slots);
+    let functions = [
+        number(source, "ld", of.ld),
+        number(source, "d1_ld", of.d1_ld),
+        vector(source, "d2_ld", &of.d2_ld),
+        number(source, "d3_ld", of.d3_ld),
+        vector(source, "d4_ld", &of.d4_ld),
+        vector(source, "fd_minus", &of.fd_minus),
+        vector(source, "fd_plus", &of.fd_plus),
+        number(source, "gd_minus", of.gd_minus),
+        number(source, "gd_plus", of.gd_plus),
+    ];
+    quote! {
+        #[allow(clippy::all, clippy::pedantic, non_snake_case, uncommon_codepoints, unused_variables, unused_parens)]
+        impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
+            #(#functions)*
+        }
+    }
+}
+
+/// The ends of the interval, its length, and its velocity.
+fn interval_parts(source: &Source, body: &mut Body) -> TokenStream {
+    let model = source.model;
+    let velocities: Vec<usize> =
+        (0..model.dimension()).filter(|index| body.inputs.contains_key(&Symbol::StepVelocity(*index))).collect();
+    // The velocity reads the ends and the length, which the body itself may not.
+    let mut read = |symbol: Symbol, name: String| {
+        body.inputs.entry(symbol).or_insert_with(|| format_ident!("{name}")).clone()
+    };
+    let mut quotients = TokenStream::new();
+    for index in velocities {
+        let coordinate = &model.coordinates[index];
+        let h = read(Symbol::Step, "h".to_owned());
+        let start = read(Symbol::Q0(index), format!("{coordinate}0"));
+        let end = read(Symbol::Q1(index), format!("{coordinate}1"));
+        let velocity = read(Symbol::StepVelocity(index), String::new());
+        quotients.extend(quote!(let #velocity = (#end - #start) / #h;));
+    }
+    let step = body.inputs.get(&Symbol::Step).map(|h| quote!(let #h = interval.t1 - interval.t0;));
+    let (t0, t1) = (part(body, &Symbol::T0, &quote!(interval.t0)), part(body, &Symbol::T1, &quote!(interval.t1)));
+    let q0 = parts(body, model, Symbol::Q0, &quote!(interval.q0));
+    let q1 = parts(body, model, Symbol::Q1, &quote!(interval.q1));
+    quote!(#t0 #t1 #step #q0 #q1 #quotients)
+}
+
+/// A number in the slots.
+fn number(source: &Source, name: &str, expr: Expr) -> TokenStream {
+    let formula = source.formula(name, expr);
+    let Some((mut body, documentation, _)) = source.documented(name, &formula) else { return TokenStream::new() };
+    let (name, dimension) = (format_ident!("{name}"), source.dimension());
+    let (inputs, statements, result) = (interval_parts(source, &mut body), &body.statements, &body.results[0][0]);
+    quote! {
+        #documentation
+        #[inline]
+        fn #name(&self, interval: &::vi_core::Interval<#dimension, T>) -> T {
+            #inputs #statements #result
+        }
+    }
+}
+
+/// A vector in the slots.
+fn vector(source: &Source, name: &str, exprs: &[Expr]) -> TokenStream {
+    let formula = source.formulas(name, exprs);
+    let Some((mut body, documentation, _)) = source.documented(name, &formula) else { return TokenStream::new() };
+    let (name, dimension) = (format_ident!("{name}"), source.dimension());
+    let (inputs, statements) = (interval_parts(source, &mut body), &body.statements);
+    let result = source.vector(&body.results[0]);
+    quote! {
+        #documentation
+        #[inline]
+        fn #name(
+            &self,
+            interval: &::vi_core::Interval<#dimension, T>,
+        ) -> ::vi_core::SVector<T, #dimension> {
+            #inputs #statements #result
+        }
+    }
+}

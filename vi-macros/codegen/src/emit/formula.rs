@@ -1,0 +1,114 @@
+//! Operations as formulas.
+//!
+//! In: an operation and what its operands are written as. Out: tokens, with the parentheses that precedence needs.
+
+use crate::program::{Operation, OperationId};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+/// How tightly a formula binds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Negative,
+    Atom,
+}
+
+/// A formula as it stands in an expression.
+#[derive(Clone, Debug)]
+pub(super) struct Formula {
+    tokens: TokenStream,
+    binding: Binding,
+    /// Operations written in it.
+    pub(super) operations: usize,
+}
+
+impl Formula {
+    /// A name.
+    pub(super) fn name(ident: &Ident) -> Self {
+        Self::atom(quote!(#ident), 0)
+    }
+
+    /// A field of the system.
+    pub(super) fn parameter(ident: &Ident) -> Self {
+        Self::atom(quote!(self.#ident), 0)
+    }
+
+    fn atom(tokens: TokenStream, operations: usize) -> Self {
+        Self { tokens, binding: Binding::Atom, operations }
+    }
+
+    fn constant(value: f64) -> Self {
+        let value = number(value);
+        Self::atom(quote!(real(#value)), 0)
+    }
+
+    /// The formula as a statement's right side.
+    pub(super) fn tokens(&self) -> &TokenStream {
+        &self.tokens
+    }
+
+    /// The formula as the receiver of a method.
+    pub(super) fn receiver(&self) -> TokenStream {
+        self.within(Binding::Atom)
+    }
+
+    /// The formula as an operand that must bind at least so tightly.
+    fn within(&self, binding: Binding) -> TokenStream {
+        let tokens = &self.tokens;
+        if self.binding >= binding { quote!(#tokens) } else { quote!((#tokens)) }
+    }
+
+    /// An operation on formulas.
+    pub(super) fn of(operation: &Operation, operand: &mut dyn FnMut(OperationId) -> Self) -> Self {
+        use Binding::{Atom, Negative, Product, Sum};
+        let mut binary = |a: OperationId, b: OperationId, left: Binding, right: Binding, symbol: TokenStream| {
+            let (a, b) = (operand(a), operand(b));
+            let (left_tokens, right_tokens) = (a.within(left), b.within(right));
+            let tokens = quote!(#left_tokens #symbol #right_tokens);
+            Self { tokens, binding: left, operations: a.operations + b.operations + 1 }
+        };
+        match operation {
+            Operation::Constant(bits) => Self::constant(f64::from_bits(*bits)),
+            Operation::Add(a, b) => binary(*a, *b, Sum, Product, quote!(+)),
+            Operation::Subtract(a, b) => binary(*a, *b, Sum, Product, quote!(-)),
+            Operation::Multiply(a, b) => binary(*a, *b, Product, Negative, quote!(*)),
+            Operation::Divide(a, b) => binary(*a, *b, Product, Negative, quote!(/)),
+            Operation::Negate(a) => {
+                let a = operand(*a);
+                let inner = a.within(Atom);
+                Self { tokens: quote!(-#inner), binding: Negative, operations: a.operations + 1 }
+            }
+            Operation::SquareRoot(a) => Self::method(&operand(*a), "sqrt", None),
+            Operation::Reciprocal(a) => Self::method(&operand(*a), "recip", None),
+            // The methods of `Real` are named as the functions of the language are.
+            Operation::Call(function, a) => Self::method(&operand(*a), function.name(), None),
+            Operation::Call2(function, a, b) => {
+                let (a, b) = (operand(*a), operand(*b));
+                Self::method(&a, function.name(), Some(&b))
+            }
+            // Inputs are named by the caller.
+            Operation::Input(_) => Self::constant(f64::NAN),
+        }
+    }
+
+    fn method(on: &Self, name: &str, argument: Option<&Self>) -> Self {
+        let (receiver, name) = (on.within(Binding::Atom), format_ident!("{name}"));
+        let tokens = argument.map(Self::tokens);
+        let operations = on.operations + argument.map_or(0, |argument| argument.operations) + 1;
+        Self::atom(quote!(#receiver.#name(#tokens)), operations)
+    }
+}
+
+/// A literal that reads back as the same number.
+pub(super) fn number(value: f64) -> TokenStream {
+    let magnitude = Literal::f64_unsuffixed(value.abs());
+    match (value.is_nan(), value.is_infinite(), value.is_sign_negative()) {
+        (true, ..) => quote!(f64::NAN),
+        (_, true, false) => quote!(f64::INFINITY),
+        (_, true, true) => quote!(f64::NEG_INFINITY),
+        (_, _, true) => quote!(-#magnitude),
+        _ => quote!(#magnitude),
+    }
+}

@@ -1,0 +1,160 @@
+//! `impl Lagrangian`: the continuous functions.
+
+use super::Source;
+use super::body::{Body, body, state_parts};
+use crate::program::Function;
+use crate::symbol::Symbol;
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use vi_expr::Expr;
+
+/// The implementation of `Lagrangian`.
+pub(super) fn item(source: &Source) -> TokenStream {
+    let (model, of) = (source.model, &source.system.continuous);
+    let (name, dimension) = (&model.name, source.dimension());
+    let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(ToString::to_string));
+    let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
+    let functions = [
+        number(source, "lagrangian", &source.formula("L", of.lagrangian)),
+        number(source, "energy", &source.formula("v·L_v − L", of.energy)),
+        vector(source, "momentum", &source.formulas("p", &of.momentum)),
+        vector(source, "force", &source.formulas("f", &of.force)),
+        acceleration(source),
+        step_density(source, of.step_density),
+    ];
+    quote! {
+        #[allow(clippy::all, clippy::pedantic, non_snake_case, uncommon_codepoints, unused_variables, unused_parens)]
+        impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
+            const NAME: &'static str = #text;
+            const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
+            const AUTONOMOUS: bool = #autonomous;
+            const FORCED: bool = #forced;
+            const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
+            #(#functions)*
+        }
+    }
+}
+
+impl Source<'_> {
+    /// `name = formula`, as the user's names spell it.
+    pub(super) fn formula(&self, name: &str, expr: Expr) -> String {
+        let spelt = self.model.pool.render(expr, &|symbol: &Symbol| self.model.spell(symbol));
+        format!("`{name} = {spelt}`")
+    }
+
+    /// One formula per coordinate.
+    pub(super) fn formulas(&self, name: &str, exprs: &[Expr]) -> String {
+        let named = exprs.iter().zip(&self.model.coordinates);
+        named.map(|(expr, coordinate)| self.formula(&format!("{name}_{coordinate}"), *expr)).collect::<Vec<_>>().join("\n\n")
+    }
+
+    /// The body of a function with its documentation: formula and operation count.
+    pub(super) fn documented(&self, name: &str, formula: &str) -> Option<(Body, TokenStream, &Function)> {
+        let function = self.function(name)?;
+        let printed = body(self.model, function, self.system.slots.points.len());
+        let count = function.operation_count();
+        let noun = if count == 1 { "operation" } else { "operations" };
+        let lines = format!("{formula}\n\n{count} {noun}.");
+        let lines = lines.lines().map(|line| format!(" {line}"));
+        Some((printed, quote!(#(#[doc = #lines])*), function))
+    }
+
+    /// The vector of one group of results.
+    pub(super) fn vector(&self, entries: &[TokenStream]) -> TokenStream {
+        let dimension = self.dimension();
+        quote!(::vi_core::SVector::<T, #dimension>::from([#(#entries),*]))
+    }
+
+    /// The matrix whose rows are these groups of results.
+    pub(super) fn matrix(&self, rows: &[Vec<TokenStream>]) -> TokenStream {
+        let dimension = self.dimension();
+        let entries = rows.iter().map(|row| quote!(#(#row),*));
+        quote!(::vi_core::SMatrix::<T, #dimension, #dimension>::from_row_slice(&[#(#entries),*]))
+    }
+}
+
+fn number(source: &Source, name: &str, formula: &str) -> TokenStream {
+    let Some((body, documentation, _)) = source.documented(name, formula) else { return TokenStream::new() };
+    let (name, dimension) = (format_ident!("{name}"), source.dimension());
+    let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, &body.results[0][0]);
+    quote! {
+        #documentation
+        #[inline]
+        fn #name(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> T {
+            #inputs #statements #result
+        }
+    }
+}
+
+fn vector(source: &Source, name: &str, formula: &str) -> TokenStream {
+    let Some((body, documentation, _)) = source.documented(name, formula) else { return TokenStream::new() };
+    let (name, dimension) = (format_ident!("{name}"), source.dimension());
+    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
+    let result = source.vector(&body.results[0]);
+    quote! {
+        #documentation
+        #[inline]
+        fn #name(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::SVector<T, #dimension> {
+            #inputs #statements #result
+        }
+    }
+}
+
+fn acceleration(source: &Source) -> TokenStream {
+    let dimension = source.dimension();
+    let formula = "Solves `M a = L_q + f − L_vt − L_vq v`.";
+    let Some((body, documentation, _)) = source.documented("acceleration", formula) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
+    let Some((applied, rows)) = body.results.split_last() else { return TokenStream::new() };
+    let (mass, applied) = (source.matrix(rows), source.vector(applied));
+    quote! {
+        #documentation
+        #[inline]
+        fn acceleration(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
+            let time = t;
+            #inputs #statements
+            let mass = #mass;
+            let applied = #applied;
+            ::vi_core::linear::acceleration(time, &mass, &applied)
+        }
+    }
+}
+
+fn step_density(source: &Source, density: Expr) -> TokenStream {
+    let dimension = source.dimension();
+    let formula = source.formula("D", density);
+    let Some((body, documentation, _)) = source.documented("step_density", &formula) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, &body.results[0][0]);
+    quote! {
+        #documentation
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            #inputs #statements
+            Ok(#result)
+        }
+    }
+}

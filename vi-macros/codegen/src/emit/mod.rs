@@ -1,0 +1,51 @@
+//! Rust, printed from a program.
+//!
+//! In: a [`Model`](crate::model::Model), its [`DiscreteSystem`](crate::discrete::DiscreteSystem) and its
+//! [`Program`](crate::program::Program). Out: tokens that name only `::vi_core`, `::core` and what the user declared.
+//! One file per kind of item: the struct, the continuous system, the discrete one, the stepper.
+
+mod body;
+mod discrete;
+mod formula;
+mod lagrangian;
+mod names;
+mod stepping;
+mod structure;
+
+use crate::discrete::DiscreteSystem;
+use crate::model::Model;
+use crate::program::{Function, Program};
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+pub use structure::stub;
+
+/// Everything that the items are printed from.
+struct Source<'a> {
+    model: &'a Model,
+    system: &'a DiscreteSystem,
+    program: &'a Program,
+}
+
+/// The items of a system, in fixed order.
+#[must_use]
+pub fn items(model: &Model, system: &DiscreteSystem, program: &Program) -> TokenStream {
+    let source = Source { model, system, program };
+    let structure = structure::items(&source);
+    let lagrangian = lagrangian::item(&source);
+    let discrete = discrete::item(&source);
+    let stepping = stepping::item(&source);
+    quote! { #structure #lagrangian #discrete #stepping }
+}
+
+impl Source<'_> {
+    /// Number of coordinates, as it stands in types.
+    fn dimension(&self) -> Literal {
+        Literal::usize_unsuffixed(self.model.dimension())
+    }
+
+    /// The function of this name; the program holds all of them.
+    fn function(&self, name: &str) -> Option<&Function> {
+        self.program.function(name)
+    }
+}

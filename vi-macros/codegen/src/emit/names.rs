@@ -1,0 +1,86 @@
+//! What the inputs of a function are called.
+//!
+//! In: the symbols that a function reads. Out: identifiers made of the user's names: `x`, `x_dot`, `x0`, `x1`,
+//! `p0_x`, `x_mid`. A name that is taken already gets an underscore, so no name of the user can clash with another.
+
+use crate::model::Model;
+use crate::symbol::{Symbol, Variable};
+use proc_macro2::Ident;
+use quote::format_ident;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Names of one function.
+pub(super) struct Names<'a> {
+    model: &'a Model,
+    points: usize,
+    given: BTreeMap<Symbol, Ident>,
+    taken: BTreeSet<String>,
+    shared: usize,
+}
+
+/// Names that the printed code itself uses, and Rust's keywords that an identifier could be made into.
+const TAKEN: [&str; 11] = ["real", "self", "node", "interval", "mass", "applied", "T", "Some", "None", "Ok", "Err"];
+
+impl<'a> Names<'a> {
+    /// Names for a function of a system whose rule has so many points.
+    pub(super) fn new(model: &'a Model, points: usize) -> Self {
+        let taken = TAKEN.iter().map(|&name| name.to_owned()).collect();
+        Self { model, points, given: BTreeMap::new(), taken, shared: 0 }
+    }
+
+    /// The identifier of a symbol; the same for each call.
+    pub(super) fn of(&mut self, symbol: &Symbol) -> Ident {
+        if let Some(known) = self.given.get(symbol) {
+            return known.clone();
+        }
+        let wanted = self.wanted(symbol);
+        let ident = self.free(wanted);
+        self.given.insert(symbol.clone(), ident.clone());
+        ident
+    }
+
+    /// The identifier of the next shared term.
+    pub(super) fn next_shared(&mut self) -> Ident {
+        self.shared += 1;
+        self.free(format!("s{}", self.shared))
+    }
+
+    /// The identifiers of sine and cosine of the next shared angle.
+    pub(super) fn next_sine(&mut self) -> (Ident, Ident) {
+        self.shared += 1;
+        (self.free(format!("sin{}", self.shared)), self.free(format!("cos{}", self.shared)))
+    }
+
+    fn free(&mut self, mut wanted: String) -> Ident {
+        while !self.taken.insert(wanted.clone()) {
+            wanted.push('_');
+        }
+        format_ident!("{wanted}")
+    }
+
+    fn wanted(&self, symbol: &Symbol) -> String {
+        let coordinate = |index: &usize| self.model.coordinates[*index].to_string();
+        match symbol {
+            Symbol::Parameter(index) => self.model.parameters[*index].name.to_string(),
+            Symbol::Continuous(Variable::Time) => "t".to_owned(),
+            Symbol::Continuous(Variable::Coordinate(index)) => coordinate(index),
+            Symbol::Continuous(Variable::Velocity(index)) | Symbol::StepVelocity(index) => {
+                format!("{}_dot", coordinate(index))
+            }
+            Symbol::Acceleration(index) => format!("{}_ddot", coordinate(index)),
+            Symbol::T0 => "t0".to_owned(),
+            Symbol::T1 => "t1".to_owned(),
+            Symbol::Step => "h".to_owned(),
+            Symbol::E0 => "energy0".to_owned(),
+            Symbol::Q0(index) => format!("{}0", coordinate(index)),
+            Symbol::Q1(index) => format!("{}1", coordinate(index)),
+            Symbol::P0(index) => format!("p0_{}", coordinate(index)),
+            Symbol::Low(of) => format!("{}_low", self.wanted(of)),
+            Symbol::AtPoint(point, variable) => {
+                let variable = self.wanted(&Symbol::Continuous(*variable));
+                if self.points == 1 { format!("{variable}_mid") } else { format!("{variable}_at{}", point + 1) }
+            }
+            Symbol::Field(_) => "field".to_owned(),
+        }
+    }
+}

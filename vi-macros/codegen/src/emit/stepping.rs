@@ -1,0 +1,131 @@
+//! `impl Stepping`: the equations of one step in the unknowns (v, h).
+
+use super::Source;
+use super::body::{Body, part, parts};
+use crate::model::Model;
+use crate::symbol::Symbol;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The implementation of `Stepping`.
+pub(super) fn item(source: &Source) -> TokenStream {
+    let (name, dimension) = (&source.model.name, source.dimension());
+    let functions = [momentum_equation(source), extended_system(source), increment(source)];
+    quote! {
+        #[allow(clippy::all, clippy::pedantic, non_snake_case, uncommon_codepoints, unused_variables, unused_parens)]
+        impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
+            #(#functions)*
+        }
+    }
+}
+
+/// The node, its low parts, and the unknowns.
+fn node_parts(body: &Body, model: &Model) -> TokenStream {
+    let low = |symbol: Symbol| Symbol::Low(Box::new(symbol));
+    let (node, numbers) = (
+        [
+            parts(body, model, Symbol::Q0, &quote!(node.q)),
+            parts(body, model, |index| low(Symbol::Q0(index)), &quote!(node.q_low)),
+            parts(body, model, Symbol::P0, &quote!(node.p)),
+            parts(body, model, |index| low(Symbol::P0(index)), &quote!(node.p_low)),
+            parts(body, model, Symbol::StepVelocity, &quote!((*v))),
+        ],
+        [
+            part(body, &Symbol::T0, &quote!(node.t)),
+            part(body, &low(Symbol::T0), &quote!(node.t_low)),
+            part(body, &Symbol::E0, &quote!(node.energy)),
+            part(body, &low(Symbol::E0), &quote!(node.energy_low)),
+        ],
+    );
+    quote!(#(#numbers)* #(#node)*)
+}
+
+/// The momentum row: residual, magnitude and the rows of A, as `MomentumEquation` holds them.
+fn momentum_fields(source: &Source, results: &[Vec<TokenStream>]) -> TokenStream {
+    let (residual, magnitude) = (source.vector(&results[0]), source.vector(&results[1]));
+    let jacobian = source.matrix(&results[2..]);
+    quote! {
+        ::vi_core::MomentumEquation { residual: #residual, magnitude: #magnitude, jacobian: #jacobian }
+    }
+}
+
+fn momentum_equation(source: &Source) -> TokenStream {
+    let (dimension, of) = (source.dimension(), &source.system.equations);
+    let formula = source.formulas("residual", &of.residual);
+    let Some((body, documentation, _)) = source.documented("momentum_equation", &formula) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
+    let equation = momentum_fields(source, &body.results);
+    quote! {
+        #documentation
+        #[inline]
+        fn momentum_equation(
+            &self,
+            node: &::vi_core::Node<#dimension, T>,
+            h: T,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::MomentumEquation<#dimension, T> {
+            #inputs #statements #equation
+        }
+    }
+}
+
+fn extended_system(source: &Source) -> TokenStream {
+    let (dimension, of) = (source.dimension(), &source.system.equations);
+    let formula = source.formula("energy_residual", of.energy_residual);
+    let Some((body, documentation, _)) = source.documented("extended_system", &formula) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
+    let (momentum, energy) = body.results.split_at(source.model.dimension() + 2);
+    let momentum = momentum_fields(source, momentum);
+    let [residual_dh, energy_residual, energy_magnitude, energy_dv, energy_dh] = energy else {
+        return TokenStream::new();
+    };
+    let (residual_dh, energy_dv) = (source.vector(residual_dh), source.vector(energy_dv));
+    quote! {
+        #documentation
+        #[inline]
+        fn extended_system(
+            &self,
+            node: &::vi_core::Node<#dimension, T>,
+            h: T,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::ExtendedSystem<#dimension, T> {
+            #inputs #statements
+            ::vi_core::ExtendedSystem {
+                momentum: #momentum,
+                residual_dh: #residual_dh,
+                energy_residual: #(#energy_residual)*,
+                energy_magnitude: #(#energy_magnitude)*,
+                energy_dv: #energy_dv,
+                energy_dh: #(#energy_dh)*,
+            }
+        }
+    }
+}
+
+fn increment(source: &Source) -> TokenStream {
+    let (dimension, of) = (source.dimension(), &source.system.equations);
+    let momenta = source.formulas("p1 − p0", &of.momentum_increment);
+    let formula = format!("{momenta}\n\n{}", source.formula("E1 − E0", of.energy_increment));
+    let Some((body, documentation, _)) = source.documented("increment", &formula) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
+    let (momentum, energy) = (source.vector(&body.results[0]), &body.results[1][0]);
+    quote! {
+        #documentation
+        #[inline]
+        fn increment(
+            &self,
+            node: &::vi_core::Node<#dimension, T>,
+            h: T,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::Increment<#dimension, T> {
+            #inputs #statements
+            ::vi_core::Increment { momentum: #momentum, energy: #energy }
+        }
+    }
+}

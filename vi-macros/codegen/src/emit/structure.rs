@@ -1,0 +1,73 @@
+//! The struct of a system: its parameters as public fields, their defaults, their names.
+
+use super::Source;
+use super::formula::number;
+use crate::syntax::System;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The struct, `Default`, `Parameters`, and the conversion to another kind of number.
+pub(super) fn items(source: &Source) -> TokenStream {
+    let model = source.model;
+    let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
+    let names: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
+    let texts = names.iter().map(ToString::to_string);
+    let spellings = texts.clone();
+    let defaults = model.parameters.iter().map(|parameter| number(parameter.default));
+    let fields = model.parameters.iter().map(|parameter| {
+        let (name, attributes) = (&parameter.name, &parameter.attributes);
+        let default = format!("Parameter `{name}`, {} by default.", parameter.default);
+        quote!(#(#attributes)* #[doc = #default] pub #name: T)
+    });
+    let arms = names.iter().zip(texts).map(|(name, text)| quote!(#text => Some(&mut self.#name)));
+    quote! {
+        #(#attributes)*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+        #visibility struct #name<T = f64> {
+            #(#fields,)*
+            #[doc(hidden)]
+            pub numbers: ::core::marker::PhantomData<T>,
+        }
+
+        impl ::core::default::Default for #name<f64> {
+            fn default() -> Self {
+                Self { #(#names: #defaults,)* numbers: ::core::marker::PhantomData }
+            }
+        }
+
+        impl<T: ::vi_core::Real> #name<T> {
+            /// The same system in another kind of number, every parameter rounded to it.
+            pub fn from_f64(system: &#name<f64>) -> Self {
+                Self { #(#names: T::real(system.#names),)* numbers: ::core::marker::PhantomData }
+            }
+        }
+
+        impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for #name<T> {
+            const PARAMETERS: &'static [&'static str] = &[#(#spellings),*];
+
+            fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+                match name {
+                    #(#arms,)*
+                    _ => None,
+                }
+            }
+        }
+    }
+}
+
+/// What is emitted beside the errors of a broken system, so that the code that uses its struct still type-checks.
+#[must_use]
+pub fn stub(system: &System) -> TokenStream {
+    let (name, visibility) = (&system.name, &system.visibility);
+    let parameters: Vec<_> = system.parameters.iter().map(|parameter| &parameter.name).collect();
+    quote! {
+        #[allow(missing_docs, dead_code, non_snake_case)]
+        #visibility struct #name<T = f64> { #(pub #parameters: T,)* pub numbers: ::core::marker::PhantomData<T> }
+        impl ::core::default::Default for #name<f64> {
+            fn default() -> Self {
+                Self { #(#parameters: 0.0,)* numbers: ::core::marker::PhantomData }
+            }
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Every message that a user of `lagrangian!` can meet, in one catalogue.
+//!
+//! In: what a stage found wrong. Out: the text, what is wrong first, then what to do; lower case, no full stop.
+//! A stage collects its errors in [`Errors`] and reports them all before the next stage starts.
+
+use proc_macro2::Span;
+
+/// A mistake in the input. The fields of a variant are the words that its text names.
+#[allow(missing_docs)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Message {
+    /// Two declarations of one name.
+    Duplicate { name: String },
+    /// A name that the language keeps for itself.
+    Reserved { name: String },
+    /// A name that is not declared (or not yet).
+    Unknown { name: String, near: Option<String> },
+    /// A function that the language does not have.
+    UnknownFunction { name: String, near: Option<String> },
+    /// A call with the wrong number of arguments.
+    Arity { name: String, takes: usize, given: usize },
+    /// A function used without its arguments.
+    FunctionWithoutArguments { name: String },
+    /// `dot` of something that is not a coordinate.
+    DotOfOther { name: String },
+    /// `dot` of an expression.
+    DotOfExpression,
+    /// `dot(dot(x))`, or a name that reads as an acceleration.
+    Acceleration { name: String },
+    /// A constant or default that is not made of numbers and constants.
+    NotConstant { name: String },
+    /// A constant or default that is infinite or not a number.
+    NotFinite { name: String },
+    /// A division by the exact number zero.
+    DivisionByZero,
+    /// No line `L = …;`.
+    MissingLagrangian,
+    /// A second line `L = …;`.
+    SecondLagrangian,
+    /// No line `discretize …;`.
+    MissingRule,
+    /// A second line `discretize …;`.
+    SecondRule,
+    /// No line `coord …;`.
+    MissingCoordinates,
+    /// A force on a name that is no coordinate.
+    ForceOnOther { name: String, near: Option<String> },
+    /// A second force on one coordinate.
+    SecondForce { name: String },
+    /// L does not depend on any velocity.
+    NoVelocity,
+    /// The mass matrix has no inverse anywhere.
+    SingularMass { missing: Option<String> },
+    /// A rule by a name that does not exist.
+    UnknownRule { name: String, near: Option<String> },
+    /// A line of a rule that is no slot of it.
+    UnknownSlot { name: String },
+    /// A line of a rule that is missing.
+    MissingSlot { name: &'static str },
+    /// A slot of a rule written twice.
+    SecondSlot { name: String },
+    /// A vector where a rule needs a number, or the reverse.
+    Shape { needs: &'static str },
+    /// A clause that does not exist.
+    UnknownClause { found: String, near: Option<String> },
+    /// Anything that the grammar does not allow at this token.
+    Expected { what: &'static str },
+    /// A number with letters behind it.
+    NumberSuffix { digits: String, suffix: String },
+    /// A number that is no decimal integer or decimal fraction.
+    NotDecimal,
+    /// A number out of the range of `f64`.
+    NumberRange,
+    /// Parentheses nested too deep.
+    TooDeep { limit: usize },
+    /// An expression that grew over the limit.
+    TooLarge { limit: usize },
+    /// Text after the system.
+    AfterSystem,
+    /// A mistake of this compiler, found by checking its own output.
+    Internal { what: &'static str },
+}
+
+fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
+    near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
+}
+
+impl Message {
+    /// What is wrong.
+    #[must_use]
+    pub fn what(&self) -> String {
+        match self {
+            Self::Duplicate { name } => format!("the name `{name}` is declared twice"),
+            Self::Reserved { name } => format!("the name `{name}` is reserved"),
+            Self::Unknown { name, .. } => format!("unknown name `{name}`"),
+            Self::UnknownFunction { name, .. } => format!("unknown function `{name}`"),
+            Self::Arity { name, takes, given } => format!("`{name}` takes {takes} argument(s), not {given}"),
+            Self::FunctionWithoutArguments { name } => format!("`{name}` is a function"),
+            Self::DotOfOther { name } => format!("`dot({name})`: `{name}` is not a coordinate"),
+            Self::DotOfExpression => "`dot` of an expression".to_owned(),
+            Self::Acceleration { name } => format!("an expression cannot depend on the acceleration `{name}`"),
+            Self::NotConstant { name } => format!("`{name}` is not a constant"),
+            Self::NotFinite { name } => format!("the value of `{name}` is not finite"),
+            Self::DivisionByZero => "division by zero".to_owned(),
+            Self::MissingLagrangian => "the system has no Lagrangian".to_owned(),
+            Self::SecondLagrangian => "a second `L`".to_owned(),
+            Self::MissingRule => "the system is not discretized".to_owned(),
+            Self::SecondRule => "a second `discretize`".to_owned(),
+            Self::MissingCoordinates => "the system has no coordinates".to_owned(),
+            Self::ForceOnOther { name, .. } => format!("a force on `{name}`, which is not a coordinate"),
+            Self::SecondForce { name } => format!("a second force on `{name}`"),
+            Self::NoVelocity => "`L` does not depend on any velocity".to_owned(),
+            Self::SingularMass { .. } => "the mass matrix ∂²L/∂v² is singular for every state".to_owned(),
+            Self::UnknownRule { name, .. } => format!("unknown rule `{name}`"),
+            Self::UnknownSlot { name } => format!("a rule has no line `{name}`"),
+            Self::MissingSlot { name } => format!("the rule has no line `{name}`"),
+            Self::SecondSlot { name } => format!("a second `{name}` in the rule"),
+            Self::Shape { needs } => format!("a {needs} is needed here"),
+            Self::UnknownClause { found, .. } => format!("unknown clause `{found}`"),
+            Self::Expected { what } => format!("expected {what}"),
+            Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
+            Self::NotDecimal => "not a decimal number".to_owned(),
+            Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
+            Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
+            Self::TooLarge { limit } => format!("the system grows over {limit} terms"),
+            Self::AfterSystem => "unexpected text after the system".to_owned(),
+            Self::Internal { what } => format!("internal error: the operations of `{what}` do not compute its formula"),
+        }
+    }
+
+    /// What is allowed, and what to do.
+    #[must_use]
+    pub fn help(&self) -> String {
+        match self {
+            Self::Duplicate { .. } => "rename one of them".to_owned(),
+            Self::Reserved { name } => match name.as_str() {
+                "t" => "`t` is the time; choose another name".to_owned(),
+                "L" | "f" => format!("`{name}` stands for the Lagrangian or the force; choose another name"),
+                _ => "choose another name".to_owned(),
+            },
+            Self::Unknown { near, .. } => {
+                did_you_mean(near.as_ref(), "declare it above with `param`, `const`, `coord` or `let`")
+            }
+            Self::UnknownFunction { near, .. } => did_you_mean(
+                near.as_ref(),
+                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow dot",
+            ),
+            Self::Arity { name, takes, .. } => format!("write `{name}({})`", ["a", "a, b"][usize::from(*takes > 1)]),
+            Self::FunctionWithoutArguments { name } => format!("write its argument: `{name}(…)`"),
+            Self::DotOfOther { .. } => "`dot` takes a coordinate; its result is that coordinate's velocity".to_owned(),
+            Self::DotOfExpression => "`dot` takes the name of a coordinate; differentiate by hand otherwise".to_owned(),
+            Self::Acceleration { .. } => {
+                "use positions, velocities, time and parameters; an inertial term belongs in `L`".to_owned()
+            }
+            Self::NotConstant { .. } => "use numbers, `pi`, functions and earlier `const`s here".to_owned(),
+            Self::NotFinite { .. } => "look for a division by zero, or a root or logarithm of a negative number".to_owned(),
+            Self::DivisionByZero => "the denominator is identically zero; check it".to_owned(),
+            Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
+            Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
+            Self::MissingRule => "write `discretize midpoint;`".to_owned(),
+            Self::SecondRule => "write `discretize` once".to_owned(),
+            Self::MissingCoordinates => "declare them: `coord x, y;`".to_owned(),
+            Self::ForceOnOther { near, .. } => {
+                did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`")
+            }
+            Self::SecondForce { .. } => "add them up in one line".to_owned(),
+            Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
+            Self::SingularMass { missing } => missing.as_ref().map_or_else(
+                || "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned(),
+                |name| format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
+            ),
+            Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), "the rules are: midpoint"),
+            Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),
+            Self::MissingSlot { name } if *name == "Ld" => "write `Ld = …;`".to_owned(),
+            Self::MissingSlot { name } => format!("the system has a force: write `{name} = …;`"),
+            Self::SecondSlot { .. } => "write each line of a rule once".to_owned(),
+            Self::Shape { .. } => {
+                "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product".to_owned()
+            }
+            Self::UnknownClause { near, .. } => {
+                did_you_mean(near.as_ref(), "the clauses are const, param, coord, let, L, force, discretize")
+            }
+            Self::Expected { .. } => "a clause reads `name = expression;`, and a sum `a + 2 * b`".to_owned(),
+            Self::NumberSuffix { digits, suffix } => format!("write `{digits} * {suffix}` for a product"),
+            Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
+            Self::NumberRange => "choose other units".to_owned(),
+            Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
+            Self::TooLarge { .. } => "use fewer coordinates or a simpler Lagrangian".to_owned(),
+            Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
+            Self::Internal { .. } => "please report this system".to_owned(),
+        }
+    }
+}
+
+/// The errors of one stage, in the order in which they were found.
+#[derive(Debug, Default)]
+pub struct Errors {
+    combined: Option<syn::Error>,
+}
+
+impl Errors {
+    /// Adds a message at a token.
+    pub fn at(&mut self, span: Span, message: &Message) {
+        self.add(error(span, message));
+    }
+
+    /// Adds an error made elsewhere.
+    pub fn add(&mut self, error: syn::Error) {
+        match &mut self.combined {
+            Some(combined) => combined.combine(error),
+            None => self.combined = Some(error),
+        }
+    }
+
+    /// Whether nothing was found.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.combined.is_none()
+    }
+
+    /// The product of the stage, if nothing was found wrong.
+    ///
+    /// # Errors
+    /// All that was found.
+    pub fn finish<P>(self, product: P) -> syn::Result<P> {
+        match self.combined {
+            Some(error) => Err(error),
+            None => Ok(product),
+        }
+    }
+}
+
+/// One error at a token.
+#[must_use]
+pub fn error(span: Span, message: &Message) -> syn::Error {
+    syn::Error::new(span, format!("{}\nhelp: {}", message.what(), message.help()))
+}
+
+/// The candidate nearest to a misspelt name, if one is near: at most a third of its letters differ.
+#[must_use]
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    candidates
+        .into_iter()
+        .map(|candidate| (distance(name, candidate), candidate))
+        .filter(|(distance, candidate)| *distance <= candidate.chars().count().max(name.chars().count()).div_ceil(3))
+        .filter(|(distance, candidate)| *distance < candidate.chars().count())
+        .min()
+        .map(|(_, candidate)| candidate.to_owned())
+}
+
+/// Levenshtein's distance: insertions, deletions and replacements that turn one name into the other.
+fn distance(left: &str, right: &str) -> usize {
+    let right: Vec<char> = right.chars().collect();
+    let mut row: Vec<usize> = (0..=right.len()).collect();
+    for (i, a) in left.chars().enumerate() {
+        let mut diagonal = i;
+        row[0] = i + 1;
+        for (j, b) in right.iter().enumerate() {
+            let replaced = diagonal + usize::from(a != *b);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[right.len()]
+}

@@ -1,0 +1,99 @@
+//! The system, checked: what it is called, what it is made of, and L and f as expressions.
+//!
+//! In: a [`System`](crate::syntax::System). Out: a [`Model`]. AFTER THIS every name is resolved, every number exact,
+//! and L and f are expressions in [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only; the spans that
+//! are left are those of declared names.
+
+pub mod check;
+mod mass;
+mod resolve;
+
+use crate::symbol::Symbol;
+use crate::syntax::Rule;
+use proc_macro2::Ident;
+use vi_expr::{Expr, Pool};
+
+pub use resolve::Scope;
+
+/// A checked system.
+pub struct Model {
+    /// The expressions of this system.
+    pub pool: Pool<Symbol>,
+    /// Attributes and doc comments of the struct.
+    pub attributes: Vec<syn::Attribute>,
+    /// Visibility of the struct.
+    pub visibility: syn::Visibility,
+    /// Name of the struct.
+    pub name: Ident,
+    /// Runtime parameters.
+    pub parameters: Vec<Parameter>,
+    /// Coordinates.
+    pub coordinates: Vec<Ident>,
+    /// L(t, q, v).
+    pub lagrangian: Expr,
+    /// f(t, q, v), one component per coordinate; zero where none is declared.
+    pub forces: Vec<Expr>,
+    /// Whether a force is declared that is not identically zero.
+    pub forced: bool,
+    /// How L becomes L_d.
+    pub rule: Rule,
+    /// The rule as the documentation names it.
+    pub rule_name: String,
+}
+
+/// A runtime parameter.
+pub struct Parameter {
+    /// Its doc comments.
+    pub attributes: Vec<syn::Attribute>,
+    /// Its name.
+    pub name: Ident,
+    /// Its value in `Default`.
+    pub default: f64,
+}
+
+impl Model {
+    /// Number of coordinates.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.coordinates.len()
+    }
+
+    /// A symbol as the user wrote it.
+    #[must_use]
+    pub fn spell(&self, symbol: &Symbol) -> String {
+        use crate::symbol::{Field, Quantity, Variable};
+        let coordinate = |index: usize| self.coordinates[index].to_string();
+        match symbol {
+            Symbol::Parameter(index) => self.parameters[*index].name.to_string(),
+            Symbol::Continuous(Variable::Time) => "t".to_owned(),
+            Symbol::Continuous(Variable::Coordinate(index)) => coordinate(*index),
+            Symbol::Continuous(Variable::Velocity(index)) => format!("dot({})", coordinate(*index)),
+            Symbol::Acceleration(index) => format!("dot(dot({}))", coordinate(*index)),
+            Symbol::T0 => "t0".to_owned(),
+            Symbol::T1 => "t1".to_owned(),
+            Symbol::Step => "h".to_owned(),
+            Symbol::E0 => "E0".to_owned(),
+            Symbol::Q0(index) => format!("{}0", coordinate(*index)),
+            Symbol::Q1(index) => format!("{}1", coordinate(*index)),
+            Symbol::P0(index) => format!("p0_{}", coordinate(*index)),
+            Symbol::StepVelocity(index) => format!("v_{}", coordinate(*index)),
+            Symbol::Low(of) => format!("{}_low", self.spell(of)),
+            Symbol::AtPoint(point, variable) => format!("{}@{point}", self.spell(&Symbol::Continuous(*variable))),
+            Symbol::Field(Field { quantity, derivatives, .. }) => {
+                let mut text = match quantity {
+                    Quantity::Lagrangian => "L".to_owned(),
+                    Quantity::Force(index) => format!("f_{}", coordinate(*index)),
+                };
+                for (order, variable) in derivatives.iter().enumerate() {
+                    text.push_str(if order == 0 { "_" } else { "," });
+                    match variable {
+                        Variable::Time => text.push('t'),
+                        Variable::Coordinate(index) => text.push_str(&coordinate(*index)),
+                        Variable::Velocity(index) => text.push_str(&format!("v_{}", coordinate(*index))),
+                    }
+                }
+                text
+            }
+        }
+    }
+}

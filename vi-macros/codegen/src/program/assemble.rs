@@ -1,0 +1,181 @@
+//! The functions of a system, assembled from its expressions.
+//!
+//! In: a [`Model`] and its [`DiscreteSystem`]. Out: a [`Program`]. Fields become derivatives of L and f at the points
+//! of the rule; the arguments of a point are evaluated once per function.
+
+use super::lower::Lowering;
+use super::magnitude::magnitude;
+use super::verify;
+use super::{Function, Program};
+use crate::discrete::{DiscreteSystem, Fields, Point};
+use crate::model::Model;
+use crate::symbol::{Symbol, Variable};
+use std::collections::BTreeMap;
+use syn::Result;
+use vi_expr::{Expr, Node, Pool};
+
+/// Assembles all functions.
+///
+/// # Errors
+/// Operations that do not reproduce their expressions: a mistake of this compiler, reported and not emitted.
+pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
+    let mut pool: Pool<Symbol> = core::mem::take(&mut model.pool);
+    let assembled = (|| {
+        let continuous = continuous(&mut Assembly::new(&mut pool, system, &[]), system);
+        let slots = slots(&mut Assembly::new(&mut pool, system, &system.slots.points), system);
+        let step = step(&mut Assembly::new(&mut pool, system, &system.equations.points), system);
+        let check = |(function, expressions): (Function, Expressions)| {
+            verify::agrees(&pool, &function, &expressions, &model.name).map(|()| function)
+        };
+        let all = |list: Vec<_>| list.into_iter().map(check).collect::<Result<Vec<_>>>();
+        Ok(Program { continuous: all(continuous)?, slots: all(slots)?, step: all(step)? })
+    })();
+    model.pool = pool;
+    assembled
+}
+
+/// The expressions that a function lowers, with the arguments of the points in place.
+pub(super) type Expressions = Vec<Vec<Expr>>;
+type Assembled = Vec<(Function, Expressions)>;
+
+struct Assembly<'a> {
+    pool: &'a mut Pool<Symbol>,
+    fields: &'a Fields,
+    arguments: BTreeMap<(usize, Variable), Expr>,
+}
+
+impl<'a> Assembly<'a> {
+    fn new(pool: &'a mut Pool<Symbol>, system: &'a DiscreteSystem, points: &[Point]) -> Self {
+        let mut arguments = BTreeMap::new();
+        for (index, point) in points.iter().enumerate() {
+            let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
+            let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
+            for (variable, argument) in [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities)
+            {
+                arguments.insert((index, variable), step_velocity(pool, argument).unwrap_or(argument));
+            }
+        }
+        Self { pool, fields: &system.fields, arguments }
+    }
+
+    /// An expression without fields: derivatives of L and f at the points, whose arguments stay closed unless they
+    /// are bare symbols.
+    fn open(&mut self, expr: Expr) -> Expr {
+        let Self { pool, fields, arguments } = self;
+        pool.substitute(expr, &mut |pool, symbol| {
+            let Symbol::Field(field) = symbol else { return None };
+            let definition = fields.definition(field)?;
+            Some(pool.substitute(definition, &mut |pool, symbol| {
+                let Symbol::Continuous(variable) = symbol else { return None };
+                let argument = *arguments.get(&(field.point, *variable))?;
+                let bare = matches!(pool.node(argument), Node::Symbol(_) | Node::Number(_));
+                Some(if bare { argument } else { pool.symbol(Symbol::AtPoint(field.point, *variable)) })
+            }))
+        })
+    }
+
+    fn open_all(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+        exprs.iter().map(|expr| self.open(*expr)).collect()
+    }
+
+    fn magnitudes(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+        exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
+    }
+
+    fn function(&mut self, name: &'static str, groups: Expressions) -> (Function, Expressions) {
+        let flat: Vec<Expr> = groups.iter().flatten().copied().collect();
+        let mut used = BTreeMap::new();
+        for expr in &flat {
+            for symbol in self.pool.symbols(*expr) {
+                if let Symbol::AtPoint(point, variable) = symbol {
+                    used.extend(self.arguments.get(&(point, variable)).map(|e| ((point, variable), *e)));
+                }
+            }
+        }
+        let mut lowering = Lowering::new(self.pool, &used);
+        let mut values = lowering.lower(&flat).into_iter();
+        let operations = lowering.operations;
+        let results = groups.iter().map(|group| values.by_ref().take(group.len()).collect()).collect();
+        let closed = groups.iter().map(|group| group.iter().map(|e| close(self.pool, &used, *e)).collect()).collect();
+        (Function { name, operations, results }, closed)
+    }
+}
+
+/// The velocity of the step, where an argument of a point is nothing else.
+fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
+    let moved = pool.substitute(argument, &mut |pool, symbol| match symbol {
+        Symbol::Q1(index) => {
+            let (start, step) = (pool.symbol(Symbol::Q0(*index)), pool.symbol(Symbol::Step));
+            let velocity = pool.symbol(Symbol::StepVelocity(*index));
+            let way = pool.mul(step, velocity);
+            Some(pool.add(start, way))
+        }
+        _ => None,
+    });
+    let moved = pool.expand(moved).ok()?;
+    matches!(pool.node(moved), Node::Symbol(Symbol::StepVelocity(_))).then_some(moved)
+}
+
+/// The arguments of the points put in place.
+fn close(pool: &mut Pool<Symbol>, arguments: &BTreeMap<(usize, Variable), Expr>, expr: Expr) -> Expr {
+    pool.substitute(expr, &mut |_, symbol| match symbol {
+        Symbol::AtPoint(point, variable) => arguments.get(&(*point, *variable)).copied(),
+        _ => None,
+    })
+}
+
+fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
+    let of = &system.continuous;
+    let mut acceleration = of.mass.clone();
+    acceleration.push(of.mass_times_acceleration.clone());
+    vec![
+        assembly.function("lagrangian", vec![vec![of.lagrangian]]),
+        assembly.function("energy", vec![vec![of.energy]]),
+        assembly.function("momentum", vec![of.momentum.clone()]),
+        assembly.function("force", vec![of.force.clone()]),
+        assembly.function("acceleration", acceleration),
+        assembly.function("step_density", vec![vec![of.step_density]]),
+    ]
+}
+
+fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
+    let of = &system.slots;
+    let functions = [
+        ("ld", vec![of.ld]),
+        ("d1_ld", vec![of.d1_ld]),
+        ("d2_ld", of.d2_ld.clone()),
+        ("d3_ld", vec![of.d3_ld]),
+        ("d4_ld", of.d4_ld.clone()),
+        ("fd_minus", of.fd_minus.clone()),
+        ("fd_plus", of.fd_plus.clone()),
+        ("gd_minus", vec![of.gd_minus]),
+        ("gd_plus", vec![of.gd_plus]),
+    ];
+    functions
+        .into_iter()
+        .map(|(name, exprs)| {
+            let open = assembly.open_all(&exprs);
+            assembly.function(name, vec![open])
+        })
+        .collect()
+}
+
+fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
+    let of = &system.equations;
+    let residual = assembly.open_all(&of.residual);
+    let mut momentum = vec![residual.clone(), assembly.magnitudes(&residual)];
+    momentum.extend(of.residual_dv.iter().map(|row| assembly.open_all(row)));
+    let energy = assembly.open_all(&[of.energy_residual]);
+    let mut extended = momentum.clone();
+    extended.push(assembly.open_all(&of.residual_dh));
+    extended.push(energy.clone());
+    extended.push(assembly.magnitudes(&energy));
+    extended.push(assembly.open_all(&of.energy_dv));
+    extended.push(assembly.open_all(&[of.energy_dh]));
+    let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
+    vec![
+        assembly.function("momentum_equation", momentum),
+        assembly.function("extended_system", extended),
+        assembly.function("increment", gains),
+    ]
+}

@@ -1,0 +1,43 @@
+//! The functions of a system as straight-line code.
+//!
+//! In: a [`Model`](crate::model::Model) and its [`DiscreteSystem`](crate::discrete::DiscreteSystem). Out: a
+//! [`Program`]: per emitted function its inputs, the operations with everything shared once, and its results.
+//! AFTER THIS no field, no power and no sum is left: only operations of two operands, calls, inputs and constants.
+
+mod assemble;
+mod lower;
+mod magnitude;
+mod operations;
+mod powers;
+mod verify;
+
+pub use assemble::program;
+pub use operations::{Operation, OperationId, Operations};
+
+/// What one function computes.
+pub struct Function {
+    /// Its name in the emitted code.
+    pub name: &'static str,
+    /// The operations, operands before results.
+    pub operations: Operations,
+    /// The results, in groups: a number is a group of one, a vector one of N, a matrix N groups (its rows).
+    pub results: Vec<Vec<OperationId>>,
+}
+
+/// All functions of a system.
+pub struct Program {
+    /// Functions of `(t, q, v)`.
+    pub continuous: Vec<Function>,
+    /// Functions of an interval.
+    pub slots: Vec<Function>,
+    /// Functions of a node and the unknowns `(v, h)`.
+    pub step: Vec<Function>,
+}
+
+impl Program {
+    /// The function of this name.
+    #[must_use]
+    pub fn function(&self, name: &str) -> Option<&Function> {
+        self.continuous.iter().chain(&self.slots).chain(&self.step).find(|function| function.name == name)
+    }
+}

@@ -1,0 +1,179 @@
+//! Operations: what a processor does, each once.
+//!
+//! In: requests for operations. Out: a list in which equal operations are one entry and operands come first.
+
+use crate::symbol::Symbol;
+use std::collections::BTreeMap;
+use vi_expr::Function;
+
+/// The index of an operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct OperationId(u32);
+
+/// An operation, its operands by index.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Operation {
+    /// A number, by its bits.
+    Constant(u64),
+    /// A parameter, an argument of the function, or a part of one.
+    Input(Symbol),
+    /// −a
+    Negate(OperationId),
+    /// a + b
+    Add(OperationId, OperationId),
+    /// a − b
+    Subtract(OperationId, OperationId),
+    /// a·b
+    Multiply(OperationId, OperationId),
+    /// a/b
+    Divide(OperationId, OperationId),
+    /// √a
+    SquareRoot(OperationId),
+    /// 1/a
+    Reciprocal(OperationId),
+    /// A function of one operand.
+    Call(Function, OperationId),
+    /// A function of two operands.
+    Call2(Function, OperationId, OperationId),
+}
+
+/// Operations, operands before results.
+#[derive(Clone, Default)]
+pub struct Operations {
+    list: Vec<Operation>,
+    index: BTreeMap<Operation, OperationId>,
+    names: BTreeMap<OperationId, Symbol>,
+}
+
+impl Operations {
+    /// The operation, listed once. Constants fold, and 0 and 1 disappear where that is exact.
+    pub fn add(&mut self, operation: Operation) -> OperationId {
+        if let Some(simple) = self.simplified(&operation) {
+            return simple;
+        }
+        if let Some(known) = self.index.get(&operation) {
+            return *known;
+        }
+        // More than 2^32 operations do not fit the limit on nodes of the pool.
+        let id = OperationId(u32::try_from(self.list.len()).unwrap_or(u32::MAX));
+        self.list.push(operation.clone());
+        self.index.insert(operation, id);
+        id
+    }
+
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> OperationId {
+        self.add(Operation::Constant(value.to_bits()))
+    }
+
+    /// The number that an operation is, if it is one.
+    #[must_use]
+    pub fn as_constant(&self, id: OperationId) -> Option<f64> {
+        match self.get(id) {
+            Operation::Constant(bits) => Some(f64::from_bits(*bits)),
+            _ => None,
+        }
+    }
+
+    /// An operation by its index.
+    #[must_use]
+    pub fn get(&self, id: OperationId) -> &Operation {
+        &self.list[id.0 as usize]
+    }
+
+    /// The operation is the argument of the rule that this symbol names.
+    pub fn call_it(&mut self, id: OperationId, name: Symbol) {
+        if !matches!(self.get(id), Operation::Constant(_) | Operation::Input(_)) {
+            self.names.entry(id).or_insert(name);
+        }
+    }
+
+    /// The name that an operation was given.
+    #[must_use]
+    pub fn name(&self, id: OperationId) -> Option<&Symbol> {
+        self.names.get(&id)
+    }
+
+    /// All operations with their indices, operands before results.
+    pub fn iter(&self) -> impl Iterator<Item = (OperationId, &Operation)> {
+        (0..).map(OperationId).zip(&self.list)
+    }
+
+    /// The operations that the results need, operands before results.
+    #[must_use]
+    pub fn needed(&self, results: &[Vec<OperationId>]) -> Vec<OperationId> {
+        let mut needed = vec![false; self.list.len()];
+        results.iter().flatten().for_each(|id| needed[id.0 as usize] = true);
+        for index in (0..self.list.len()).rev() {
+            if needed[index] {
+                self.list[index].operands().for_each(|id| needed[id.0 as usize] = true);
+            }
+        }
+        self.iter().map(|(id, _)| id).filter(|id| needed[id.0 as usize]).collect()
+    }
+
+    fn simplified(&mut self, operation: &Operation) -> Option<OperationId> {
+        use Operation::{Add, Divide, Multiply, Negate, Subtract};
+        let value = |id: &OperationId| self.as_constant(*id);
+        match operation {
+            Negate(a) => match (value(a), self.get(*a)) {
+                (Some(a), _) => Some(self.constant(-a)),
+                (_, Negate(inner)) => Some(*inner),
+                _ => None,
+            },
+            Multiply(a, b) => match (value(a), value(b)) {
+                (Some(a), Some(b)) => Some(self.constant(a * b)),
+                (Some(1.0), _) => Some(*b),
+                (_, Some(1.0)) => Some(*a),
+                (Some(-1.0), _) => Some(self.add(Negate(*b))),
+                (_, Some(-1.0)) => Some(self.add(Negate(*a))),
+                // A constant stands behind: `x * real(0.5)`.
+                (Some(_), None) => Some(self.add(Multiply(*b, *a))),
+                _ => None,
+            },
+            Add(a, b) => match (value(a), value(b)) {
+                (Some(a), Some(b)) => Some(self.constant(a + b)),
+                (Some(0.0), _) => Some(*b),
+                (_, Some(0.0)) => Some(*a),
+                (Some(_), None) => Some(self.add(Add(*b, *a))),
+                (_, Some(b)) if b < 0.0 => {
+                    let b = self.constant(-b);
+                    Some(self.add(Subtract(*a, b)))
+                }
+                _ => None,
+            },
+            Subtract(a, b) => match (value(a), value(b)) {
+                (Some(a), Some(b)) => Some(self.constant(a - b)),
+                (_, Some(0.0)) => Some(*a),
+                (Some(0.0), _) => Some(self.add(Negate(*b))),
+                _ => None,
+            },
+            Divide(a, b) => match (value(a), value(b)) {
+                (Some(a), Some(b)) => Some(self.constant(a / b)),
+                (Some(1.0), _) => Some(self.add(Operation::Reciprocal(*b))),
+                (_, Some(1.0)) => Some(*a),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
+impl Operation {
+    /// The operands, from left to right.
+    pub fn operands(&self) -> impl Iterator<Item = OperationId> {
+        let (first, second) = match self {
+            Self::Constant(_) | Self::Input(_) => (None, None),
+            Self::Negate(a) | Self::SquareRoot(a) | Self::Reciprocal(a) | Self::Call(_, a) => (Some(*a), None),
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => (Some(*a), Some(*b)),
+            Self::Call2(_, a, b) => (Some(*a), Some(*b)),
+        };
+        first.into_iter().chain(second)
+    }
+
+    /// Whether it costs anything.
+    #[must_use]
+    pub fn is_work(&self) -> bool {
+        !matches!(self, Self::Constant(_) | Self::Input(_))
+    }
+}

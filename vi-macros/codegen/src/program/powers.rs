@@ -1,0 +1,107 @@
+//! Powers as products, roots and one division.
+//!
+//! In: the exponents with which each base occurs in one function. Out: operations. Integer powers are products of
+//! squares; half-integer ones are powers of one root; where a base is divided by more than once, its reciprocal is
+//! computed once.
+
+use super::lower::Lowering;
+use super::operations::{Operation, OperationId};
+use num_traits::{One, Signed, ToPrimitive, Zero};
+use std::collections::BTreeSet;
+use vi_expr::{Expr, Function, Node, Rational};
+
+/// With which exponents a base occurs.
+#[derive(Clone, Default)]
+pub(super) struct Occurrence {
+    exponents: BTreeSet<Rational>,
+    uses_below: usize,
+}
+
+impl Occurrence {
+    pub(super) fn record(&mut self, exponent: &Rational) {
+        self.uses_below += usize::from(exponent.is_negative());
+        self.exponents.insert(exponent.clone());
+    }
+
+    /// Some exponent is an odd multiple of 1/2.
+    fn has_root(&self) -> bool {
+        self.exponents.iter().any(|exponent| *exponent.denom() == 2.into())
+    }
+}
+
+/// A factor of a product: multiplied, or divided by.
+pub(super) enum Factor {
+    Above(OperationId),
+    Below(OperationId),
+}
+
+impl Lowering<'_> {
+    /// Notes how bases occur below these expressions.
+    pub(super) fn record_powers(&mut self, exprs: &[Expr]) {
+        for expr in self.pool.reachable(exprs) {
+            if let Node::Product(product) = self.pool.node(expr) {
+                for (base, exponent) in &product.factors {
+                    self.occurrences.entry(*base).or_default().record(exponent);
+                }
+            }
+        }
+    }
+
+    /// `base^exponent` as a factor of a product.
+    pub(super) fn factor(&mut self, base: Expr, exponent: &Rational) -> Factor {
+        let value = self.value(base);
+        let occurrence = self.occurrences.get(&base).cloned().unwrap_or_default();
+        let doubled = exponent * Rational::from_integer(2.into());
+        let Some(halves) = doubled.is_integer().then(|| doubled.to_integer().to_i32()).flatten() else {
+            let exponent = self.operations.constant(exponent.to_f64().unwrap_or(f64::NAN));
+            return Factor::Above(self.operations.add(Operation::Call2(Function::Pow, value, exponent)));
+        };
+        let count = halves.unsigned_abs();
+        if halves < 0 && occurrence.has_root() {
+            let root = self.operations.add(Operation::SquareRoot(value));
+            let inverse = self.operations.add(Operation::Reciprocal(root));
+            return Factor::Above(self.integer_power(inverse, count));
+        }
+        let whole = |lowering: &mut Self, value| {
+            let even = (count > 1).then(|| lowering.integer_power(value, count / 2));
+            if count % 2 == 0 {
+                return even.unwrap_or(value);
+            }
+            let root = lowering.operations.add(Operation::SquareRoot(value));
+            even.map_or(root, |even| lowering.operations.add(Operation::Multiply(even, root)))
+        };
+        if halves > 0 {
+            return Factor::Above(whole(self, value));
+        }
+        if occurrence.uses_below > 1 {
+            let inverse = self.operations.add(Operation::Reciprocal(value));
+            return Factor::Above(whole(self, inverse));
+        }
+        Factor::Below(whole(self, value))
+    }
+
+    /// `value^count` by squaring; `count` is at least one.
+    fn integer_power(&mut self, value: OperationId, count: u32) -> OperationId {
+        if count <= 1 {
+            return value;
+        }
+        let rest = if count % 2 == 0 { None } else { Some(value) };
+        let half = self.integer_power(value, count / 2);
+        let even = self.operations.add(Operation::Multiply(half, half));
+        match rest {
+            Some(value) => self.operations.add(Operation::Multiply(even, value)),
+            None => even,
+        }
+    }
+
+    /// The rational as the nearest `f64`.
+    pub(super) fn number(value: &Rational) -> f64 {
+        if value.is_zero() {
+            0.0
+        } else if value.is_one() {
+            1.0
+        } else {
+            value.to_f64().unwrap_or(f64::NAN)
+        }
+    }
+}

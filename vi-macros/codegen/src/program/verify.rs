@@ -1,0 +1,72 @@
+//! The operations compute what the expressions say.
+//!
+//! In: a function and the expressions it was lowered from. Out: nothing, or an internal error at the system's name.
+//! Both are evaluated at one point drawn from a fixed sequence, in builds with debug assertions only.
+
+use super::assemble::Expressions;
+use super::operations::Operation;
+use super::{Function, OperationId};
+use crate::messages::{Message, error};
+use crate::symbol::Symbol;
+use proc_macro2::Ident;
+use std::collections::BTreeMap;
+use syn::Result;
+use vi_expr::{Expr, Pool};
+
+/// Relative difference that reordering may cause: cancellation in the residuals included.
+const TOLERANCE: f64 = 1e-7;
+
+/// Compares a function with its expressions.
+pub(super) fn agrees(pool: &Pool<Symbol>, function: &Function, expressions: &Expressions, system: &Ident) -> Result<()> {
+    if !cfg!(debug_assertions) {
+        return Ok(());
+    }
+    let mut inputs = BTreeMap::new();
+    let mut input = |symbol: &Symbol| {
+        let position = u32::try_from(inputs.len()).map_or(0.0, |n| f64::from(n) + 1.0);
+        *inputs.entry(symbol.clone()).or_insert_with(|| 0.2 + (position * 0.618_033_988_749_894_9).fract())
+    };
+    let flat: Vec<Expr> = expressions.iter().flatten().copied().collect();
+    let wanted = pool.evaluate_all(&flat, &mut input);
+    let found = function.evaluate(&mut input);
+    let scale = wanted.iter().chain(&found).filter(|x| x.is_finite()).fold(1.0_f64, |scale, x| scale.max(x.abs()));
+    let equal = |(wanted, found): (&f64, &f64)| {
+        (wanted - found).abs() <= TOLERANCE * scale || !wanted.is_finite() || !found.is_finite()
+    };
+    if wanted.iter().zip(&found).all(equal) {
+        return Ok(());
+    }
+    Err(error(system.span(), &Message::Internal { what: function.name }))
+}
+
+impl Function {
+    /// The results, one after the other, for these inputs.
+    pub fn evaluate(&self, input: &mut dyn FnMut(&Symbol) -> f64) -> Vec<f64> {
+        let mut values: BTreeMap<OperationId, f64> = BTreeMap::new();
+        for id in self.operations.needed(&self.results) {
+            let of = |id: &OperationId| values.get(id).copied().unwrap_or(f64::NAN);
+            let value = match self.operations.get(id) {
+                Operation::Constant(bits) => f64::from_bits(*bits),
+                Operation::Input(symbol) => input(symbol),
+                Operation::Negate(a) => -of(a),
+                Operation::Add(a, b) => of(a) + of(b),
+                Operation::Subtract(a, b) => of(a) - of(b),
+                Operation::Multiply(a, b) => of(a) * of(b),
+                Operation::Divide(a, b) => of(a) / of(b),
+                Operation::SquareRoot(a) => of(a).sqrt(),
+                Operation::Reciprocal(a) => of(a).recip(),
+                Operation::Call(function, a) => function.value(of(a), 0.0),
+                Operation::Call2(function, a, b) => function.value(of(a), of(b)),
+            };
+            values.insert(id, value);
+        }
+        self.results.iter().flatten().map(|id| values.get(id).copied().unwrap_or(f64::NAN)).collect()
+    }
+
+    /// Operations that the results need: additions, products, divisions, roots and calls.
+    #[must_use]
+    pub fn operation_count(&self) -> usize {
+        let needed = self.operations.needed(&self.results);
+        needed.into_iter().filter(|id| self.operations.get(*id).is_work()).count()
+    }
+}

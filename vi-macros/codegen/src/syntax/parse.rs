@@ -1,0 +1,168 @@
+//! Clauses.
+//!
+//! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
+//! its `;`, so that the next one is read too.
+
+use super::{Definition, Discretization, Expression, Rule, System};
+use crate::messages::{Errors, Message, error, nearest};
+use proc_macro2::{Ident, TokenStream, TokenTree};
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Parser};
+use syn::{Attribute, Result, Token, Visibility};
+
+/// The words that open a clause.
+const CLAUSES: [&str; 7] = ["const", "param", "coord", "let", "L", "force", "discretize"];
+
+/// Reads a system.
+///
+/// # Errors
+/// Every clause that cannot be read, at the token that does not fit.
+pub fn system(tokens: TokenStream) -> Result<System> {
+    header.parse2(tokens)
+}
+
+/// Reads the lines of a rule given as text, as the named rules are.
+///
+/// # Errors
+/// As for a rule that a user writes.
+pub fn rule(text: &str) -> Result<Rule> {
+    rule_lines.parse_str(text)
+}
+
+/// `pub struct Name { … }`
+fn header(input: ParseStream) -> Result<System> {
+    let attributes = input.call(Attribute::parse_outer)?;
+    let visibility: Visibility = input.parse()?;
+    if !input.peek(Token![struct]) {
+        return Err(error(input.span(), &Message::Expected { what: "`struct Name { … }`" }));
+    }
+    input.parse::<Token![struct]>()?;
+    let name = input.parse()?;
+    if !input.peek(syn::token::Brace) {
+        return Err(error(input.span(), &Message::Expected { what: "`{` and the clauses of the system" }));
+    }
+    let body;
+    syn::braced!(body in input);
+    let mut system = System {
+        attributes,
+        visibility,
+        name,
+        constants: Vec::new(),
+        parameters: Vec::new(),
+        coordinates: Vec::new(),
+        lets: Vec::new(),
+        lagrangians: Vec::new(),
+        forces: Vec::new(),
+        discretizations: Vec::new(),
+    };
+    let mut errors = Errors::default();
+    while !body.is_empty() {
+        if let Err(found) = clause(&body, &mut system) {
+            errors.add(found);
+            skip_clause(&body);
+        }
+    }
+    if !input.is_empty() {
+        errors.at(input.span(), &Message::AfterSystem);
+    }
+    errors.finish(system)
+}
+
+/// Drops the tokens up to the end of a clause that could not be read.
+fn skip_clause(body: ParseStream) {
+    while let Ok(token) = body.parse::<TokenTree>() {
+        if matches!(&token, TokenTree::Punct(punct) if punct.as_char() == ';') {
+            break;
+        }
+    }
+}
+
+fn clause(input: ParseStream, system: &mut System) -> Result<()> {
+    let attributes = input.call(Attribute::parse_outer)?;
+    let Ok(word) = input.call(Ident::parse_any) else {
+        return Err(error(input.span(), &Message::Expected { what: "a clause" }));
+    };
+    match word.to_string().as_str() {
+        "const" => system.constants.extend(definitions(input, attributes)?),
+        "param" => system.parameters.extend(definitions(input, attributes)?),
+        "coord" => system.coordinates.extend(names(input)?),
+        "let" => system.lets.extend(definitions(input, attributes)?),
+        "force" => system.forces.extend(definitions(input, attributes)?),
+        "L" => system.lagrangians.push(value_of(word, input, attributes)?),
+        "discretize" if input.peek(syn::token::Brace) => {
+            let lines;
+            syn::braced!(lines in input);
+            system.discretizations.push(Discretization::Written(rule_lines(&lines)?));
+            if input.peek(Token![;]) {
+                input.parse::<Token![;]>()?;
+            }
+            return Ok(());
+        }
+        "discretize" => system.discretizations.push(Discretization::Named(name(input)?)),
+        found => {
+            let near = nearest(found, CLAUSES);
+            return Err(error(word.span(), &Message::UnknownClause { found: found.to_owned(), near }));
+        }
+    }
+    semicolon(input)
+}
+
+/// The lines of a rule, written out.
+fn rule_lines(input: ParseStream) -> Result<Rule> {
+    let mut rule = Rule { span: input.span(), lines: Vec::new() };
+    while !input.is_empty() {
+        rule.lines.push(definition(input, Vec::new())?);
+        semicolon(input)?;
+    }
+    Ok(rule)
+}
+
+/// `a = 1, b = 2`
+fn definitions(input: ParseStream, attributes: Vec<Attribute>) -> Result<Vec<Definition>> {
+    let mut found = vec![definition(input, attributes.clone())?];
+    while input.peek(Token![,]) {
+        input.parse::<Token![,]>()?;
+        found.push(definition(input, attributes.clone())?);
+    }
+    Ok(found)
+}
+
+/// `a = 1`
+fn definition(input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
+    value_of(name(input)?, input, attributes)
+}
+
+/// `= 1`
+fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
+    if !input.peek(Token![=]) {
+        return Err(error(input.span(), &Message::Expected { what: "`=`" }));
+    }
+    input.parse::<Token![=]>()?;
+    Ok(Definition { attributes, name, value: Expression::parse(input)? })
+}
+
+/// `x, y`
+fn names(input: ParseStream) -> Result<Vec<Ident>> {
+    let mut found = vec![name(input)?];
+    while input.peek(Token![,]) {
+        input.parse::<Token![,]>()?;
+        found.push(name(input)?);
+    }
+    Ok(found)
+}
+
+fn name(input: ParseStream) -> Result<Ident> {
+    let span = input.span();
+    let name = input.parse::<Ident>().map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
+    if name.to_string().starts_with("r#") {
+        return Err(error(span, &Message::Reserved { name: name.to_string() }));
+    }
+    Ok(name)
+}
+
+fn semicolon(input: ParseStream) -> Result<()> {
+    if input.peek(Token![;]) {
+        return input.parse::<Token![;]>().map(|_| ());
+    }
+    Err(error(input.span(), &Message::Expected { what: "an operator or `;`" }))
+}

@@ -1,0 +1,143 @@
+//! Derivatives.
+//!
+//! In: an expression and the derivative of each symbol. Out: the derivative of the expression by the chain rule,
+//!
+//! - `(Σ c u)' = Σ c u'`
+//! - `(Π b^e)' = Σ e b' b^(e-1) Π others`
+//! - `f(u, w)' = f_u u' + f_w w'`, and `sign' = 0`
+//!
+//! One pass over the shared nodes: an expression that occurs many times is differentiated once.
+
+use std::collections::BTreeMap;
+
+use num_bigint::BigInt;
+use num_traits::One;
+
+use crate::{Expr, Function, Node, Pool, Rational};
+
+impl<S: Clone + Ord> Pool<S> {
+    /// Derivative of `expr`, where the closure gives that of each symbol (asked once per symbol): 1 for the variable and 0 for
+    /// the others gives a partial derivative, the rates of all symbols give a total one.
+    pub fn derivative(&mut self, expr: Expr, symbol_derivative: &mut dyn FnMut(&mut Self, &S) -> Expr) -> Expr {
+        if self.is_undefined(expr) {
+            return expr;
+        }
+        // Only derivatives other than 0.
+        let mut derivatives = BTreeMap::new();
+        for node in self.reachable(&[expr]) {
+            let derivative = match &*self.shared_node(node) {
+                Node::Number(_) | Node::Pi => Expr::ZERO,
+                Node::Symbol(symbol) => symbol_derivative(self, symbol),
+                Node::Sum(sum) => self
+                    .combination(sum.terms.iter().filter_map(|(term, c)| Some((*derivatives.get(term)?, c.clone())))),
+                Node::Product(product) => self.product_derivative(&product.factors, &derivatives),
+                Node::Call(function, arguments) => self.call_derivative(*function, arguments, node, &derivatives),
+            };
+            if derivative != Expr::ZERO {
+                derivatives.insert(node, derivative);
+            }
+        }
+        derivatives.get(&expr).copied().unwrap_or(Expr::ZERO)
+    }
+
+    fn product_derivative(&mut self, factors: &[(Expr, Rational)], derivatives: &BTreeMap<Expr, Expr>) -> Expr {
+        let mut terms = Vec::new();
+        for (place, (base, exponent)) in factors.iter().enumerate() {
+            let Some(derivative) = derivatives.get(base) else { continue };
+            let mut powers = factors.to_vec();
+            if let Some((_, lowered)) = powers.get_mut(place) {
+                *lowered -= Rational::one();
+            }
+            powers.push((*derivative, Rational::one()));
+            terms.push((self.powers(powers), exponent.clone()));
+        }
+        self.combination(terms)
+    }
+
+    fn call_derivative(
+        &mut self,
+        function: Function,
+        arguments: &[Expr],
+        value: Expr,
+        derivatives: &BTreeMap<Expr, Expr>,
+    ) -> Expr {
+        let mut terms = Vec::new();
+        for (slot, argument) in arguments.iter().enumerate() {
+            let Some(derivative) = derivatives.get(argument) else { continue };
+            let partial = match arguments {
+                [x] => self.unary_partial(function, *x, value),
+                [x, y] => self.binary_partial(function, slot == 0, *x, *y, value),
+                _ => Expr::UNDEFINED,
+            };
+            terms.push(self.mul(partial, *derivative));
+        }
+        self.sum(&terms)
+    }
+
+    /// `f'(x)`, given `value = f(x)`.
+    fn unary_partial(&mut self, function: Function, x: Expr, value: Expr) -> Expr {
+        match function {
+            Function::Exp => value,
+            Function::Ln => self.div(Expr::ONE, x),
+            Function::Sin => self.call(Function::Cos, &[x]),
+            Function::Cos => {
+                let sin = self.call(Function::Sin, &[x]);
+                self.neg(sin)
+            }
+            Function::Tan => self.one_plus_square(1, value),
+            Function::Tanh => self.one_plus_square(-1, value),
+            Function::Asin | Function::Acos => {
+                let sign = Rational::from_integer(BigInt::from(if function == Function::Asin { 1 } else { -1 }));
+                let square = self.one_plus_square(-1, x);
+                let root = self.power(square, &Rational::new(BigInt::from(-1), BigInt::from(2)));
+                self.scale(root, &sign)
+            }
+            Function::Atan => {
+                let square = self.one_plus_square(1, x);
+                self.div(Expr::ONE, square)
+            }
+            Function::Sinh => self.call(Function::Cosh, &[x]),
+            Function::Cosh => self.call(Function::Sinh, &[x]),
+            Function::Abs => self.call(Function::Sign, &[x]),
+            Function::Sign => Expr::ZERO,
+            Function::Atan2 | Function::Hypot | Function::Pow => Expr::UNDEFINED,
+        }
+    }
+
+    /// Derivative of `f(x, y)` in its first or second slot, given `value = f(x, y)`.
+    fn binary_partial(&mut self, function: Function, first: bool, x: Expr, y: Expr, value: Expr) -> Expr {
+        match (function, first) {
+            // The angle of the point (y, x), whose first slot is the ordinate.
+            (Function::Atan2, true) => self.over_square_of_distance(y, x, y),
+            (Function::Atan2, false) => {
+                let ordinate = self.neg(x);
+                self.over_square_of_distance(ordinate, x, y)
+            }
+            (Function::Hypot, true) => self.div(x, value),
+            (Function::Hypot, false) => self.div(y, value),
+            (Function::Pow, true) => {
+                let lower = self.sub(y, Expr::ONE);
+                let power = self.call(Function::Pow, &[x, lower]);
+                self.mul(y, power)
+            }
+            (Function::Pow, false) => {
+                let ln = self.call(Function::Ln, &[x]);
+                self.mul(value, ln)
+            }
+            _ => Expr::UNDEFINED,
+        }
+    }
+
+    /// `1 + sign·x^2`.
+    fn one_plus_square(&mut self, sign: i32, x: Expr) -> Expr {
+        let square = self.mul(x, x);
+        self.combination([(Expr::ONE, Rational::one()), (square, Rational::from_integer(BigInt::from(sign)))])
+    }
+
+    /// `numerator / (x^2 + y^2)`.
+    fn over_square_of_distance(&mut self, numerator: Expr, x: Expr, y: Expr) -> Expr {
+        let squares = [self.mul(x, x), self.mul(y, y)];
+        let sum = self.sum(&squares);
+        self.div(numerator, sum)
+    }
+}

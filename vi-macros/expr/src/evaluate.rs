@@ -1,0 +1,68 @@
+//! Values in floating point.
+//!
+//! In: expressions and the value of each symbol. Out: their values in `f64`, each shared node computed once.
+//! Meant for checks, not for speed; the undefined expression is NaN.
+
+use std::collections::BTreeMap;
+
+use num_traits::ToPrimitive;
+
+use crate::{Expr, Node, Pool, Rational};
+
+impl<S: Clone + Ord> Pool<S> {
+    /// Value of one expression.
+    #[must_use]
+    pub fn evaluate(&self, expr: Expr, values: &mut dyn FnMut(&S) -> f64) -> f64 {
+        self.evaluate_all(&[expr], values).into_iter().next().unwrap_or(f64::NAN)
+    }
+
+    /// Values of several expressions, in their order; the closure is asked once per symbol.
+    #[must_use]
+    pub fn evaluate_all(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<f64> {
+        let mut known = BTreeMap::new();
+        for expr in self.reachable(exprs) {
+            let value = self.node_value(expr, &known, values);
+            known.insert(expr, value);
+        }
+        exprs.iter().map(|expr| value_of(&known, *expr)).collect()
+    }
+
+    fn node_value(&self, expr: Expr, known: &BTreeMap<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
+        if self.is_undefined(expr) {
+            return f64::NAN;
+        }
+        match self.node(expr) {
+            Node::Number(value) => float(value),
+            Node::Pi => std::f64::consts::PI,
+            Node::Symbol(symbol) => values(symbol),
+            Node::Sum(sum) => {
+                let parts = sum.terms.iter().map(|(term, coefficient)| float(coefficient) * value_of(known, *term));
+                parts.sum::<f64>() + float(&sum.constant)
+            }
+            Node::Product(product) => {
+                product.factors.iter().map(|(base, exponent)| raise(value_of(known, *base), exponent)).product()
+            }
+            Node::Call(function, arguments) => {
+                let argument = |slot| arguments.get(slot).map_or(f64::NAN, |argument| value_of(known, *argument));
+                function.value(argument(0), argument(1))
+            }
+        }
+    }
+}
+
+fn value_of(known: &BTreeMap<Expr, f64>, expr: Expr) -> f64 {
+    known.get(&expr).copied().unwrap_or(f64::NAN)
+}
+
+fn float(number: &Rational) -> f64 {
+    number.to_f64().unwrap_or(f64::NAN)
+}
+
+/// Integer powers by multiplication, square roots by `sqrt`, the others by `powf`.
+fn raise(base: f64, exponent: &Rational) -> f64 {
+    match (exponent.numer().to_i32(), exponent.denom().to_u32()) {
+        (Some(power), Some(1)) => base.powi(power),
+        (Some(power), Some(2)) => base.sqrt().powi(power),
+        _ => base.powf(float(exponent)),
+    }
+}

@@ -1,0 +1,132 @@
+//! Multiplying out.
+//!
+//! In: an expression. Out: an equal one in which no product has a sum as a factor, nor a positive integer power of a sum, so
+//! that polynomials in symbols, functions and roots cancel exactly. Sums in denominators and arguments are expanded in
+//! themselves and stay factors. The work is bounded: an expansion over the limit is an error, never a hang.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use num_traits::{One, Signed, ToPrimitive};
+
+use crate::{Expr, Node, Pool, Rational};
+
+/// Most terms that one expansion may write.
+const LIMIT: usize = 50_000;
+
+/// The expansion would write more terms than the limit.
+#[derive(Copy, Clone, PartialEq, Eq, Debug)]
+pub struct TooLarge {
+    /// The number of terms that one call of [`Pool::expand`] may write, intermediate ones included.
+    pub limit: usize,
+}
+
+impl fmt::Display for TooLarge {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "multiplying the expression out takes more than {} terms", self.limit)
+    }
+}
+
+impl std::error::Error for TooLarge {}
+
+/// Terms that may still be written.
+struct Budget(usize);
+
+impl Budget {
+    fn spend(&mut self, terms: usize) -> Result<(), TooLarge> {
+        self.0 = self.0.checked_sub(terms).ok_or(TooLarge { limit: LIMIT })?;
+        Ok(())
+    }
+}
+
+impl<S: Clone + Ord> Pool<S> {
+    /// `expr` multiplied out.
+    ///
+    /// # Errors
+    /// [`TooLarge`] if more than 50 000 terms would have to be written on the way.
+    pub fn expand(&mut self, expr: Expr) -> Result<Expr, TooLarge> {
+        let mut budget = Budget(LIMIT);
+        let mut current = expr;
+        // Roots that meet in a product of terms can free a new sum: (1 + c*(a + b)^(1/2))^2. Then once more.
+        loop {
+            let next = self.expand_once(current, &mut budget)?;
+            if next == current {
+                return Ok(current);
+            }
+            current = next;
+        }
+    }
+
+    fn expand_once(&mut self, expr: Expr, budget: &mut Budget) -> Result<Expr, TooLarge> {
+        let mut expanded: BTreeMap<Expr, Expr> = BTreeMap::new();
+        for node in self.reachable(&[expr]) {
+            let new = |child: &Expr| expanded.get(child).copied().unwrap_or(*child);
+            let result = match &*self.shared_node(node) {
+                Node::Number(_) | Node::Pi | Node::Symbol(_) => node,
+                Node::Sum(sum) => {
+                    let parts: Vec<_> = sum.terms.iter().map(|(term, c)| (new(term), c.clone())).collect();
+                    budget.spend(parts.iter().map(|(term, _)| self.term_count(*term)).sum())?;
+                    let constant = self.number(sum.constant.clone());
+                    self.combination(parts.into_iter().chain([(constant, Rational::one())]))
+                }
+                Node::Product(product) => {
+                    let factors: Vec<_> = product.factors.iter().map(|(base, e)| (new(base), e.clone())).collect();
+                    self.expand_product(factors, budget)?
+                }
+                Node::Call(function, arguments) => {
+                    let arguments: Vec<Expr> = arguments.iter().map(new).collect();
+                    self.call(*function, &arguments)
+                }
+            };
+            expanded.insert(node, result);
+        }
+        Ok(expanded.get(&expr).copied().unwrap_or(expr))
+    }
+
+    /// Product of powers of expanded bases.
+    fn expand_product(&mut self, factors: Vec<(Expr, Rational)>, budget: &mut Budget) -> Result<Expr, TooLarge> {
+        let (sums, others): (Vec<_>, Vec<_>) = factors.into_iter().partition(|(base, exponent)| {
+            exponent.is_integer() && exponent.is_positive() && self.term_count(*base) > 1
+        });
+        let mut result = self.powers(others);
+        for (base, exponent) in sums {
+            // Too large for a machine integer is too large for the budget.
+            let exponent = exponent.to_usize().unwrap_or(usize::MAX);
+            for _ in 0..exponent {
+                result = self.multiply_out(result, base, budget)?;
+            }
+        }
+        Ok(result)
+    }
+
+    /// Product of two expanded expressions, term by term.
+    fn multiply_out(&mut self, left: Expr, right: Expr, budget: &mut Budget) -> Result<Expr, TooLarge> {
+        let (left, right) = (self.terms(left), self.terms(right));
+        budget.spend(left.len().saturating_mul(right.len()))?;
+        let mut products = Vec::new();
+        for (left, left_coefficient) in &left {
+            for (right, right_coefficient) in &right {
+                products.push((self.mul(*left, *right), left_coefficient * right_coefficient));
+            }
+        }
+        Ok(self.combination(products))
+    }
+
+    /// The parts of a sum, the constant as a multiple of 1; anything else is its own single part.
+    fn terms(&self, expr: Expr) -> Vec<(Expr, Rational)> {
+        match self.node(expr) {
+            Node::Sum(sum) => {
+                let constant = (!num_traits::Zero::is_zero(&sum.constant)).then(|| (Expr::ONE, sum.constant.clone()));
+                sum.terms.iter().cloned().chain(constant).collect()
+            }
+            _ => vec![(expr, Rational::one())],
+        }
+    }
+
+    fn term_count(&self, expr: Expr) -> usize {
+        match self.node(expr) {
+            Node::Sum(sum) => sum.terms.len() + usize::from(!num_traits::Zero::is_zero(&sum.constant)),
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Symbolic algebra: exact and shared. It knows no mechanics, no tokens and no spans.
+//!
+//! In: symbols of any ordered type. Out: expressions in a canonical form, which are simplified where they are built, so that
+//! there is no simplifier; equal forms are one node of a [`Pool`]. Coefficients and exponents are exact rationals.
+//!
+//! ```
+//! use vi_expr::{Pool, Rational};
+//!
+//! // The midpoint rule for a free particle: q1 = q0 + h*v turns (q1 - q0)/h into v.
+//! let mut pool = Pool::new();
+//! let [m, h, v, q0, q1] = ["m", "h", "v", "q0", "q1"].map(|name| pool.symbol(name));
+//! let difference = pool.sub(q1, q0);
+//! let velocity = pool.div(difference, h);
+//! let square = pool.mul(velocity, velocity);
+//! let energy = pool.mul(m, square);
+//! let energy = pool.scale(energy, &Rational::new(1.into(), 2.into()));
+//! let name = |symbol: &&str| symbol.to_string();
+//! assert_eq!(pool.render(energy, &name), "m*(q1 - q0)^2/(2*h^2)");
+//!
+//! let momentum = pool.derivative(energy, &mut |pool, symbol| if *symbol == "q1" { pool.one() } else { pool.zero() });
+//! assert_eq!(pool.render(momentum, &name), "m*(q1 - q0)/h^2");
+//!
+//! let way = pool.mul(h, v);
+//! let end = pool.add(q0, way);
+//! let energy = pool.substitute(energy, &mut |_, symbol| (*symbol == "q1").then_some(end));
+//! assert_eq!(pool.render(energy, &name), "m*v^2/2");
+//! ```
+//!
+//! | file | product |
+//! |---|---|
+//! | `node`, `order`, `function`, `pool` | what an expression is, and where it lives |
+//! | `number` | exact powers of numbers, bounded |
+//! | `sum`, `product`, `call` | the canonical forms, each with its rules |
+//! | `derivative`, `substitute`, `expand` | new expressions from old |
+//! | `evaluate`, `render` | values and text |
+//!
+//! No pass recurses: children are older than parents, so each is a loop in the order of creation.
+
+mod call;
+mod derivative;
+mod evaluate;
+mod expand;
+mod function;
+mod node;
+mod number;
+mod order;
+mod pool;
+mod product;
+mod render;
+mod substitute;
+mod sum;
+
+pub use expand::TooLarge;
+pub use function::Function;
+pub use node::{Expr, Node, Product, Rational, Sum};
+pub use pool::Pool;
+pub use render::MAX_CHARACTERS;

@@ -1,0 +1,89 @@
+//! The nodes of an expression.
+//!
+//! In: nothing. Out: [`Expr`], the handle of a shared expression, and [`Node`], what stands behind it.
+//! Nodes name their children by handle, and a child is always older than its parent: ascending handles are a topological order.
+
+use num_rational::BigRational;
+
+use crate::Function;
+
+/// Exact number of any size, always in lowest terms.
+pub type Rational = BigRational;
+
+/// Handle of an expression in its [`Pool`](crate::Pool). Two expressions of one pool are the same canonical form exactly if
+/// their handles are equal. A handle means nothing in another pool.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Expr(pub(crate) usize);
+
+impl Expr {
+    /// The number 0, first in every pool.
+    pub(crate) const ZERO: Self = Self(0);
+    /// The number 1, second in every pool.
+    pub(crate) const ONE: Self = Self(1);
+    /// `0^-1`, third in every pool: the value of every operation that has none.
+    pub(crate) const UNDEFINED: Self = Self(2);
+}
+
+/// One operation on older expressions.
+#[derive(Clone, Debug)]
+pub enum Node<S> {
+    /// Exact number.
+    Number(Rational),
+    /// The circle constant.
+    Pi,
+    /// Symbol of the user of the algebra: a variable or an opaque field.
+    Symbol(S),
+    /// Linear combination.
+    Sum(Sum),
+    /// Product of powers.
+    Product(Product),
+    /// Function of its arguments, as many as [`Function::arity`] says.
+    Call(Function, Vec<Expr>),
+}
+
+/// `constant + Σ coefficient·term`.
+///
+/// The terms ascend, are neither numbers nor sums, and have coefficients other than 0. A sum has two parts or more, or is one
+/// term with a coefficient other than 1.
+#[derive(Clone, Debug)]
+pub struct Sum {
+    /// The part without a term, often 0.
+    pub constant: Rational,
+    /// Terms with their coefficients.
+    pub terms: Vec<(Expr, Rational)>,
+}
+
+impl Sum {
+    /// Coefficient and term, if this sum is nothing but one multiple.
+    #[must_use]
+    pub fn as_multiple(&self) -> Option<(&Rational, Expr)> {
+        match self.terms.as_slice() {
+            [(term, coefficient)] if num_traits::Zero::is_zero(&self.constant) => Some((coefficient, *term)),
+            _ => None,
+        }
+    }
+}
+
+/// `Π base^exponent`.
+///
+/// The bases ascend and the exponents are not 0. There is no numeric coefficient: `c·product` is a [`Sum`] of one term.
+/// A number is a base only with an exponent between 0 and 1 (`2^(1/2)`), if the power is too large to be folded, or in `0^-1`.
+/// A product or a multiple is a base only with a fractional exponent, since `(x^2)^(1/2)` is not `x`.
+#[derive(Clone, Debug)]
+pub struct Product {
+    /// Bases with their exponents.
+    pub factors: Vec<(Expr, Rational)>,
+}
+
+impl<S> Node<S> {
+    /// The operands, in the order of the node.
+    #[must_use]
+    pub fn children(&self) -> Vec<Expr> {
+        match self {
+            Self::Number(_) | Self::Pi | Self::Symbol(_) => Vec::new(),
+            Self::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
+            Self::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
+            Self::Call(_, arguments) => arguments.clone(),
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The pool: every expression once.
+//!
+//! In: canonical nodes from the constructors of this crate. Out: handles; equal nodes have equal handles.
+//! AFTER THIS a node never changes, and its children have smaller handles than itself, so that every pass is a loop over
+//! [`Pool::reachable`] in ascending order and no depth of nesting exhausts the stack.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use num_bigint::BigInt;
+use num_traits::{One, Zero};
+
+use crate::{Expr, Node, Product, Rational};
+
+/// Owner of expressions over symbols of type `S`.
+#[derive(Clone, Debug)]
+pub struct Pool<S> {
+    nodes: Vec<Arc<Node<S>>>,
+    index: BTreeMap<Arc<Node<S>>, Expr>,
+}
+
+impl<S: Clone + Ord> Default for Pool<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<S: Clone + Ord> Pool<S> {
+    /// Pool with the three expressions that every pool has: 0, 1 and the undefined one.
+    #[must_use]
+    pub fn new() -> Self {
+        let mut pool = Self { nodes: Vec::new(), index: BTreeMap::new() };
+        pool.intern(Node::Number(Rational::zero()));
+        pool.intern(Node::Number(Rational::one()));
+        pool.intern(Node::Product(Product { factors: vec![(Expr::ZERO, -Rational::one())] }));
+        pool
+    }
+
+    /// The number 0.
+    #[must_use]
+    pub fn zero(&self) -> Expr {
+        Expr::ZERO
+    }
+
+    /// The number 1.
+    #[must_use]
+    pub fn one(&self) -> Expr {
+        Expr::ONE
+    }
+
+    /// The expression without a value, written `1/0`: what division by the exact number 0, `ln(0)`, the square root of a
+    /// negative number and the like give. It absorbs: every sum, product (with 0 too), power, function and derivative of it
+    /// is this expression again, so that a mistake cannot vanish. It evaluates to NaN.
+    #[must_use]
+    pub fn undefined(&self) -> Expr {
+        Expr::UNDEFINED
+    }
+
+    /// Exact number.
+    pub fn number(&mut self, value: Rational) -> Expr {
+        self.intern(Node::Number(value))
+    }
+
+    /// Exact integer.
+    pub fn integer(&mut self, value: i64) -> Expr {
+        self.number(Rational::from_integer(BigInt::from(value)))
+    }
+
+    /// The circle constant, exact until it is evaluated.
+    pub fn pi(&mut self) -> Expr {
+        self.intern(Node::Pi)
+    }
+
+    /// Symbol.
+    pub fn symbol(&mut self, symbol: S) -> Expr {
+        self.intern(Node::Symbol(symbol))
+    }
+
+    /// What stands behind a handle.
+    ///
+    /// # Panics
+    /// If the handle is of another, larger pool.
+    #[must_use]
+    pub fn node(&self, expr: Expr) -> &Node<S> {
+        &self.nodes[expr.0]
+    }
+
+    /// The value of an exact number.
+    #[must_use]
+    pub fn as_number(&self, expr: Expr) -> Option<&Rational> {
+        match self.node(expr) {
+            Node::Number(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Whether the expression is the number 0.
+    #[must_use]
+    pub fn is_zero(&self, expr: Expr) -> bool {
+        expr == Expr::ZERO
+    }
+
+    /// Whether the expression is [`Pool::undefined`].
+    #[must_use]
+    pub fn is_undefined(&self, expr: Expr) -> bool {
+        expr == Expr::UNDEFINED
+    }
+
+    /// Number of nodes in the pool.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "no pool is empty")]
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// All nodes at and below the given expressions, each once, children before parents.
+    #[must_use]
+    pub fn reachable(&self, exprs: &[Expr]) -> Vec<Expr> {
+        let size = exprs.iter().max().map_or(0, |largest| largest.0 + 1);
+        let mut seen = vec![false; size];
+        let mut open = exprs.to_vec();
+        let mut found = Vec::new();
+        while let Some(expr) = open.pop() {
+            if !seen[expr.0] {
+                seen[expr.0] = true;
+                found.push(expr);
+                open.extend(self.node(expr).children());
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// The symbols in an expression.
+    #[must_use]
+    pub fn symbols(&self, expr: Expr) -> BTreeSet<S> {
+        self.reachable(&[expr]).into_iter().filter_map(|expr| self.as_symbol(expr)).cloned().collect()
+    }
+
+    /// Whether a symbol of the kind is in the expression.
+    #[must_use]
+    pub fn depends_on(&self, expr: Expr, kind: &dyn Fn(&S) -> bool) -> bool {
+        self.reachable(&[expr]).into_iter().filter_map(|expr| self.as_symbol(expr)).any(kind)
+    }
+
+    /// The symbol that an expression is.
+    #[must_use]
+    pub fn as_symbol(&self, expr: Expr) -> Option<&S> {
+        match self.node(expr) {
+            Node::Symbol(symbol) => Some(symbol),
+            _ => None,
+        }
+    }
+
+    /// The node itself, to be read while the pool grows.
+    pub(crate) fn shared_node(&self, expr: Expr) -> Arc<Node<S>> {
+        Arc::clone(&self.nodes[expr.0])
+    }
+
+    /// Handle of a node that is already canonical.
+    pub(crate) fn intern(&mut self, node: Node<S>) -> Expr {
+        if let Some(expr) = self.index.get(&node) {
+            return *expr;
+        }
+        let expr = Expr(self.nodes.len());
+        let node = Arc::new(node);
+        self.nodes.push(Arc::clone(&node));
+        self.index.insert(node, expr);
+        expr
+    }
+}

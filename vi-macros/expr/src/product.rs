@@ -1,0 +1,152 @@
+//! Canonical products and powers.
+//!
+//! In: powers of any expressions with exact exponents. Out: `coefficient · Π base^exponent`, products flattened, exponents
+//! of equal bases added, numbers folded into the coefficient:
+//!
+//! - `(b^e)^n = b^(e n)` for integers `n`; `(x^2)^(1/2)` stays, since it is not `x`
+//! - `(b c)^n = b^n c^n` for integers `n`
+//! - `(k b)^e = k^e b^e` for numbers `k` with `e` an integer or `k^e` exact: `(4x)^(1/2) = 2 x^(1/2)`
+//!
+//! Exponents are added without a look at the domain: `x·x^-1 = 1`.
+//! AFTER THIS the coefficient is outside (see [`crate::Sum`]) and the factors obey [`Product`].
+
+use std::collections::BTreeMap;
+
+use num_traits::{One, Zero};
+
+use crate::number::{self, Power};
+use crate::{Expr, Node, Pool, Product, Rational};
+
+/// A product under construction.
+struct Factors {
+    coefficient: Rational,
+    powers: BTreeMap<Expr, Rational>,
+    /// Powers that are not yet in the product.
+    open: Vec<(Expr, Rational)>,
+}
+
+/// What a single power is.
+enum Reduction {
+    /// Canonical as it is.
+    Canonical,
+    /// A number times other powers.
+    Parts(Rational, Vec<(Expr, Rational)>),
+    Undefined,
+}
+
+impl<S: Clone + Ord> Pool<S> {
+    /// `left·right`.
+    pub fn mul(&mut self, left: Expr, right: Expr) -> Expr {
+        self.product(&[left, right])
+    }
+
+    /// `numerator / denominator`; undefined if the denominator is the number 0.
+    pub fn div(&mut self, numerator: Expr, denominator: Expr) -> Expr {
+        self.powers([(numerator, Rational::one()), (denominator, -Rational::one())])
+    }
+
+    /// `Π factors`, 1 if there are none.
+    pub fn product(&mut self, factors: &[Expr]) -> Expr {
+        match factors {
+            [only] => *only,
+            _ => self.powers(factors.iter().map(|factor| (*factor, Rational::one()))),
+        }
+    }
+
+    /// `base^exponent`; `x^0 = 1` for every `x` but the undefined one, and the square root is the power 1/2.
+    /// Undefined are negative powers of the number 0 and fractional powers of negative numbers.
+    pub fn power(&mut self, base: Expr, exponent: &Rational) -> Expr {
+        if exponent.is_one() {
+            return base;
+        }
+        self.powers([(base, exponent.clone())])
+    }
+
+    /// `Π base^exponent`.
+    pub(crate) fn powers(&mut self, factors: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
+        let open: Vec<_> = factors.into_iter().collect();
+        if open.iter().any(|(base, _)| self.is_undefined(*base)) {
+            return Expr::UNDEFINED;
+        }
+        let mut product = Factors { coefficient: Rational::one(), powers: BTreeMap::new(), open };
+        while let Some((base, mut exponent)) = product.open.pop() {
+            if let Some(present) = product.powers.remove(&base) {
+                exponent += present;
+            }
+            if exponent.is_zero() {
+                continue;
+            }
+            match self.reduce(base, &exponent, &product.coefficient) {
+                Reduction::Canonical => {
+                    product.powers.insert(base, exponent);
+                }
+                Reduction::Parts(coefficient, parts) => {
+                    product.coefficient *= coefficient;
+                    product.open.extend(parts);
+                }
+                Reduction::Undefined => return Expr::UNDEFINED,
+            }
+        }
+        if product.coefficient.is_zero() {
+            return Expr::ZERO;
+        }
+        let body = self.intern_product(product.powers.into_iter().collect());
+        self.scale(body, &product.coefficient)
+    }
+
+    /// One power apart, numbers folded as long as they fit beside `coefficient`.
+    fn reduce(&mut self, base: Expr, exponent: &Rational, coefficient: &Rational) -> Reduction {
+        match &*self.shared_node(base) {
+            Node::Number(value) => self.reduce_number(value, exponent, coefficient),
+            Node::Product(product) if exponent.is_integer() => {
+                let parts = product.factors.iter().map(|(base, inner)| (*base, inner * exponent)).collect();
+                Reduction::Parts(Rational::one(), parts)
+            }
+            Node::Sum(sum) => match sum.as_multiple() {
+                Some((factor, term)) => self.reduce_multiple(factor, term, exponent, coefficient),
+                None => Reduction::Canonical,
+            },
+            _ => Reduction::Canonical,
+        }
+    }
+
+    fn reduce_number(&mut self, value: &Rational, exponent: &Rational, coefficient: &Rational) -> Reduction {
+        match number::power(value, exponent) {
+            Power::Undefined => Reduction::Undefined,
+            Power::TooLarge => Reduction::Canonical,
+            Power::Folded { coefficient: exact, roots } => match roots.as_slice() {
+                [(root, fraction)] if root == value && fraction == exponent => Reduction::Canonical,
+                _ if !fits(coefficient, &exact) => Reduction::Canonical,
+                _ => Reduction::Parts(exact, roots.into_iter().map(|(root, e)| (self.number(root), e)).collect()),
+            },
+        }
+    }
+
+    /// `(factor·term)^exponent`.
+    fn reduce_multiple(&mut self, factor: &Rational, term: Expr, e: &Rational, coefficient: &Rational) -> Reduction {
+        match number::exact_power(factor, e) {
+            Some(exact) if fits(coefficient, &exact) => Reduction::Parts(exact, vec![(term, e.clone())]),
+            _ if e.is_integer() => {
+                let factor = self.number(factor.clone());
+                Reduction::Parts(Rational::one(), vec![(factor, e.clone()), (term, e.clone())])
+            }
+            _ => Reduction::Canonical,
+        }
+    }
+
+    fn intern_product(&mut self, factors: Vec<(Expr, Rational)>) -> Expr {
+        match factors.as_slice() {
+            [] => Expr::ONE,
+            [(base, exponent)] if exponent.is_one() => *base,
+            _ => self.intern(Node::Product(Product { factors })),
+        }
+    }
+}
+
+/// Whether two numbers may be multiplied; a zero or a one always may.
+fn fits(left: &Rational, right: &Rational) -> bool {
+    left.is_one() && number::bits(right) <= number::MAX_BITS
+        || right.is_one()
+        || right.is_zero()
+        || number::bits(left) + number::bits(right) <= number::MAX_BITS
+}

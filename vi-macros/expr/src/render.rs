@@ -1,0 +1,194 @@
+//! Plain text.
+//!
+//! In: an expression and a name for each symbol. Out: text as a person writes it, `m*v^2/2 - k*x^2/2`, with no parentheses
+//! that are not needed, subtraction and division as such, and `sqrt`. At most [`MAX_CHARACTERS`], then `…`: the text of a
+//! shared expression can be exponentially longer than the expression.
+
+use num_bigint::BigInt;
+use num_traits::{One, Signed, Zero};
+
+use crate::{Expr, Node, Pool, Rational};
+
+/// Longest text, in characters.
+pub const MAX_CHARACTERS: usize = 100_000;
+
+/// How strongly an expression holds together.
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Power,
+    Atom,
+}
+
+/// What is still to be written.
+enum Piece {
+    Text(&'static str),
+    Owned(String),
+    /// An expression, in parentheses if it binds less strongly.
+    Inside(Expr, Binding),
+}
+
+impl<S: Clone + Ord> Pool<S> {
+    /// The expression as text.
+    #[must_use]
+    pub fn render(&self, expr: Expr, name: &dyn Fn(&S) -> String) -> String {
+        let mut text = String::new();
+        let mut characters = 0;
+        let mut open = vec![Piece::Inside(expr, Binding::Sum)];
+        while let Some(piece) = open.pop() {
+            let written = match piece {
+                Piece::Text(part) => part.to_owned(),
+                Piece::Owned(part) => part,
+                Piece::Inside(expr, least) => {
+                    let (binding, mut pieces) = self.pieces(expr, name);
+                    if binding < least {
+                        pieces.insert(0, Piece::Text("("));
+                        pieces.push(Piece::Text(")"));
+                    }
+                    open.extend(pieces.into_iter().rev());
+                    continue;
+                }
+            };
+            for character in written.chars() {
+                if characters == MAX_CHARACTERS {
+                    text.push('…');
+                    return text;
+                }
+                text.push(character);
+                characters += 1;
+            }
+        }
+        text
+    }
+
+    fn pieces(&self, expr: Expr, name: &dyn Fn(&S) -> String) -> (Binding, Vec<Piece>) {
+        match self.node(expr) {
+            Node::Number(value) => {
+                let mut pieces = Vec::new();
+                if value.is_negative() {
+                    pieces.push(Piece::Text("-"));
+                }
+                let binding = write_multiple(&value.abs(), &[], &mut pieces);
+                (if value.is_negative() { Binding::Sum } else { binding }, pieces)
+            }
+            Node::Pi => (Binding::Atom, vec![Piece::Text("pi")]),
+            Node::Symbol(symbol) => (Binding::Atom, vec![Piece::Owned(name(symbol))]),
+            Node::Sum(sum) => self.sum_pieces(sum),
+            Node::Product(product) => {
+                let mut pieces = Vec::new();
+                let binding = write_multiple(&Rational::one(), &product.factors, &mut pieces);
+                (binding, pieces)
+            }
+            Node::Call(function, arguments) => {
+                let mut pieces = vec![Piece::Text(function.name()), Piece::Text("(")];
+                for (slot, argument) in arguments.iter().enumerate() {
+                    if slot > 0 {
+                        pieces.push(Piece::Text(", "));
+                    }
+                    pieces.push(Piece::Inside(*argument, Binding::Sum));
+                }
+                pieces.push(Piece::Text(")"));
+                (Binding::Atom, pieces)
+            }
+        }
+    }
+
+    /// The terms in their order, save that the first positive one leads: `q1 - q0`.
+    fn sum_pieces(&self, sum: &crate::Sum) -> (Binding, Vec<Piece>) {
+        let mut terms: Vec<(Rational, Vec<(Expr, Rational)>)> =
+            sum.terms.iter().map(|(term, coefficient)| (coefficient.clone(), self.factors(*term))).collect();
+        if !sum.constant.is_zero() {
+            terms.push((sum.constant.clone(), Vec::new()));
+        }
+        if let Some(place) = terms.iter().position(|(coefficient, _)| coefficient.is_positive())
+            && let Some(leading) = terms.get_mut(..=place)
+        {
+            leading.rotate_right(1);
+        }
+        let mut pieces = Vec::new();
+        let mut binding = Binding::Sum;
+        for (place, (coefficient, factors)) in terms.iter().enumerate() {
+            match (place, coefficient.is_negative()) {
+                (0, false) => {}
+                (0, true) => pieces.push(Piece::Text("-")),
+                (_, false) => pieces.push(Piece::Text(" + ")),
+                (_, true) => pieces.push(Piece::Text(" - ")),
+            }
+            let term = write_multiple(&coefficient.abs(), factors, &mut pieces);
+            if terms.len() == 1 && coefficient.is_positive() {
+                binding = term;
+            }
+        }
+        (binding, pieces)
+    }
+
+    fn factors(&self, term: Expr) -> Vec<(Expr, Rational)> {
+        match self.node(term) {
+            Node::Product(product) => product.factors.clone(),
+            _ => vec![(term, Rational::one())],
+        }
+    }
+}
+
+/// `coefficient·Π base^exponent` as one fraction; the coefficient is not negative.
+fn write_multiple(coefficient: &Rational, factors: &[(Expr, Rational)], pieces: &mut Vec<Piece>) -> Binding {
+    let above = factors.iter().filter(|(_, exponent)| exponent.is_positive());
+    let below = factors.iter().filter(|(_, exponent)| exponent.is_negative());
+    let below: Vec<_> = below.map(|(base, exponent)| (*base, -exponent)).collect();
+    let numerator = write_factors(coefficient.numer(), above.map(|(base, e)| (*base, e.clone())), pieces);
+    if below.is_empty() && coefficient.denom().is_one() {
+        return numerator;
+    }
+    let mut denominator = Vec::new();
+    if write_factors(coefficient.denom(), below, &mut denominator) > Binding::Product {
+        pieces.push(Piece::Text("/"));
+        pieces.extend(denominator);
+    } else {
+        pieces.push(Piece::Text("/("));
+        pieces.extend(denominator);
+        pieces.push(Piece::Text(")"));
+    }
+    Binding::Product
+}
+
+/// Number and powers with positive exponents, joined by `*`; the number 1 only if it is alone.
+fn write_factors(
+    number: &BigInt,
+    factors: impl IntoIterator<Item = (Expr, Rational)>,
+    pieces: &mut Vec<Piece>,
+) -> Binding {
+    let start = pieces.len();
+    let mut binding = Binding::Atom;
+    let mut count = 0;
+    if !number.is_one() {
+        pieces.push(Piece::Owned(number.to_string()));
+        count += 1;
+    }
+    for (base, exponent) in factors {
+        if count > 0 {
+            pieces.push(Piece::Text("*"));
+        }
+        binding = write_power(base, &exponent, pieces);
+        count += 1;
+    }
+    if pieces.len() == start {
+        pieces.push(Piece::Text("1"));
+    }
+    if count > 1 { Binding::Product } else { binding }
+}
+
+fn write_power(base: Expr, exponent: &Rational, pieces: &mut Vec<Piece>) -> Binding {
+    if exponent.is_one() {
+        pieces.push(Piece::Inside(base, Binding::Power));
+        return Binding::Power;
+    }
+    if *exponent == Rational::new(BigInt::one(), BigInt::from(2)) {
+        pieces.extend([Piece::Text("sqrt("), Piece::Inside(base, Binding::Sum), Piece::Text(")")]);
+        return Binding::Atom;
+    }
+    pieces.push(Piece::Inside(base, Binding::Atom));
+    let exponent = if exponent.is_integer() { format!("^{exponent}") } else { format!("^({exponent})") };
+    pieces.push(Piece::Owned(exponent));
+    Binding::Power
+}

@@ -1,0 +1,52 @@
+//! Substitution of symbols.
+//!
+//! In: an expression and a replacement for some symbols. Out: the expression with all of them replaced at once, in canonical
+//! form again, so that `(q1 - q0)/h` with `q1 = q0 + h*v` is `v`.
+
+use std::collections::BTreeMap;
+
+use crate::{Expr, Node, Pool};
+
+impl<S: Clone + Ord> Pool<S> {
+    /// `expr` with each symbol replaced by what the closure gives (asked once per symbol); nothing keeps the symbol.
+    /// Replacements are not substituted into again.
+    pub fn substitute(&mut self, expr: Expr, map: &mut dyn FnMut(&mut Self, &S) -> Option<Expr>) -> Expr {
+        // Only nodes that change.
+        let mut changed: BTreeMap<Expr, Expr> = BTreeMap::new();
+        for node in self.reachable(&[expr]) {
+            let shared = self.shared_node(node);
+            let new = if let Node::Symbol(symbol) = &*shared {
+                map(self, symbol).unwrap_or(node)
+            } else if shared.children().iter().any(|child| changed.contains_key(child)) {
+                self.rebuild(&shared, &|child| changed.get(&child).copied().unwrap_or(child))
+            } else {
+                node
+            };
+            if new != node {
+                changed.insert(node, new);
+            }
+        }
+        changed.get(&expr).copied().unwrap_or(expr)
+    }
+
+    /// The same operation on other operands.
+    fn rebuild(&mut self, node: &Node<S>, new: &dyn Fn(Expr) -> Expr) -> Expr {
+        match node {
+            Node::Number(value) => self.number(value.clone()),
+            Node::Pi => self.pi(),
+            Node::Symbol(symbol) => self.symbol(symbol.clone()),
+            Node::Sum(sum) => {
+                let constant = self.number(sum.constant.clone());
+                let terms = sum.terms.iter().map(|(term, coefficient)| (new(*term), coefficient.clone()));
+                self.combination(terms.chain([(constant, num_traits::One::one())]))
+            }
+            Node::Product(product) => {
+                self.powers(product.factors.iter().map(|(base, exponent)| (new(*base), exponent.clone())))
+            }
+            Node::Call(function, arguments) => {
+                let arguments: Vec<Expr> = arguments.iter().map(|argument| new(*argument)).collect();
+                self.call(*function, &arguments)
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Canonical sums.
+//!
+//! In: a linear combination of any expressions. Out: the expression `constant + Σ coefficient·term` with nested sums
+//! flattened, equal terms collected and numbers folded.
+//! AFTER THIS no term is a number or a sum, and a numeric coefficient stands nowhere but in a [`Sum`].
+
+use std::collections::BTreeMap;
+
+use num_traits::{One, Zero};
+
+use crate::{Expr, Node, Pool, Rational, Sum};
+
+impl<S: Clone + Ord> Pool<S> {
+    /// `left + right`. A sum of many terms is built by [`Pool::sum`]: one by one, each addition copies what is there.
+    pub fn add(&mut self, left: Expr, right: Expr) -> Expr {
+        self.sum(&[left, right])
+    }
+
+    /// `left - right`.
+    pub fn sub(&mut self, left: Expr, right: Expr) -> Expr {
+        self.combination([(left, Rational::one()), (right, -Rational::one())])
+    }
+
+    /// `-expr`.
+    pub fn neg(&mut self, expr: Expr) -> Expr {
+        self.scale(expr, &-Rational::one())
+    }
+
+    /// `Σ terms`, 0 if there are none.
+    pub fn sum(&mut self, terms: &[Expr]) -> Expr {
+        match terms {
+            [only] => *only,
+            _ => self.combination(terms.iter().map(|term| (*term, Rational::one()))),
+        }
+    }
+
+    /// `factor·expr`, distributed over a sum.
+    pub fn scale(&mut self, expr: Expr, factor: &Rational) -> Expr {
+        if factor.is_one() {
+            return expr;
+        }
+        self.combination([(expr, factor.clone())])
+    }
+
+    /// `Σ coefficient·term`, undefined if a term is, whatever its coefficient.
+    pub(crate) fn combination(&mut self, parts: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
+        let mut constant = Rational::zero();
+        let mut terms = BTreeMap::new();
+        for (expr, coefficient) in parts {
+            if self.is_undefined(expr) {
+                return Expr::UNDEFINED;
+            }
+            if coefficient.is_zero() {
+                continue;
+            }
+            match self.node(expr) {
+                Node::Number(value) => constant += coefficient * value,
+                Node::Sum(sum) => {
+                    if !sum.constant.is_zero() {
+                        constant += &coefficient * &sum.constant;
+                    }
+                    for (term, inner) in &sum.terms {
+                        collect(&mut terms, *term, product_of(&coefficient, inner));
+                    }
+                }
+                _ => collect(&mut terms, expr, coefficient),
+            }
+        }
+        self.intern_sum(constant, terms.into_iter().filter(|(_, coefficient)| !coefficient.is_zero()).collect())
+    }
+
+    fn intern_sum(&mut self, constant: Rational, terms: Vec<(Expr, Rational)>) -> Expr {
+        match terms.as_slice() {
+            [] => self.number(constant),
+            [(term, coefficient)] if constant.is_zero() && coefficient.is_one() => *term,
+            _ => self.intern(Node::Sum(Sum { constant, terms })),
+        }
+    }
+}
+
+/// The product without the cost of a reduction to lowest terms where one factor is 1.
+fn product_of(outer: &Rational, inner: &Rational) -> Rational {
+    if outer.is_one() {
+        inner.clone()
+    } else if inner.is_one() {
+        outer.clone()
+    } else {
+        outer * inner
+    }
+}
+
+fn collect(terms: &mut BTreeMap<Expr, Rational>, term: Expr, coefficient: Rational) {
+    use std::collections::btree_map::Entry;
+    match terms.entry(term) {
+        Entry::Vacant(entry) => {
+            entry.insert(coefficient);
+        }
+        Entry::Occupied(mut entry) => *entry.get_mut() += coefficient,
+    }
+}

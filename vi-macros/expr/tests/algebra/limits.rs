@@ -1,0 +1,186 @@
+//! Deep, wide and huge expressions end in a bounded time and without recursion.
+
+use vi_expr::{Expr, Function, MAX_CHARACTERS, Node, TooLarge};
+
+use crate::notation::{read, write};
+use crate::{Pool, ratio};
+
+/// Levels of nesting; two nodes each.
+const DEPTH: u32 = 50_000;
+
+fn deep(pool: &mut Pool) -> Expr {
+    let x = pool.symbol("x".to_owned());
+    let mut expr = x;
+    for _ in 0..DEPTH {
+        let sum = pool.add(x, expr);
+        let half = pool.scale(sum, &ratio(1, 2));
+        expr = pool.call(Function::Sin, &[half]);
+    }
+    expr
+}
+
+#[test]
+fn a_hundred_thousand_nodes_deep() {
+    let mut pool = Pool::new();
+    let expr = deep(&mut pool);
+    assert!(pool.reachable(&[expr]).len() >= 100_000);
+    assert_eq!(pool.symbols(expr).len(), 1);
+    assert!(pool.depends_on(expr, &|symbol| symbol == "x"));
+
+    let derivative = pool.derivative(expr, &mut |pool, _| pool.one());
+    let expansion = pool.expand(expr).map(|expansion| pool.is_zero(expansion));
+    assert_eq!(expansion, Err(TooLarge { limit: 50_000 }), "a sum of two terms at each level");
+    let y = pool.symbol("y".to_owned());
+    let moved = pool.substitute(expr, &mut |_, _| Some(y));
+
+    let (mut value, mut slope) = (0.7, 1.0);
+    for _ in 0..DEPTH {
+        let angle = 0.5_f64 * (0.7 + value);
+        (value, slope) = (angle.sin(), 0.5 * (1.0 + slope) * angle.cos());
+    }
+    let found = pool.evaluate_all(&[expr, derivative, moved], &mut |_| 0.7);
+    assert!(slope > 0.1);
+    for (found, expected) in found.into_iter().zip([value, slope, value]) {
+        // Measured: 2e-16.
+        assert!((found - expected).abs() < 1e-15, "{found} instead of {expected}");
+    }
+    let text = write(&pool, expr);
+    assert_eq!(text.chars().count(), MAX_CHARACTERS + 1);
+    assert!(text.starts_with("sin(x/2 + sin(x/2 + ") && text.ends_with('…'));
+}
+
+/// A shared expression of 3 nodes a level has a text of 2^60 characters.
+#[test]
+fn text_of_a_shared_expression_is_cut() {
+    let mut pool = Pool::new();
+    let mut expr = read(&mut pool, "x");
+    for _ in 0..60 {
+        let sine = pool.call(Function::Sin, &[expr]);
+        let cosine = pool.call(Function::Cos, &[expr]);
+        expr = pool.call(Function::Atan2, &[sine, cosine]);
+    }
+    assert!(pool.len() < 250);
+    assert_eq!(write(&pool, expr).chars().count(), MAX_CHARACTERS + 1);
+}
+
+#[test]
+fn huge_powers_stay_powers() {
+    for text in ["2^1000000000", "2^1000000000000000000000", "(1/3)^1000000000", "7^(1000000001/2)", "(2/3)^-123456789"]
+    {
+        let mut pool = Pool::new();
+        let expr = read(&mut pool, text);
+        assert!(matches!(pool.node(expr), Node::Product(_)), "{text}: {}", write(&pool, expr));
+        let same = write(&pool, expr);
+        assert_eq!(read(&mut pool, &same), expr, "{text}");
+        let inverse = pool.div(expr, expr);
+        assert_eq!(inverse, pool.one(), "{text}");
+        let with_symbol = read(&mut pool, &format!("({text})*x/({text})"));
+        assert_eq!(with_symbol, read(&mut pool, "x"), "{text}");
+    }
+    let mut pool = Pool::new();
+    let expr = read(&mut pool, "(2*x)^1000000000");
+    assert_eq!(write(&pool, expr), "x^1000000000*2^1000000000");
+    let expr = read(&mut pool, "(2*x)^1000000000/(2*x)^999999998");
+    assert_eq!(write(&pool, expr), "4*x^2");
+    let expr = read(&mut pool, "1^1000000000000*x");
+    assert_eq!(write(&pool, expr), "x");
+}
+
+/// Each square doubles the bits: without a bound, 2^(2^60) of them.
+#[test]
+fn repeated_squares_are_bounded() {
+    let mut pool = Pool::new();
+    for start in ["3/2", "3*x/2"] {
+        let mut expr = read(&mut pool, start);
+        for _ in 0..60 {
+            expr = pool.mul(expr, expr);
+        }
+        assert!(write(&pool, expr).len() < 10_000, "{}", write(&pool, expr).len());
+        let back = pool.power(expr, &ratio(0, 1));
+        assert_eq!(back, pool.one());
+    }
+}
+
+/// Numbers beyond the bound still meet: nothing is lost but the folding.
+#[test]
+fn large_numbers_cancel() {
+    let mut pool = Pool::new();
+    let large = read(&mut pool, "3^2000");
+    assert!(pool.as_number(large).is_some(), "3170 bits are within the bound");
+    let x = read(&mut pool, "x");
+    let multiple = pool.mul(large, x);
+    let square = pool.mul(multiple, multiple);
+    let result = pool.div(square, multiple);
+    assert_eq!(result, multiple);
+}
+
+#[test]
+fn expansion_is_bounded() {
+    let mut texts =
+        ["(x + y)^1000000000", "(x + y)^99999999999999999999", "(x + y + z + w)^60", "(1 + sqrt(2))^1000000000"]
+            .map(str::to_owned)
+            .to_vec();
+    texts.push((0..40).map(|power| format!("(x^{power} + y)")).collect::<Vec<_>>().join("*"));
+    for text in texts {
+        let mut pool = Pool::new();
+        let expr = read(&mut pool, &text);
+        assert_eq!(pool.expand(expr), Err(TooLarge { limit: 50_000 }), "{text}");
+    }
+    let message = "multiplying the expression out takes more than 50000 terms";
+    assert_eq!(TooLarge { limit: 50_000 }.to_string(), message);
+}
+
+#[test]
+fn wide_sums_and_products() {
+    let mut pool = Pool::new();
+    let symbols: Vec<Expr> = (0..20_000).map(|place| pool.symbol(format!("q{place}"))).collect();
+    let squares: Vec<Expr> = symbols.iter().map(|symbol| pool.mul(*symbol, *symbol)).collect();
+    let sum = pool.sum(&squares);
+    let derivative = pool.derivative(sum, &mut |pool, symbol| if symbol == "q7" { pool.one() } else { pool.zero() });
+    assert_eq!(write(&pool, derivative), "2*q7");
+    let product = pool.product(&symbols);
+    let derivative =
+        pool.derivative(product, &mut |pool, symbol| if symbol == "q7" { pool.one() } else { pool.zero() });
+    let back = pool.mul(derivative, symbols[7]);
+    assert_eq!(back, product);
+}
+
+#[test]
+fn what_has_no_value_is_not_a_number() {
+    let mut pool = Pool::new();
+    let undefined = pool.undefined();
+    assert!(pool.is_undefined(undefined) && !pool.is_zero(undefined) && pool.as_number(undefined).is_none());
+    assert!(pool.evaluate(undefined, &mut |_: &String| 0.0).is_nan());
+    let [zero, one] = [pool.zero(), pool.one()];
+    assert_eq!(pool.scale(undefined, &ratio(0, 1)), undefined);
+    assert_eq!(pool.product(&[zero, undefined]), undefined);
+    assert_eq!(pool.sum(&[one, undefined]), undefined);
+    assert_eq!(pool.div(one, undefined), undefined);
+    assert_eq!(pool.expand(undefined), Ok(undefined));
+    assert_eq!(pool.derivative(undefined, &mut |pool, _| pool.zero()), undefined);
+    // A symbol that becomes 0 later is found then.
+    let x = pool.symbol("x".to_owned());
+    let inverse = pool.div(one, x);
+    assert!(pool.evaluate(inverse, &mut |_| 0.0).is_infinite());
+    assert_eq!(pool.substitute(inverse, &mut |_, _| Some(zero)), undefined);
+}
+
+/// Numbers become floating point rounded once, whatever the size of numerator and denominator.
+#[test]
+fn exact_numbers_round_correctly() {
+    let table: [(&str, f64); 7] = [
+        ("1/3", 1.0 / 3.0),
+        ("1/10", 0.1),
+        ("123456789012345678901234567890/7", 1.763_668_414_462_081_1e28),
+        ("(10/3)^400", f64::INFINITY),
+        ("10^300", 1e300),
+        ("10^-310", 1e-310),
+        ("10^-400", 0.0),
+    ];
+    for (text, expected) in table {
+        let mut pool = Pool::new();
+        let expr = read(&mut pool, text);
+        let found = pool.evaluate(expr, &mut |_| f64::NAN);
+        assert_eq!(found.to_bits(), expected.to_bits(), "{text}: {found:e} instead of {expected:e}");
+    }
+}

@@ -1,0 +1,25 @@
+//! Tests of the symbolic algebra, by kind:
+//!
+//! - `rules`: a table `input => output` of the canonical forms, and what the text of an expression looks like;
+//! - `derivatives`: every function against central differences;
+//! - `random`: random expressions against exact and floating-point dual numbers that know nothing of canonical forms;
+//! - `limits`: deep, wide and huge expressions, and what has no value;
+//! - `passes`: substitution, expansion and the queries.
+//!
+//! `notation` reads the text that the tables are written in; `tree` makes the random expressions.
+
+mod derivatives;
+mod limits;
+mod notation;
+mod passes;
+mod random;
+mod rules;
+mod tree;
+
+/// Pool with symbols that are text.
+type Pool = vi_expr::Pool<String>;
+
+/// Fraction.
+fn ratio(numerator: i64, denominator: i64) -> vi_expr::Rational {
+    vi_expr::Rational::new(numerator.into(), denominator.into())
+}

@@ -1,0 +1,13 @@
+//! The macro `lagrangian!`: a mechanical system becomes its variational integrators at build time.
+
+use proc_macro::TokenStream;
+
+/// Turns a mechanical system into its variational integrators.
+///
+/// In: a struct with the clauses `const`, `param`, `coord`, `let`, `L`, `force` and `discretize`.
+/// Out: the struct with its parameters, and its implementations of `vi_core`'s traits.
+/// Every mistake is a compile error at the token that is wrong.
+#[proc_macro]
+pub fn lagrangian(input: TokenStream) -> TokenStream {
+    vi_codegen::expand(input.into()).into()
+}

@@ -1,0 +1,185 @@
+//! The systems that the command knows by name, each with a place to start from.
+//!
+//! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
+
+use super::failure::Failure;
+use super::simulation::{self, Plan, Simulation};
+use super::table::Table;
+use vi_core::{Parameters, StepError, Stepping};
+use vi_systems as systems;
+
+/// A system with its parameters, its number of degrees of freedom erased.
+pub(crate) trait System {
+    /// Name of the type.
+    fn name(&self) -> &'static str;
+    /// Names of the coordinates.
+    fn coordinates(&self) -> Vec<&'static str>;
+    /// Names and values of the parameters.
+    fn parameters(&self) -> Vec<(&'static str, f64)>;
+    /// Sets a parameter; false where there is none of this name.
+    fn set(&mut self, name: &str, value: f64) -> bool;
+    /// Starts a run.
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
+}
+
+/// A system in the catalogue.
+pub(crate) struct Entry {
+    /// The system, with the default parameters.
+    pub(crate) system: Box<dyn System>,
+    /// What it is.
+    pub(crate) about: &'static str,
+    /// Default initial coordinates.
+    pub(crate) q: Vec<f64>,
+    /// Default initial velocities.
+    pub(crate) v: Vec<f64>,
+    /// Default step.
+    pub(crate) h: f64,
+}
+
+/// A system of a known type.
+struct Registered<S, const N: usize>(S);
+
+impl<S, const N: usize> System for Registered<S, N>
+where
+    S: Stepping<N> + Parameters + Clone + 'static,
+{
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn coordinates(&self) -> Vec<&'static str> {
+        S::COORDINATES.to_vec()
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        let mut system = self.0.clone();
+        S::PARAMETERS.iter().filter_map(|name| Some((*name, *system.parameter_mut(name)?))).collect()
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> bool {
+        self.0.parameter_mut(name).map(|parameter| *parameter = value).is_some()
+    }
+
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
+        simulation::begin(self.0.clone(), plan)
+    }
+}
+
+fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
+where
+    S: Stepping<N> + Parameters + Default + Clone + 'static,
+{
+    Entry { system: Box::new(Registered::<S, N>(S::default())), about, q: q.to_vec(), v: v.to_vec(), h }
+}
+
+/// All systems, in the order in which they are listed.
+pub(crate) fn entries() -> Vec<Entry> {
+    vec![
+        entry::<systems::DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], [0.0], 0.01),
+        entry::<systems::DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], [0.0], 0.01),
+    ]
+}
+
+/// The entry of this name.
+pub(crate) fn find(name: &str) -> Result<Entry, Failure> {
+    let wanted = plain(name);
+    let mut entries = entries();
+    if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
+        return Ok(entries.swap_remove(index));
+    }
+    let near = entries
+        .iter()
+        .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|(one, _), (other, _)| one.total_cmp(other));
+    let hint = match near {
+        Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
+        None => "`vi-lab list` names them all".to_owned(),
+    };
+    Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
+}
+
+/// The catalogue as a table.
+pub(crate) fn table() -> Table {
+    let mut table = Table::new("systems", ["system", "what it is", "parameters", "q", "v", "h"]);
+    for Entry { system, about, q, v, h } in entries() {
+        let parameters: Vec<String> =
+            system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let coordinates = system.coordinates();
+        let start: Vec<String> = coordinates.iter().zip(&q).map(|(name, value)| format!("{name} = {value}")).collect();
+        let velocities: Vec<String> = v.iter().map(f64::to_string).collect();
+        table.row([
+            kebab(system.name()),
+            about.to_owned(),
+            parameters.join(", "),
+            start.join(", "),
+            velocities.join(", "),
+            h.to_string(),
+        ]);
+    }
+    table
+}
+
+/// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.
+pub(crate) fn kebab(name: &str) -> String {
+    let mut kebab = String::new();
+    for (index, letter) in name.chars().enumerate() {
+        if letter.is_uppercase() && index > 0 {
+            kebab.push('-');
+        }
+        kebab.extend(letter.to_lowercase());
+    }
+    kebab
+}
+
+/// A name without case, hyphens and underscores.
+fn plain(name: &str) -> String {
+    name.chars().filter(|letter| !matches!(letter, '-' | '_' | ' ')).flat_map(char::to_lowercase).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_in_any_spelling() {
+        for name in ["double-well", "DoubleWell", "double_well", "DOUBLEWELL"] {
+            assert!(find(name).is_ok_and(|entry| entry.system.name() == "DoubleWell"), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_near_name_is_offered() {
+        let message = |name: &str| find(name).err().map(|failure| failure.to_string());
+        assert_eq!(message("double-wel").as_deref(), Some("there is no system `double-wel`; did you mean `double-well`?"));
+        assert_eq!(message("xyz").as_deref(), Some("there is no system `xyz`; `vi-lab list` names them all"));
+    }
+
+    #[test]
+    fn every_entry_starts_and_keeps_its_parameters() {
+        for mut entry in entries() {
+            let (size, name) = (entry.system.coordinates().len(), entry.system.name());
+            assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
+            for method in [simulation::Method::Fixed, simulation::Method::Energy] {
+                let plan = Plan {
+                    method,
+                    start: simulation::Start::Midpoint,
+                    h: entry.h,
+                    t: 0.0,
+                    q: entry.q.clone(),
+                    v: entry.v.clone(),
+                };
+                let mut run = entry.system.begin(&plan).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let first = run.row().t;
+                for _ in 0..10 {
+                    run.advance().unwrap_or_else(|error| panic!("{name}, {method:?}: {error}"));
+                }
+                assert!(run.row().t > first, "{name}");
+            }
+            for (parameter, value) in entry.system.parameters() {
+                assert!(entry.system.set(parameter, value + 1.0), "{name}: {parameter}");
+            }
+            assert!(!entry.system.set("no such parameter", 1.0));
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Charts: named series in, one SVG figure and one CSV table of the same points out.
+//!
+//! In: a [`Chart`], whose series hold the values as computed, however many. Out: [`Chart::figure`], in which a series
+//! is thinned to what its width in pixels can show (see [`thin`]); the CSV lists exactly the points drawn.
+//! A logarithmic axis is drawn as a linear axis of log10 with labels of its own, because the library's logarithmic
+//! axes clamp in silence below 1e-10. Not done here: prose, and where files go.
+
+mod axis;
+mod draw;
+mod palette;
+mod thin;
+
+pub(crate) use axis::{Axis, superscript};
+pub(crate) use palette::Look;
+use thin::Thinning;
+
+/// One figure: axes and what is drawn between them.
+#[derive(Clone, Debug)]
+pub(crate) struct Chart {
+    /// Stem of the file names.
+    pub(crate) name: &'static str,
+    /// Line above the figure.
+    pub(crate) title: String,
+    /// Horizontal axis.
+    pub(crate) x: Axis,
+    /// Vertical axis.
+    pub(crate) y: Axis,
+    /// Whether a unit has the same length on both axes, as in a phase portrait.
+    pub(crate) equal_aspect: bool,
+    /// What is drawn, the first at the back.
+    pub(crate) series: Vec<Series>,
+}
+
+/// One curve or cloud of points.
+#[derive(Clone, Debug)]
+pub(crate) struct Series {
+    /// Entry in the legend; none for curves of the background.
+    pub(crate) label: Option<String>,
+    /// Colour, stroke and marker.
+    pub(crate) look: Look,
+    /// How a long series is thinned.
+    thinning: Thinning,
+    /// The points, in the units of the axes, before any logarithm.
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+/// A figure as files hold it.
+#[derive(Clone, Debug)]
+pub(crate) struct Figure {
+    /// Stem of the file names.
+    pub(crate) name: &'static str,
+    /// The figure.
+    pub(crate) svg: String,
+    /// The points drawn, `series,x,y`, each as computed.
+    pub(crate) csv: String,
+}
+
+impl Series {
+    /// A line through a function of the abscissa: thinned to its envelope.
+    pub(crate) fn line(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
+        Self { label: Some(label.into()), look, thinning: Thinning::Envelope, points }
+    }
+
+    /// Separate points.
+    pub(crate) fn scatter(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
+        Self { label: Some(label.into()), look, thinning: Thinning::Cells, points }
+    }
+
+    /// A curve of the background, without an entry in the legend.
+    pub(crate) fn background(points: Vec<(f64, f64)>) -> Self {
+        Self { label: None, look: Look::BACKGROUND, thinning: Thinning::Curve, points }
+    }
+
+    /// The same series without an entry in the legend.
+    pub(crate) fn unlabelled(self) -> Self {
+        Self { label: None, ..self }
+    }
+}

@@ -1,0 +1,72 @@
+//! Colours of Okabe and Ito, which colour-blind readers tell apart, with a stroke and a marker for each meaning.
+//!
+//! A method keeps its look in every figure. Source: Okabe and Ito, *Color universal design* (2008).
+
+use kuva::prelude::MarkerShape;
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    /// Colour as hexadecimal RGB.
+    pub(crate) colour: &'static str,
+    /// Width of the line in pixels; zero draws none.
+    pub(crate) width: f64,
+    /// Pattern of the line.
+    pub(crate) stroke: Stroke,
+    /// Marker at each point, with its radius in pixels.
+    pub(crate) marker: Option<(MarkerShape, f64)>,
+}
+
+/// Pattern of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stroke {
+    /// Without gaps.
+    Solid,
+    /// Dashes.
+    Dashed,
+    /// Dots.
+    Dotted,
+}
+
+impl Look {
+    /// The energy-preserving integrator.
+    pub(crate) const ENERGY: Self = Self::of("#D55E00", MarkerShape::Circle);
+    /// The fixed-step integrator.
+    pub(crate) const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
+    /// The exact solution, or a law.
+    pub(crate) const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
+    /// What a published number says.
+    pub(crate) const PUBLISHED: Self = Self { colour: "#777777", width: 1.4, stroke: Stroke::Dotted, marker: None };
+    /// Level sets and the like.
+    pub(crate) const BACKGROUND: Self = Self { colour: "#C9CED6", width: 1.0, stroke: Stroke::Solid, marker: None };
+    /// Further series, in this order.
+    pub(crate) const OTHERS: [Self; 4] = [
+        Self::of("#009E73", MarkerShape::Triangle),
+        Self::of("#CC79A7", MarkerShape::Diamond),
+        Self::of("#E69F00", MarkerShape::TriangleDown),
+        Self::of("#56B4E9", MarkerShape::Plus),
+    ];
+
+    const fn of(colour: &'static str, marker: MarkerShape) -> Self {
+        Self { colour, width: 1.8, stroke: Stroke::Solid, marker: Some((marker, 4.0)) }
+    }
+
+    /// The line alone.
+    pub(crate) const fn line(self) -> Self {
+        Self { marker: None, ..self }
+    }
+
+    /// The line alone, dashed.
+    pub(crate) const fn dashed(self) -> Self {
+        Self { marker: None, stroke: Stroke::Dashed, ..self }
+    }
+
+    /// The markers alone, of the given radius.
+    pub(crate) const fn dots(self, radius: f64) -> Self {
+        let marker = match self.marker {
+            Some((shape, _)) => Some((shape, radius)),
+            None => Some((MarkerShape::Circle, radius)),
+        };
+        Self { width: 0.0, marker, ..self }
+    }
+}

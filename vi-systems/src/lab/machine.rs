@@ -1,0 +1,58 @@
+//! What made a file: versions, command line, machine.
+
+use std::env;
+use std::fs;
+use std::time::Instant;
+
+/// Version of the project.
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Version of the compiler.
+const RUSTC: &str = env!("VI_RUSTC");
+
+/// The machine, and when the work began.
+#[derive(Clone, Debug)]
+pub(crate) struct Machine {
+    processor: String,
+    threads: usize,
+    started: Instant,
+}
+
+impl Machine {
+    /// This machine, now.
+    pub(crate) fn here() -> Self {
+        Self {
+            processor: processor().unwrap_or_else(|| "unknown processor".to_owned()),
+            threads: std::thread::available_parallelism().map_or(1, Into::into),
+            started: Instant::now(),
+        }
+    }
+
+    /// One paragraph for a footer.
+    pub(crate) fn describe(&self) -> String {
+        let build = if cfg!(debug_assertions) { "debug" } else { "release" };
+        format!(
+            "Made by vi-lab {VERSION} ({build} build, {RUSTC}) with “{command}” in {seconds:.1} s on {processor}, \
+             {threads} threads, {os} {architecture}. Charts drawn by kuva {kuva}.",
+            command = command_line(),
+            seconds = self.started.elapsed().as_secs_f64(),
+            processor = self.processor,
+            threads = self.threads,
+            os = env::consts::OS,
+            architecture = env::consts::ARCH,
+            kuva = kuva::VERSION,
+        )
+    }
+}
+
+/// The command line, the program by its name alone.
+pub(crate) fn command_line() -> String {
+    let arguments = env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    core::iter::once("vi-lab".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// The processor's name, where the system tells it.
+fn processor() -> Option<String> {
+    let description = fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = description.lines().find(|line| line.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim().to_owned())
+}

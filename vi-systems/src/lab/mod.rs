@@ -1,0 +1,94 @@
+//! The command `vi-lab`: runs, and the paper's study as a page.
+//!
+//! In: the command line. Out: files, text on standard output, and an exit status: 0, 1 where a step or a file failed,
+//! 2 where the input is wrong. Progress and errors go to standard error.
+//!
+//! | module | what it makes |
+//! |---|---|
+//! | [`catalogue`] | the systems by name, each with a place to start from |
+//! | [`simulation`] | one run of any system, as rows |
+//! | [`run`] | `vi-lab run`: rows as CSV or NPY |
+//! | [`paper`] | `vi-lab paper`: figures, tables and the page |
+//! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
+//! | [`progress`], [`machine`], [`failure`] | bars, versions, errors |
+
+mod catalogue;
+mod chart;
+mod failure;
+mod machine;
+mod paper;
+mod progress;
+mod report;
+mod run;
+mod simulation;
+mod start;
+mod table;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Variational integrators at work: simulate a system, or reproduce the paper.
+#[derive(Debug, Parser)]
+#[command(name = "vi-lab", version, max_term_width = 100)]
+struct Command {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Make every figure and table of the paper's numerical study, with this project's numbers beside the paper's
+    Paper {
+        /// Folder for the page, its figures (SVG) and their data (CSV)
+        #[arg(long, value_name = "DIR", default_value = "paper")]
+        out: PathBuf,
+        /// Length of the long runs; with fewer than the paper's million the page says so
+        #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = clap::value_parser!(u32).range(1000..))]
+        steps: u32,
+    },
+    /// Simulate one system, and write its states
+    Run(run::Arguments),
+    /// List the systems, their parameters and where they start
+    List,
+}
+
+/// Runs the command line of this process.
+pub(crate) fn main() -> ExitCode {
+    let outcome = match Command::try_parse() {
+        Ok(Command { action }) => act(action),
+        Err(error) if !error.use_stderr() => {
+            // Help and version were asked for; where nobody reads them, nothing is lost.
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => Err(Failure::usage(&error)),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Err(failure) => {
+            // Standard error may be closed; the exit status says the same.
+            let _ = writeln!(io::stderr(), "error: {failure}");
+            ExitCode::from(failure.exit_status())
+        }
+    }
+}
+
+fn act(action: Action) -> Result<(), Failure> {
+    match action {
+        Action::Paper { out, steps } => {
+            let summary = paper::write(&out, &paper::Study { steps })?;
+            print(&summary)
+        }
+        Action::Run(arguments) => run::run(&arguments),
+        Action::List => print(&catalogue::table().text()),
+    }
+}
+
+/// Writes a text and a line end to standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    writeln!(io::stdout(), "{text}").map_err(|error| Failure::file("standard output", error))
+}

