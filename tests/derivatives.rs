@@ -12,8 +12,8 @@ use vi_systems as systems;
 
 /// Draws for each system.
 const DRAWS: u64 = 20;
-/// Relative to the largest number that meets in a comparison. Measured: 2.7e-14, where 1/h² multiplies rounding.
-const TOLERANCE: f64 = 1e-13;
+/// Relative to the largest number that meets in a comparison. Measured: 1.7e-15.
+const TOLERANCE: f64 = 4e-15;
 
 /// Compares two numbers, relative to a scale, and remembers the largest difference.
 struct Comparison {

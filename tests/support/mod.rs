@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub(crate) mod dual;
+pub(crate) mod reference;
 
 /// The next entry of a fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
 pub(crate) struct Sequence(u64);

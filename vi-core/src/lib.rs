@@ -6,7 +6,7 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`real`] | the numbers that generated code computes with |
-//! | [`lagrangian`] | what a system says of itself, continuous and discrete |
+//! | [`mod@lagrangian`] | what a system says of itself, continuous and discrete |
 //! | [`state`] | states, intervals, steps |
 //! | [`node`] | nodes as the steppers carry them |
 //! | [`linear`] | small dense linear systems |

@@ -131,9 +131,9 @@ mod tests {
 
     #[test]
     fn every_size_solves_two_right_hand_sides() {
-        // Measured: at most 4e-15 (N = 5).
+        // Measured: at most 6.7e-16.
         for defect in [defect::<1>(), defect::<2>(), defect::<3>(), defect::<4>(), defect::<5>(), defect::<8>()] {
-            assert!(defect < 1e-14, "{defect:e}");
+            assert!(defect < 2e-15, "{defect:e}");
         }
     }
 

@@ -57,14 +57,14 @@ fn largest_difference<const N: usize, P: Potential<N, f64>>(
 
 #[test]
 fn hand_written_equations_are_those_of_the_rule() {
-    // Measured: 4e-11, the rounding of central differences.
+    // Measured: at most 9.2e-11, the rounding of central differences.
     for (name, difference) in [
         ("oscillator", largest_difference(&UnitMass(DampedOscillator { k: 4.0, c: 0.3 }), [0.7], [-0.4], [0.3])),
         ("duffing", largest_difference(&UnitMass(ForcedDuffing), [0.7], [-0.4], [0.3])),
         ("pumped pendulum", largest_difference(&UnitMass(PumpedPendulum), [0.7], [-0.4], [0.3])),
         ("kepler", largest_difference(&UnitMass(Kepler { mu: 1.0 }), [0.7, -0.5], [-0.4, 0.9], [0.3, 0.2])),
     ] {
-        assert!(difference < 1e-10, "{name}: {difference:e}");
+        assert!(difference < 2e-10, "{name}: {difference:e}");
     }
 }
 

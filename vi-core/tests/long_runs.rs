@@ -4,7 +4,7 @@ mod systems;
 
 use systems::{DampedOscillator, DoubleWell, Kepler, Potential, UnitMass, point_after};
 use vi_core::condition::Condition;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError};
 
 /// The four cases of the paper: q0, h0.
 const CASES: [(f64, f64); 4] = [(0.74, 0.01), (0.74, 0.1), (0.995, 0.01), (0.995, 0.1)];
@@ -40,10 +40,9 @@ fn run<const N: usize, P: Potential<N, f64>>(mut integrator: EnergyPreserving<Un
 
 #[test]
 fn double_well_keeps_its_energy_for_a_million_steps() {
-    // Measured: energy 1.9e-16, 4.2e-17, 2.2e-16, 1.9e-16; iterations 1.9, 3.0, 2.0, 3.1.
+    // Measured: energy 1.3e-16, 6.9e-17, 2.2e-16, 1.9e-16; iterations 1.91, 2.95, 2.03, 3.14.
     for ((q0, h0), stretch) in CASES.into_iter().zip([1.0657, 1.0655, 4.6260, 4.2895]) {
         let run = run(double_well(q0, h0), 1_000_000);
-        println!("{q0} {h0}: {:.2e} {:.5} {:.3}", run.energy_error, run.stretch, run.iterations);
         assert!(run.energy_error <= 5e-16, "{q0}, {h0}: {:e}", run.energy_error);
         assert!((run.stretch - stretch).abs() < 5.1e-5, "{q0}, {h0}: {}", run.stretch);
         assert!(run.iterations <= 3.5, "{q0}, {h0}: {}", run.iterations);
@@ -55,7 +54,6 @@ fn kepler_keeps_its_energy() {
     let v0 = [0.0, 2.0]; // e = 0.6 from the pericentre: E = −1/2
     let start = EnergyPreserving::from_midpoint(UnitMass(Kepler { mu: 1.0 }), 0.0, [0.4, 0.0], v0, 0.01);
     let run = run(start.unwrap_or_else(|error| panic!("{error}")), 100_000);
-    println!("{:.2e} {:.5} {:.3}", run.energy_error, run.stretch, run.iterations);
     // Measured: 1.6e-15 where v²/2 and 1/r are 2.5, and 2.6 iterations.
     assert!(run.energy_error <= 4e-15, "{:e}", run.energy_error);
     assert!(run.iterations <= 5.0, "{}", run.iterations);
@@ -82,9 +80,9 @@ fn condition_numbers_are_those_of_the_scaling() {
     for (q0, expected) in expected {
         let mut integrator = double_well(q0, 0.01);
         let mut found: [Vec<f64>; 3] = Default::default();
-        // One orbit: the velocity leaves its first sign once and comes back.
-        let (mut signs, mut sign) = (0, integrator.v()[0].signum());
-        while signs < 2 {
+        // One orbit: the velocity turns twice.
+        let (mut turns, mut forward) = (0, integrator.v()[0] > 0.0);
+        while turns < 2 {
             let (node, previous) = (*integrator.node(), integrator.h());
             let step = integrator.step().unwrap_or_else(|error| panic!("{error}"));
             let (_, _, v) = step.midpoint;
@@ -92,14 +90,13 @@ fn condition_numbers_are_those_of_the_scaling() {
             let condition = Condition::of(&equations, step.h, &v, previous);
             let numbers = [condition.position_time, condition.velocity_step, condition.scaled];
             found.iter_mut().zip(numbers).for_each(|(list, number)| list.push(number));
-            if v[0].signum() != sign {
-                (signs, sign) = (signs + 1, v[0].signum());
+            if (v[0] > 0.0) != forward {
+                (turns, forward) = (turns + 1, !forward);
             }
         }
         for (list, expected) in found.iter_mut().zip(expected) {
             list.sort_by(f64::total_cmp);
             let median = list[list.len() / 2];
-            println!("{q0}: {median:.4e}");
             assert!((median / expected - 1.0).abs() < 0.02, "{q0}: {median:e} instead of {expected:e}");
         }
     }
@@ -124,7 +121,10 @@ fn steps_of_the_damped_oscillator_grow_until_there_is_none() {
                 Err(error) => break error,
             }
         };
-        println!("{zeta}: {steps} {at_100:?} {error}");
+        // Towards the end every step is three times the last: which of the two errors comes first is a matter of rounding.
+        let ended = matches!(error, StepError::NoForwardStep { .. } | StepError::StepRatio { .. });
+        assert!(ended, "{zeta}: {error:?}");
+        // Measured: 49989, 10001, 4996.
         assert!((f64::from(steps) / last - 1.0).abs() < 0.01, "{zeta}: {steps}");
         assert!(at_100.is_some_and(|found| (found - stretch).abs() < 1e-3), "{zeta}: {at_100:?}");
     }
@@ -140,11 +140,11 @@ fn single_precision_runs_as_well() {
         .unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..10_000 {
         let (t, q, v) = integrator.step().unwrap_or_else(|error| panic!("{error}")).midpoint;
-        // Measured: 2.3e-8.
-        assert!((system.energy(t, &q, &v) - energy).abs() < 1e-7);
+        // Measured: at most 6.0e-8.
+        assert!((system.energy(t, &q, &v) - energy).abs() < 1.2e-7);
         fixed.step().unwrap_or_else(|error| panic!("{error}"));
     }
-    // Started on H, not on E: the discrete energy is h² D/8 = 6.2e-6 below it, but for its oscillation of 7e-7.
+    // Started on H, not on E: the discrete energy is h² D/8 = 6.2e-6 below it, but for its oscillation of 7e-7. Measured: 5.6e-6.
     let bias = energy - fixed.discrete_energy().unwrap_or(f32::NAN);
     assert!((bias - 6.2e-6).abs() < 1e-6, "{bias:e}");
 }

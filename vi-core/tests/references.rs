@@ -7,8 +7,9 @@ use systems::{DampedOscillator, DoubleWell, ForcedDuffing, Kepler, Potential, Un
 use vi_core::{EnergyPreserving, FixedStep, SVector, State};
 
 /// Bounds on the difference after 1000 steps, absolute, in t, q and p.
+/// Measured: at most 1.4e-14 and 8.3e-11; the step length is a second-order quantity.
 const FIXED: f64 = 5e-14;
-const ENERGY_PRESERVING: f64 = 5e-9;
+const ENERGY_PRESERVING: f64 = 5e-10;
 
 fn reference(name: &str) -> Value {
     let path = format!("{}/../tests/reference/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -57,7 +58,8 @@ fn differences<const N: usize, P: Potential<N, f64>>(
         adaptive.step().unwrap_or_else(|error| panic!("{error}"));
     }
     let expected = thousandth(&case["adaptive"]);
-    assert!((adaptive.h() / number(&expected["h"]) - 1.0).abs() < 1e-8);
+    // Measured: at most 2.5e-11.
+    assert!((adaptive.h() / number(&expected["h"]) - 1.0).abs() < 1e-10);
     (difference(&fixed.state(), thousandth(&case["fixed"])), difference(&adaptive.state(), expected))
 }
 
@@ -77,13 +79,13 @@ fn from_midpoint<const N: usize, P: Potential<N, f64>>(system: &UnitMass<P>, cas
     let adaptive = adaptive.unwrap_or_else(|error| panic!("{error}"));
     let start = &case["adaptive_start"];
     assert!((adaptive.state().q - vector(&start["q1"])).amax() < 1e-16);
+    // Measured: 0.
     assert!((adaptive.state().p - vector(&start["p1"])).amax() < 5e-16);
     assert!((adaptive.energy() - number(&start["E1"])).abs() < 5e-16);
     differences(system, case, State::at(system, t0, q0, v0), adaptive)
 }
 
 fn assert_close(name: &str, (fixed, energy_preserving): (f64, f64)) {
-    println!("{name}: {fixed:.1e} {energy_preserving:.1e}");
     assert!(fixed < FIXED, "{name}, fixed step: {fixed:e}");
     assert!(energy_preserving < ENERGY_PRESERVING, "{name}, energy-preserving: {energy_preserving:e}");
 }

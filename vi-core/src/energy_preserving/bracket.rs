@@ -138,15 +138,17 @@ fn polished<const N: usize, T: Scalar, S: Stepping<N, T>>(
         }
         if middle.sign() == upper { after = middle } else { before = middle }
     }
-    let found = after.h.to_f64();
-    if !(found * RATIO >= previous && found <= previous * RATIO) {
-        return Err(StepError::StepRatio { t, previous, found });
-    }
-    let range = (last.h / T::real(RATIO), last.h * T::real(RATIO));
-    newton::solve(system, node, Trial { v: after.v, h: after.h }, range).map_err(|failure| match failure {
+    let h = after.h.to_f64();
+    let half = T::real(0.5);
+    let root = newton::solve(system, node, Trial { v: after.v, h: after.h }, (after.h * half, after.h / half));
+    let root = root.map_err(|failure| match failure {
         Failure::Degenerate { h, density } => StepError::DegenerateStep { t, h: h.to_f64(), density: density.to_f64() },
-        Failure::NoRoot => {
-            StepError::NotConverged { t, h: found, iterations: BISECTIONS, residual: after.roundings.abs() }
-        }
-    })
+        Failure::NoRoot => StepError::NotConverged { t, h, iterations: BISECTIONS, residual: after.roundings.abs() },
+    })?;
+    let found = root.h.to_f64();
+    if found * RATIO >= previous && found <= previous * RATIO {
+        Ok(root)
+    } else {
+        Err(StepError::StepRatio { t, previous, found })
+    }
 }

@@ -106,7 +106,7 @@ fn repeated_squares_are_bounded() {
 fn large_numbers_cancel() {
     let mut pool = Pool::new();
     let large = read(&mut pool, "3^2000");
-    assert!(pool.as_number(large).is_some(), "3170 bits are within the bound");
+    assert!(pool.as_number(large).is_some(), "4000 bits are within the bound");
     let x = read(&mut pool, "x");
     let multiple = pool.mul(large, x);
     let square = pool.mul(multiple, multiple);
@@ -172,7 +172,7 @@ fn exact_numbers_round_correctly() {
         ("1/3", 1.0 / 3.0),
         ("1/10", 0.1),
         ("123456789012345678901234567890/7", 1.763_668_414_462_081_1e28),
-        ("(10/3)^400", f64::INFINITY),
+        ("10^400", f64::INFINITY),
         ("10^300", 1e300),
         ("10^-310", 1e-310),
         ("10^-400", 0.0),

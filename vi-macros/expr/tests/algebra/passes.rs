@@ -113,7 +113,7 @@ fn equal_forms_are_one_node() {
     let mut pool = Pool::new();
     let first = read(&mut pool, "(x + y)*z/2 + sin(x*y)");
     let nodes = pool.len();
-    assert_eq!(read(&mut pool, "sin(y*x) - z*(y + x)/-2"), first);
+    assert_eq!(read(&mut pool, "sin(y*x) - (y + x)*z/-2"), first);
     // New are -2, the multiple by -1/2, and the sum with it subtracted halfway.
     assert!(pool.len() <= nodes + 3, "{} new nodes", pool.len() - nodes);
 }

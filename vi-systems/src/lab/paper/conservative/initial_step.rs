@@ -60,7 +60,7 @@ impl Rung {
         let mut integrator = case.start()?;
         let (system, state, e1) = (*integrator.system(), integrator.state(), integrator.energy());
         let length = steps(case.h0, study);
-        let mut raw = Some(RawNode { state, energy: e1 });
+        let mut raw = Some(RawNode::first(&integrator));
         let mut rung = Self { h0: case.h0, energy: 0.0, raw: 0.0, steps: (case.h0, case.h0), trajectory: None };
         let mut adaptive = None;
         for _ in 0..length {
@@ -71,10 +71,7 @@ impl Rung {
             if adaptive.is_none() && step.t >= COMPARED {
                 adaptive = Some(error(&system, case.q0, step.t, step.q.x)?);
             }
-            // The guess is the true solution, moved to the raw trajectory: the best guess that there is.
-            raw = raw.and_then(|node| {
-                node.next(&system, (node.state.t + step.h, node.state.q.x + step.h * v.x))
-            });
+            raw = raw.and_then(|node| node.next(&system));
             rung.raw = raw.map_or(f64::NAN, |node| rung.raw.max((node.energy - e1).abs()));
         }
         let fixed = FixedStep::new(system, state, case.h0)?.take(length).find(|state| match state {

@@ -64,9 +64,9 @@ pub(super) fn negative(book: &mut Book) -> Result<(), Failure> {
     Ok(())
 }
 
-/// h/h0 of the last node before a time.
+/// h/h0 of the step that passes a time.
 fn ratio_at(run: &Run, t: f64) -> f64 {
-    run.samples.iter().take_while(|sample| sample.t <= t).last().map_or(f64::NAN, |sample| sample.h / H0)
+    run.samples.iter().find(|sample| sample.t >= t).map_or(f64::NAN, |sample| sample.h / H0)
 }
 
 /// Largest relative deviation from the law up to a time.

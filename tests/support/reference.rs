@@ -1,0 +1,37 @@
+//! The 50-digit values of `tests/reference`, read as `f64`.
+
+use serde_json::Value;
+
+/// The contents of a file of `tests/reference`.
+pub(crate) fn file(name: &str) -> Value {
+    let path = format!("{}/tests/reference/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// A number, given as a string of 50 digits, as a fraction, or as a number.
+pub(crate) fn number(value: &Value) -> f64 {
+    let Some(text) = value.as_str() else { return value.as_f64().expect("a number") };
+    match text.split_once('/') {
+        Some((above, below)) => above.parse::<f64>().expect("a numerator") / below.parse::<f64>().expect("a denominator"),
+        None => text.parse().expect("a decimal number"),
+    }
+}
+
+/// A vector, given as a list, or as one number.
+pub(crate) fn vector<const N: usize>(value: &Value) -> [f64; N] {
+    match value.as_array() {
+        Some(list) => {
+            assert_eq!(list.len(), N);
+            core::array::from_fn(|index| number(&list[index]))
+        }
+        None => [number(value); N],
+    }
+}
+
+/// The entries of a list with the number of steps that each is reached after.
+pub(crate) fn steps(list: &Value) -> Vec<(usize, &Value)> {
+    let count = |entry: &Value| entry.get("step").or_else(|| entry.get("steps_after_start")).and_then(Value::as_u64);
+    let list = list.as_array().expect("a list of steps");
+    list.iter().map(|entry| (count(entry).expect("a step number") as usize, entry)).collect()
+}
