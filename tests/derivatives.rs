@@ -29,12 +29,22 @@ impl Comparison {
 
     fn equal(&mut self, what: &str, found: f64, wanted: f64, scale: f64) {
         let difference = (found - wanted).abs() / scale.max(1e-3);
-        assert!(difference <= TOLERANCE, "{} {what}: {found:e}, by dual numbers {wanted:e}, off {difference:e}", self.name);
+        assert!(
+            difference <= TOLERANCE,
+            "{} {what}: {found:e}, by dual numbers {wanted:e}, off {difference:e}",
+            self.name
+        );
         self.worst = self.worst.max(difference);
         self.nonzero += usize::from(wanted != 0.0);
     }
 
-    fn equal_vectors<const N: usize>(&mut self, what: &str, found: &SVector<f64, N>, wanted: &SVector<f64, N>, scale: f64) {
+    fn equal_vectors<const N: usize>(
+        &mut self,
+        what: &str,
+        found: &SVector<f64, N>,
+        wanted: &SVector<f64, N>,
+        scale: f64,
+    ) {
         for index in 0..N {
             self.equal(&format!("{what}[{index}]"), found[index], wanted[index], scale.max(wanted.amax()));
         }
@@ -61,10 +71,8 @@ fn gradient_and_rate<const N: usize>(
     system: &impl Lagrangian<N, DD>,
     (t, q, v, a): (f64, &SVector<f64, N>, &SVector<f64, N>, &SVector<f64, N>),
 ) -> (SVector<f64, N>, SVector<f64, N>, f64) {
-    let number = |value: f64, rate: f64, seed: f64| DD {
-        value: D { value, slope: rate },
-        slope: D { value: seed, slope: 0.0 },
-    };
+    let number =
+        |value: f64, rate: f64, seed: f64| DD { value: D { value, slope: rate }, slope: D { value: seed, slope: 0.0 } };
     let derivative = |seed_t: f64, seed_q: &SVector<f64, N>| {
         let q2 = SVector::from_fn(|i, _| number(q[i], v[i], seed_q[i]));
         let v2 = SVector::from_fn(|i, _| number(v[i], a[i], 0.0));
@@ -171,9 +179,11 @@ fn check_step<const N: usize>(
     check.equal_vectors("residual_dh", &found.residual_dh, &slope, 1.0);
     check.equal("energy_dh", found.energy_dh, column.energy_residual.slope / h, found.energy_magnitude / h);
     let gain = system.increment(node, h, v);
-    let momentum = system.d2_ld(&interval) + system.d4_ld(&interval) + system.fd_minus(&interval) + system.fd_plus(&interval);
+    let momentum =
+        system.d2_ld(&interval) + system.d4_ld(&interval) + system.fd_minus(&interval) + system.fd_plus(&interval);
     check.equal_vectors("p1 - p0", &gain.momentum, &momentum, system.d4_ld(&interval).amax());
-    let energy = -system.d1_ld(&interval) - system.d3_ld(&interval) - system.gd_minus(&interval) - system.gd_plus(&interval);
+    let energy =
+        -system.d1_ld(&interval) - system.d3_ld(&interval) - system.gd_minus(&interval) - system.gd_plus(&interval);
     check.equal("E1 - E0", gain.energy, energy, scale);
 }
 
@@ -200,9 +210,8 @@ macro_rules! derivatives {
                 check_continuous(&$s, &dual, &second, ($t, &$q, &$v), &mut check);
                 check_slots(&$s, &dual, &Interval { t0: $t, q0: $q, t1: $t + h, q1: $q + $v * h }, &mut check);
                 let zero = SVector::from_fn(|_, _| 0.0);
-                let node = Node {
-                    t: $t, t_low: 0.0, q: $q, q_low: zero, p, p_low: zero, energy: p.sum(), energy_low: 0.0,
-                };
+                let node =
+                    Node { t: $t, t_low: 0.0, q: $q, q_low: zero, p, p_low: zero, energy: p.sum(), energy_low: 0.0 };
                 check_step(&$s, &dual, (&node, h, &$v), &mut check);
             }
             println!("{}: {} numbers other than zero, worst difference {:e}", check.name, check.nonzero, check.worst);
@@ -211,46 +220,74 @@ macro_rules! derivatives {
     };
 }
 
-derivatives!(double_well, DoubleWell, 1, |s, t, q, v| s.m * v[0].powi(2) / 2.0 - (q[0].powi(4) - q[0].powi(2)) / 2.0, [0.0]);
-derivatives!(harmonic_oscillator, HarmonicOscillator, 1, |s, t, q, v| (s.m * v[0].powi(2) - s.k * q[0].powi(2)) / 2.0, [0.0]);
 derivatives!(
-    damped_oscillator, DampedOscillator, 1,
+    double_well,
+    DoubleWell,
+    1,
+    |s, t, q, v| s.m * v[0].powi(2) / 2.0 - (q[0].powi(4) - q[0].powi(2)) / 2.0,
+    [0.0]
+);
+derivatives!(
+    harmonic_oscillator,
+    HarmonicOscillator,
+    1,
+    |s, t, q, v| (s.m * v[0].powi(2) - s.k * q[0].powi(2)) / 2.0,
+    [0.0]
+);
+derivatives!(
+    damped_oscillator,
+    DampedOscillator,
+    1,
     |s, t, q, v| (s.m * v[0].powi(2) - s.k * q[0].powi(2)) / 2.0,
     [-s.c * v[0]]
 );
 derivatives!(
-    pendulum, Pendulum, 1,
+    pendulum,
+    Pendulum,
+    1,
     |s, t, q, v| s.m * (s.l * v[0]).powi(2) / 2.0 + s.m * s.g * s.l * q[0].cos(),
     [0.0]
 );
 derivatives!(
-    hard_duffing, HardDuffing, 1,
+    hard_duffing,
+    HardDuffing,
+    1,
     |s, t, q, v| v[0].powi(2) / 2.0 - s.alpha * q[0].powi(2) / 2.0 - s.beta * q[0].powi(4) / 4.0,
     [-s.c * v[0] + s.amplitude * (s.omega * t).cos()]
 );
 derivatives!(
-    double_well_duffing, DoubleWellDuffing, 1,
+    double_well_duffing,
+    DoubleWellDuffing,
+    1,
     |s, t, q, v| v[0].powi(2) / 2.0 + q[0].powi(2) / 2.0 - q[0].powi(4) / 4.0,
     [-s.c * v[0] + s.amplitude * (s.omega * t).cos()]
 );
 derivatives!(
-    parametric_pendulum, ParametricPendulum, 1,
+    parametric_pendulum,
+    ParametricPendulum,
+    1,
     |s, t, q, v| v[0].powi(2) / 2.0 + (1.0 + s.epsilon * (s.omega * t).cos()) * q[0].cos(),
     [0.0]
 );
 derivatives!(
-    rotating_hoop, RotatingHoop, 1,
+    rotating_hoop,
+    RotatingHoop,
+    1,
     |s, t, q, v| s.m * s.r.powi(2) / 2.0 * (v[0].powi(2) + (s.Ω * q[0].sin()).powi(2)) + s.m * s.g * s.r * q[0].cos(),
     [0.0]
 );
 derivatives!(kepler, Kepler, 2, |s, t, q, v| v.norm_squared() / 2.0 + s.mu / q.norm(), [0.0, 0.0]);
 derivatives!(
-    henon_heiles, HenonHeiles, 2,
+    henon_heiles,
+    HenonHeiles,
+    2,
     |s, t, q, v| (v.norm_squared() - q.norm_squared()) / 2.0 - s.lambda * (q[0].powi(2) * q[1] - q[1].powi(3) / 3.0),
     [0.0, 0.0]
 );
 derivatives!(
-    double_pendulum, DoublePendulum, 2,
+    double_pendulum,
+    DoublePendulum,
+    2,
     |s, t, q, v| {
         let (x1, y1) = (s.l1 * v[0] * q[0].cos(), s.l1 * v[0] * q[0].sin());
         let (x2, y2) = (x1 + s.l2 * v[1] * q[1].cos(), y1 + s.l2 * v[1] * q[1].sin());
@@ -261,14 +298,18 @@ derivatives!(
     [0.0, 0.0]
 );
 derivatives!(
-    spherical_pendulum, SphericalPendulum, 2,
+    spherical_pendulum,
+    SphericalPendulum,
+    2,
     |s, t, q, v| {
         s.m * s.l.powi(2) * (v[0].powi(2) + (q[0].sin() * v[1]).powi(2)) / 2.0 + s.m * s.g * s.l * q[0].cos()
     },
     [0.0, 0.0]
 );
 derivatives!(
-    charged_particle, ChargedParticle, 3,
+    charged_particle,
+    ChargedParticle,
+    3,
     |s, t, q, v| {
         let potential = s.b * q[0] + s.s * q[0].powi(2) / 2.0;
         s.m * v.norm_squared() / 2.0 + s.e * (potential * v[1] - s.kappa * q[2].powi(2) / 2.0)

@@ -2,6 +2,7 @@
 //!
 //! After 1000 steps these are far inside what is asked of plain `f64`, 5e-14 with fixed steps and 5e-9 with the
 //! energy-preserving ones, whose length is a second-order quantity (`docs/mathematics.md`).
+
 mod support;
 
 use serde_json::Value;

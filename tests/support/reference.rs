@@ -13,7 +13,9 @@ pub(crate) fn file(name: &str) -> Value {
 pub(crate) fn number(value: &Value) -> f64 {
     let Some(text) = value.as_str() else { return value.as_f64().expect("a number") };
     match text.split_once('/') {
-        Some((above, below)) => above.parse::<f64>().expect("a numerator") / below.parse::<f64>().expect("a denominator"),
+        Some((above, below)) => {
+            above.parse::<f64>().expect("a numerator") / below.parse::<f64>().expect("a denominator")
+        }
         None => text.parse().expect("a decimal number"),
     }
 }

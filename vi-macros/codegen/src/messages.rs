@@ -153,7 +153,9 @@ impl Message {
                 "use positions, velocities, time and parameters; an inertial term belongs in `L`".to_owned()
             }
             Self::NotConstant { .. } => "use numbers, `pi`, functions and earlier `const`s here".to_owned(),
-            Self::NotFinite { .. } => "look for a division by zero, or a root or logarithm of a negative number".to_owned(),
+            Self::NotFinite { .. } => {
+                "look for a division by zero, or a root or logarithm of a negative number".to_owned()
+            }
             Self::DivisionByZero => "the denominator is identically zero; check it".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
@@ -166,7 +168,10 @@ impl Message {
             Self::SecondForce { .. } => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
             Self::SingularMass { missing } => missing.as_ref().map_or_else(
-                || "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned(),
+                || {
+                    "every direction of motion needs kinetic energy; remove coordinates that depend on others"
+                        .to_owned()
+                },
                 |name| format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
             ),
             Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), "the rules are: midpoint"),
@@ -175,7 +180,8 @@ impl Message {
             Self::MissingSlot { name } => format!("the system has a force: write `{name} = …;`"),
             Self::SecondSlot { .. } => "write each line of a rule once".to_owned(),
             Self::Shape { .. } => {
-                "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product".to_owned()
+                "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"
+                    .to_owned()
             }
             Self::UnknownClause { near, .. } => {
                 did_you_mean(near.as_ref(), "the clauses are const, param, coord, let, L, force, discretize")

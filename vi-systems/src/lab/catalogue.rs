@@ -75,7 +75,12 @@ where
 /// All systems, in the order in which they are listed.
 pub(crate) fn entries() -> Vec<Entry> {
     vec![
-        entry::<systems::DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], [0.0], 0.01),
+        entry::<systems::DoubleWell, 1>(
+            "particle in a double well: the paper's conservative example",
+            [0.74],
+            [0.0],
+            0.01,
+        ),
         entry::<systems::DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], [0.0], 0.01),
     ]
 }
@@ -151,7 +156,10 @@ mod tests {
     #[test]
     fn a_near_name_is_offered() {
         let message = |name: &str| find(name).err().map(|failure| failure.to_string());
-        assert_eq!(message("double-wel").as_deref(), Some("there is no system `double-wel`; did you mean `double-well`?"));
+        assert_eq!(
+            message("double-wel").as_deref(),
+            Some("there is no system `double-wel`; did you mean `double-well`?")
+        );
         assert_eq!(message("xyz").as_deref(), Some("there is no system `xyz`; `vi-lab list` names them all"));
     }
 

@@ -208,9 +208,8 @@ impl Evaluation<'_> {
             self.points.push(point);
             self.points.len() - 1
         });
-        let mut field = |quantity| {
-            self.pool.symbol(Symbol::Field(Field { quantity, derivatives: Vec::new(), point: index }))
-        };
+        let mut field =
+            |quantity| self.pool.symbol(Symbol::Field(Field { quantity, derivatives: Vec::new(), point: index }));
         Ok(if name == "L" {
             Value::Number(field(Quantity::Lagrangian))
         } else {

@@ -36,11 +36,7 @@ pub struct Equations {
 }
 
 /// Derives the equations of a step.
-pub(super) fn equations(
-    pool: &mut Pool<Symbol>,
-    fields: &mut Fields,
-    slots: &Slots,
-) -> Result<Equations, TooLarge> {
+pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Slots) -> Result<Equations, TooLarge> {
     let dimension = slots.d2_ld.len();
     let points: Vec<Point> = slots.points.iter().map(|point| at_node(pool, point)).collect();
     let velocities: Vec<Expr> = (0..dimension).map(|i| pool.symbol(Symbol::StepVelocity(i))).collect();

@@ -9,8 +9,6 @@ use crate::symbol::Symbol;
 use syn::Result;
 use vi_expr::{Pool, TooLarge};
 
-
-
 /// Discretizes a model by its rule.
 ///
 /// # Errors

@@ -26,6 +26,15 @@ pub(super) struct Body {
     pub(super) inputs: BTreeMap<Symbol, Ident>,
 }
 
+/// Where a function reads the velocity of the step.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    /// From an argument.
+    Argument,
+    /// From the ends and the length of an interval, which are inputs then.
+    Interval,
+}
+
 struct Printer<'a> {
     model: &'a Model,
     function: &'a Function,
@@ -37,7 +46,7 @@ struct Printer<'a> {
 }
 
 /// Prints a function of a system whose rule has so many points.
-pub(super) fn body(model: &Model, function: &Function, points: usize) -> Body {
+pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place) -> Body {
     let needed = function.operations.needed(&function.results);
     let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
     for id in function.results.iter().flatten() {
@@ -57,7 +66,7 @@ pub(super) fn body(model: &Model, function: &Function, points: usize) -> Body {
         inputs: BTreeMap::new(),
         statements: TokenStream::new(),
     };
-    printer.name_inputs(&needed);
+    printer.name_inputs(&needed, place);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
     for id in needed {
         printer.write(id);
@@ -70,17 +79,20 @@ pub(super) fn body(model: &Model, function: &Function, points: usize) -> Body {
 
 impl Printer<'_> {
     /// Inputs take their names before shared terms do, in the order of the symbols.
-    fn name_inputs(&mut self, needed: &[OperationId]) {
-        let symbols: BTreeSet<&Symbol> = needed
-            .iter()
-            .filter_map(|id| match self.function.operations.get(*id) {
-                Operation::Input(symbol) if !matches!(symbol, Symbol::Parameter(_)) => Some(symbol),
-                _ => None,
-            })
-            .collect();
+    fn name_inputs(&mut self, needed: &[OperationId], place: Place) {
+        let mut symbols = BTreeSet::new();
+        for id in needed {
+            let Operation::Input(symbol) = self.function.operations.get(*id) else { continue };
+            if let (Symbol::StepVelocity(index), Place::Interval) = (symbol, place) {
+                symbols.extend([Symbol::Step, Symbol::Q0(*index), Symbol::Q1(*index)]);
+            }
+            if !matches!(symbol, Symbol::Parameter(_)) {
+                symbols.insert(symbol.clone());
+            }
+        }
         for symbol in symbols {
-            let ident = self.names.of(symbol);
-            self.inputs.insert(symbol.clone(), ident);
+            let ident = self.names.of(&symbol);
+            self.inputs.insert(symbol, ident);
         }
     }
 
@@ -150,12 +162,7 @@ impl Printer<'_> {
 }
 
 /// The parts of vector inputs: `let [x, y]: [T; 2] = (*q).into();`, `_` for what is not read.
-pub(super) fn parts(
-    body: &Body,
-    model: &Model,
-    symbol: impl Fn(usize) -> Symbol,
-    vector: &TokenStream,
-) -> TokenStream {
+pub(super) fn parts(body: &Body, model: &Model, symbol: impl Fn(usize) -> Symbol, vector: &TokenStream) -> TokenStream {
     let dimension = Literal::usize_unsuffixed(model.dimension());
     let names: Vec<Option<&Ident>> = (0..model.dimension()).map(|index| body.inputs.get(&symbol(index))).collect();
     if names.iter().all(Option::is_none) {

@@ -1,7 +1,8 @@
 //! `impl DiscreteLagrangian`: L_d, its slot derivatives, discrete forces and powers.
 
 use super::Source;
-use super::body::{Body, part, parts};
+use super::body::{Body, Place, part, parts};
+use super::lagrangian::vector_of;
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -30,36 +31,28 @@ pub(super) fn item(source: &Source) -> TokenStream {
 }
 
 /// The ends of the interval, its length, and its velocity.
-fn interval_parts(source: &Source, body: &mut Body) -> TokenStream {
-    let model = source.model;
-    let velocities: Vec<usize> =
-        (0..model.dimension()).filter(|index| body.inputs.contains_key(&Symbol::StepVelocity(*index))).collect();
-    // The velocity reads the ends and the length, which the body itself may not.
-    let mut read = |symbol: Symbol, name: String| {
-        body.inputs.entry(symbol).or_insert_with(|| format_ident!("{name}")).clone()
-    };
-    let mut quotients = TokenStream::new();
-    for index in velocities {
-        let coordinate = &model.coordinates[index];
-        let h = read(Symbol::Step, "h".to_owned());
-        let start = read(Symbol::Q0(index), format!("{coordinate}0"));
-        let end = read(Symbol::Q1(index), format!("{coordinate}1"));
-        let velocity = read(Symbol::StepVelocity(index), String::new());
-        quotients.extend(quote!(let #velocity = (#end - #start) / #h;));
-    }
-    let step = body.inputs.get(&Symbol::Step).map(|h| quote!(let #h = interval.t1 - interval.t0;));
+fn interval_parts(source: &Source, body: &Body) -> TokenStream {
+    let (model, input) = (source.model, |symbol: Symbol| body.inputs.get(&symbol));
+    let quotients = (0..model.dimension()).filter_map(|index| {
+        let (velocity, h) = (input(Symbol::StepVelocity(index))?, input(Symbol::Step)?);
+        let (start, end) = (input(Symbol::Q0(index))?, input(Symbol::Q1(index))?);
+        Some(quote!(let #velocity = (#end - #start) / #h;))
+    });
+    let step = part(body, &Symbol::Step, &quote!(interval.t1 - interval.t0));
     let (t0, t1) = (part(body, &Symbol::T0, &quote!(interval.t0)), part(body, &Symbol::T1, &quote!(interval.t1)));
     let q0 = parts(body, model, Symbol::Q0, &quote!(interval.q0));
     let q1 = parts(body, model, Symbol::Q1, &quote!(interval.q1));
-    quote!(#t0 #t1 #step #q0 #q1 #quotients)
+    quote!(#t0 #t1 #step #q0 #q1 #(#quotients)*)
 }
 
 /// A number in the slots.
 fn number(source: &Source, name: &str, expr: Expr) -> TokenStream {
     let formula = source.formula(name, expr);
-    let Some((mut body, documentation, _)) = source.documented(name, &formula) else { return TokenStream::new() };
+    let Some((body, documentation)) = source.documented(name, &formula, Place::Interval) else {
+        return TokenStream::new();
+    };
     let (name, dimension) = (format_ident!("{name}"), source.dimension());
-    let (inputs, statements, result) = (interval_parts(source, &mut body), &body.statements, &body.results[0][0]);
+    let (inputs, statements, result) = (interval_parts(source, &body), &body.statements, &body.results[0][0]);
     quote! {
         #documentation
         #[inline]
@@ -72,10 +65,12 @@ fn number(source: &Source, name: &str, expr: Expr) -> TokenStream {
 /// A vector in the slots.
 fn vector(source: &Source, name: &str, exprs: &[Expr]) -> TokenStream {
     let formula = source.formulas(name, exprs);
-    let Some((mut body, documentation, _)) = source.documented(name, &formula) else { return TokenStream::new() };
+    let Some((body, documentation)) = source.documented(name, &formula, Place::Interval) else {
+        return TokenStream::new();
+    };
     let (name, dimension) = (format_ident!("{name}"), source.dimension());
-    let (inputs, statements) = (interval_parts(source, &mut body), &body.statements);
-    let result = source.vector(&body.results[0]);
+    let (inputs, statements) = (interval_parts(source, &body), &body.statements);
+    let result = vector_of(&body.results[0]);
     quote! {
         #documentation
         #[inline]

@@ -1,8 +1,7 @@
 //! `impl Lagrangian`: the continuous functions.
 
 use super::Source;
-use super::body::{Body, body, state_parts};
-use crate::program::Function;
+use super::body::{Body, Place, body, state_parts};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -45,36 +44,39 @@ impl Source<'_> {
     /// One formula per coordinate.
     pub(super) fn formulas(&self, name: &str, exprs: &[Expr]) -> String {
         let named = exprs.iter().zip(&self.model.coordinates);
-        named.map(|(expr, coordinate)| self.formula(&format!("{name}_{coordinate}"), *expr)).collect::<Vec<_>>().join("\n\n")
+        named
+            .map(|(expr, coordinate)| self.formula(&format!("{name}_{coordinate}"), *expr))
+            .collect::<Vec<_>>()
+            .join("\n\n")
     }
 
     /// The body of a function with its documentation: formula and operation count.
-    pub(super) fn documented(&self, name: &str, formula: &str) -> Option<(Body, TokenStream, &Function)> {
+    pub(super) fn documented(&self, name: &str, formula: &str, place: Place) -> Option<(Body, TokenStream)> {
         let function = self.function(name)?;
-        let printed = body(self.model, function, self.system.slots.points.len());
+        let printed = body(self.model, function, self.system.slots.points.len(), place);
         let count = function.operation_count();
         let noun = if count == 1 { "operation" } else { "operations" };
         let lines = format!("{formula}\n\n{count} {noun}.");
         let lines = lines.lines().map(|line| format!(" {line}"));
-        Some((printed, quote!(#(#[doc = #lines])*), function))
-    }
-
-    /// The vector of one group of results.
-    pub(super) fn vector(&self, entries: &[TokenStream]) -> TokenStream {
-        let dimension = self.dimension();
-        quote!(::vi_core::SVector::<T, #dimension>::from([#(#entries),*]))
-    }
-
-    /// The matrix whose rows are these groups of results.
-    pub(super) fn matrix(&self, rows: &[Vec<TokenStream>]) -> TokenStream {
-        let dimension = self.dimension();
-        let entries = rows.iter().map(|row| quote!(#(#row),*));
-        quote!(::vi_core::SMatrix::<T, #dimension, #dimension>::from_row_slice(&[#(#entries),*]))
+        Some((printed, quote!(#(#[doc = #lines])*)))
     }
 }
 
+/// The vector of one group of results, its type known from where it stands.
+pub(super) fn vector_of(entries: &[TokenStream]) -> TokenStream {
+    quote!([#(#entries),*].into())
+}
+
+/// The matrix whose rows are these groups of results.
+pub(super) fn matrix_of(rows: &[Vec<TokenStream>]) -> TokenStream {
+    let entries = rows.iter().flatten();
+    quote!(::vi_core::SMatrix::from_row_slice(&[#(#entries),*]))
+}
+
 fn number(source: &Source, name: &str, formula: &str) -> TokenStream {
-    let Some((body, documentation, _)) = source.documented(name, formula) else { return TokenStream::new() };
+    let Some((body, documentation)) = source.documented(name, formula, Place::Argument) else {
+        return TokenStream::new();
+    };
     let (name, dimension) = (format_ident!("{name}"), source.dimension());
     let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, &body.results[0][0]);
     quote! {
@@ -92,10 +94,12 @@ fn number(source: &Source, name: &str, formula: &str) -> TokenStream {
 }
 
 fn vector(source: &Source, name: &str, formula: &str) -> TokenStream {
-    let Some((body, documentation, _)) = source.documented(name, formula) else { return TokenStream::new() };
+    let Some((body, documentation)) = source.documented(name, formula, Place::Argument) else {
+        return TokenStream::new();
+    };
     let (name, dimension) = (format_ident!("{name}"), source.dimension());
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let result = source.vector(&body.results[0]);
+    let result = vector_of(&body.results[0]);
     quote! {
         #documentation
         #[inline]
@@ -113,12 +117,12 @@ fn vector(source: &Source, name: &str, formula: &str) -> TokenStream {
 fn acceleration(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let formula = "Solves `M a = L_q + f − L_vt − L_vq v`.";
-    let Some((body, documentation, _)) = source.documented("acceleration", formula) else {
+    let Some((body, documentation)) = source.documented("acceleration", formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
     let Some((applied, rows)) = body.results.split_last() else { return TokenStream::new() };
-    let (mass, applied) = (source.matrix(rows), source.vector(applied));
+    let (mass, applied) = (matrix_of(rows), vector_of(applied));
     quote! {
         #documentation
         #[inline]
@@ -130,8 +134,8 @@ fn acceleration(source: &Source) -> TokenStream {
         ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
             let time = t;
             #inputs #statements
-            let mass = #mass;
-            let applied = #applied;
+            let mass: ::vi_core::SMatrix<T, #dimension, #dimension> = #mass;
+            let applied: ::vi_core::SVector<T, #dimension> = #applied;
             ::vi_core::linear::acceleration(time, &mass, &applied)
         }
     }
@@ -140,7 +144,7 @@ fn acceleration(source: &Source) -> TokenStream {
 fn step_density(source: &Source, density: Expr) -> TokenStream {
     let dimension = source.dimension();
     let formula = source.formula("D", density);
-    let Some((body, documentation, _)) = source.documented("step_density", &formula) else {
+    let Some((body, documentation)) = source.documented("step_density", &formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, &body.results[0][0]);

@@ -72,8 +72,8 @@ impl<'a> Names<'a> {
             Symbol::T1 => "t1".to_owned(),
             Symbol::Step => "h".to_owned(),
             Symbol::E0 => "energy0".to_owned(),
-            Symbol::Q0(index) => format!("{}0", coordinate(index)),
-            Symbol::Q1(index) => format!("{}1", coordinate(index)),
+            Symbol::Q0(index) => slot(&coordinate(index), 0),
+            Symbol::Q1(index) => slot(&coordinate(index), 1),
             Symbol::P0(index) => format!("p0_{}", coordinate(index)),
             Symbol::Low(of) => format!("{}_low", self.wanted(of)),
             Symbol::AtPoint(point, variable) => {
@@ -83,4 +83,10 @@ impl<'a> Names<'a> {
             Symbol::Field(_) => "field".to_owned(),
         }
     }
+}
+
+/// `x0`, `x1`; for a coordinate that ends in a digit `θ1_0`, `θ1_1`.
+fn slot(coordinate: &str, end: u8) -> String {
+    let separator = if coordinate.ends_with(|last: char| last.is_ascii_digit()) { "_" } else { "" };
+    format!("{coordinate}{separator}{end}")
 }

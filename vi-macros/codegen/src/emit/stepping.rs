@@ -1,7 +1,8 @@
 //! `impl Stepping`: the equations of one step in the unknowns (v, h).
 
 use super::Source;
-use super::body::{Body, part, parts};
+use super::body::{Body, Place, part, parts};
+use super::lagrangian::{matrix_of, vector_of};
 use crate::model::Model;
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
@@ -41,9 +42,9 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
 }
 
 /// The momentum row: residual, magnitude and the rows of A, as `MomentumEquation` holds them.
-fn momentum_fields(source: &Source, results: &[Vec<TokenStream>]) -> TokenStream {
-    let (residual, magnitude) = (source.vector(&results[0]), source.vector(&results[1]));
-    let jacobian = source.matrix(&results[2..]);
+fn momentum_fields(results: &[Vec<TokenStream>]) -> TokenStream {
+    let (residual, magnitude) = (vector_of(&results[0]), vector_of(&results[1]));
+    let jacobian = matrix_of(&results[2..]);
     quote! {
         ::vi_core::MomentumEquation { residual: #residual, magnitude: #magnitude, jacobian: #jacobian }
     }
@@ -52,11 +53,11 @@ fn momentum_fields(source: &Source, results: &[Vec<TokenStream>]) -> TokenStream
 fn momentum_equation(source: &Source) -> TokenStream {
     let (dimension, of) = (source.dimension(), &source.system.equations);
     let formula = source.formulas("residual", &of.residual);
-    let Some((body, documentation, _)) = source.documented("momentum_equation", &formula) else {
+    let Some((body, documentation)) = source.documented("momentum_equation", &formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let equation = momentum_fields(source, &body.results);
+    let equation = momentum_fields(&body.results);
     quote! {
         #documentation
         #[inline]
@@ -74,16 +75,16 @@ fn momentum_equation(source: &Source) -> TokenStream {
 fn extended_system(source: &Source) -> TokenStream {
     let (dimension, of) = (source.dimension(), &source.system.equations);
     let formula = source.formula("energy_residual", of.energy_residual);
-    let Some((body, documentation, _)) = source.documented("extended_system", &formula) else {
+    let Some((body, documentation)) = source.documented("extended_system", &formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
     let (momentum, energy) = body.results.split_at(source.model.dimension() + 2);
-    let momentum = momentum_fields(source, momentum);
+    let momentum = momentum_fields(momentum);
     let [residual_dh, energy_residual, energy_magnitude, energy_dv, energy_dh] = energy else {
         return TokenStream::new();
     };
-    let (residual_dh, energy_dv) = (source.vector(residual_dh), source.vector(energy_dv));
+    let (residual_dh, energy_dv) = (vector_of(residual_dh), vector_of(energy_dv));
     quote! {
         #documentation
         #[inline]
@@ -110,11 +111,11 @@ fn increment(source: &Source) -> TokenStream {
     let (dimension, of) = (source.dimension(), &source.system.equations);
     let momenta = source.formulas("p1 − p0", &of.momentum_increment);
     let formula = format!("{momenta}\n\n{}", source.formula("E1 − E0", of.energy_increment));
-    let Some((body, documentation, _)) = source.documented("increment", &formula) else {
+    let Some((body, documentation)) = source.documented("increment", &formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let (momentum, energy) = (source.vector(&body.results[0]), &body.results[1][0]);
+    let (momentum, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
     quote! {
         #documentation
         #[inline]

@@ -38,7 +38,8 @@ impl Scope {
     /// The name is reserved, or was declared before.
     pub(crate) fn declare(&mut self, name: &Ident, meaning: Meaning) -> Result<()> {
         let text = name.to_string();
-        if RESERVED.contains(&text.as_str()) || text == "dot" || text == "sqrt" || Function::from_name(&text).is_some() {
+        if RESERVED.contains(&text.as_str()) || text == "dot" || text == "sqrt" || Function::from_name(&text).is_some()
+        {
             return Err(error(name.span(), &Message::Reserved { name: text }));
         }
         if self.names.contains_key(&text) {
@@ -112,9 +113,7 @@ impl Scope {
         let text = name.to_string();
         match (self.names.get(&text), text.as_str()) {
             (Some(Meaning::Value(value)), _) => Ok(*value),
-            (Some(Meaning::Coordinate(index)), _) => {
-                Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index))))
-            }
+            (Some(Meaning::Coordinate(index)), _) => Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index)))),
             (None, "t") => Ok(pool.symbol(Symbol::Continuous(Variable::Time))),
             (None, "pi") => Ok(pool.pi()),
             (None, _) => Err(error(name.span(), &self.unknown(text))),

@@ -135,9 +135,9 @@ impl<'a> Lowering<'a> {
             terms.into_iter().reduce(|left, right| operations.add(Operation::Add(left, right)))
         };
         match add(&mut self.operations, positive) {
-            Some(first) => negative
-                .into_iter()
-                .fold(first, |left, right| self.operations.add(Operation::Subtract(left, right))),
+            Some(first) => {
+                negative.into_iter().fold(first, |left, right| self.operations.add(Operation::Subtract(left, right)))
+            }
             None => {
                 let all = add(&mut self.operations, negative);
                 let zero = self.operations.constant(0.0);
@@ -161,8 +161,7 @@ impl<'a> Lowering<'a> {
         match self.pool.node(term) {
             Node::Symbol(Symbol::Low(_) | Symbol::Step) => true,
             Node::Product(product) => product.factors.iter().any(|(base, exponent)| {
-                exponent.is_positive()
-                    && matches!(self.pool.node(*base), Node::Symbol(Symbol::Low(_) | Symbol::Step))
+                exponent.is_positive() && matches!(self.pool.node(*base), Node::Symbol(Symbol::Low(_) | Symbol::Step))
             }),
             _ => false,
         }
@@ -207,9 +206,8 @@ impl<'a> Lowering<'a> {
         }
         // Of equally frequent ones the step, then the oldest.
         let step = self.pool.symbol(Symbol::Step);
-        let (base, count) = counts.into_iter().max_by_key(|(base, count)| {
-            (*count, *base == step, core::cmp::Reverse(*base))
-        })?;
+        let (base, count) =
+            counts.into_iter().max_by_key(|(base, count)| (*count, *base == step, core::cmp::Reverse(*base)))?;
         if count < 2 {
             return None;
         }

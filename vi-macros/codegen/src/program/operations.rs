@@ -112,6 +112,11 @@ impl Operations {
         self.iter().map(|(id, _)| id).filter(|id| needed[id.0 as usize]).collect()
     }
 
+    fn negative_product(&mut self, a: OperationId, b: OperationId) -> OperationId {
+        let product = self.add(Operation::Multiply(a, b));
+        self.add(Operation::Negate(product))
+    }
+
     fn simplified(&mut self, operation: &Operation) -> Option<OperationId> {
         use Operation::{Add, Divide, Multiply, Negate, Subtract};
         let value = |id: &OperationId| self.as_constant(*id);
@@ -129,7 +134,12 @@ impl Operations {
                 (_, Some(-1.0)) => Some(self.add(Negate(*a))),
                 // A constant stands behind: `x * real(0.5)`.
                 (Some(_), None) => Some(self.add(Multiply(*b, *a))),
-                _ => None,
+                // The sign moves outward, until a sum takes it up.
+                _ => match (self.get(*a).clone(), self.get(*b).clone()) {
+                    (Negate(a), _) => Some(self.negative_product(a, *b)),
+                    (_, Negate(b)) => Some(self.negative_product(*a, b)),
+                    _ => None,
+                },
             },
             Add(a, b) => match (value(a), value(b)) {
                 (Some(a), Some(b)) => Some(self.constant(a + b)),
@@ -140,13 +150,20 @@ impl Operations {
                     let b = self.constant(-b);
                     Some(self.add(Subtract(*a, b)))
                 }
-                _ => None,
+                _ => match (self.get(*a).clone(), self.get(*b).clone()) {
+                    (_, Negate(b)) => Some(self.add(Subtract(*a, b))),
+                    (Negate(a), _) => Some(self.add(Subtract(*b, a))),
+                    _ => None,
+                },
             },
             Subtract(a, b) => match (value(a), value(b)) {
                 (Some(a), Some(b)) => Some(self.constant(a - b)),
                 (_, Some(0.0)) => Some(*a),
                 (Some(0.0), _) => Some(self.add(Negate(*b))),
-                _ => None,
+                _ => match self.get(*b).clone() {
+                    Negate(b) => Some(self.add(Add(*a, b))),
+                    _ => None,
+                },
             },
             Divide(a, b) => match (value(a), value(b)) {
                 (Some(a), Some(b)) => Some(self.constant(a / b)),

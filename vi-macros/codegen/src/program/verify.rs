@@ -17,7 +17,12 @@ use vi_expr::{Expr, Pool};
 const TOLERANCE: f64 = 1e-7;
 
 /// Compares a function with its expressions.
-pub(super) fn agrees(pool: &Pool<Symbol>, function: &Function, expressions: &Expressions, system: &Ident) -> Result<()> {
+pub(super) fn agrees(
+    pool: &Pool<Symbol>,
+    function: &Function,
+    expressions: &Expressions,
+    system: &Ident,
+) -> Result<()> {
     if !cfg!(debug_assertions) {
         return Ok(());
     }

@@ -17,6 +17,8 @@ pub(super) enum Verdict {
     Surpassed,
     /// True of the paper's way to solve the equations, not of the method.
     Artefact,
+    /// True, and cured by another form of the equations.
+    Cured,
     /// Left open by the paper, answered here.
     Answered,
     /// Not found again.
@@ -39,6 +41,7 @@ impl Verdict {
             Self::Reproduced => "reproduced",
             Self::Surpassed => "surpassed",
             Self::Artefact => "artefact of the solver",
+            Self::Cured => "reproduced, and cured",
             Self::Answered => "answered",
             Self::NotReproduced => "not reproduced",
         }
@@ -104,7 +107,10 @@ impl Book {
     pub(super) fn finish(mut self, machine: &Machine) -> Result<String, Failure> {
         self.section("The paper’s claims, one by one");
         let claims = self.claims.clone();
-        self.table(&claims, "Each claim of section 5, the paper’s number where it gives one, and what this run found.")?;
+        self.table(
+            &claims,
+            "Each claim of section 5, the paper’s number where it gives one, and what this run found.",
+        )?;
         self.write("index.html", &self.page.html(machine))?;
         Ok(format!("{}\n{}", claims.text(), self.folder.join("index.html").display()))
     }

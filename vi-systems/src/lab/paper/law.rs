@@ -1,7 +1,7 @@
 //! The step law: how constant `h D^{1/3}` and `h √D` are.
 
 use super::super::failure::Failure;
-use super::super::report::math::{frac, id, num, op, row, sqrt, sub, sub_sup};
+use super::super::report::math::{id, num, op, row, sqrt, sub, sub_sup};
 use super::super::start::second_point;
 use super::super::table::Table;
 use super::book::{Book, Verdict};
@@ -11,7 +11,7 @@ use vi_core::{EnergyPreserving, SVector, StepError, Stepping};
 use vi_systems::{DampedOscillator, DoubleWell};
 
 /// Initial steps at which constancy is measured.
-const LADDER: [f64; 3] = [0.0025, 0.005, 0.01];
+const LADDER: [f64; 3] = [0.01, 0.02, 0.04];
 /// Time of each run: some oscillations of either system.
 const UNTIL: f64 = 40.0;
 
@@ -27,19 +27,22 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
          Lagrangians, damping included,",
     );
     let h = sub(&id("h"), &id("k"));
-    let third = frac(&num("1"), &num("3"));
+    let third = row([num("1"), op("/"), num("3")]);
     let conservative = [h.clone(), sub_sup(&id("D"), &id("k"), &third), op("="), row([id("const"), op("+"), id("O")])];
     let square = "<mo>(</mo><msup><mi>h</mi><mn>2</mn></msup><mo>)</mo>";
     let damped = [h, sqrt(&sub(&id("D"), &id("k"))), op("="), id("const")];
-    book.formula(&[&conservative.concat(), square, &op("&emsp;"), &op("&emsp;"), &damped.concat()].map(String::from).concat());
+    book.formula(
+        &[&conservative.concat(), square, &op("&emsp;"), &op("&emsp;"), &damped.concat()].map(String::from).concat(),
+    );
     let well = |q0: f64| LADDER.map(|h0| Ok((h0, spread(DoubleWell::default(), q0, h0, f64::cbrt)?)));
-    let oscillator = LADDER.map(|h0| Ok((h0, spread(DampedOscillator { c: 0.04, ..DampedOscillator::default() }, 1.0, h0, f64::sqrt)?)));
+    let oscillator = LADDER
+        .map(|h0| Ok((h0, spread(DampedOscillator { c: 0.04, ..DampedOscillator::default() }, 1.0, h0, f64::sqrt)?)));
     let rows = [
         ("double well, q₀ = 0.74", "h D^(1/3)", well(0.74)),
         ("double well, q₀ = 0.995", "h D^(1/3)", well(0.995)),
         ("damped oscillator, ζ = 0.01", "h √D", oscillator),
     ];
-    let head = ["system", "quantity", "h₀ = 0.0025", "h₀ = 0.005", "h₀ = 0.01", "order in h₀"];
+    let head = ["system", "quantity", "h₀ = 0.01", "h₀ = 0.02", "h₀ = 0.04", "order in h₀"];
     let mut table = Table::new("step-law", head);
     let mut orders = Vec::new();
     let mut exact = f64::NAN;

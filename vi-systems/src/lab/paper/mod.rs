@@ -72,6 +72,7 @@ fn introduction(book: &mut Book, study: &Study) {
     };
     book.prose(&format!(
         "{millions} Colours mean the same everywhere: <b style=\"color:#D55E00\">energy-preserving</b>, \
-         <b style=\"color:#0072B2\">fixed step</b>. Each figure comes as SVG, with the points that it shows as CSV."
+         <b style=\"color:#0072B2\">fixed step</b>. Each figure comes as SVG, with the points that it shows \
+         as CSV. The claims one by one are in the <a href=\"#claims\">last table</a>."
     ));
 }

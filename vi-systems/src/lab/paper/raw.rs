@@ -26,7 +26,8 @@ impl RawNode {
 
     /// The next node; none where there is no step, or the iteration leaves the numbers.
     pub(super) fn next<S: Stepping<1>>(&self, system: &S) -> Option<Self> {
-        let guess = EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v]).ok()?.step().ok()?;
+        let guess =
+            EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v]).ok()?.step().ok()?;
         self.polished(system, (guess.t, guess.q.x))
     }
 

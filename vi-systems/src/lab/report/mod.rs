@@ -78,11 +78,8 @@ impl Page {
              <style>\n{style}</style>\n</head>\n<body>\n<main>\n{body}</main>\n<footer>{footer}</footer>\n</body>\n</html>\n",
             title = escape(&self.title),
             style = include_str!("style.css"),
-            body = self.body.replacen(
-                "</header>\n",
-                &format!("</header>\n<nav><ol>\n{}</ol></nav>\n", self.contents),
-                1
-            ),
+            body =
+                self.body.replacen("</header>\n", &format!("</header>\n<nav><ol>\n{}</ol></nav>\n", self.contents), 1),
             footer = escape(&machine.describe()),
         )
     }

@@ -105,9 +105,8 @@ fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
 
 /// `NAME=VALUE` as its parts.
 fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
-    let (name, value) = text
-        .split_once('=')
-        .ok_or_else(|| Failure::Input(format!("`--set {text}` must have the form NAME=VALUE")))?;
+    let (name, value) =
+        text.split_once('=').ok_or_else(|| Failure::Input(format!("`--set {text}` must have the form NAME=VALUE")))?;
     let (name, value) = (name.trim(), value.trim());
     let number = value.parse().map_err(|_| Failure::Input(format!("`{value}` in `--set {text}` is not a number")))?;
     Ok((name, number))
@@ -148,10 +147,9 @@ fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length,
         (None, Some(until)) if !until.is_finite() => {
             Err(Failure::Input(format!("the end (--until) must be finite, not {until}")))
         }
-        (None, Some(until)) if (until - plan.t) * plan.h < 0.0 => Err(Failure::Input(format!(
-            "steps of {} from t = {} do not lead to --until {until}",
-            plan.h, plan.t
-        ))),
+        (None, Some(until)) if (until - plan.t) * plan.h < 0.0 => {
+            Err(Failure::Input(format!("steps of {} from t = {} do not lead to --until {until}", plan.h, plan.t)))
+        }
         (None, Some(until)) => Ok(Length::Until(until)),
         (Some(_), Some(_)) => Err(Failure::Input("give either --steps or --until, not both".to_owned())),
         (None, None) => Err(Failure::Input("give the length of the run, --steps N or --until T".to_owned())),

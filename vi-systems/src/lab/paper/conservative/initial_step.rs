@@ -174,14 +174,18 @@ fn trajectory(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failu
     book.claim(
         "a trade-off between energy and trajectory in the choice of the initial step",
         "—",
-        format!("none: the energy error does not depend on h₀, the trajectory’s falls with order {}", text.join(" and ")),
+        format!(
+            "none: the energy error does not depend on h₀, the trajectory’s falls with order {}",
+            text.join(" and ")
+        ),
         Verdict::Artefact.when(orders.iter().all(|order| (order - 2.0).abs() < 0.1)),
     );
     Ok(())
 }
 
 fn table(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> {
-    let head = ["q₀", "h₀", "h_min/h₀", "h_max/h₀", "max |Eₖ − E₁|", "as written", "|q − q(t)|, energy", "|q − q(t)|, fixed"];
+    let head =
+        ["q₀", "h₀", "h_min/h₀", "h_max/h₀", "max |Eₖ − E₁|", "as written", "|q − q(t)|, energy", "|q − q(t)|, fixed"];
     let mut table = Table::new("initial-step", head);
     for (q0, rungs) in ladders {
         for rung in rungs {
@@ -199,5 +203,8 @@ fn table(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> {
             ]);
         }
     }
-    book.table(&table, "The initial step: range of the steps that follow, energy error in both ways, error of the trajectory.")
+    book.table(
+        &table,
+        "The initial step: range of the steps that follow, energy error in both ways, error of the trajectory.",
+    )
 }

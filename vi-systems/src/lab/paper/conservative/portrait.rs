@@ -5,8 +5,35 @@ use super::super::super::failure::Failure;
 use super::super::book::Book;
 use super::runs::{Run, Sample};
 
-/// Values of H whose level sets are drawn; 0 is the separatrix.
-const LEVELS: [f64; 6] = [-0.1, -0.05, -0.02, 0.0, 0.05, 0.12];
+/// A portrait: file name, amplitude, time of about one oscillation, window, level sets of H.
+struct Portrait {
+    name: &'static str,
+    q0: f64,
+    until: f64,
+    q: (f64, f64),
+    v: (f64, f64),
+    levels: [f64; 6],
+}
+
+/// Deep in the well, and about the orbit near the separatrix H = 0.
+const PORTRAITS: [Portrait; 2] = [
+    Portrait {
+        name: "portrait-0.74",
+        q0: 0.74,
+        until: 4.5,
+        q: (0.625, 0.785),
+        v: (-0.08, 0.08),
+        levels: [-0.1248, -0.1244, -0.123, -0.122, -0.1205, -0.1185],
+    },
+    Portrait {
+        name: "portrait-0.995",
+        q0: 0.995,
+        until: 7.6,
+        q: (-0.15, 1.15),
+        v: (-0.62, 0.62),
+        levels: [-0.1, -0.05, -0.02, 0.0, 0.05, 0.12],
+    },
+];
 /// Points of half a level set.
 const FINENESS: u32 = 400;
 
@@ -17,30 +44,39 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
         "Both integrators are symplectic, and both stay on a closed curve. They differ in where they put their points: the \
          energy-preserving integrator takes longer steps where the motion is slow and smooth, near the saddle.",
     );
-    for run in runs.iter().filter(|run| run.case.h0 > 0.05) {
-        let name = if run.case.q0 < 0.9 { "portrait-0.74" } else { "portrait-0.995" };
-        let points = |samples: &[Sample]| samples.iter().map(|sample| (sample.q, sample.v)).collect::<Vec<_>>();
-        let mut series: Vec<Series> =
-            LEVELS.iter().flat_map(|&level| level_set(level)).map(Series::background).collect();
-        series.push(Series::scatter("fixed step", Look::FIXED.dots(2.6), points(&run.fixed.samples)));
-        series.push(Series::scatter("energy-preserving", Look::ENERGY.dots(2.2), points(&run.energy.samples)));
-        let chart = Chart {
-            name,
-            title: format!("Phase portrait, {}", run.case.label()),
-            x: Axis::linear("q").over(-0.15, 1.15),
-            y: Axis::linear("v").over(-0.62, 0.62),
-            equal_aspect: true,
-            series,
-        };
-        let caption = format!(
-            "Midpoints of the steps up to <i>t</i> = 40; in grey level sets of <i>H</i>. Energy-preserving: {} points, \
-             fixed step: {} points.",
-            run.energy.samples.len(),
-            run.fixed.samples.len()
-        );
-        book.figure(&chart, &caption)?;
+    for portrait in PORTRAITS {
+        let run = runs.iter().find(|run| run.case.q0.total_cmp(&portrait.q0).is_eq() && run.case.h0 > 0.05);
+        if let Some(run) = run {
+            figure(book, &portrait, run)?;
+        }
     }
     Ok(())
+}
+
+fn figure(book: &mut Book, portrait: &Portrait, run: &Run) -> Result<(), Failure> {
+    let points = |samples: &[Sample]| {
+        let oscillation = samples.iter().take_while(|sample| sample.t < portrait.until);
+        oscillation.map(|sample| (sample.q, sample.v)).collect::<Vec<_>>()
+    };
+    let (fixed, adaptive) = (points(&run.fixed.samples), points(&run.energy.samples));
+    let caption = format!(
+        "Midpoints of the steps of about one oscillation: {} energy-preserving, {} fixed. In grey level sets of <i>H</i>.",
+        adaptive.len(),
+        fixed.len()
+    );
+    let mut series: Vec<Series> =
+        portrait.levels.iter().flat_map(|&level| level_set(level)).map(Series::background).collect();
+    series.push(Series::scatter("fixed step", Look::FIXED.dots(3.0), fixed));
+    series.push(Series::scatter("energy-preserving", Look::ENERGY.dots(3.0), adaptive));
+    let chart = Chart {
+        name: portrait.name,
+        title: format!("Phase portrait, {}", run.case.label()),
+        x: Axis::linear("q").over(portrait.q.0, portrait.q.1),
+        y: Axis::linear("v").over(portrait.v.0, portrait.v.1),
+        equal_aspect: true,
+        series,
+    };
+    book.figure(&chart, &caption)
 }
 
 /// The part of the level set `v² = 2H + q² − q⁴` in the right half plane: upper and lower branch.
@@ -69,7 +105,7 @@ mod tests {
 
     #[test]
     fn level_sets_are_level() {
-        for level in LEVELS {
+        for level in PORTRAITS.iter().flat_map(|portrait| portrait.levels) {
             for (q, v) in level_set(level).concat() {
                 let energy = v * v / 2.0 + (q.powi(4) - q * q) / 2.0;
                 // Measured 5e-17, and at the turning points, where v is set to 0, 3e-17.

@@ -28,8 +28,8 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.formula(&law.concat());
     book.prose(
         "and since <i>t</i> advances by <i>h</i>, after about 1/(<i>ζωh</i><sub>0</sub>) steps the step would be infinite. \
-         There the discrete energy reaches zero, and no further step exists: a property of the method, which the integrator \
-         reports as an error with its numbers.",
+         Near there the discrete energy reaches zero, and no further step exists, or only one many times as long: a property \
+         of the method, which the integrator reports as an error with its numbers.",
     );
     let mut runs = Vec::new();
     for zeta in DAMPING {
@@ -53,8 +53,7 @@ pub(super) fn negative(book: &mut Book) -> Result<(), Failure> {
     }
     in_time(book, &runs, NEGATIVE, "negative-damping", "Step length with negative damping")?;
     let shrinks = runs.iter().all(|(_, run)| run.end.is_none() && ratio_at(run, NEGATIVE) < 1.0);
-    let deviations: Vec<String> =
-        runs.iter().map(|(zeta, run)| scientific(deviation(*zeta, run, NEGATIVE))).collect();
+    let deviations: Vec<String> = runs.iter().map(|(zeta, run)| scientific(deviation(*zeta, run, NEGATIVE))).collect();
     book.claim(
         "negative damping: the step shrinks",
         "—",
@@ -72,17 +71,15 @@ fn ratio_at(run: &Run, t: f64) -> f64 {
 /// Largest relative deviation from the law up to a time.
 fn deviation(zeta: f64, run: &Run, until: f64) -> f64 {
     let relative = |t: f64, h: f64| (h / (H0 * (zeta * OMEGA * t).exp()) - 1.0).abs();
-    run.samples.iter().take_while(|sample| sample.t <= until).map(|sample| relative(sample.t, sample.h)).fold(0.0, f64::max)
+    run.samples
+        .iter()
+        .take_while(|sample| sample.t <= until)
+        .map(|sample| relative(sample.t, sample.h))
+        .fold(0.0, f64::max)
 }
 
 /// h/h0 against t, with the law over it.
-fn in_time(
-    book: &mut Book,
-    runs: &[(f64, Run)],
-    until: f64,
-    name: &'static str,
-    title: &str,
-) -> Result<(), Failure> {
+fn in_time(book: &mut Book, runs: &[(f64, Run)], until: f64, name: &'static str, title: &str) -> Result<(), Failure> {
     let mut series = Vec::new();
     for ((zeta, run), look) in runs.iter().zip(Look::OTHERS) {
         let points = run.samples.iter().take_while(|sample| sample.t <= until).map(|sample| (sample.t, sample.h / H0));
@@ -90,7 +87,7 @@ fn in_time(
     }
     for (index, (zeta, _)) in runs.iter().enumerate() {
         let law = (0..=200).map(|i| until * f64::from(i) / 200.0).map(|t| (t, (zeta * OMEGA * t).exp())).collect();
-        let law = Series::line("e^(ζωt)", Look::EXACT, law);
+        let law = Series::line("exp(ζωt)", Look::EXACT, law);
         series.push(if index == 0 { law } else { law.unlabelled() });
     }
     let chart = Chart {
@@ -132,7 +129,7 @@ fn to_the_end(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
 }
 
 fn table(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
-    let head = ["ζ", "h/h₀ at t = 100", "e^(ζωt)", "last step", "1/(ζωh₀)", "last h", "how it ends"];
+    let head = ["ζ", "h/h₀ at t = 100", "exp(ζωt)", "last step", "1/(ζωh₀)", "last h", "how it ends"];
     let mut table = Table::new("step-growth-table", head);
     let mut ends = Vec::new();
     let mut as_predicted = true;
@@ -165,8 +162,11 @@ fn table(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
     book.claim(
         "why it grows, and where it ends (open in the paper)",
         "—",
-        format!("h = h₀ e^(ζωt); the last step with a solution is number {}, theory {}", ends.join(", "),
-            join(runs.iter().map(|(zeta, _)| format!("{:.0}", 1.0 / (zeta * OMEGA * H0))))),
+        format!(
+            "h = h₀ exp(ζωt); the last step with a solution is number {}, theory {}",
+            ends.join(", "),
+            join(runs.iter().map(|(zeta, _)| format!("{:.0}", 1.0 / (zeta * OMEGA * H0))))
+        ),
         Verdict::Answered.when(as_predicted),
     );
     Ok(())

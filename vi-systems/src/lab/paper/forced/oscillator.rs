@@ -14,6 +14,8 @@ pub(super) struct Sample {
     pub(super) t: f64,
     /// Coordinate.
     pub(super) q: f64,
+    /// Velocity that belongs to the momentum, m = 1.
+    pub(super) v: f64,
     /// Discrete energy.
     pub(super) energy: f64,
     /// Length of the step that led here.
@@ -58,10 +60,10 @@ pub(super) fn start(zeta: f64) -> Result<EnergyPreserving<DampedOscillator, 1>, 
 pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Run, StepError> {
     let integrator = start(zeta)?;
     let state = integrator.state();
-    let mut samples = vec![Sample { t: state.t, q: state.q.x, energy: integrator.energy(), h: H0 }];
+    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: integrator.energy(), h: H0 }];
     for step in integrator.take(usize::try_from(most).unwrap_or(usize::MAX)) {
         match step {
-            Ok(step) => samples.push(Sample { t: step.t, q: step.q.x, energy: step.energy, h: step.h }),
+            Ok(step) => samples.push(Sample { t: step.t, q: step.q.x, v: step.p.x, energy: step.energy, h: step.h }),
             Err(error) => return Ok(Run { samples, end: Some(error) }),
         }
         if samples.last().is_some_and(|sample| sample.t > until) {
@@ -75,12 +77,12 @@ pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Run,
 pub(super) fn fixed(zeta: f64, until: f64) -> Result<Run, StepError> {
     let first = start(zeta)?;
     let state = first.state();
-    let mut samples = vec![Sample { t: state.t, q: state.q.x, energy: first.energy(), h: H0 }];
+    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: first.energy(), h: H0 }];
     let mut integrator = FixedStep::new(system(zeta), state, H0)?;
     while integrator.state().t <= until {
         let state = integrator.step()?;
         let energy = integrator.discrete_energy().unwrap_or(f64::NAN);
-        samples.push(Sample { t: state.t, q: state.q.x, energy, h: H0 });
+        samples.push(Sample { t: state.t, q: state.q.x, v: state.p.x, energy, h: H0 });
     }
     Ok(Run { samples, end: None })
 }
