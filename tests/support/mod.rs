@@ -2,7 +2,9 @@
 #![allow(dead_code)]
 
 pub(crate) mod dual;
+pub(crate) mod exact;
 pub(crate) mod reference;
+pub(crate) mod scenes;
 
 /// The next entry of a fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
 pub(crate) struct Sequence(u64);

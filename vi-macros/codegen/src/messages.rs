@@ -250,7 +250,11 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|candidate| (distance(name, candidate), candidate))
         .filter(|(distance, candidate)| *distance <= candidate.chars().count().max(name.chars().count()).div_ceil(3))
         .filter(|(distance, candidate)| *distance < candidate.chars().count())
-        .min()
+        // Of equally near ones that with the longer common beginning: people err at the end of a word.
+        .min_by_key(|(distance, candidate)| {
+            let beginning = name.chars().zip(candidate.chars()).take_while(|(a, b)| a == b).count();
+            (*distance, core::cmp::Reverse(beginning), *candidate)
+        })
         .map(|(_, candidate)| candidate.to_owned())
 }
 

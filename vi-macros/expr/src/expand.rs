@@ -9,15 +9,18 @@ use std::fmt;
 
 use num_traits::{One, Signed, ToPrimitive};
 
-use crate::{Expr, Node, Pool, Rational};
+use crate::{Expr, Node, Pool, Rational, number};
 
 /// Most terms that one expansion may write.
 const LIMIT: usize = 50_000;
 
+/// So many bits of a coefficient count as one more term.
+const BITS_OF_A_TERM: usize = 16;
+
 /// The expansion would write more terms than the limit.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub struct TooLarge {
-    /// The number of terms that one call of [`Pool::expand`] may write, intermediate ones included.
+    /// The number of terms that one call of [`Pool::expand`] may write, intermediate ones included; long coefficients count as several.
     pub limit: usize,
 }
 
@@ -106,7 +109,9 @@ impl<S: Clone + Ord> Pool<S> {
         let mut products = Vec::new();
         for (left, left_coefficient) in &left {
             for (right, right_coefficient) in &right {
-                products.push((self.mul(*left, *right), left_coefficient * right_coefficient));
+                let coefficient = number::product(left_coefficient, right_coefficient);
+                budget.spend(usize::try_from(number::bits(&coefficient)).unwrap_or(usize::MAX) / BITS_OF_A_TERM)?;
+                products.push((self.mul(*left, *right), coefficient));
             }
         }
         Ok(self.combination(products))

@@ -25,9 +25,28 @@ pub(crate) enum Power {
     Undefined,
 }
 
-/// Bits of numerator and denominator together.
+/// Bits of numerator and denominator together; an integer has none in its denominator.
 pub(crate) fn bits(number: &Rational) -> u64 {
-    number.numer().bits() + number.denom().bits()
+    number.numer().bits() + number.denom().bits() - 1
+}
+
+/// `left + right`. Integers, which most numbers are, are spared the search for a common divisor, which takes a time of the
+/// square of their bits.
+pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
+    if left.is_integer() && right.is_integer() {
+        Rational::from_integer(left.numer() + right.numer())
+    } else {
+        left + right
+    }
+}
+
+/// `left·right`, integers likewise.
+pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
+    if left.is_integer() && right.is_integer() {
+        Rational::from_integer(left.numer() * right.numer())
+    } else {
+        left * right
+    }
 }
 
 /// `base^exponent`.
@@ -49,7 +68,7 @@ pub(crate) fn power(base: &Rational, exponent: &Rational) -> Power {
     let mut roots = Vec::new();
     for (integer, exponent) in [(base.numer(), exponent.clone()), (base.denom(), -exponent)] {
         let Some((exact, root)) = integer_root(integer, exponent) else { return Power::TooLarge };
-        coefficient *= exact;
+        coefficient = product(&coefficient, &exact);
         roots.extend(root);
     }
     Power::Folded { coefficient, roots }

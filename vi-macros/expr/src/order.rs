@@ -13,10 +13,15 @@ fn numbers(left: &Rational, right: &Rational) -> Ordering {
     left.denom().cmp(right.denom()).then_with(|| left.numer().cmp(right.numer()))
 }
 
-/// Shorter lists first; then the first difference decides.
+/// Shorter lists first, then the first handle that differs, then the first number: numbers are seldom looked at.
 fn pairs(left: &[(Expr, Rational)], right: &[(Expr, Rational)]) -> Ordering {
-    let mut orders = left.iter().zip(right).map(|((left, c), (right, d))| left.cmp(right).then_with(|| numbers(c, d)));
-    left.len().cmp(&right.len()).then_with(|| orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
+    let order = left.len().cmp(&right.len());
+    let order = order.then_with(|| first(left.iter().zip(right).map(|(left, right)| left.0.cmp(&right.0))));
+    order.then_with(|| first(left.iter().zip(right).map(|(left, right)| numbers(&left.1, &right.1))))
+}
+
+fn first(mut orders: impl Iterator<Item = Ordering>) -> Ordering {
+    orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
 }
 
 impl Ord for Sum {

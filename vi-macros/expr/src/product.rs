@@ -71,7 +71,7 @@ impl<S: Clone + Ord> Pool<S> {
         let mut product = Factors { coefficient: Rational::one(), powers: BTreeMap::new(), open };
         while let Some((base, mut exponent)) = product.open.pop() {
             if let Some(present) = product.powers.remove(&base) {
-                exponent += present;
+                exponent = number::sum(&exponent, &present);
             }
             if exponent.is_zero() {
                 continue;
@@ -81,7 +81,7 @@ impl<S: Clone + Ord> Pool<S> {
                     product.powers.insert(base, exponent);
                 }
                 Reduction::Parts(coefficient, parts) => {
-                    product.coefficient *= coefficient;
+                    product.coefficient = number::product(&product.coefficient, &coefficient);
                     product.open.extend(parts);
                 }
                 Reduction::Undefined => return Expr::UNDEFINED,
@@ -99,7 +99,8 @@ impl<S: Clone + Ord> Pool<S> {
         match &*self.shared_node(base) {
             Node::Number(value) => self.reduce_number(value, exponent, coefficient),
             Node::Product(product) if exponent.is_integer() => {
-                let parts = product.factors.iter().map(|(base, inner)| (*base, inner * exponent)).collect();
+                let parts =
+                    product.factors.iter().map(|(base, inner)| (*base, number::product(inner, exponent))).collect();
                 Reduction::Parts(Rational::one(), parts)
             }
             Node::Sum(sum) => match sum.as_multiple() {

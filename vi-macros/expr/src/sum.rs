@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use num_traits::{One, Zero};
 
-use crate::{Expr, Node, Pool, Rational, Sum};
+use crate::{Expr, Node, Pool, Rational, Sum, number};
 
 impl<S: Clone + Ord> Pool<S> {
     /// `left + right`. A sum of many terms is built by [`Pool::sum`]: one by one, each addition copies what is there.
@@ -54,13 +54,11 @@ impl<S: Clone + Ord> Pool<S> {
                 continue;
             }
             match self.node(expr) {
-                Node::Number(value) => constant += coefficient * value,
+                Node::Number(value) => constant = number::sum(&constant, &number::product(&coefficient, value)),
                 Node::Sum(sum) => {
-                    if !sum.constant.is_zero() {
-                        constant += &coefficient * &sum.constant;
-                    }
+                    constant = number::sum(&constant, &number::product(&coefficient, &sum.constant));
                     for (term, inner) in &sum.terms {
-                        collect(&mut terms, *term, product_of(&coefficient, inner));
+                        collect(&mut terms, *term, number::product(&coefficient, inner));
                     }
                 }
                 _ => collect(&mut terms, expr, coefficient),
@@ -78,23 +76,12 @@ impl<S: Clone + Ord> Pool<S> {
     }
 }
 
-/// The product without the cost of a reduction to lowest terms where one factor is 1.
-fn product_of(outer: &Rational, inner: &Rational) -> Rational {
-    if outer.is_one() {
-        inner.clone()
-    } else if inner.is_one() {
-        outer.clone()
-    } else {
-        outer * inner
-    }
-}
-
 fn collect(terms: &mut BTreeMap<Expr, Rational>, term: Expr, coefficient: Rational) {
     use std::collections::btree_map::Entry;
     match terms.entry(term) {
         Entry::Vacant(entry) => {
             entry.insert(coefficient);
         }
-        Entry::Occupied(mut entry) => *entry.get_mut() += coefficient,
+        Entry::Occupied(mut entry) => *entry.get_mut() = number::sum(entry.get(), &coefficient),
     }
 }

@@ -6,7 +6,10 @@ use super::failure::Failure;
 use super::simulation::{self, Plan, Simulation};
 use super::table::Table;
 use vi_core::{Parameters, StepError, Stepping};
-use vi_systems as systems;
+use vi_systems::{
+    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, HardDuffing, HarmonicOscillator,
+    HenonHeiles, Kepler, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
+};
 
 /// A system with its parameters, its number of degrees of freedom erased.
 pub(crate) trait System {
@@ -74,14 +77,22 @@ where
 
 /// All systems, in the order in which they are listed.
 pub(crate) fn entries() -> Vec<Entry> {
+    let rest = [0.0];
+    let inclined = [core::f64::consts::FRAC_PI_4, 0.0];
     vec![
-        entry::<systems::DoubleWell, 1>(
-            "particle in a double well: the paper's conservative example",
-            [0.74],
-            [0.0],
-            0.01,
-        ),
-        entry::<systems::DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], [0.0], 0.01),
+        entry::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
+        entry::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
+        entry::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
+        entry::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        entry::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),
+        entry::<DoubleWellDuffing, 1>("driven double well: chaos", [0.8], rest, 0.01),
+        entry::<ParametricPendulum, 1>("pendulum with a modulated gravity", [0.5], rest, 0.01),
+        entry::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
+        entry::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
+        entry::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
+        entry::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
+        entry::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
+        entry::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
     ]
 }
 

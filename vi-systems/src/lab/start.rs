@@ -57,7 +57,7 @@ mod tests {
     #[test]
     fn the_second_point_of_the_damped_oscillator_is_exact() {
         let zeta: f64 = 0.005;
-        let system = DampedOscillator { m: 1.0, k: 4.0, c: 4.0 * zeta };
+        let system = DampedOscillator { c: 4.0 * zeta, ..DampedOscillator::default() };
         for h0 in [1e-4, 0.01, 0.1] {
             let start = (0.0, SVector::from([1.0]), SVector::from([0.0]));
             let found = second_point(&system, start, h0).map(|(_, q)| q[0]);

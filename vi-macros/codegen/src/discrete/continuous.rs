@@ -2,9 +2,11 @@
 //!
 //! In: L and f. Out, with `a` the acceleration and derivatives along the motion:
 //!
-//!     momentum p = L_v          energy = v·L_v − L          mass M = L_vv
-//!     M a = L_q + f − L_vt − L_vq v
-//!     D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
+//! ```text
+//! momentum p = L_v          energy = v·L_v − L          mass M = L_vv
+//! M a = L_q + f − L_vt − L_vq v
+//! D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
+//! ```
 
 use super::Fields;
 use crate::model::Model;

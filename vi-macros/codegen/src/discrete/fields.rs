@@ -3,7 +3,9 @@
 //! In: L and f. Out: their partial derivatives as far as they are asked for, and total derivatives of expressions
 //! that contain fields:
 //!
-//!     d/dx F(t_k, q_k, v_k) = F_t dt_k/dx + Σ_i F_{q_i} dq_{k,i}/dx + Σ_i F_{v_i} dv_{k,i}/dx
+//! ```text
+//! d/dx F(t_k, q_k, v_k) = F_t dt_k/dx + Σ_i F_{q_i} dq_{k,i}/dx + Σ_i F_{v_i} dv_{k,i}/dx
+//! ```
 //!
 //! A partial derivative that depends on parameters only is put in place, so that zeros and constants act at once.
 

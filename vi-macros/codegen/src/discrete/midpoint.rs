@@ -1,6 +1,8 @@
 //! The midpoint rule: L and f in the middle of the interval, order 2, symmetric, symplectic.
 //!
-//!     L_d = h L(t̄, q̄, v)    f_d^± = (h/2) f    g_d^± = −(h/2) f·v    with t̄ = (t0+t1)/2, q̄ = (q0+q1)/2, v = (q1−q0)/h
+//! ```text
+//! L_d = h L(t̄, q̄, v)    f_d^± = (h/2) f    g_d^± = −(h/2) f·v    with t̄ = (t0+t1)/2, q̄ = (q0+q1)/2, v = (q1−q0)/h
+//! ```
 
 /// The rule in the form in which a user writes one.
 pub(super) const RULE: &str = "

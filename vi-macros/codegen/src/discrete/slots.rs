@@ -3,8 +3,10 @@
 //! In: a rule, evaluated. Out: L_d, D1…D4 L_d, f_d^±, g_d^± in fields at the points, the step h and its velocity
 //! v = (q1 − q0)/h. For the midpoint rule
 //!
-//!     D1 L_d = v·L_v − L + (h/2) L_t     D3 L_d = −(v·L_v − L) + (h/2) L_t
-//!     D2 L_d = (h/2) L_q − L_v           D4 L_d =  (h/2) L_q + L_v
+//! ```text
+//! D1 L_d = v·L_v − L + (h/2) L_t     D3 L_d = −(v·L_v − L) + (h/2) L_t
+//! D2 L_d = (h/2) L_q − L_v           D4 L_d =  (h/2) L_q + L_v
+//! ```
 
 use super::fields::{Changes, changes};
 use super::rule::Evaluated;

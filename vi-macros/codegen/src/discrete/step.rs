@@ -2,11 +2,13 @@
 //!
 //! In: the slot derivatives. Out, with `q1 = q0 + h v`, `t1 = t0 + h` and the low parts of what is carried:
 //!
-//!     r = −D2 L_d − f_d⁻ − p0            momentum row
-//!     e =  D1 L_d + g_d⁻ − E0            energy row
-//!     c =  e − v·r                       combined row; its terms of order one have cancelled
-//!     A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
-//!     p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
+//! ```text
+//! r = −D2 L_d − f_d⁻ − p0            momentum row
+//! e =  D1 L_d + g_d⁻ − E0            energy row
+//! c =  e − v·r                       combined row; its terms of order one have cancelled
+//! A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
+//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
+//! ```
 
 use super::fields::changes;
 use super::{Fields, Point, Slots};

@@ -89,7 +89,7 @@ impl Model {
                     match variable {
                         Variable::Time => text.push('t'),
                         Variable::Coordinate(index) => text.push_str(&coordinate(*index)),
-                        Variable::Velocity(index) => text.push_str(&format!("v_{}", coordinate(*index))),
+                        Variable::Velocity(index) => text.extend(["v_", &coordinate(*index)]),
                     }
                 }
                 text

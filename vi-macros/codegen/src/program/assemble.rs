@@ -82,7 +82,7 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
     }
 
-    fn function(&mut self, name: &'static str, groups: Expressions) -> (Function, Expressions) {
+    fn function(&mut self, name: &'static str, groups: &[Vec<Expr>]) -> (Function, Expressions) {
         let flat: Vec<Expr> = groups.iter().flatten().copied().collect();
         let mut used = BTreeMap::new();
         for expr in &flat {
@@ -129,12 +129,12 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let mut acceleration = of.mass.clone();
     acceleration.push(of.mass_times_acceleration.clone());
     vec![
-        assembly.function("lagrangian", vec![vec![of.lagrangian]]),
-        assembly.function("energy", vec![vec![of.energy]]),
-        assembly.function("momentum", vec![of.momentum.clone()]),
-        assembly.function("force", vec![of.force.clone()]),
-        assembly.function("acceleration", acceleration),
-        assembly.function("step_density", vec![vec![of.step_density]]),
+        assembly.function("lagrangian", &[vec![of.lagrangian]]),
+        assembly.function("energy", &[vec![of.energy]]),
+        assembly.function("momentum", core::slice::from_ref(&of.momentum)),
+        assembly.function("force", core::slice::from_ref(&of.force)),
+        assembly.function("acceleration", &acceleration),
+        assembly.function("step_density", &[vec![of.step_density]]),
     ]
 }
 
@@ -155,7 +155,7 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         .into_iter()
         .map(|(name, exprs)| {
             let open = assembly.open_all(&exprs);
-            assembly.function(name, vec![open])
+            assembly.function(name, &[open])
         })
         .collect()
 }
@@ -174,8 +174,8 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(assembly.open_all(&[of.energy_dh]));
     let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
     vec![
-        assembly.function("momentum_equation", momentum),
-        assembly.function("extended_system", extended),
-        assembly.function("increment", gains),
+        assembly.function("momentum_equation", &momentum),
+        assembly.function("extended_system", &extended),
+        assembly.function("increment", &gains),
     ]
 }

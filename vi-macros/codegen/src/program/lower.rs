@@ -134,16 +134,13 @@ impl<'a> Lowering<'a> {
         let add = |operations: &mut Operations, terms: Vec<OperationId>| {
             terms.into_iter().reduce(|left, right| operations.add(Operation::Add(left, right)))
         };
-        match add(&mut self.operations, positive) {
-            Some(first) => {
-                negative.into_iter().fold(first, |left, right| self.operations.add(Operation::Subtract(left, right)))
-            }
-            None => {
-                let all = add(&mut self.operations, negative);
-                let zero = self.operations.constant(0.0);
-                self.operations.add(Operation::Negate(all.unwrap_or(zero)))
-            }
+        if let Some(first) = add(&mut self.operations, positive) {
+            let subtract = |left, right| self.operations.add(Operation::Subtract(left, right));
+            return negative.into_iter().fold(first, subtract);
         }
+        let all = add(&mut self.operations, negative);
+        let zero = self.operations.constant(0.0);
+        self.operations.add(Operation::Negate(all.unwrap_or(zero)))
     }
 
     /// Large terms and those of order h, where a sum has both.

@@ -182,8 +182,11 @@ impl Operation {
         let (first, second) = match self {
             Self::Constant(_) | Self::Input(_) => (None, None),
             Self::Negate(a) | Self::SquareRoot(a) | Self::Reciprocal(a) | Self::Call(_, a) => (Some(*a), None),
-            Self::Add(a, b) | Self::Subtract(a, b) | Self::Multiply(a, b) | Self::Divide(a, b) => (Some(*a), Some(*b)),
-            Self::Call2(_, a, b) => (Some(*a), Some(*b)),
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Call2(_, a, b) => (Some(*a), Some(*b)),
         };
         first.into_iter().chain(second)
     }

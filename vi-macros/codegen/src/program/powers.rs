@@ -64,7 +64,7 @@ impl Lowering<'_> {
         }
         let whole = |lowering: &mut Self, value| {
             let even = (count > 1).then(|| lowering.integer_power(value, count / 2));
-            if count % 2 == 0 {
+            if count.is_multiple_of(2) {
                 return even.unwrap_or(value);
             }
             let root = lowering.operations.add(Operation::SquareRoot(value));
@@ -85,7 +85,7 @@ impl Lowering<'_> {
         if count <= 1 {
             return value;
         }
-        let rest = if count % 2 == 0 { None } else { Some(value) };
+        let rest = (count % 2 == 1).then_some(value);
         let half = self.integer_power(value, count / 2);
         let even = self.operations.add(Operation::Multiply(half, half));
         match rest {

@@ -3,11 +3,13 @@
 //! In: tokens up to the end of an expression. Out: an [`Expression`] whose depth is bounded by [`DEPTH`]; sums and
 //! products are chains, not nested pairs, so that a sum of a thousand terms is one level deep.
 //!
-//!     sum     = product { ("+" | "-") product }
-//!     product = unary { ("*" | "/") unary }
-//!     unary   = "-" unary | power
-//!     power   = atom [ "^" unary ]                  binds tightest, right-associative
-//!     atom    = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
+//! ```text
+//! sum     = product { ("+" | "-") product }
+//! product = unary { ("*" | "/") unary }
+//! unary   = "-" unary | power
+//! power   = atom [ "^" unary ]                  binds tightest, right-associative
+//! atom    = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
+//! ```
 
 use crate::messages::{Message, error};
 use num_traits::Zero;
@@ -21,6 +23,8 @@ use vi_expr::Rational;
 pub(crate) const DEPTH: usize = 100;
 /// Powers of ten that a literal may have, in absolute value; `f64` ends at 308.
 const EXPONENT: i64 = 400;
+/// Digits that a literal may have.
+const DIGITS: usize = 800;
 
 /// An expression as written, with the span of its first token.
 pub struct Expression {
@@ -192,7 +196,7 @@ fn decimal(digits: &str) -> Option<Rational> {
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let exponent: i64 = exponent.parse().ok()?;
     let places = exponent.checked_sub(i64::try_from(fraction.len()).ok()?)?;
-    if digits.len() > 2 * EXPONENT as usize || exponent.abs() > EXPONENT {
+    if digits.len() > DIGITS || exponent.abs() > EXPONENT {
         return None;
     }
     let value = Rational::from_integer(format!("{whole}{fraction}").parse().ok()?);

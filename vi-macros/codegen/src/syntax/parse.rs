@@ -83,11 +83,11 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
     match word.to_string().as_str() {
-        "const" => system.constants.extend(definitions(input, attributes)?),
-        "param" => system.parameters.extend(definitions(input, attributes)?),
+        "const" => system.constants.extend(definitions(input, &attributes)?),
+        "param" => system.parameters.extend(definitions(input, &attributes)?),
         "coord" => system.coordinates.extend(names(input)?),
-        "let" => system.lets.extend(definitions(input, attributes)?),
-        "force" => system.forces.extend(definitions(input, attributes)?),
+        "let" => system.lets.extend(definitions(input, &attributes)?),
+        "force" => system.forces.extend(definitions(input, &attributes)?),
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
         "discretize" if input.peek(syn::token::Brace) => {
             let lines;
@@ -118,11 +118,11 @@ fn rule_lines(input: ParseStream) -> Result<Rule> {
 }
 
 /// `a = 1, b = 2`
-fn definitions(input: ParseStream, attributes: Vec<Attribute>) -> Result<Vec<Definition>> {
-    let mut found = vec![definition(input, attributes.clone())?];
+fn definitions(input: ParseStream, attributes: &[Attribute]) -> Result<Vec<Definition>> {
+    let mut found = vec![definition(input, attributes.to_vec())?];
     while input.peek(Token![,]) {
         input.parse::<Token![,]>()?;
-        found.push(definition(input, attributes.clone())?);
+        found.push(definition(input, attributes.to_vec())?);
     }
     Ok(found)
 }

@@ -1,0 +1,200 @@
+//! Every mistake, at the smallest wrong token.
+//!
+//! Each case is the body of a system in which the wrong token stands between `«` and `»`. The compiler must report
+//! exactly there, with the text given.
+
+use proc_macro2::TokenStream;
+use vi_codegen::{discrete, model, syntax};
+
+/// All errors of a text: (token underlined, message).
+fn errors(text: &str) -> Vec<(String, String)> {
+    let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
+    let result = syntax::parse::system(tokens)
+        .and_then(model::check::model)
+        .and_then(|mut model| discrete::system::system(&mut model).map(|_| ()));
+    let Err(error) = result else { return Vec::new() };
+    let token = |error: &syn::Error| error.span().source_text().unwrap_or_default();
+    error.into_iter().map(|error| (token(&error), error.to_string())).collect()
+}
+
+/// One case: the marked token is underlined, and the message begins with what is given.
+fn case(body: &str, message: &str) {
+    let marked = body.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map(|(token, _)| token);
+    let text = format!("struct System {{ {} }}", body.replace(['«', '»'], ""));
+    let found = errors(&text);
+    let wanted = marked.unwrap_or("System");
+    assert_eq!(found.len(), 1, "{text}\n{found:#?}");
+    let (token, said) = &found[0];
+    assert_eq!(token, wanted, "{text}\n{said}");
+    assert!(said.starts_with(message), "{text}\nsays: {said}\nnot:  {message}");
+    assert!(said.contains("\nhelp: "), "{said}");
+    println!("{text}\n    at `{token}`: {said}\n");
+}
+
+/// The rest of a right system.
+const REST: &str = "coord x; L = dot(x)^2 / 2; discretize midpoint;";
+
+#[test]
+fn names() {
+    case("param a = 1, «a» = 2; coord x; L = a * dot(x)^2; discretize midpoint;", "the name `a` is declared twice");
+    case(
+        "param «t» = 1; coord x; L = dot(x)^2; discretize midpoint;",
+        "the name `t` is reserved\nhelp: `t` is the time",
+    );
+    case("param «L» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the name `L` is reserved");
+    case("param «sin» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the name `sin` is reserved");
+    case(
+        "param mass = 1; coord x; L = «mas» * dot(x)^2; discretize midpoint;",
+        "unknown name `mas`\nhelp: did you mean `mass`?",
+    );
+    case("coord x; L = «g» * dot(x)^2; discretize midpoint;", "unknown name `g`\nhelp: declare it");
+    case("coord x; let a = «b»; let b = 1; L = a * dot(x)^2; discretize midpoint;", "unknown name `b`");
+    case("coord x; L = dot(x)^2 * «sin»; discretize midpoint;", "`sin` is a function\nhelp: write its argument");
+    case("coord x; L = dot(x)^2 * «cosine»(x); discretize midpoint;", "unknown function `cosine`");
+    case(
+        "coord x; L = dot(x)^2 * «sinn»(x); discretize midpoint;",
+        "unknown function `sinn`\nhelp: did you mean `sin`?",
+    );
+    case("coord x; L = dot(x)^2 * «atan2»(x); discretize midpoint;", "`atan2` takes 2 argument(s), not 1");
+    case("coord x; L = dot(x)^2 * «sin»(x, 1); discretize midpoint;", "`sin` takes 1 argument(s), not 2");
+    case("coord x; L = dot(x)^2 * «sin»(); discretize midpoint;", "`sin` takes 1 argument(s), not 0");
+}
+
+#[test]
+fn velocities() {
+    case("param a = 1; coord x; L = dot(x)^2 * dot(«a»); discretize midpoint;", "`dot(a)`: `a` is not a coordinate");
+    case("coord x; L = dot(x)^2 * dot(«t»); discretize midpoint;", "`dot(t)`: `t` is not a coordinate");
+    case("coord x; L = dot(x)^2 * dot(«2»); discretize midpoint;", "`dot` of an expression");
+    case(
+        "coord x; L = dot(x)^2; force x = «dot»(dot(x)); discretize midpoint;",
+        "an expression cannot depend on the acceleration",
+    );
+    case(
+        "coord θ; L = dot(θ)^2; force θ = -«θ_ddot»; discretize midpoint;",
+        "an expression cannot depend on the acceleration `θ_ddot`",
+    );
+    case("coord x; «L» = x^2; discretize midpoint;", "`L` does not depend on any velocity");
+    case(
+        "coord x, «y»; L = dot(x)^2; discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `y` has no kinetic energy",
+    );
+    case(
+        "coord x, y; «L» = (dot(x) + dot(y))^2; discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state",
+    );
+    case("coord «x»; L = x * dot(x); discretize midpoint;", "the mass matrix ∂²L/∂v² is singular for every state");
+}
+
+#[test]
+fn constants() {
+    case("coord x; const a = «x»; L = dot(x)^2; discretize midpoint;", "unknown name `x`");
+    case("param a = 1; const b = «a»; coord x; L = dot(x)^2; discretize midpoint;", "unknown name `a`");
+    case("const a = «ln»(0); coord x; L = dot(x)^2; discretize midpoint;", "the value of `a` is not finite");
+    case(
+        "const a = sqrt(2) - 1; param b = «sqrt»(a - 1); coord x; L = dot(x)^2; discretize midpoint;",
+        "the value of `b` is not finite",
+    );
+    case("const a = 1 / «0»; coord x; L = dot(x)^2; discretize midpoint;", "division by zero");
+    case("coord x; L = dot(x)^2 / («x» - x); discretize midpoint;", "division by zero");
+    case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "division by zero");
+    case("const a = «t»; coord x; L = dot(x)^2; discretize midpoint;", "`a` is not a constant");
+    case("coord x; L = dot(x)^2 * «2x»; discretize midpoint;", "the number `2` runs into `x`\nhelp: write `2 * x`");
+    case("coord x; L = dot(x)^2 * «0x10»; discretize midpoint;", "not a decimal number");
+    case("coord x; L = dot(x)^2 * «\"a\"»; discretize midpoint;", "not a decimal number");
+    case("coord x; L = dot(x)^2 * «1e400»; discretize midpoint;", "this number is outside the range of `f64`");
+}
+
+#[test]
+fn clauses() {
+    case("coord x; discretize midpoint;", "the system has no Lagrangian");
+    case("L = 1; discretize midpoint;", "the system has no coordinates");
+    case("coord x; L = dot(x)^2;", "the system is not discretized\nhelp: write `discretize midpoint;`");
+    case("coord x; L = dot(x)^2; «L» = dot(x)^2; discretize midpoint;", "a second `L`");
+    case("coord x; L = dot(x)^2; discretize midpoint; discretize «midpoint»;", "a second `discretize`");
+    case("coord x; L = dot(x)^2; discretize «midpont»;", "unknown rule `midpont`\nhelp: did you mean `midpoint`?");
+    case("coord x; L = dot(x)^2; force «y» = 1; discretize midpoint;", "a force on `y`, which is not a coordinate");
+    case("coord x; L = dot(x)^2; force x = 1; force «x» = 2; discretize midpoint;", "a second force on `x`");
+    case(&format!("«parm» a = 1; {REST}"), "unknown clause `parm`\nhelp: did you mean `param`?");
+    case(&format!("«;» {REST}"), "expected a clause");
+    case(&format!("param a «1»; {REST}"), "expected `=`");
+    case(&format!("param «1» = 1; {REST}"), "expected a name");
+    case(&format!("param «r#type» = 1; {REST}"), "the name `r#type` is reserved");
+    case("coord x; L = dot(x)^2 «x»; discretize midpoint;", "expected an operator or `;`");
+    case("coord x; L = dot(x)^2 * «;» discretize midpoint;", "expected a number, a name or `(`");
+    case("coord x; L = dot(x)^2 * (x «x»); discretize midpoint;", "expected an operator or `)`");
+    case("coord x; L = dot(x)^2 * hypot(x «x»); discretize midpoint;", "expected an operator, `,` or `)`");
+}
+
+#[test]
+fn rules() {
+    let system = |rule: &str| format!("coord x; L = dot(x)^2 / 2; force x = -x; discretize {{ {rule} }}");
+    let ld = "Ld = h * L(t0, q0, (q1 - q0)/h);";
+    let forces = "fd_minus = h * f(t0, q0, (q1 - q0)/h); fd_plus = 0 * q0; gd_minus = 0;";
+    case(&system(&format!("{ld} {forces} gd_plus = 0; «gd» = 0;")), "a rule has no line `gd`");
+    case(&system(&format!("{ld} {forces} gd_plus = 0; «Ld» = h;")), "a second `Ld` in the rule");
+    case(&system(&format!("{ld} {forces} gd_plus = «q0»;")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = t0 + «q0»;")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = «q2»;")), "unknown name `q2`");
+    case(&system(&format!("{ld} {forces} gd_plus = «sin»(h);")), "unknown function `sin`");
+    case(&system(&format!("{ld} {forces} gd_plus = «L»(t0, q0);")), "`L` takes 3 argument(s), not 2");
+    case(&system(&format!("{ld} {forces} gd_plus = L(«q0», q0, q1);")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = L(t0, «t0», q1);")), "a vector is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = h / «q0»;")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = h^«t0»;")), "a constant number is needed here");
+    let missing = errors(&format!("struct System {{ {} }}", system(&format!("{ld} {forces}"))));
+    assert_eq!(missing.len(), 1, "{missing:?}");
+    assert!(missing[0].1.starts_with("the rule has no line `gd_plus`\nhelp: the system has a force"), "{missing:?}");
+}
+
+#[test]
+fn several_mistakes_are_reported_at_once() {
+    let found = errors("struct System { parm a = 1; coord x L = 1; force y 2; }");
+    assert_eq!(found.len(), 3, "{found:?}");
+    let found = errors("struct System { param t = 1; coord x; L = a * dot(b)^2; force y = c; discretize some; }");
+    let said: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
+    let wanted = [
+        "the name `t` is reserved",
+        "unknown name `a`",
+        "unknown name `c`",
+        "a force on `y`, which is not a coordinate",
+        "unknown rule `some`",
+    ];
+    assert_eq!(said, wanted);
+}
+
+#[test]
+fn what_surrounds_a_system() {
+    let said = |text: &str| errors(text).into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; ");
+    assert!(said("").starts_with("expected `struct Name { … }`"), "{}", said(""));
+    assert!(said("enum A {}").starts_with("expected `struct Name { … }`"));
+    assert!(said("struct A;").starts_with("expected `{` and the clauses"));
+    assert!(said(&format!("struct A {{ {REST} }} struct B;")).starts_with("unexpected text after the system"));
+}
+
+#[test]
+fn depth_and_size_are_bounded() {
+    let nested = format!("coord x; L = dot(x)^2 + {}x{}; discretize midpoint;", "(".repeat(150), ")".repeat(150));
+    let found = errors(&format!("struct System {{ {nested} }}"));
+    assert!(found[0].1.starts_with("this expression is nested deeper than 100 levels"), "{found:?}");
+    let minus = format!("struct System {{ coord x; L = dot(x)^2 + {}x; discretize midpoint; }}", "-".repeat(150));
+    assert!(errors(&minus)[0].1.starts_with("this expression is nested deeper"));
+    // A sum of many terms is one level deep, and lets may build on one another.
+    let long = format!("struct System {{ coord x; L = dot(x)^2{}; discretize midpoint; }}", " + x".repeat(5000));
+    assert_eq!(errors(&long), []);
+    let lets: String = (1..2000).map(|i| format!("let a{i} = sin(a{}) + x;", i - 1)).collect();
+    let chain = format!("struct System {{ coord x; let a0 = x; {lets} L = dot(x)^2 + a1999; discretize midpoint; }}");
+    let found = errors(&chain);
+    assert!(found.is_empty() || found[0].1.starts_with("the system grows over"), "{:?}", found[0]);
+}
+
+#[test]
+fn right_systems_pass() {
+    for body in [
+        "coord q; L = dot(q)^2 / 2 - q^4 / 4; discretize midpoint;",
+        "const g = 9.81, twice = 2 * g; param l = 1 / twice; coord θ, φ; L = l * (dot(θ)^2 + dot(φ)^2) - cos(θ); discretize midpoint;",
+        "coord h, v, p, real, node, s1, T; L = dot(h)^2 + dot(v)^2 + dot(p)^2 + dot(real)^2 + dot(node)^2 + dot(s1)^2 + dot(T)^2 - h * v * p * real * node * s1 * T; discretize midpoint;",
+        "coord x, y; L = dot(x) * dot(y) - x * y; force y = t * dot(x); discretize midpoint;",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {body} }}")), [], "{body}");
+    }
+}
