@@ -1,2 +1,2 @@
-//! tests
-pub use vi_core::*;
+#![doc = include_str!("../README.md")]
+#![no_std]

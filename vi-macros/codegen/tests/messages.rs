@@ -181,7 +181,7 @@ fn depth_and_size_are_bounded() {
     // A sum of many terms is one level deep, and lets may build on one another.
     let long = format!("struct System {{ coord x; L = dot(x)^2{}; discretize midpoint; }}", " + x".repeat(5000));
     assert_eq!(errors(&long), []);
-    let lets: String = (1..2000).map(|i| format!("let a{i} = sin(a{}) + x;", i - 1)).collect();
+    let lets = (1..2000).map(|i| format!("let a{i} = sin(a{}) + x;", i - 1)).collect::<Vec<_>>().concat();
     let chain = format!("struct System {{ coord x; let a0 = x; {lets} L = dot(x)^2 + a1999; discretize midpoint; }}");
     let found = errors(&chain);
     assert!(found.is_empty() || found[0].1.starts_with("the system grows over"), "{:?}", found[0]);

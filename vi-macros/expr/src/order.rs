@@ -14,14 +14,23 @@ fn numbers(left: &Rational, right: &Rational) -> Ordering {
 }
 
 /// Shorter lists first, then the first handle that differs, then the first number: numbers are seldom looked at.
+/// Plain loops, because this is the innermost of a build without optimisation.
 fn pairs(left: &[(Expr, Rational)], right: &[(Expr, Rational)]) -> Ordering {
-    let order = left.len().cmp(&right.len());
-    let order = order.then_with(|| first(left.iter().zip(right).map(|(left, right)| left.0.cmp(&right.0))));
-    order.then_with(|| first(left.iter().zip(right).map(|(left, right)| numbers(&left.1, &right.1))))
-}
-
-fn first(mut orders: impl Iterator<Item = Ordering>) -> Ordering {
-    orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    if left.len() != right.len() {
+        return left.len().cmp(&right.len());
+    }
+    for (left, right) in left.iter().zip(right) {
+        if left.0 != right.0 {
+            return left.0.cmp(&right.0);
+        }
+    }
+    for (left, right) in left.iter().zip(right) {
+        let order = numbers(&left.1, &right.1);
+        if order.is_ne() {
+            return order;
+        }
+    }
+    Ordering::Equal
 }
 
 impl Ord for Sum {

@@ -78,7 +78,7 @@ where
 /// All systems, in the order in which they are listed.
 pub(crate) fn entries() -> Vec<Entry> {
     let rest = [0.0];
-    let inclined = [core::f64::consts::FRAC_PI_4, 0.0];
+    let inclined = [0.8, 0.0];
     vec![
         entry::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
         entry::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
@@ -117,23 +117,19 @@ pub(crate) fn find(name: &str) -> Result<Entry, Failure> {
 
 /// The catalogue as a table.
 pub(crate) fn table() -> Table {
-    let mut table = Table::new("systems", ["system", "what it is", "parameters", "q", "v", "h"]);
+    let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
     for Entry { system, about, q, v, h } in entries() {
         let parameters: Vec<String> =
             system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
-        let coordinates = system.coordinates();
-        let start: Vec<String> = coordinates.iter().zip(&q).map(|(name, value)| format!("{name} = {value}")).collect();
-        let velocities: Vec<String> = v.iter().map(f64::to_string).collect();
-        table.row([
-            kebab(system.name()),
-            about.to_owned(),
-            parameters.join(", "),
-            start.join(", "),
-            velocities.join(", "),
-            h.to_string(),
-        ]);
+        let coordinates = system.coordinates().join(", ");
+        let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
+        table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
     }
     table
+}
+
+fn list(values: &[f64]) -> String {
+    values.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.

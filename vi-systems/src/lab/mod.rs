@@ -80,7 +80,7 @@ pub(crate) fn main() -> ExitCode {
 fn act(action: Action) -> Result<(), Failure> {
     match action {
         Action::Paper { out, steps } => {
-            let summary = paper::write(&out, &paper::Study { steps })?;
+            let summary = paper::write(&out, paper::Study { steps })?;
             print(&summary)
         }
         Action::Run(arguments) => run::run(&arguments),

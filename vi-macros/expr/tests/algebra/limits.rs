@@ -41,7 +41,7 @@ fn a_hundred_thousand_nodes_deep() {
     let found = pool.evaluate_all(&[expr, derivative, moved], &mut |_| 0.7);
     assert!(slope > 0.1);
     for (found, expected) in found.into_iter().zip([value, slope, value]) {
-        // Measured: 2e-16.
+        println!("error {:e}", (found - expected).abs());
         assert!((found - expected).abs() < 1e-15, "{found} instead of {expected}");
     }
     let text = write(&pool, expr);
@@ -101,17 +101,22 @@ fn repeated_squares_are_bounded() {
     }
 }
 
-/// Numbers beyond the bound still meet: nothing is lost but the folding.
+/// Numbers beyond the bound are not folded, and keep their value.
 #[test]
-fn large_numbers_cancel() {
+fn large_numbers_keep_their_value() {
     let mut pool = Pool::new();
-    let large = read(&mut pool, "3^2000");
-    assert!(pool.as_number(large).is_some(), "4000 bits are within the bound");
+    // Next to 2, of 3172 bits.
+    let two = read(&mut pool, "2 + 1/3^1000");
+    assert!(pool.as_number(two).is_some());
     let x = read(&mut pool, "x");
-    let multiple = pool.mul(large, x);
-    let square = pool.mul(multiple, multiple);
-    let result = pool.div(square, multiple);
-    assert_eq!(result, multiple);
+    let double = pool.mul(two, x);
+    let square = pool.mul(double, double);
+    let back = pool.div(square, double);
+    let cube = pool.product(&[square, two, x]);
+    let found = pool.evaluate_all(&[double, square, back, cube], &mut |_| 1.5);
+    assert_eq!(found, [3.0, 9.0, 3.0, 27.0]);
+    let ratio = pool.div(square, square);
+    assert_eq!(ratio, pool.one());
 }
 
 #[test]
@@ -171,7 +176,7 @@ fn exact_numbers_round_correctly() {
     let table: [(&str, f64); 7] = [
         ("1/3", 1.0 / 3.0),
         ("1/10", 0.1),
-        ("123456789012345678901234567890/7", 1.763_668_414_462_081_1e28),
+        ("123456789012345678901234567890/7", 123_456_789_012_345_678_901_234_567_890.0 / 7.0),
         ("10^400", f64::INFINITY),
         ("10^300", 1e300),
         ("10^-310", 1e-310),

@@ -10,7 +10,7 @@ pub(crate) const SYMBOLS: [&str; 4] = ["x", "y", "z", "w"];
 
 #[derive(Debug)]
 pub(crate) enum Tree {
-    Number(i64, i64),
+    Number(i32, i32),
     Symbol(usize),
     Add(Box<Tree>, Box<Tree>),
     Sub(Box<Tree>, Box<Tree>),
@@ -36,9 +36,9 @@ impl Random {
         (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) % bound
     }
 
-    fn between(&mut self, low: i64, high: i64) -> i64 {
+    fn between(&mut self, low: i32, high: i32) -> i32 {
         let width = u64::try_from(high - low).expect("low is below high") + 1;
-        low + i64::try_from(self.below(width)).expect("a small number")
+        low + i32::try_from(self.below(width)).expect("a small number")
     }
 
     /// Rational functions up to the given depth.
@@ -53,7 +53,7 @@ impl Random {
             3..=4 => Tree::Sub(left, right),
             5..=7 => Tree::Mul(left, right),
             8 => Tree::Div(left, right),
-            _ => Tree::Power(left, i32::try_from(self.between(-2, 3)).expect("a small number")),
+            _ => Tree::Power(left, self.between(-2, 3)),
         }
     }
 
@@ -69,7 +69,7 @@ impl Random {
             2 => Tree::Sub(left.into(), right.into()),
             3..=4 => Tree::Mul(left.into(), right.into()),
             5 => Tree::Div(left.into(), right.into()),
-            6 => Tree::Power(left.into(), i32::try_from(self.between(-1, 3)).expect("a small number")),
+            6 => Tree::Power(left.into(), self.between(-1, 3)),
             7 => Tree::Sqrt(left.into()),
             _ => {
                 let place = usize::try_from(self.below(Function::ALL.len() as u64)).expect("a small number");
@@ -91,7 +91,7 @@ impl Tree {
     /// The tree as an expression.
     pub(crate) fn build(&self, pool: &mut Pool) -> Expr {
         match self {
-            Self::Number(numerator, denominator) => pool.number(ratio(*numerator, *denominator)),
+            Self::Number(numerator, denominator) => pool.number(ratio((*numerator).into(), (*denominator).into())),
             Self::Symbol(place) => pool.symbol(SYMBOLS[*place].to_owned()),
             Self::Add(left, right) => Self::binary(pool, left, right, Pool::add),
             Self::Sub(left, right) => Self::binary(pool, left, right, Pool::sub),
@@ -120,7 +120,9 @@ impl Tree {
     /// Exact value and derivative of a rational function; nothing where it divides by 0.
     pub(crate) fn exact(&self, point: &[Rational]) -> Option<(Rational, Rational)> {
         Some(match self {
-            Self::Number(numerator, denominator) => (ratio(*numerator, *denominator), Rational::zero()),
+            Self::Number(numerator, denominator) => {
+                (ratio((*numerator).into(), (*denominator).into()), Rational::zero())
+            }
             Self::Symbol(place) => (point[*place].clone(), ratio(i64::from(*place == 0), 1)),
             Self::Add(left, right) => {
                 let ((a, da), (b, db)) = (left.exact(point)?, right.exact(point)?);
@@ -145,7 +147,7 @@ impl Tree {
     /// Value and derivative in floating point, and in `largest` the largest value or derivative met on the way.
     pub(crate) fn float(&self, point: &[f64], largest: &mut f64) -> (f64, f64) {
         let result = match self {
-            Self::Number(numerator, denominator) => (*numerator as f64 / *denominator as f64, 0.0),
+            Self::Number(numerator, denominator) => (f64::from(*numerator) / f64::from(*denominator), 0.0),
             Self::Symbol(place) => (point[*place], if *place == 0 { 1.0 } else { 0.0 }),
             Self::Add(left, right) => {
                 let ((a, da), (b, db)) = (left.float(point, largest), right.float(point, largest));

@@ -27,8 +27,8 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
          Lagrangians, damping included,",
     );
     let h = sub(&id("h"), &id("k"));
-    let third = row([num("1"), op("/"), num("3")]);
-    let conservative = [h.clone(), sub_sup(&id("D"), &id("k"), &third), op("="), row([id("const"), op("+"), id("O")])];
+    let third = row(&[num("1"), op("/"), num("3")]);
+    let conservative = [h.clone(), sub_sup(&id("D"), &id("k"), &third), op("="), row(&[id("const"), op("+"), id("O")])];
     let square = "<mo>(</mo><msup><mi>h</mi><mn>2</mn></msup><mo>)</mo>";
     let damped = [h, sqrt(&sub(&id("D"), &id("k"))), op("="), id("const")];
     book.formula(

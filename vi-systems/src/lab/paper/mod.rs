@@ -35,7 +35,7 @@ pub(crate) struct Study {
 ///
 /// # Errors
 /// [`Failure::File`] where a file cannot be written, [`Failure::Step`] where a step fails that must not.
-pub(crate) fn write(out: &Path, study: &Study) -> Result<String, Failure> {
+pub(crate) fn write(out: &Path, study: Study) -> Result<String, Failure> {
     let machine = Machine::here();
     let mut book = Book::new(out)?;
     {
@@ -57,7 +57,7 @@ fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
     move |error| Failure::Step { error, before: before.clone() }
 }
 
-fn introduction(book: &mut Book, study: &Study) {
+fn introduction(book: &mut Book, study: Study) {
     book.prose(
         "The paper derives variational integrators for forced Lagrangian systems in which time is a discrete variable of \
          its own: one step solves the momentum equation and the energy equation together, and so finds its own length. \

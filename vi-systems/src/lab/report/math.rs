@@ -46,6 +46,6 @@ pub(crate) fn sqrt(inside: &str) -> String {
 }
 
 /// Elements as one.
-pub(crate) fn row<const N: usize>(elements: [String; N]) -> String {
+pub(crate) fn row(elements: &[String]) -> String {
     format!("<mrow>{}</mrow>", elements.concat())
 }

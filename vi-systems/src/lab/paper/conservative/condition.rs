@@ -48,8 +48,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         "the equations become more ill-conditioned as the step shrinks",
         "—",
         format!("as h to the power {raw} in (q₁, t₁), {unknowns} in (v, h), {scaled} scaled"),
-        Verdict::Cured
-            .when(orders.iter().zip([-2.0, -1.0, 0.0]).all(|(order, theory)| (order - theory).abs() < 0.1)),
+        Verdict::Cured.when(orders.iter().zip([-2.0, -1.0, 0.0]).all(|(order, theory)| (order - theory).abs() < 0.1)),
     );
     Ok(())
 }

@@ -26,12 +26,11 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
         ["case", "fixed step, largest |Eₖ − E₁|", "energy-preserving", "Newton iterations per step", "h_max/h₀"],
     );
     for run in runs {
-        let count: u64 = run.energy.growth.last().map_or(1, |(steps, _)| *steps as u64);
         table.row([
             run.case.label(),
             format!("{:.3e}", run.fixed.error),
             format!("{:.1e}", run.energy.error),
-            format!("{:.2}", mean(run.energy.iterations, count)),
+            format!("{:.2}", run.energy.mean_iterations()),
             format!("{:.4}", run.energy.steps.1 / run.case.h0),
         ]);
     }
@@ -68,11 +67,6 @@ fn fixed_claim(book: &mut Book, runs: &[Run]) {
         format!("bounded; ten times the step makes it {} times as large", ratios.join(" and ")),
         Verdict::reproduced(bounded),
     );
-}
-
-#[allow(clippy::cast_precision_loss)] // counts far below 2⁵³
-fn mean(total: u64, count: u64) -> f64 {
-    total as f64 / count as f64
 }
 
 /// The error over the first oscillations on a linear axis.
@@ -113,7 +107,7 @@ fn growth(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
             series.push(Series::line(format!("fixed, h₀ = {h0}"), look(Look::FIXED), run.fixed.growth.clone()));
             series.push(Series::line(format!("energy, h₀ = {h0}"), look(Look::ENERGY), run.energy.growth.clone()));
         }
-        let end = pair.iter().flat_map(|run| run.energy.growth.last()).map(|(steps, _)| *steps).fold(1.0, f64::max);
+        let end = pair.iter().filter_map(|run| run.energy.growth.last()).map(|(steps, _)| *steps).fold(1.0, f64::max);
         series.push(Series::line("the paper, h₀ = 0.01", Look::PUBLISHED, vec![(1.0, PUBLISHED), (end, PUBLISHED)]));
         let q0 = pair.first().map_or(0.0, |run| run.case.q0);
         let chart = Chart {

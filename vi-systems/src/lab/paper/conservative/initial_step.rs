@@ -35,7 +35,7 @@ struct Rung {
 }
 
 /// The section: a ladder of initial steps for both amplitudes.
-pub(super) fn section(book: &mut Book, study: &Study) -> Result<(), Failure> {
+pub(super) fn section(book: &mut Book, study: Study) -> Result<(), Failure> {
     book.section("The initial step");
     book.prose(
         "The first step is free, and all others follow from it. The paper finds a trade-off: a small \
@@ -56,7 +56,7 @@ pub(super) fn section(book: &mut Book, study: &Study) -> Result<(), Failure> {
 }
 
 impl Rung {
-    fn of(case: Case, study: &Study) -> Result<Self, StepError> {
+    fn of(case: Case, study: Study) -> Result<Self, StepError> {
         let mut integrator = case.start()?;
         let (system, state, e1) = (*integrator.system(), integrator.state(), integrator.energy());
         let length = steps(case.h0, study);
@@ -87,7 +87,7 @@ impl Rung {
 
 /// Steps on a rung: enough to reach the time at which trajectories are compared.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 10⁵ + 1
-fn steps(h0: f64, study: &Study) -> usize {
+fn steps(h0: f64, study: Study) -> usize {
     LENGTH.max(COMPARED / h0 + 1.0).min(f64::from(study.steps)) as usize
 }
 

@@ -26,15 +26,15 @@ const CASES: [Case; 4] = [
 ];
 
 /// The sections on the conservative example.
-pub(super) fn chapter(book: &mut Book, study: &Study, progress: &mut Progress) -> Result<(), Failure> {
+pub(super) fn chapter(book: &mut Book, study: Study, progress: &mut Progress) -> Result<(), Failure> {
     let mut runs = Vec::new();
     for case in CASES {
         progress.message(format!("double well, {}", case.label()));
         runs.push(Run::of(case, study.steps, progress).map_err(unexpected("double well"))?);
     }
     book.section("A particle in a double well");
-    let half_v2 = row([frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);
-    let quartic = row([sup(&id("q"), &num("4")), op("−"), sup(&id("q"), &num("2"))]);
+    let half_v2 = row(&[frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);
+    let quartic = row(&[sup(&id("q"), &num("4")), op("−"), sup(&id("q"), &num("2"))]);
     book.formula(&[id("L"), op("="), half_v2, op("−"), frac(&quartic, &num("2"))].concat());
     book.prose(
         "The particle of mass <i>m</i> = 1 starts from rest, at <i>q</i><sub>0</sub> = 0.74 for a small, nearly harmonic \

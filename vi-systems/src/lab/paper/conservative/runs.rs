@@ -46,7 +46,7 @@ pub(super) struct Track {
     /// Shortest and longest step.
     pub(super) steps: (f64, f64),
     /// Newton iterations altogether.
-    pub(super) iterations: u64,
+    pub(super) iterations: f64,
 }
 
 /// Both runs of a case.
@@ -120,7 +120,12 @@ impl Track {
             self.growth.push((f64::from(index), self.error));
         }
         self.steps = (self.steps.0.min(sample.h), self.steps.1.max(sample.h));
-        self.iterations += u64::from(iterations);
+        self.iterations += f64::from(iterations);
+    }
+
+    /// Newton iterations per step.
+    pub(super) fn mean_iterations(&self) -> f64 {
+        self.iterations / self.growth.last().map_or(f64::NAN, |(steps, _)| *steps)
     }
 
     fn end(&mut self, steps: u32) {

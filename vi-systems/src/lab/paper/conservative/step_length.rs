@@ -24,20 +24,20 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
         op("−"),
         id("v"),
         op("·"),
-        frac(&id("d"), &row([id("d"), id("t")])),
+        frac(&id("d"), &row(&[id("d"), id("t")])),
         sub(&id("L"), &id("q")),
         op("−"),
-        frac(&id("d"), &row([id("d"), id("t")])),
+        frac(&id("d"), &row(&[id("d"), id("t")])),
         sub(&id("L"), &id("t")),
     ];
     book.formula(&density.concat());
     book.prose("without forces (with a force, <i>L<sub>q</sub></i> + <i>f</i> stands for <i>L<sub>q</sub></i>). Then");
-    let third = row([num("1"), op("/"), num("3")]);
+    let third = row(&[num("1"), op("/"), num("3")]);
     let law = [
         sub(&id("h"), &id("k")),
         op("="),
         sub(&id("h"), &num("0")),
-        sup(&row([op("("), frac(&sub(&id("D"), &num("0")), &sub(&id("D"), &id("k"))), op(")")]), &third),
+        sup(&row(&[op("("), frac(&sub(&id("D"), &num("0")), &sub(&id("D"), &id("k"))), op(")")]), &third),
         op("("),
         num("1"),
         op("+"),

@@ -23,7 +23,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.prose("The paper observes that the step of the damped oscillator grows monotonically, and leaves open why. The \
                 energy scale of the motion decays as e<sup>−2<i>ζωt</i></sup>, and so does the step density <i>D</i>; for a \
                 quadratic Lagrangian <i>h</i><sub><i>k</i></sub>√<i>D</i><sub><i>k</i></sub> is constant exactly. Hence");
-    let exponent = row([id("ζ"), id("ω"), id("t")]);
+    let exponent = row(&[id("ζ"), id("ω"), id("t")]);
     let law = [sub(&id("h"), &id("k")), op("≈"), sub(&id("h"), &num("0")), sup(&id("e"), &exponent)];
     book.formula(&law.concat());
     book.prose(

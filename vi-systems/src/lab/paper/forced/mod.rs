@@ -22,8 +22,8 @@ const DAMPING: [f64; 3] = [0.001, 0.005, 0.01];
 pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Failure> {
     progress.message("damped oscillator");
     book.section("A damped oscillator");
-    let kinetic = row([frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);
-    let elastic = row([frac(&num("1"), &num("2")), id("k"), sup(&id("q"), &num("2"))]);
+    let kinetic = row(&[frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);
+    let elastic = row(&[frac(&num("1"), &num("2")), id("k"), sup(&id("q"), &num("2"))]);
     let force = [id("f"), op("="), op("−"), id("c"), id("v")].concat();
     book.formula(&[id("L"), op("="), kinetic, op("−"), elastic, op(","), op("&emsp;"), force].concat());
     book.prose(

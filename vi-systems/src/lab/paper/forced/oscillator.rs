@@ -47,7 +47,7 @@ pub(super) fn exact(zeta: f64, t: f64) -> (f64, f64) {
 /// Energy of the exact motion.
 pub(super) fn exact_energy(zeta: f64, t: f64) -> f64 {
     let (q, v) = exact(zeta, t);
-    (v * v + OMEGA * OMEGA * q * q) / 2.0
+    0.5 * (v * v + OMEGA * OMEGA * q * q)
 }
 
 /// The paper's start: the first interval ends in the exact motion.
