@@ -6,7 +6,8 @@
 //! - `(Π b^e)' = Σ e b' b^(e-1) Π others`
 //! - `f(u, w)' = f_u u' + f_w w'`, and `sign' = 0`
 //!
-//! One pass over the shared nodes: an expression that occurs many times is differentiated once.
+//! One pass over the shared nodes: an expression that occurs many times is differentiated once. Products are flat, so that
+//! a chain of n nested calls has a derivative of n factors, and the way there takes n² steps.
 
 use std::collections::BTreeMap;
 

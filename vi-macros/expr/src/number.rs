@@ -104,7 +104,8 @@ fn integer_root(integer: &BigInt, exponent: Rational) -> Option<(Rational, Optio
         return Some((base, None));
     }
     // A root of higher degree than the number has bits lies strictly between 1 and 2.
-    if let Some(degree) = exponent.denom().to_u32().filter(|degree| u64::from(*degree) <= integer.bits()) {
+    let bits = integer.bits();
+    if let Some(degree) = exponent.denom().to_u32().filter(|degree| bits <= MAX_BITS && u64::from(*degree) <= bits) {
         let root = integer.nth_root(degree);
         if root.pow(degree) == *integer {
             return Some((integer_power(&Rational::from_integer(root), exponent.numer())?, None));

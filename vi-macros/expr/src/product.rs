@@ -35,7 +35,7 @@ enum Reduction {
 }
 
 impl<S: Clone + Ord> Pool<S> {
-    /// `left·right`.
+    /// `left·right`. A product of many factors is built by [`Pool::product`], like a sum by [`Pool::sum`].
     pub fn mul(&mut self, left: Expr, right: Expr) -> Expr {
         self.product(&[left, right])
     }

@@ -93,7 +93,8 @@ fn values() {
             let value = pool.evaluate(expr, &mut |symbol| if symbol == "x" { x } else { y });
             let expected = formula(x, y);
             let error = (value - expected).abs() / (1.0 + expected.abs());
-            assert!(error < 1e-15, "{text} at ({x}, {y}): {value} instead of {expected}");
+            // Measured: 8.2e-17.
+            assert!(error < 1e-16, "{text} at ({x}, {y}): {value} instead of {expected}");
             worst = worst.max(error);
         }
     }
