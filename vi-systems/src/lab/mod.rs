@@ -45,7 +45,7 @@ enum Action {
         /// Folder for the page, its figures (SVG) and their data (CSV)
         #[arg(long, value_name = "DIR", default_value = "paper")]
         out: PathBuf,
-        /// Length of the long runs; with fewer than the paper's million the page says so
+        /// Length of the long runs
         #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = clap::value_parser!(u32).range(1000..))]
         steps: u32,
     },

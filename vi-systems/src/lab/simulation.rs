@@ -46,6 +46,17 @@ pub(crate) struct Plan {
     pub(crate) v: Vec<f64>,
 }
 
+impl Plan {
+    /// The integrator and its start, as they are asked for on the command line.
+    pub(crate) fn method_name(&self) -> &'static str {
+        match (self.method, self.start) {
+            (Method::Fixed, _) => "fixed",
+            (Method::Energy, Start::Midpoint) => "energy, start midpoint",
+            (Method::Energy, Start::Points) => "energy, start points",
+        }
+    }
+}
+
 /// A node: time, coordinates, momenta, discrete energy, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {

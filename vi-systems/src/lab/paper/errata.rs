@@ -29,7 +29,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.prose(
         "The integrators of this page are generated from the Lagrangian and the force; their formulas are derived, not \
          copied. Compared with the paper’s they differ in the places below, each checked by a computer algebra system and \
-         against finite differences. All printed double-well formulas are right, with <i>m</i> = 1.",
+         in 50-digit arithmetic. All printed double-well formulas are right, with <i>m</i> = 1.",
     );
     let mut table = Table::new("errata", ["where", "printed", "derived"]);
     for row in ERRATA {

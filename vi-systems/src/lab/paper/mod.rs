@@ -21,7 +21,7 @@ use book::Book;
 use std::path::Path;
 use vi_core::StepError;
 
-/// Steps of the paper's long runs.
+/// Steps of the long runs.
 pub(crate) const STEPS: u32 = 1_000_000;
 
 /// How large the study is.
@@ -65,14 +65,35 @@ fn introduction(book: &mut Book, study: Study) {
          that state the Lagrangian and the force. Wherever the paper makes a claim, its number stands beside ours; where \
          the two differ, the reason is given.",
     );
-    let millions = if study.steps == STEPS {
-        "The long runs have a million steps, as in the paper.".to_owned()
-    } else {
-        format!("The long runs of this page have {} steps; the paper's have a million.", study.steps)
-    };
     book.prose(&format!(
-        "{millions} Colours mean the same everywhere: <b style=\"color:#D55E00\">energy-preserving</b>, \
+        "The long runs have {} steps. Colours mean the same everywhere: <b style=\"color:#D55E00\">energy-preserving</b>, \
          <b style=\"color:#0072B2\">fixed step</b>. Each figure comes as SVG, with the points that it shows \
-         as CSV. The claims one by one are in the <a href=\"#claims\">last table</a>."
+         as CSV. The claims one by one are in the <a href=\"#claims\">last table</a>.",
+        study.steps
     ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_small_study_makes_every_file_and_reproduces_every_claim() {
+        let folder = std::env::temp_dir().join(format!("vi-lab-paper-{}", std::process::id()));
+        let summary = write(&folder, Study { steps: 3000 }).unwrap_or_else(|failure| panic!("{failure}"));
+        assert!(!summary.contains("not reproduced"), "{summary}");
+        let page = fs::read_to_string(folder.join("index.html")).expect("the page");
+        let files: Vec<String> =
+            page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).map(String::from).collect();
+        let named: Vec<&String> = files.iter().filter(|name| !name.starts_with('#')).collect();
+        // 19 figures in two forms, 7 tables.
+        assert_eq!(named.len(), 2 * 19 + 7);
+        for name in named {
+            let length = fs::metadata(folder.join(name)).map_or(0, |file| file.len());
+            assert!(length > 100, "{name} has {length} bytes");
+        }
+        assert!(!page.contains("NaN") && !page.contains("inf,"), "a number of the page is not finite");
+        fs::remove_dir_all(&folder).expect("the folder can be removed");
+    }
 }

@@ -50,11 +50,11 @@ fn head(request: &Request) -> String {
     let parameters: Vec<String> =
         request.system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
     format!(
-        "# vi-lab {VERSION}\n# command: {}\n# system: {}\n# parameters: {}\n# method: {:?}, h = {}, t = {}, q = {:?}, v = {:?}\n",
+        "# vi-lab {VERSION}\n# command: {}\n# system: {}\n# parameters: {}\n# method: {}, h = {}, t = {}, q = {:?}, v = {:?}\n",
         command_line(),
         request.system.name(),
         parameters.join(", "),
-        plan.method,
+        plan.method_name(),
         plan.h,
         plan.t,
         plan.q,

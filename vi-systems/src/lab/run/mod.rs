@@ -16,10 +16,10 @@ use request::{Length, Request};
 use std::path::PathBuf;
 
 /// Arguments of `vi-lab run`.
-///
-/// The first row is the node from which the integrator starts. With `--method energy --start midpoint` (the default)
-/// the initial state is the middle of the first interval, and that node lies half a step later.
 #[derive(Clone, Debug, Default, Args)]
+#[command(after_help = "The first row is the node from which the integrator starts. With --method energy and \
+                        --start midpoint the initial state is the middle of the first interval, and that node lies half \
+                        a step later.")]
 pub(crate) struct Arguments {
     /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml
     #[arg(value_name = "SYSTEM|SCENE.toml")]

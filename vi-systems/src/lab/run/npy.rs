@@ -6,7 +6,7 @@
 
 use super::super::failure::Failure;
 use super::super::machine::{VERSION, command_line};
-use super::super::simulation::{Method, Row};
+use super::super::simulation::Row;
 use super::{Request, Sink};
 use serde_json::json;
 use std::fs::{self, File};
@@ -31,13 +31,9 @@ impl Npy {
         let columns = request.columns();
         let parameters: serde_json::Map<String, serde_json::Value> =
             request.system.parameters().into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
-        let method = match plan.method {
-            Method::Fixed => "fixed",
-            Method::Energy => "energy",
-        };
         let description = json!({
             "version": VERSION, "command": command_line(), "system": request.system.name(), "parameters": parameters,
-            "method": method, "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "columns": columns,
+            "method": plan.method_name(), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "columns": columns,
         });
         let beside = PathBuf::from(format!("{}.json", path.display()));
         fs::write(&beside, format!("{description:#}\n")).map_err(|error| Failure::file(&beside, error))?;

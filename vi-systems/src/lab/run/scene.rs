@@ -1,15 +1,17 @@
 //! Scenes: a run described in a TOML file.
 //!
-//!     system = "damped-oscillator"      # required; everything else has a default or comes from the command line
-//!     method = "energy"
-//!     start = "midpoint"
-//!     h = 0.01
-//!     steps = 1000                      # or until = 10.0
-//!     t = 0.0
-//!     q = [1.0]
-//!     v = [0.0]
-//!     [parameters]
-//!     c = 0.04
+//! ```toml
+//! system = "damped-oscillator"      # required; everything else has a default or comes from the command line
+//! method = "energy"
+//! start = "midpoint"
+//! h = 0.01
+//! steps = 1000                      # or until = 10.0
+//! t = 0.0
+//! q = [1.0]
+//! v = [0.0]
+//! [parameters]
+//! c = 0.04
+//! ```
 
 use super::super::failure::Failure;
 use super::super::simulation::{Method, Start};

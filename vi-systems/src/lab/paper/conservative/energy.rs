@@ -17,7 +17,7 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
         "The discrete energy <i>E<sub>k</sub></i> = −<i>D</i><sub>3</sub><i>L<sub>d</sub></i> is what the integrator \
          preserves. With the midpoint rule it is the energy at the middle of the step, and it is evaluated there, from the \
          step’s own velocity: recomputed from stored nodes it would show the cancellation of \
-         (<i>q</i><sub><i>k</i>+1</sub> − <i>q<sub>k</sub></i>)/<i>h</i>, about 10⁻¹⁴, whatever the solver.",
+         (<i>q</i><sub><i>k</i>+1</sub> − <i>q<sub>k</sub></i>)/<i>h</i>, 10⁻¹⁴ to 10⁻¹², whatever the solver.",
     );
     oscillation(book, runs)?;
     growth(book, runs)?;

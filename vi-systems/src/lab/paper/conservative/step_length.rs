@@ -16,38 +16,9 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
         "The step length is a function of the place on the orbit. The paper observes that it oscillates with the motion; \
          it does so by a law. With the acceleration <i>a</i> and derivatives along the motion, define the step density",
     );
-    let power = [id("a"), op("·"), sub(&id("L"), &id("q"))].concat();
-    let density = [
-        id("D"),
-        op("="),
-        power,
-        op("−"),
-        id("v"),
-        op("·"),
-        frac(&id("d"), &row(&[id("d"), id("t")])),
-        sub(&id("L"), &id("q")),
-        op("−"),
-        frac(&id("d"), &row(&[id("d"), id("t")])),
-        sub(&id("L"), &id("t")),
-    ];
-    book.formula(&density.concat());
-    book.prose("without forces (with a force, <i>L<sub>q</sub></i> + <i>f</i> stands for <i>L<sub>q</sub></i>). Then");
-    let third = row(&[num("1"), op("/"), num("3")]);
-    let law = [
-        sub(&id("h"), &id("k")),
-        op("="),
-        sub(&id("h"), &num("0")),
-        sup(&row(&[op("("), frac(&sub(&id("D"), &num("0")), &sub(&id("D"), &id("k"))), op(")")]), &third),
-        op("("),
-        num("1"),
-        op("+"),
-        id("O"),
-        op("("),
-        sup(&id("h"), &num("2")),
-        op(")"),
-        op(")"),
-    ];
-    book.formula(&law.concat());
+    book.formula(&density());
+    book.prose("where here the force <i>f</i> is zero. Then, without forces,");
+    book.formula(&law());
     for run in runs.iter().filter(|run| run.case.h0 < 0.05) {
         let name = if run.case.q0 < 0.9 { "step-length-0.74" } else { "step-length-0.995" };
         let mut series = vec![Series::line("computed", Look::ENERGY.line(), computed(run))];
@@ -70,12 +41,30 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
     }
     let ratios: Vec<String> = runs.iter().map(|run| format!("{:.4}", run.energy.steps.1 / run.case.h0)).collect();
     book.claim(
-        "the step adapts to the motion: it oscillates along the orbit, and more the nearer to the saddle",
+        "the step adapts: it oscillates along the orbit",
         "—",
         format!("h_max/h₀ = {}", ratios.join(", ")),
         Verdict::reproduced(runs.iter().all(|run| run.energy.steps.1 > run.case.h0)),
     );
     Ok(())
+}
+
+/// `D = a·(L_q + f) − v·d/dt L_q − d/dt L_t`.
+fn density() -> String {
+    let by_time = || frac(&id("d"), &row(&[id("d"), id("t")]));
+    let power = [id("a"), op("·"), op("("), sub(&id("L"), &id("q")), op("+"), id("f"), op(")")].concat();
+    let force_change = [id("v"), op("·"), by_time(), sub(&id("L"), &id("q"))].concat();
+    let time_change = [by_time(), sub(&id("L"), &id("t"))].concat();
+    [id("D"), op("="), power, op("−"), force_change, op("−"), time_change].concat()
+}
+
+/// `h_k = h_0 (D_0/D_k)^{1/3} (1 + O(h²))`.
+fn law() -> String {
+    let h = |index: String| sub(&id("h"), &index);
+    let third = row(&[num("1"), op("/"), num("3")]);
+    let ratio = row(&[op("("), frac(&sub(&id("D"), &num("0")), &sub(&id("D"), &id("k"))), op(")")]);
+    let correction = [num("1"), op("+"), id("O"), op("("), sup(&id("h"), &num("2")), op(")")].concat();
+    [h(id("k")), op("="), h(num("0")), sup(&ratio, &third), op("("), correction, op(")")].concat()
 }
 
 fn computed(run: &Run) -> Vec<(f64, f64)> {

@@ -2,7 +2,9 @@
 //!
 //! In: nothing. Out: the sections on trajectories, energy, step growth, and negative damping. The exact motion is known:
 //!
-//!     q(t) = e^(−ζωt) (cos ω_d t + (ζω/ω_d) sin ω_d t),    ω = 2,  ω_d = ω √(1 − ζ²)
+//! ```text
+//! q(t) = e^(−ζωt) (cos ω_d t + (ζω/ω_d) sin ω_d t),    ω = 2,  ω_d = ω √(1 − ζ²)
+//! ```
 
 mod decay;
 mod growth;

@@ -98,8 +98,8 @@ mod tests {
             let [(before, _), (q, v), (after, _)] = [t - h, t, t + h].map(|t| exact(zeta, t));
             let acceleration = (after - 2.0 * q + before) / (h * h);
             let residual = acceleration + 2.0 * zeta * OMEGA * v + OMEGA * OMEGA * q;
-            // Measured 1.3e-6: the error h²/12 of the second difference.
-            assert!(residual.abs() < 2e-6, "ζ = {zeta}: {residual}");
+            // Measured 6.7e-7 and, for the velocity, 1.3e-6: the errors h²/12 and h²/6 of the differences.
+            assert!(residual.abs() < 1e-6, "ζ = {zeta}: {residual}");
             assert!(((after - before) / (2.0 * h) - v).abs() < 2e-6, "ζ = {zeta}");
         }
     }
