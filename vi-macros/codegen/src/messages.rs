@@ -33,6 +33,28 @@ pub enum Message {
     NotFinite { name: String },
     /// A division by the exact number zero.
     DivisionByZero,
+    /// An expression that has a value nowhere, as `ln(-1)`.
+    NoValue,
+    /// A number that has to be an integer.
+    NotInteger,
+    /// A length of an array out of bounds.
+    Length { given: i64, limit: usize },
+    /// An index out of the range of its array.
+    IndexRange { name: String, index: i64, first: i64, end: i64 },
+    /// A range that ends before it begins.
+    BackwardRange { from: i64, to: i64 },
+    /// An index on something that is no array.
+    NotArray { name: String },
+    /// An array without an index.
+    ArrayWithoutIndex { name: String },
+    /// A parameter that nothing depends on.
+    UnusedParameter { name: String },
+    /// A second line `dissipation = …;`.
+    SecondDissipation,
+    /// A Rayleigh function without velocities.
+    NoDissipation,
+    /// A slot that L_d does not depend on.
+    UnusedSlot { name: &'static str },
     /// No line `L = …;`.
     MissingLagrangian,
     /// A second line `L = …;`.
@@ -102,6 +124,17 @@ impl Message {
             Self::NotConstant { name } => format!("`{name}` is not a constant"),
             Self::NotFinite { name } => format!("the value of `{name}` is not finite"),
             Self::DivisionByZero => "division by zero".to_owned(),
+            Self::NoValue => "this expression has no value".to_owned(),
+            Self::NotInteger => "this has to be a constant integer".to_owned(),
+            Self::Length { given, .. } => format!("an array of {given} coordinates"),
+            Self::IndexRange { name, index, first, end } => format!("`{name}[{index}]` is out of range {first}..{end}"),
+            Self::BackwardRange { from, to } => format!("the range {from}..{to} ends before it begins"),
+            Self::NotArray { name } => format!("`{name}` is not an array"),
+            Self::ArrayWithoutIndex { name } => format!("`{name}` is an array"),
+            Self::UnusedParameter { name } => format!("the parameter `{name}` acts on nothing"),
+            Self::SecondDissipation => "a second `dissipation`".to_owned(),
+            Self::NoDissipation => "`dissipation` does not depend on any velocity".to_owned(),
+            Self::UnusedSlot { name } => format!("`Ld` does not depend on `{name}`"),
             Self::MissingLagrangian => "the system has no Lagrangian".to_owned(),
             Self::SecondLagrangian => "a second `L`".to_owned(),
             Self::MissingRule => "the system is not discretized".to_owned(),
@@ -143,7 +176,7 @@ impl Message {
             }
             Self::UnknownFunction { near, .. } => did_you_mean(
                 near.as_ref(),
-                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow dot",
+                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow sum dot",
             ),
             Self::Arity { name, takes, .. } => format!("write `{name}({})`", ["a", "a, b"][usize::from(*takes > 1)]),
             Self::FunctionWithoutArguments { name } => format!("write its argument: `{name}(…)`"),
@@ -157,6 +190,19 @@ impl Message {
                 "look for a division by zero, or a root or logarithm of a negative number".to_owned()
             }
             Self::DivisionByZero => "the denominator is identically zero; check it".to_owned(),
+            Self::NoValue => "look for a division by zero, a root or logarithm of a negative number".to_owned(),
+            Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
+            Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
+            Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),
+            Self::BackwardRange { .. } => "write the smaller bound first; the second one is not included".to_owned(),
+            Self::NotArray { name } => format!("write `{name}` without an index"),
+            Self::ArrayWithoutIndex { name } => format!("write one entry, `{name}[0]`, or a sum over it"),
+            Self::UnusedParameter { .. } => "use it in `L` or in a force, or remove it".to_owned(),
+            Self::SecondDissipation => "add them up in one line".to_owned(),
+            Self::NoDissipation => {
+                "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
+            }
+            Self::UnusedSlot { .. } => "a discrete Lagrangian depends on both ends of its interval".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
             Self::MissingRule => "write `discretize midpoint;`".to_owned(),
@@ -174,7 +220,7 @@ impl Message {
                 },
                 |name| format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
             ),
-            Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), "the rules are: midpoint"),
+            Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), "the rules are midpoint, trapezoidal"),
             Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),
             Self::MissingSlot { name } if *name == "Ld" => "write `Ld = …;`".to_owned(),
             Self::MissingSlot { name } => format!("the system has a force: write `{name} = …;`"),
@@ -183,9 +229,10 @@ impl Message {
                 "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"
                     .to_owned()
             }
-            Self::UnknownClause { near, .. } => {
-                did_you_mean(near.as_ref(), "the clauses are const, param, coord, let, L, force, discretize")
-            }
+            Self::UnknownClause { near, .. } => did_you_mean(
+                near.as_ref(),
+                "the clauses are const, param, coord, let, L, force, dissipation, discretize",
+            ),
             Self::Expected { .. } => "a clause reads `name = expression;`, and a sum `a + 2 * b`".to_owned(),
             Self::NumberSuffix { digits, suffix } => format!("write `{digits} * {suffix}` for a product"),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),

@@ -62,6 +62,11 @@ fn names() {
 
 #[test]
 fn velocities() {
+    case("param «a» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the parameter `a` acts on nothing");
+    case(
+        "param a = 1, «b» = 2; coord x; L = a * dot(x)^2 + b * x - b * x; discretize midpoint;",
+        "the parameter `b` acts on nothing",
+    );
     case("param a = 1; coord x; L = dot(x)^2 * dot(«a»); discretize midpoint;", "`dot(a)`: `a` is not a coordinate");
     case("coord x; L = dot(x)^2 * dot(«t»); discretize midpoint;", "`dot(t)`: `t` is not a coordinate");
     case("coord x; L = dot(x)^2 * dot(«2»); discretize midpoint;", "`dot` of an expression");
@@ -89,14 +94,16 @@ fn velocities() {
 fn constants() {
     case("coord x; const a = «x»; L = dot(x)^2; discretize midpoint;", "unknown name `x`");
     case("param a = 1; const b = «a»; coord x; L = dot(x)^2; discretize midpoint;", "unknown name `a`");
-    case("const a = «ln»(0); coord x; L = dot(x)^2; discretize midpoint;", "the value of `a` is not finite");
+    case("const a = «ln»(0); coord x; L = dot(x)^2; discretize midpoint;", "this expression has no value");
+    case("const a = «exp»(1000); coord x; L = dot(x)^2; discretize midpoint;", "the value of `a` is not finite");
     case(
-        "const a = sqrt(2) - 1; param b = «sqrt»(a - 1); coord x; L = dot(x)^2; discretize midpoint;",
+        "const a = sqrt(2) - 2; param b = «sqrt»(a); coord x; L = b * dot(x)^2; discretize midpoint;",
         "the value of `b` is not finite",
     );
+    case("coord x; L = dot(x)^2 * sin(«asin»(2)); discretize midpoint;", "this expression has no value");
     case("const a = 1 / «0»; coord x; L = dot(x)^2; discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 / («x» - x); discretize midpoint;", "division by zero");
-    case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "division by zero");
+    case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "this expression has no value");
     case("const a = «t»; coord x; L = dot(x)^2; discretize midpoint;", "`a` is not a constant");
     case("coord x; L = dot(x)^2 * «2x»; discretize midpoint;", "the number `2` runs into `x`\nhelp: write `2 * x`");
     case("coord x; L = dot(x)^2 * «0x10»; discretize midpoint;", "not a decimal number");
@@ -126,6 +133,53 @@ fn clauses() {
 }
 
 #[test]
+fn arrays() {
+    let system = |line: &str| {
+        let rest = "L = sum(i in 0..N, dot(q[i])^2) + dot(x)^2; discretize midpoint;";
+        format!("const N = 4; coord q[N], x; {line} {rest}")
+    };
+    case("coord q[«0»]; L = 1; discretize midpoint;", "an array of 0 coordinates\nhelp: a system has 1 to 256");
+    case("coord q[«1000»]; L = 1; discretize midpoint;", "an array of 1000 coordinates");
+    case("coord q[«1.5»]; L = 1; discretize midpoint;", "this has to be a constant integer");
+    case("coord q[«pi»]; L = 1; discretize midpoint;", "this has to be a constant integer");
+    case("coord q[«M»]; L = 1; discretize midpoint;", "unknown name `M`");
+    case("coord q[2 «2»]; L = 1; discretize midpoint;", "expected an operator or `]`");
+    case(&system("let e[i in 0..N] = q[«i» + 1] - q[i];"), "`q[4]` is out of range 0..4\nhelp: the indices are 0 to 3");
+    case(&system("let e[i in 1..N] = q[i]; let d = e[«0»];"), "`e[0]` is out of range 1..4");
+    case(&system("let e = q[«-»1];"), "`q[-1]` is out of range 0..4");
+    case(&system("let e = q[«x»];"), "this has to be a constant integer");
+    case(&system("let e = «q»;"), "`q` is an array\nhelp: write one entry, `q[0]`");
+    case(&system("let e = dot(«q»);"), "`q` is an array");
+    case(&system("let e = «x»[0];"), "`x` is not an array");
+    case(&system("let e = «N»[0];"), "`N` is not an array");
+    case(&system("let e = dot(«x»[0]);"), "`dot(x)`: `x` is not a coordinate");
+    case(&system("let e = «p»[0];"), "unknown name `p`");
+    case(&system("let e[«0»] = 1;"), "expected a range");
+    case(&system("let e[i in 3..«1»] = 1;"), "the range 3..1 ends before it begins");
+    case(&system("let e = sum(i in 0..«1»/2, i);"), "this has to be a constant integer");
+    case(&system("let e = sum(«x» in 0..2, 1);"), "the name `x` is declared twice");
+    case(&system("let e = sum(i in 0..2, sum(«i» in 0..2, 1));"), "the name `i` is declared twice");
+    case(&system("let e = sum(i in 0..2, i) + «i»;"), "unknown name `i`");
+    case(&system("let e = sum(«0»..2, i);"), "expected a range");
+    case(&system("let e = sum(i in 0«.».=2, i);"), "expected `..` and the end");
+    case(&system("let e = sum(i in 0..2 «i»);"), "expected `,` and what is summed");
+    case(&system("let e = «sum»;"), "`sum` is a function");
+    case(&system("let e = sum(i in 0..1000000000, «1»);"), "the system grows over 2000000 terms");
+    case(&system("force «q» = 1;"), "`q` is an array");
+    case(&system("force «x»[0] = 1;"), "`x` is not an array");
+    case(&system("force q[«4»] = 1;"), "`q[4]` is out of range 0..4");
+    case(&system("force q[i in 0..«5»] = 1;"), "`q[4]` is out of range 0..4");
+    case(&system("force q[0] = 1; force «q»[i in 0..2] = 1;"), "a second force on `q`");
+}
+
+#[test]
+fn dissipation() {
+    let system = |line: &str| format!("coord x; L = dot(x)^2; {line} discretize midpoint;");
+    case(&system("dissipation = dot(x)^2; «dissipation» = dot(x)^2;"), "a second `dissipation`");
+    case(&system("«dissipation» = x^2;"), "`dissipation` does not depend on any velocity");
+}
+
+#[test]
 fn rules() {
     let system = |rule: &str| format!("coord x; L = dot(x)^2 / 2; force x = -x; discretize {{ {rule} }}");
     let ld = "Ld = h * L(t0, q0, (q1 - q0)/h);";
@@ -141,6 +195,11 @@ fn rules() {
     case(&system(&format!("{ld} {forces} gd_plus = L(t0, «t0», q1);")), "a vector is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = h / «q0»;")), "a number is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = h^«t0»;")), "a constant number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = «q0»[0];")), "expected t0, t1, h, q0, q1, L(…) or f(…)");
+    let rule = |ld: &str| format!("coord x; L = dot(x)^2 / 2 - x^2; discretize {{ {ld} }}");
+    case(&rule("«Ld» = h * L(t0, q0, q0/h);"), "`Ld` does not depend on `q1`");
+    case(&rule("«Ld» = h * L(t0, q1, q1/h);"), "`Ld` does not depend on `q0`");
+    case(&rule("«Ld» = L(t0, q0, q1 - q0);"), "`Ld` does not depend on `t0`");
     let missing = errors(&format!("struct System {{ {} }}", system(&format!("{ld} {forces}"))));
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(missing[0].1.starts_with("the rule has no line `gd_plus`\nhelp: the system has a force"), "{missing:?}");
@@ -194,6 +253,9 @@ fn right_systems_pass() {
         "const g = 9.81, twice = 2 * g; param l = 1 / twice; coord θ, φ; L = l * (dot(θ)^2 + dot(φ)^2) - cos(θ); discretize midpoint;",
         "coord h, v, p, real, node, s1, T; L = dot(h)^2 + dot(v)^2 + dot(p)^2 + dot(real)^2 + dot(node)^2 + dot(s1)^2 + dot(T)^2 - h * v * p * real * node * s1 * T; discretize midpoint;",
         "coord x, y; L = dot(x) * dot(y) - x * y; force y = t * dot(x); discretize midpoint;",
+        "coord x; L = dot(x)^2 - x^2; force x = t; discretize trapezoidal;",
+        "const N = 5; coord θ[N]; let x[i in 0..N] = sum(j in 0..i + 1, dot(θ[j]) * cos(θ[j])); L = sum(i in 0..N, x[i]^2 + dot(θ[i])^2); dissipation = sum(i in 0..N, i * dot(θ[i])^2); force θ[0] = cos(t); discretize midpoint;",
+        "coord q[3]; L = sum(i in 0..3, dot(q[i])^2) - sum(i in 3..3, q[i]); force q[i in 1..3] = -q[i - 1]; discretize trapezoidal;",
     ] {
         assert_eq!(errors(&format!("struct System {{ {body} }}")), [], "{body}");
     }

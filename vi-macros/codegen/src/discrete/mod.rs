@@ -12,6 +12,7 @@ mod rule;
 mod slots;
 mod step;
 pub mod system;
+mod trapezoidal;
 
 pub use continuous::Continuous;
 pub use fields::Fields;
@@ -22,12 +23,13 @@ use crate::syntax::{Rule, parse};
 use vi_expr::Expr;
 
 /// The rules that have a name.
-pub(crate) const RULES: [&str; 1] = ["midpoint"];
+pub(crate) const RULES: [&str; 2] = ["midpoint", "trapezoidal"];
 
 /// A rule by its name.
 pub(crate) fn named_rule(name: &str) -> Option<syn::Result<Rule>> {
     match name {
         "midpoint" => Some(parse::rule(midpoint::RULE)),
+        "trapezoidal" => Some(parse::rule(trapezoidal::RULE)),
         _ => None,
     }
 }

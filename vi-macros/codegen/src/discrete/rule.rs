@@ -108,6 +108,9 @@ impl Evaluation<'_> {
             Kind::Number(value) => Ok(Value::Number(self.pool.number(value.clone()))),
             Kind::Name(name) => self.name(name),
             Kind::Call(function, arguments) => self.call(function, arguments),
+            Kind::Entry(..) | Kind::Sum(..) => {
+                Err(error(written.span, &Message::Expected { what: "t0, t1, h, q0, q1, L(…) or f(…)" }))
+            }
             Kind::Negative(operand) => {
                 let operand = self.value(operand)?;
                 let minus = self.pool.integer(-1);

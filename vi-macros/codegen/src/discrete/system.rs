@@ -2,12 +2,12 @@
 //!
 //! In: a [`Model`]. Out: a [`DiscreteSystem`], or the message that a rule is written wrongly or the system too large.
 
-use super::{DiscreteSystem, Fields, continuous, rule, slots, step};
+use super::{DiscreteSystem, Fields, Slots, continuous, rule, slots, step};
 use crate::messages::{Message, error};
 use crate::model::Model;
 use crate::symbol::Symbol;
 use syn::Result;
-use vi_expr::{Pool, TooLarge};
+use vi_expr::{Expr, Pool, TooLarge};
 
 /// Discretizes a model by its rule.
 ///
@@ -26,6 +26,20 @@ fn derive(model: &Model, pool: &mut Pool<Symbol>) -> Result<DiscreteSystem> {
     let evaluated = rule::evaluate(pool, &model.rule, model.dimension(), model.forced)?;
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
     let slots = slots::slots(pool, &mut fields, evaluated, model.dimension()).map_err(too_large)?;
+    every_slot_acts(pool, model, &slots)?;
     let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;
     Ok(DiscreteSystem { continuous, fields, slots, equations })
+}
+
+/// A discrete Lagrangian that leaves an end of its interval out has no equations of a step.
+fn every_slot_acts(pool: &Pool<Symbol>, model: &Model, slots: &Slots) -> Result<()> {
+    let none = |derivatives: &[Expr]| derivatives.iter().all(|derivative| pool.is_zero(*derivative));
+    let written = model.rule.lines.iter().find(|line| line.name == "Ld");
+    let span = written.map_or(model.rule.span, |line| line.name.span());
+    let each: [(&'static str, &[Expr]); 4] =
+        [("t0", &[slots.d1_ld]), ("q0", &slots.d2_ld), ("t1", &[slots.d3_ld]), ("q1", &slots.d4_ld)];
+    match each.into_iter().find(|(_, derivatives)| none(derivatives)) {
+        Some((name, _)) => Err(error(span, &Message::UnusedSlot { name })),
+        None => Ok(()),
+    }
 }

@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::program::{Function, Operation, OperationId};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
 
@@ -21,9 +21,22 @@ pub(super) struct Body {
     /// The statements before the results.
     pub(super) statements: TokenStream,
     /// The results, in their groups.
-    pub(super) results: Vec<Vec<TokenStream>>,
+    pub(super) results: Vec<Vec<Entry>>,
     /// What is read of the inputs, with its names.
     pub(super) inputs: BTreeMap<Symbol, Ident>,
+}
+
+/// One result.
+pub(super) struct Entry {
+    tokens: TokenStream,
+    /// It is zero for every input.
+    pub(super) zero: bool,
+}
+
+impl ToTokens for Entry {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        self.tokens.to_tokens(tokens);
+    }
 }
 
 /// Where a function reads the velocity of the step.
@@ -156,8 +169,8 @@ impl Printer<'_> {
         })
     }
 
-    fn result(&self, id: OperationId) -> TokenStream {
-        self.operand(id).tokens().clone()
+    fn result(&self, id: OperationId) -> Entry {
+        Entry { tokens: self.operand(id).tokens().clone(), zero: self.function.operations.as_constant(id) == Some(0.0) }
     }
 }
 

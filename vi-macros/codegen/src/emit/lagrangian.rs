@@ -1,17 +1,21 @@
 //! `impl Lagrangian`: the continuous functions.
 
 use super::Source;
-use super::body::{Body, Place, body, state_parts};
+use super::body::{Body, Entry, Place, body, state_parts};
+use crate::model::Coordinate;
 use crate::symbol::Symbol;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use vi_expr::Expr;
+
+/// Rows up to which a matrix is written out, zeros included.
+const DENSE: usize = 3;
 
 /// The implementation of `Lagrangian`.
 pub(super) fn item(source: &Source) -> TokenStream {
     let (model, of) = (source.model, &source.system.continuous);
     let (name, dimension) = (&model.name, source.dimension());
-    let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(ToString::to_string));
+    let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
     let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
     let functions = [
         number(source, "lagrangian", &source.formula("L", of.lagrangian)),
@@ -45,7 +49,7 @@ impl Source<'_> {
     pub(super) fn formulas(&self, name: &str, exprs: &[Expr]) -> String {
         let named = exprs.iter().zip(&self.model.coordinates);
         named
-            .map(|(expr, coordinate)| self.formula(&format!("{name}_{coordinate}"), *expr))
+            .map(|(expr, coordinate)| self.formula(&format!("{name}_{}", coordinate.text()), *expr))
             .collect::<Vec<_>>()
             .join("\n\n")
     }
@@ -63,14 +67,27 @@ impl Source<'_> {
 }
 
 /// The vector of one group of results, its type known from where it stands.
-pub(super) fn vector_of(entries: &[TokenStream]) -> TokenStream {
+pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
     quote!([#(#entries),*].into())
 }
 
-/// The matrix whose rows are these groups of results.
-pub(super) fn matrix_of(rows: &[Vec<TokenStream>]) -> TokenStream {
-    let entries = rows.iter().flatten();
-    quote!(::vi_core::SMatrix::from_row_slice(&[#(#entries),*]))
+/// The matrix whose rows are these groups of results; what is zero for every input is left out of larger ones.
+pub(super) fn matrix_of(rows: &[Vec<Entry>]) -> TokenStream {
+    if rows.len() <= DENSE {
+        let entries = rows.iter().flatten();
+        return quote!(::vi_core::SMatrix::from_row_slice(&[#(#entries),*]));
+    }
+    let assignments = rows.iter().zip(0_usize..).flat_map(|(row, i)| {
+        row.iter().zip(0_usize..).filter(|(entry, _)| !entry.zero).map(move |(entry, j)| {
+            let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
+            quote!(entries[(#i, #j)] = #entry;)
+        })
+    });
+    quote!({
+        let mut entries = ::vi_core::SMatrix::zeros();
+        #(#assignments)*
+        entries
+    })
 }
 
 fn number(source: &Source, name: &str, formula: &str) -> TokenStream {

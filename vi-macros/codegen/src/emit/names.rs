@@ -19,7 +19,8 @@ pub(super) struct Names<'a> {
 }
 
 /// Names that the printed code itself uses, and Rust's keywords that an identifier could be made into.
-const TAKEN: [&str; 11] = ["real", "self", "node", "interval", "mass", "applied", "T", "Some", "None", "Ok", "Err"];
+const TAKEN: [&str; 12] =
+    ["real", "self", "node", "interval", "mass", "applied", "entries", "T", "Some", "None", "Ok", "Err"];
 
 impl<'a> Names<'a> {
     /// Names for a function of a system whose rule has so many points.
@@ -59,7 +60,7 @@ impl<'a> Names<'a> {
     }
 
     fn wanted(&self, symbol: &Symbol) -> String {
-        let coordinate = |index: &usize| self.model.coordinates[*index].to_string();
+        let coordinate = |index: &usize| self.model.coordinates[*index].ident();
         match symbol {
             Symbol::Parameter(index) => self.model.parameters[*index].name.to_string(),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),

@@ -1,7 +1,7 @@
 //! `impl Stepping`: the equations of one step in the unknowns (v, h).
 
 use super::Source;
-use super::body::{Body, Place, part, parts};
+use super::body::{Body, Entry, Place, part, parts};
 use super::lagrangian::{matrix_of, vector_of};
 use crate::model::Model;
 use crate::symbol::Symbol;
@@ -42,7 +42,7 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
 }
 
 /// The momentum row: residual, magnitude and the rows of A, as `MomentumEquation` holds them.
-fn momentum_fields(results: &[Vec<TokenStream>]) -> TokenStream {
+fn momentum_fields(results: &[Vec<Entry>]) -> TokenStream {
     let (residual, magnitude) = (vector_of(&results[0]), vector_of(&results[1]));
     let jacobian = matrix_of(&results[2..]);
     quote! {

@@ -2,35 +2,41 @@
 //!
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
-use super::resolve::{Meaning, Scope};
-use super::{Model, Parameter, mass};
+use super::scope::{Meaning, Scope};
+use super::{Coordinate, Model, Parameter, force, mass};
 use crate::discrete;
-use crate::messages::{Errors, Message, nearest};
+use crate::messages::{Errors, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{Definition, Discretization, System};
+use crate::syntax::{self, Definition, Discretization, Indices, System};
 use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
+
+/// Coordinates that one system may have.
+const COORDINATES: usize = 256;
 
 /// Checks a system.
 ///
 /// # Errors
 /// Everything that is wrong with it.
 pub fn model(system: System) -> Result<Model> {
-    let mut check = Check { pool: Pool::new(), scope: Scope::default(), errors: Errors::default() };
+    let mut check = Check::default();
     check.constants(&system.constants);
     let defaults = check.parameters(&system.parameters);
-    check.coordinates(&system.coordinates, &system.name);
+    let coordinates = check.coordinates(&system.coordinates, &system.name);
     check.lets(&system.lets);
     let lagrangian = check.lagrangian(&system.lagrangians, &system.name);
-    let forces = check.forces(&system.forces, system.coordinates.len());
+    let forces = force::forces(&mut check, &system.forces, &system.dissipations, coordinates.len());
     let rule = check.rule(system.discretizations, &system.name);
+    if check.errors.is_empty() {
+        check.every_parameter_acts(&system.parameters, lagrangian, &forces);
+    }
     let Check { mut pool, errors, .. } = check;
     errors.finish(())?;
     let (Some(lagrangian), Some((rule, rule_name))) = (lagrangian, rule) else {
-        return Err(crate::messages::error(system.name.span(), &Message::MissingLagrangian));
+        return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
-    mass::check(&mut pool, &system.coordinates, lagrangian, system.lagrangians[0].name.span())?;
+    mass::check(&mut pool, &coordinates, lagrangian, system.lagrangians[0].name.span())?;
     let parameters = system.parameters.into_iter().zip(defaults);
     Ok(Model {
         attributes: system.attributes,
@@ -39,7 +45,7 @@ pub fn model(system: System) -> Result<Model> {
         parameters: parameters
             .map(|(written, default)| Parameter { attributes: written.attributes, name: written.name, default })
             .collect(),
-        coordinates: system.coordinates,
+        coordinates,
         lagrangian,
         forced: forces.iter().any(|force| !pool.is_zero(*force)),
         forces,
@@ -50,10 +56,11 @@ pub fn model(system: System) -> Result<Model> {
 }
 
 /// What the rules work on.
-struct Check {
-    pool: Pool<Symbol>,
-    scope: Scope,
-    errors: Errors,
+#[derive(Default)]
+pub(super) struct Check {
+    pub(super) pool: Pool<Symbol>,
+    pub(super) scope: Scope,
+    pub(super) errors: Errors,
 }
 
 impl Check {
@@ -64,15 +71,15 @@ impl Check {
         }
     }
 
+    /// What a stage makes, or nothing and a report.
+    pub(super) fn report<P>(&mut self, made: Result<P>) -> Option<P> {
+        made.map_err(|error| self.errors.add(error)).ok()
+    }
+
     /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.
-    fn value(&mut self, written: &Definition) -> Expr {
-        match self.scope.expression(&mut self.pool, &written.value) {
-            Ok(value) => value,
-            Err(error) => {
-                self.errors.add(error);
-                self.pool.one()
-            }
-        }
+    pub(super) fn value(&mut self, written: &Definition) -> Expr {
+        let value = self.scope.expression(&mut self.pool, &written.value);
+        self.report(value).unwrap_or_else(|| self.pool.one())
     }
 
     /// The finite number that a constant expression stands for.
@@ -107,19 +114,54 @@ impl Check {
         defaults
     }
 
-    fn coordinates(&mut self, coordinates: &[Ident], system: &Ident) {
-        if coordinates.is_empty() {
+    fn coordinates(&mut self, declared: &[syntax::Coordinate], system: &Ident) -> Vec<Coordinate> {
+        if declared.is_empty() {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
-        for (index, coordinate) in coordinates.iter().enumerate() {
-            self.declare(coordinate, Meaning::Coordinate(index));
+        let mut coordinates = Vec::new();
+        for syntax::Coordinate { name, length } in declared {
+            let first = coordinates.len();
+            let Some(written) = length else {
+                coordinates.push(Coordinate { name: name.clone(), index: None });
+                self.declare(name, Meaning::Coordinate(first));
+                continue;
+            };
+            let length = self.scope.integer(&mut self.pool, written);
+            let Some(length) = self.report(length) else { continue };
+            match usize::try_from(length)
+                .ok()
+                .filter(|length| (1..=COORDINATES - first.min(COORDINATES)).contains(length))
+            {
+                Some(length) => {
+                    coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
+                    self.declare(name, Meaning::Coordinates { first, length });
+                }
+                None => self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES }),
+            }
         }
+        coordinates
     }
 
     fn lets(&mut self, lets: &[Definition]) {
         for named in lets {
-            let value = self.value(named);
-            self.declare(&named.name, Meaning::Value(value));
+            match &named.indices {
+                None => {
+                    let value = self.value(named);
+                    self.declare(&named.name, Meaning::Value(value));
+                }
+                Some(Indices::Range(range)) => {
+                    let first = self.scope.integer(&mut self.pool, &range.from);
+                    let entries = self
+                        .scope
+                        .each(&mut self.pool, range, &mut |scope, pool, _| scope.expression(pool, &named.value));
+                    if let (Some(entries), Ok(first)) = (self.report(entries), first) {
+                        self.declare(&named.name, Meaning::Values { first, entries });
+                    }
+                }
+                Some(Indices::One(index)) => {
+                    self.errors.at(index.span, &Message::Expected { what: "a range, as in `i in 0..8`" });
+                }
+            }
         }
     }
 
@@ -139,24 +181,16 @@ impl Check {
         Some(lagrangian)
     }
 
-    fn forces(&mut self, written: &[Definition], dimension: usize) -> Vec<Expr> {
-        let mut forces = vec![None; dimension];
-        for force in written {
-            let name = force.name.to_string();
-            let value = self.value(force);
-            match self.scope.coordinate(&name) {
-                Some(index) if forces[index].is_some() => {
-                    self.errors.at(force.name.span(), &Message::SecondForce { name });
-                }
-                Some(index) => forces[index] = Some(value),
-                None => {
-                    let near = self.scope.near_coordinate(&name);
-                    self.errors.at(force.name.span(), &Message::ForceOnOther { name, near });
-                }
+    /// A parameter that neither L nor f depends on is a mistake of spelling or of thought.
+    fn every_parameter_acts(&mut self, parameters: &[Definition], lagrangian: Option<Expr>, forces: &[Expr]) {
+        let acting: Vec<Expr> = lagrangian.into_iter().chain(forces.iter().copied()).collect();
+        for (index, parameter) in parameters.iter().enumerate() {
+            let itself = |symbol: &Symbol| *symbol == Symbol::Parameter(index);
+            if !acting.iter().any(|expr| self.pool.depends_on(*expr, &itself)) {
+                let name = parameter.name.to_string();
+                self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
             }
         }
-        let zero = self.pool.zero();
-        forces.into_iter().map(|force| force.unwrap_or(zero)).collect()
     }
 
     fn rule(&mut self, written: Vec<Discretization>, system: &Ident) -> Option<(crate::syntax::Rule, String)> {

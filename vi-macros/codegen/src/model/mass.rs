@@ -3,9 +3,10 @@
 //! In: L. Out: nothing, or the message that M is singular for every state. A determinant that vanishes at
 //! [`PROBES`] points drawn from a fixed sequence vanishes identically, but for a chance of nothing.
 
+use super::Coordinate;
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
-use proc_macro2::{Ident, Span};
+use proc_macro2::Span;
 use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Pool};
@@ -16,8 +17,8 @@ const PROBES: u32 = 8;
 const SINGULAR: f64 = 1e-11;
 
 /// Checks that M is not singular for every state.
-pub(super) fn check(pool: &mut Pool<Symbol>, names: &[Ident], lagrangian: Expr, span: Span) -> Result<()> {
-    let dimension = names.len();
+pub(super) fn check(pool: &mut Pool<Symbol>, coordinates: &[Coordinate], lagrangian: Expr, span: Span) -> Result<()> {
+    let dimension = coordinates.len();
     let momenta: Vec<Expr> = (0..dimension).map(|index| by_velocity(pool, lagrangian, index)).collect();
     let mut entries = Vec::with_capacity(dimension * dimension);
     for momentum in momenta {
@@ -35,8 +36,8 @@ pub(super) fn check(pool: &mut Pool<Symbol>, names: &[Ident], lagrangian: Expr, 
             matrix.iter().all(|entry| entry.is_finite()) && !invertible(&mut matrix, dimension)
         });
     if singular {
-        let missing = empty.map(|row| names[row].to_string());
-        let span = empty.map_or(span, |row| names[row].span());
+        let missing = empty.map(|row| coordinates[row].text());
+        let span = empty.map_or(span, |row| coordinates[row].name.span());
         return Err(error(span, &Message::SingularMass { missing }));
     }
     Ok(())

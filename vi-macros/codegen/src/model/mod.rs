@@ -5,15 +5,15 @@
 //! are left are those of declared names.
 
 pub mod check;
+mod force;
 mod mass;
 mod resolve;
+mod scope;
 
 use crate::symbol::Symbol;
 use crate::syntax::Rule;
 use proc_macro2::Ident;
 use vi_expr::{Expr, Pool};
-
-pub use resolve::Scope;
 
 /// A checked system.
 pub struct Model {
@@ -28,7 +28,7 @@ pub struct Model {
     /// Runtime parameters.
     pub parameters: Vec<Parameter>,
     /// Coordinates.
-    pub coordinates: Vec<Ident>,
+    pub coordinates: Vec<Coordinate>,
     /// L(t, q, v).
     pub lagrangian: Expr,
     /// f(t, q, v), one component per coordinate; zero where none is declared.
@@ -39,6 +39,29 @@ pub struct Model {
     pub rule: Rule,
     /// The rule as the documentation names it.
     pub rule_name: String,
+}
+
+/// A coordinate.
+#[derive(Clone)]
+pub struct Coordinate {
+    /// Its name as declared.
+    pub name: Ident,
+    /// Its index in an array.
+    pub index: Option<usize>,
+}
+
+impl Coordinate {
+    /// The name as the user writes it: `x`, or `q[3]`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.index.map_or_else(|| self.name.to_string(), |index| format!("{}[{index}]", self.name))
+    }
+
+    /// The name as an identifier: `x`, or `q_3`.
+    #[must_use]
+    pub fn ident(&self) -> String {
+        self.index.map_or_else(|| self.name.to_string(), |index| format!("{}_{index}", self.name))
+    }
 }
 
 /// A runtime parameter.
@@ -62,7 +85,7 @@ impl Model {
     #[must_use]
     pub fn spell(&self, symbol: &Symbol) -> String {
         use crate::symbol::{Field, Quantity, Variable};
-        let coordinate = |index: usize| self.coordinates[index].to_string();
+        let coordinate = |index: usize| self.coordinates[index].text();
         match symbol {
             Symbol::Parameter(index) => self.parameters[*index].name.to_string(),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),

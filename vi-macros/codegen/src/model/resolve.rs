@@ -1,97 +1,94 @@
-//! Names become symbols, and written expressions become exact ones.
+//! Written expressions become exact ones.
 //!
 //! In: an [`Expression`] and the names in [`Scope`]. Out: an expression of the pool, or the message at the token.
 
+use super::scope::{Meaning, Scope};
 use crate::messages::{Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{Expression, Kind, Operator};
+use crate::syntax::{Expression, Kind, Operator, Range};
+use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Span};
-use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Function, Pool, Rational};
 
 /// Nodes that the expressions of one system may have together.
-pub(crate) const NODES: usize = 400_000;
-
-/// Names that the language keeps for itself, beside its functions.
-const RESERVED: [&str; 5] = ["t", "pi", "L", "f", "self"];
-
-/// The names that an expression may use.
-#[derive(Default)]
-pub struct Scope {
-    names: BTreeMap<String, Meaning>,
-}
-
-/// What a name stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Meaning {
-    /// A parameter, constant, coordinate or `let`, with its expression.
-    Value(Expr),
-    /// A coordinate, with its index.
-    Coordinate(usize),
-}
+const NODES: usize = 400_000;
+/// Expressions that may be read, those of sums and arrays once for each value of the index.
+const READINGS: usize = 2_000_000;
 
 impl Scope {
-    /// Adds a name.
-    ///
-    /// # Errors
-    /// The name is reserved, or was declared before.
-    pub(crate) fn declare(&mut self, name: &Ident, meaning: Meaning) -> Result<()> {
-        let text = name.to_string();
-        if RESERVED.contains(&text.as_str()) || text == "dot" || text == "sqrt" || Function::from_name(&text).is_some()
-        {
-            return Err(error(name.span(), &Message::Reserved { name: text }));
-        }
-        if self.names.contains_key(&text) {
-            return Err(error(name.span(), &Message::Duplicate { name: text }));
-        }
-        self.names.insert(text, meaning);
-        Ok(())
-    }
-
-    /// The index of a coordinate.
-    pub(crate) fn coordinate(&self, name: &str) -> Option<usize> {
-        match self.names.get(name) {
-            Some(Meaning::Coordinate(index)) => Some(*index),
-            _ => None,
-        }
-    }
-
-    /// The coordinate nearest to a misspelt name.
-    pub(crate) fn near_coordinate(&self, name: &str) -> Option<String> {
-        let coordinates = self.names.iter().filter(|(_, meaning)| matches!(meaning, Meaning::Coordinate(_)));
-        nearest(name, coordinates.map(|(name, _)| name.as_str()))
-    }
-
     /// The exact expression that a written one stands for.
     ///
     /// # Errors
-    /// Unknown names, wrong arguments, division by zero, too many terms: at the token.
-    pub fn expression(&self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
-        if pool.len() > NODES {
-            return Err(error(written.span, &Message::TooLarge { limit: NODES }));
+    /// Unknown names, wrong arguments, no value (a division by zero, say), too many terms: at the token.
+    pub(super) fn expression(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
+        self.readings += 1;
+        for (limit, reached) in [(NODES, pool.len()), (READINGS, self.readings)] {
+            if reached > limit {
+                return Err(error(written.span, &Message::TooLarge { limit }));
+            }
         }
-        match &written.kind {
-            Kind::Number(value) => Ok(pool.number(value.clone())),
-            Kind::Name(name) => self.name(pool, name),
-            Kind::Call(function, arguments) => self.call(pool, function, arguments),
+        let value = match &written.kind {
+            Kind::Number(value) => pool.number(value.clone()),
+            Kind::Name(name) => self.name(pool, name)?,
+            Kind::Entry(name, index) => self.entry(pool, name, index)?,
+            Kind::Call(function, arguments) => self.call(pool, function, arguments)?,
+            Kind::Sum(range, summand) => {
+                let terms = self.each(pool, range, &mut |scope, pool, _| scope.expression(pool, summand))?;
+                pool.sum(&terms)
+            }
             Kind::Negative(operand) => {
                 let operand = self.expression(pool, operand)?;
-                Ok(pool.neg(operand))
+                pool.neg(operand)
             }
             Kind::Power(base, exponent) => {
-                let (base, power) = (self.expression(pool, base)?, self.expression(pool, exponent)?);
-                let negative = pool.as_number(power).is_some_and(|value| *value < Rational::default());
-                if negative && pool.is_zero(base) {
-                    return Err(error(written.span, &Message::DivisionByZero));
-                }
-                Ok(pool.call(Function::Pow, &[base, power]))
+                let (base, exponent) = (self.expression(pool, base)?, self.expression(pool, exponent)?);
+                pool.call(Function::Pow, &[base, exponent])
             }
-            Kind::Chain(first, rest) => self.chain(pool, first, rest),
+            Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
+        };
+        if pool.is_undefined(value) {
+            return Err(error(written.span, &Message::NoValue));
         }
+        Ok(value)
     }
 
-    fn chain(&self, pool: &mut Pool<Symbol>, first: &Expression, rest: &[(Operator, Expression)]) -> Result<Expr> {
+    /// What is made of each value of an index, in order.
+    ///
+    /// # Errors
+    /// A bound that is not an integer, a range that runs backwards, an index by a name that is taken; errors of `make`.
+    pub(super) fn each<P>(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        range: &Range,
+        make: &mut dyn FnMut(&mut Self, &mut Pool<Symbol>, i64) -> Result<P>,
+    ) -> Result<Vec<P>> {
+        let (from, to) = (self.integer(pool, &range.from)?, self.integer(pool, &range.to)?);
+        if to < from {
+            return Err(error(range.to.span, &Message::BackwardRange { from, to }));
+        }
+        let mut made = Vec::new();
+        for value in from..to {
+            let number = pool.integer(value);
+            self.declare(&range.index, Meaning::Value(number))?;
+            let one = make(self, pool, value);
+            self.forget(&range.index);
+            made.push(one?);
+        }
+        Ok(made)
+    }
+
+    /// The integer that an expression stands for.
+    ///
+    /// # Errors
+    /// It is no constant, or not an integer.
+    pub(super) fn integer(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<i64> {
+        let value = self.expression(pool, written)?;
+        let integer = pool.as_number(value).filter(|number| number.is_integer()).and_then(|number| number.to_i64());
+        integer.ok_or_else(|| error(written.span, &Message::NotInteger))
+    }
+
+    fn chain(&mut self, pool: &mut Pool<Symbol>, first: &Expression, rest: &[(Operator, Expression)]) -> Result<Expr> {
         let mut operands = vec![self.expression(pool, first)?];
         let mut sum = true;
         for (operator, written) in rest {
@@ -111,36 +108,88 @@ impl Scope {
 
     fn name(&self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Expr> {
         let text = name.to_string();
-        match (self.names.get(&text), text.as_str()) {
+        match (self.meaning(&text), text.as_str()) {
             (Some(Meaning::Value(value)), _) => Ok(*value),
             (Some(Meaning::Coordinate(index)), _) => Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index)))),
+            (Some(Meaning::Values { .. } | Meaning::Coordinates { .. }), _) => {
+                Err(error(name.span(), &Message::ArrayWithoutIndex { name: text }))
+            }
             (None, "t") => Ok(pool.symbol(Symbol::Continuous(Variable::Time))),
             (None, "pi") => Ok(pool.pi()),
             (None, _) => Err(error(name.span(), &self.unknown(text))),
         }
     }
 
+    /// An entry of an array.
+    fn entry(&mut self, pool: &mut Pool<Symbol>, name: &Ident, index: &Expression) -> Result<Expr> {
+        if let Some(coordinate) = self.coordinate_entry(pool, name, index)? {
+            return Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(coordinate))));
+        }
+        let at = self.integer(pool, index)?;
+        let text = name.to_string();
+        let Some(Meaning::Values { first, entries }) = self.meaning(&text) else {
+            return Err(error(name.span(), &self.no_array(text)));
+        };
+        let entry = usize::try_from(at - first).ok().and_then(|offset| entries.get(offset));
+        entry.copied().ok_or_else(|| {
+            let end = first.saturating_add(i64::try_from(entries.len()).unwrap_or(i64::MAX));
+            error(index.span, &Message::IndexRange { name: text, index: at, first: *first, end })
+        })
+    }
+
+    /// The number of the coordinate that an entry is, if its array is one of coordinates.
+    ///
+    /// # Errors
+    /// The index is not an integer, or out of range.
+    pub(super) fn coordinate_entry(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        name: &Ident,
+        index: &Expression,
+    ) -> Result<Option<usize>> {
+        let text = name.to_string();
+        let Some(Meaning::Coordinates { first, length }) = self.meaning(&text).cloned() else {
+            return Ok(None);
+        };
+        let at = self.integer(pool, index)?;
+        match usize::try_from(at).ok().filter(|at| *at < length) {
+            Some(at) => Ok(Some(first + at)),
+            None => {
+                let end = i64::try_from(length).unwrap_or(i64::MAX);
+                Err(error(index.span, &Message::IndexRange { name: text, index: at, first: 0, end }))
+            }
+        }
+    }
+
+    /// What a name with an index was meant to be.
+    fn no_array(&self, name: String) -> Message {
+        if self.meaning(&name).is_some() || name == "t" || name == "pi" {
+            return Message::NotArray { name };
+        }
+        self.unknown(name)
+    }
+
     /// What a name that stands for nothing was meant to be.
     fn unknown(&self, name: String) -> Message {
-        if name == "dot" || name == "sqrt" || Function::from_name(&name).is_some() {
+        if name == "dot" || name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
         }
         let acceleration = ["ddot", "_ddot", "_tt"].iter().find_map(|ending| name.strip_suffix(ending));
-        if acceleration.is_some_and(|stem| self.coordinate(stem.trim_end_matches('_')).is_some()) {
+        if acceleration.is_some_and(|stem| self.is_coordinate(stem.trim_end_matches('_'))) {
             return Message::Acceleration { name };
         }
-        let near = nearest(&name, self.names.keys().map(String::as_str));
+        let near = nearest(&name, self.names());
         Message::Unknown { name, near }
     }
 
-    fn call(&self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Expr> {
+    fn call(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Expr> {
         let name = function.to_string();
         if name == "dot" {
             return self.velocity(pool, function.span(), arguments);
         }
         let known = Function::from_name(&name);
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
-            let functions = Function::ALL.into_iter().map(Function::name).chain(["sqrt", "dot"]);
+            let functions = Function::ALL.into_iter().map(Function::name).chain(["sqrt", "dot", "sum"]);
             let near = nearest(&name, functions);
             return Err(error(function.span(), &Message::UnknownFunction { name, near }));
         };
@@ -154,22 +203,33 @@ impl Scope {
         })
     }
 
-    fn velocity(&self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Expr> {
+    fn velocity(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Expr> {
         let [argument] = arguments else {
             return Err(error(span, &Message::Arity { name: "dot".to_owned(), takes: 1, given: arguments.len() }));
         };
-        match &argument.kind {
-            Kind::Name(name) => match self.coordinate(&name.to_string()) {
-                Some(index) => Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(index)))),
-                None if self.names.contains_key(&name.to_string()) || name == "t" || name == "pi" => {
-                    Err(error(name.span(), &Message::DotOfOther { name: name.to_string() }))
+        let coordinate = match &argument.kind {
+            Kind::Name(name) => match self.meaning(&name.to_string()) {
+                Some(Meaning::Coordinate(index)) => *index,
+                Some(Meaning::Coordinates { .. }) => {
+                    return Err(error(name.span(), &Message::ArrayWithoutIndex { name: name.to_string() }));
                 }
-                None => Err(error(name.span(), &self.unknown(name.to_string()))),
+                None if name != "t" && name != "pi" => {
+                    return Err(error(name.span(), &self.unknown(name.to_string())));
+                }
+                _ => return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() })),
+            },
+            Kind::Entry(name, index) => match self.coordinate_entry(pool, name, index)? {
+                Some(coordinate) => coordinate,
+                None if self.meaning(&name.to_string()).is_some() => {
+                    return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() }));
+                }
+                None => return Err(error(name.span(), &self.unknown(name.to_string()))),
             },
             Kind::Call(inner, _) if inner == "dot" => {
-                Err(error(span, &Message::Acceleration { name: "dot(dot(…))".to_owned() }))
+                return Err(error(span, &Message::Acceleration { name: "dot(dot(…))".to_owned() }));
             }
-            _ => Err(error(argument.span, &Message::DotOfExpression)),
-        }
+            _ => return Err(error(argument.span, &Message::DotOfExpression)),
+        };
+        Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(coordinate))))
     }
 }

@@ -8,7 +8,8 @@
 //! product = unary { ("*" | "/") unary }
 //! unary   = "-" unary | power
 //! power   = atom [ "^" unary ]                  binds tightest, right-associative
-//! atom    = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
+//! atom    = number | name | name "[" sum "]" | name "(" sum { "," sum } ")" | "sum" "(" range "," sum ")" | "(" sum ")"
+//! range   = name "in" sum ".." sum
 //! ```
 
 use crate::messages::{Message, error};
@@ -40,14 +41,28 @@ pub enum Kind {
     Number(Rational),
     /// A name.
     Name(Ident),
+    /// An entry of an array.
+    Entry(Ident, Box<Expression>),
     /// A function of its arguments.
     Call(Ident, Vec<Expression>),
+    /// The sum of an expression over a range.
+    Sum(Box<Range>, Box<Expression>),
     /// Minus an expression.
     Negative(Box<Expression>),
     /// Base and exponent.
     Power(Box<Expression>, Box<Expression>),
     /// Operands of one precedence, from left to right.
     Chain(Box<Expression>, Vec<(Operator, Expression)>),
+}
+
+/// `i in 0..8`: the index runs from the first bound up to, and without, the second.
+pub struct Range {
+    /// The index.
+    pub index: Ident,
+    /// Its first value.
+    pub from: Expression,
+    /// The value after its last.
+    pub to: Expression,
 }
 
 /// The operators of a chain.
@@ -70,6 +85,21 @@ impl Expression {
     /// The message at the token that does not fit.
     pub fn parse(input: ParseStream) -> Result<Self> {
         Self::sum(input, 0)
+    }
+
+    /// Parses `i in 0..8`.
+    pub(super) fn range(input: ParseStream, depth: usize) -> Result<Range> {
+        let (index, expected) = (input.parse::<Ident>(), Message::Expected { what: "a range, as in `i in 0..8`" });
+        let (Ok(index), true) = (index, input.peek(Token![in])) else {
+            return Err(error(input.span(), &expected));
+        };
+        input.parse::<Token![in]>()?;
+        let from = Self::sum(input, depth)?;
+        if !input.peek(Token![..]) || input.peek(Token![..=]) {
+            return Err(error(input.span(), &Message::Expected { what: "`..` and the end of the range" }));
+        }
+        input.parse::<Token![..]>()?;
+        Ok(Range { index, from, to: Self::sum(input, depth)? })
     }
 
     fn sum(input: ParseStream, depth: usize) -> Result<Self> {
@@ -141,16 +171,33 @@ impl Expression {
             let inner;
             syn::parenthesized!(inner in input);
             let expression = Self::sum(&inner, depth + 1)?;
-            return end(&inner).map(|()| expression);
+            return end(&inner, "an operator or `)`").map(|()| expression);
         }
         let Ok(name) = input.parse::<Ident>() else {
             return Err(error(span, &Message::Expected { what: "a number, a name or `(`" }));
         };
+        if input.peek(syn::token::Bracket) {
+            let inner;
+            syn::bracketed!(inner in input);
+            let index = Self::sum(&inner, depth + 1)?;
+            end(&inner, "an operator or `]`")?;
+            return Ok(Self { span, kind: Kind::Entry(name, Box::new(index)) });
+        }
         if !input.peek(syn::token::Paren) {
             return Ok(Self { span, kind: Kind::Name(name) });
         }
         let inner;
         syn::parenthesized!(inner in input);
+        if name == "sum" {
+            let range = Self::range(&inner, depth + 1)?;
+            if !inner.peek(Token![,]) {
+                return Err(error(inner.span(), &Message::Expected { what: "`,` and what is summed" }));
+            }
+            inner.parse::<Token![,]>()?;
+            let summand = Self::sum(&inner, depth + 1)?;
+            end(&inner, "an operator or `)`")?;
+            return Ok(Self { span, kind: Kind::Sum(Box::new(range), Box::new(summand)) });
+        }
         let mut arguments = Punctuated::<Self, Token![,]>::new();
         while !inner.is_empty() {
             arguments.push_value(Self::sum(&inner, depth + 1)?);
@@ -167,11 +214,11 @@ impl Expression {
 }
 
 /// Nothing may be left in the parentheses.
-fn end(inner: ParseStream) -> Result<()> {
+fn end(inner: ParseStream, what: &'static str) -> Result<()> {
     if inner.is_empty() {
         return Ok(());
     }
-    Err(error(inner.span(), &Message::Expected { what: "an operator or `)`" }))
+    Err(error(inner.span(), &Message::Expected { what }))
 }
 
 /// The exact value of a literal.

@@ -6,7 +6,7 @@
 mod expression;
 pub mod parse;
 
-pub use expression::{Expression, Kind, Operator};
+pub use expression::{Expression, Kind, Operator, Range};
 use proc_macro2::{Ident, Span};
 
 /// A `lagrangian!` as written.
@@ -21,14 +21,16 @@ pub struct System {
     pub constants: Vec<Definition>,
     /// `param a = …;` in order.
     pub parameters: Vec<Definition>,
-    /// `coord x;` in order.
-    pub coordinates: Vec<Ident>,
+    /// `coord x, q[8];` in order.
+    pub coordinates: Vec<Coordinate>,
     /// `let a = …;` in order.
     pub lets: Vec<Definition>,
     /// `L = …;`, each one that was written.
     pub lagrangians: Vec<Definition>,
     /// `force x = …;` in order; the name is the coordinate's.
     pub forces: Vec<Definition>,
+    /// `dissipation = …;`, each one that was written.
+    pub dissipations: Vec<Definition>,
     /// `discretize …;`, each one that was written.
     pub discretizations: Vec<Discretization>,
 }
@@ -39,8 +41,26 @@ pub struct Definition {
     pub attributes: Vec<syn::Attribute>,
     /// What is defined.
     pub name: Ident,
+    /// Which entries of an array are defined.
+    pub indices: Option<Indices>,
     /// As what.
     pub value: Expression,
+}
+
+/// Entries of an array.
+pub enum Indices {
+    /// `[i in 0..8]`: one definition for each value of the index.
+    Range(Range),
+    /// `[0]`: this entry.
+    One(Expression),
+}
+
+/// A coordinate, or an array of them.
+pub struct Coordinate {
+    /// Its name.
+    pub name: Ident,
+    /// The length of an array.
+    pub length: Option<Expression>,
 }
 
 /// How L becomes L_d.

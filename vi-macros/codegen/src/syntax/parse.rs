@@ -3,7 +3,7 @@
 //! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
 //! its `;`, so that the next one is read too.
 
-use super::{Definition, Discretization, Expression, Rule, System};
+use super::{Coordinate, Definition, Discretization, Expression, Indices, Rule, System};
 use crate::messages::{Errors, Message, error, nearest};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use syn::ext::IdentExt;
@@ -11,7 +11,7 @@ use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Result, Token, Visibility};
 
 /// The words that open a clause.
-const CLAUSES: [&str; 7] = ["const", "param", "coord", "let", "L", "force", "discretize"];
+const CLAUSES: [&str; 8] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize"];
 
 /// Reads a system.
 ///
@@ -53,6 +53,7 @@ fn header(input: ParseStream) -> Result<System> {
         lets: Vec::new(),
         lagrangians: Vec::new(),
         forces: Vec::new(),
+        dissipations: Vec::new(),
         discretizations: Vec::new(),
     };
     let mut errors = Errors::default();
@@ -83,12 +84,13 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
     match word.to_string().as_str() {
-        "const" => system.constants.extend(definitions(input, &attributes)?),
-        "param" => system.parameters.extend(definitions(input, &attributes)?),
-        "coord" => system.coordinates.extend(names(input)?),
-        "let" => system.lets.extend(definitions(input, &attributes)?),
-        "force" => system.forces.extend(definitions(input, &attributes)?),
+        "const" => system.constants.extend(list(input, &mut |input| definition(input, &attributes))?),
+        "param" => system.parameters.extend(list(input, &mut |input| definition(input, &attributes))?),
+        "coord" => system.coordinates.extend(list(input, &mut coordinate)?),
+        "let" => system.lets.extend(list(input, &mut |input| indexed(input, &attributes))?),
+        "force" => system.forces.extend(list(input, &mut |input| indexed(input, &attributes))?),
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
+        "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
         "discretize" if input.peek(syn::token::Brace) => {
             let lines;
             syn::braced!(lines in input);
@@ -111,25 +113,48 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
 fn rule_lines(input: ParseStream) -> Result<Rule> {
     let mut rule = Rule { span: input.span(), lines: Vec::new() };
     while !input.is_empty() {
-        rule.lines.push(definition(input, Vec::new())?);
+        rule.lines.push(definition(input, &[])?);
         semicolon(input)?;
     }
     Ok(rule)
 }
 
-/// `a = 1, b = 2`
-fn definitions(input: ParseStream, attributes: &[Attribute]) -> Result<Vec<Definition>> {
-    let mut found = vec![definition(input, attributes.to_vec())?];
+/// One or more, separated by commas.
+fn list<P>(input: ParseStream, one: &mut dyn FnMut(ParseStream) -> Result<P>) -> Result<Vec<P>> {
+    let mut found = vec![one(input)?];
     while input.peek(Token![,]) {
         input.parse::<Token![,]>()?;
-        found.push(definition(input, attributes.to_vec())?);
+        found.push(one(input)?);
     }
     Ok(found)
 }
 
 /// `a = 1`
-fn definition(input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
-    value_of(name(input)?, input, attributes)
+fn definition(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
+    value_of(name(input)?, input, attributes.to_vec())
+}
+
+/// `a = 1`, `a[i in 0..8] = 1` or `a[0] = 1`
+fn indexed(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
+    let name = name(input)?;
+    if !input.peek(syn::token::Bracket) {
+        return value_of(name, input, attributes.to_vec());
+    }
+    let inner;
+    syn::bracketed!(inner in input);
+    let range = inner.peek(syn::Ident) && inner.peek2(Token![in]);
+    let indices =
+        if range { Indices::Range(Expression::range(&inner, 0)?) } else { Indices::One(Expression::parse(&inner)?) };
+    close(&inner)?;
+    Ok(Definition { indices: Some(indices), ..value_of(name, input, attributes.to_vec())? })
+}
+
+/// Nothing may be left in the brackets.
+fn close(inner: ParseStream) -> Result<()> {
+    if inner.is_empty() {
+        return Ok(());
+    }
+    Err(error(inner.span(), &Message::Expected { what: "an operator or `]`" }))
 }
 
 /// `= 1`
@@ -138,17 +163,20 @@ fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Resu
         return Err(error(input.span(), &Message::Expected { what: "`=`" }));
     }
     input.parse::<Token![=]>()?;
-    Ok(Definition { attributes, name, value: Expression::parse(input)? })
+    Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
 }
 
-/// `x, y`
-fn names(input: ParseStream) -> Result<Vec<Ident>> {
-    let mut found = vec![name(input)?];
-    while input.peek(Token![,]) {
-        input.parse::<Token![,]>()?;
-        found.push(name(input)?);
+/// `x` or `q[8]`
+fn coordinate(input: ParseStream) -> Result<Coordinate> {
+    let name = name(input)?;
+    if !input.peek(syn::token::Bracket) {
+        return Ok(Coordinate { name, length: None });
     }
-    Ok(found)
+    let inner;
+    syn::bracketed!(inner in input);
+    let length = Some(Expression::parse(&inner)?);
+    close(&inner)?;
+    Ok(Coordinate { name, length })
 }
 
 fn name(input: ParseStream) -> Result<Ident> {

@@ -1,0 +1,105 @@
+//! The generalized force: the sum of what the lines `force` say and of what dissipates.
+//!
+//! In: the lines `force x = …;` and `dissipation = R;`. Out: one expression per coordinate,
+//!
+//! ```text
+//! f_i = (line of x_i) − ∂R/∂v_i        R(t,q,v) is Rayleigh's function
+//! ```
+
+use super::check::Check;
+use super::scope::Meaning;
+use crate::messages::{Message, error};
+use crate::symbol::{Symbol, Variable};
+use crate::syntax::{Definition, Indices};
+use syn::Result;
+use vi_expr::Expr;
+
+/// The force on each coordinate; zero where none is declared.
+pub(super) fn forces(
+    check: &mut Check,
+    lines: &[Definition],
+    dissipations: &[Definition],
+    dimension: usize,
+) -> Vec<Expr> {
+    let mut forces: Vec<Option<Expr>> = vec![None; dimension];
+    for line in lines {
+        let Some(entries) = entries(check, line) else { continue };
+        for (coordinate, value) in entries {
+            if forces[coordinate].replace(value).is_some() {
+                check.errors.at(line.name.span(), &Message::SecondForce { name: line.name.to_string() });
+                break;
+            }
+        }
+    }
+    let zero = check.pool.zero();
+    let mut forces: Vec<Expr> = forces.into_iter().map(|force| force.unwrap_or(zero)).collect();
+    dissipate(check, dissipations, &mut forces);
+    forces
+}
+
+/// The coordinates that a line acts on, with their forces.
+fn entries(check: &mut Check, line: &Definition) -> Option<Vec<(usize, Expr)>> {
+    let name = line.name.to_string();
+    let wanted = match (check.scope.meaning(&name).cloned(), &line.indices) {
+        (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, check.value(line))]),
+        (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
+        (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
+        (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(check, line, indices),
+        _ => {
+            // What acts on nothing may be wrong itself.
+            check.value(line);
+            let near = check.scope.near_coordinate(&name);
+            Err(error(line.name.span(), &Message::ForceOnOther { name, near }))
+        }
+    };
+    check.report(wanted)
+}
+
+fn array_entries(check: &mut Check, line: &Definition, indices: &Indices) -> Result<Vec<(usize, Expr)>> {
+    let Check { scope, pool, .. } = check;
+    let range = match indices {
+        Indices::One(index) => {
+            let value = scope.expression(pool, &line.value)?;
+            return Ok(scope
+                .coordinate_entry(pool, &line.name, index)?
+                .map(|entry| (entry, value))
+                .into_iter()
+                .collect());
+        }
+        Indices::Range(range) => range,
+    };
+    let Some(Meaning::Coordinates { first, length }) = scope.meaning(&line.name.to_string()).cloned() else {
+        return Ok(Vec::new());
+    };
+    let entries = scope.each(pool, range, &mut |scope, pool, index| {
+        let value = scope.expression(pool, &line.value)?;
+        match usize::try_from(index).ok().filter(|index| *index < length) {
+            Some(index) => Ok((first + index, value)),
+            None => {
+                let (name, end) = (line.name.to_string(), i64::try_from(length).unwrap_or(i64::MAX));
+                Err(error(range.to.span, &Message::IndexRange { name, index, first: 0, end }))
+            }
+        }
+    });
+    entries
+}
+
+/// Adds −∂R/∂v.
+fn dissipate(check: &mut Check, written: &[Definition], forces: &mut [Expr]) {
+    let Some((first, others)) = written.split_first() else { return };
+    for other in others {
+        check.errors.at(other.name.span(), &Message::SecondDissipation);
+    }
+    let rayleigh = check.value(first);
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+    if check.errors.is_empty() && !check.pool.depends_on(rayleigh, &moves) {
+        check.errors.at(first.name.span(), &Message::NoDissipation);
+    }
+    for (index, force) in forces.iter_mut().enumerate() {
+        let velocity = Symbol::Continuous(Variable::Velocity(index));
+        let loss = check.pool.derivative(rayleigh, &mut |pool, symbol| {
+            if *symbol == velocity { pool.one() } else { pool.zero() }
+        });
+        *force = check.pool.sub(*force, loss);
+    }
+}

@@ -1,0 +1,74 @@
+//! The names that an expression may use, and what they stand for.
+
+use crate::messages::{Message, error, nearest};
+use proc_macro2::Ident;
+use std::collections::BTreeMap;
+use syn::Result;
+use vi_expr::{Expr, Function};
+
+/// Names that the language keeps for itself, beside its functions.
+const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
+
+/// The names that an expression may use.
+#[derive(Default)]
+pub(super) struct Scope {
+    names: BTreeMap<String, Meaning>,
+    /// Expressions read so far.
+    pub(super) readings: usize,
+}
+
+/// What a name stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// A parameter, constant, index or `let`, with its expression.
+    Value(Expr),
+    /// An array of `let`s: its first index, its entries.
+    Values { first: i64, entries: Vec<Expr> },
+    /// A coordinate, by its number.
+    Coordinate(usize),
+    /// An array of coordinates: the number of its first one, its length.
+    Coordinates { first: usize, length: usize },
+}
+
+impl Scope {
+    /// Adds a name.
+    ///
+    /// # Errors
+    /// The name is reserved, or was declared before.
+    pub(super) fn declare(&mut self, name: &Ident, meaning: Meaning) -> Result<()> {
+        let text = name.to_string();
+        if RESERVED.contains(&text.as_str()) || Function::from_name(&text).is_some() {
+            return Err(error(name.span(), &Message::Reserved { name: text }));
+        }
+        if self.names.contains_key(&text) {
+            return Err(error(name.span(), &Message::Duplicate { name: text }));
+        }
+        self.names.insert(text, meaning);
+        Ok(())
+    }
+
+    /// Removes an index after its range.
+    pub(super) fn forget(&mut self, name: &Ident) {
+        self.names.remove(&name.to_string());
+    }
+
+    /// What a name stands for.
+    pub(super) fn meaning(&self, name: &str) -> Option<&Meaning> {
+        self.names.get(name)
+    }
+
+    /// All names, in order.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.keys().map(String::as_str)
+    }
+
+    /// Whether a name is a coordinate, or an array of them.
+    pub(super) fn is_coordinate(&self, name: &str) -> bool {
+        matches!(self.meaning(name), Some(Meaning::Coordinate(_) | Meaning::Coordinates { .. }))
+    }
+
+    /// The coordinate nearest to a misspelt name.
+    pub(super) fn near_coordinate(&self, name: &str) -> Option<String> {
+        nearest(name, self.names().filter(|known| self.is_coordinate(known)))
+    }
+}
