@@ -198,7 +198,6 @@ impl Message {
             Self::NotArray { name } => format!("write `{name}` without an index"),
             Self::ArrayWithoutIndex { name } => format!("write one entry, `{name}[0]`, or a sum over it"),
             Self::UnusedParameter { .. } => "use it in `L` or in a force, or remove it".to_owned(),
-            Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoDissipation => {
                 "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
             }
@@ -211,7 +210,7 @@ impl Message {
             Self::ForceOnOther { near, .. } => {
                 did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`")
             }
-            Self::SecondForce { .. } => "add them up in one line".to_owned(),
+            Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
             Self::SingularMass { missing } => missing.as_ref().map_or_else(
                 || {

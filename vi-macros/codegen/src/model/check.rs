@@ -78,6 +78,7 @@ impl Check {
 
     /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.
     pub(super) fn value(&mut self, written: &Definition) -> Expr {
+        self.scope.readings = 0;
         let value = self.scope.expression(&mut self.pool, &written.value);
         self.report(value).unwrap_or_else(|| self.pool.one())
     }
@@ -144,6 +145,7 @@ impl Check {
 
     fn lets(&mut self, lets: &[Definition]) {
         for named in lets {
+            self.scope.readings = 0;
             match &named.indices {
                 None => {
                     let value = self.value(named);

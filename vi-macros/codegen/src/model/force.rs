@@ -57,6 +57,7 @@ fn entries(check: &mut Check, line: &Definition) -> Option<Vec<(usize, Expr)>> {
 
 fn array_entries(check: &mut Check, line: &Definition, indices: &Indices) -> Result<Vec<(usize, Expr)>> {
     let Check { scope, pool, .. } = check;
+    scope.readings = 0;
     let range = match indices {
         Indices::One(index) => {
             let value = scope.expression(pool, &line.value)?;
@@ -71,17 +72,14 @@ fn array_entries(check: &mut Check, line: &Definition, indices: &Indices) -> Res
     let Some(Meaning::Coordinates { first, length }) = scope.meaning(&line.name.to_string()).cloned() else {
         return Ok(Vec::new());
     };
-    let entries = scope.each(pool, range, &mut |scope, pool, index| {
+    scope.each(pool, range, &mut |scope, pool, index| {
         let value = scope.expression(pool, &line.value)?;
-        match usize::try_from(index).ok().filter(|index| *index < length) {
-            Some(index) => Ok((first + index, value)),
-            None => {
-                let (name, end) = (line.name.to_string(), i64::try_from(length).unwrap_or(i64::MAX));
-                Err(error(range.to.span, &Message::IndexRange { name, index, first: 0, end }))
-            }
+        if let Some(index) = usize::try_from(index).ok().filter(|index| *index < length) {
+            return Ok((first + index, value));
         }
-    });
-    entries
+        let (name, end) = (line.name.to_string(), i64::try_from(length).unwrap_or(i64::MAX));
+        Err(error(range.to.span, &Message::IndexRange { name, index, first: 0, end }))
+    })
 }
 
 /// Adds −∂R/∂v.

@@ -13,8 +13,11 @@ use vi_expr::{Expr, Function, Pool, Rational};
 
 /// Nodes that the expressions of one system may have together.
 const NODES: usize = 400_000;
-/// Expressions that may be read, those of sums and arrays once for each value of the index.
-const READINGS: usize = 2_000_000;
+/// Expressions that one definition may read, those of sums and arrays once for each value of the index.
+const READINGS: usize = 100_000;
+
+/// What is done with one value of an index.
+type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
 
 impl Scope {
     /// The exact expression that a written one stands for.
@@ -57,25 +60,20 @@ impl Scope {
     ///
     /// # Errors
     /// A bound that is not an integer, a range that runs backwards, an index by a name that is taken; errors of `make`.
-    pub(super) fn each<P>(
-        &mut self,
-        pool: &mut Pool<Symbol>,
-        range: &Range,
-        make: &mut dyn FnMut(&mut Self, &mut Pool<Symbol>, i64) -> Result<P>,
-    ) -> Result<Vec<P>> {
+    pub(super) fn each<P>(&mut self, pool: &mut Pool<Symbol>, range: &Range, make: Make<P>) -> Result<Vec<P>> {
         let (from, to) = (self.integer(pool, &range.from)?, self.integer(pool, &range.to)?);
         if to < from {
             return Err(error(range.to.span, &Message::BackwardRange { from, to }));
         }
-        let mut made = Vec::new();
-        for value in from..to {
-            let number = pool.integer(value);
-            self.declare(&range.index, Meaning::Value(number))?;
-            let one = make(self, pool, value);
-            self.forget(&range.index);
-            made.push(one?);
-        }
-        Ok(made)
+        let index = range.index.to_string();
+        self.declare(&range.index, Meaning::Value(pool.zero()))?;
+        let made = (from..to).map(|value| {
+            self.set(&index, Meaning::Value(pool.integer(value)));
+            make(self, pool, value)
+        });
+        let made = made.collect();
+        self.forget(&index);
+        made
     }
 
     /// The integer that an expression stands for.
@@ -84,7 +82,7 @@ impl Scope {
     /// It is no constant, or not an integer.
     pub(super) fn integer(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<i64> {
         let value = self.expression(pool, written)?;
-        let integer = pool.as_number(value).filter(|number| number.is_integer()).and_then(|number| number.to_i64());
+        let integer = pool.as_number(value).filter(|number| number.is_integer()).and_then(ToPrimitive::to_i64);
         integer.ok_or_else(|| error(written.span, &Message::NotInteger))
     }
 
@@ -152,13 +150,11 @@ impl Scope {
             return Ok(None);
         };
         let at = self.integer(pool, index)?;
-        match usize::try_from(at).ok().filter(|at| *at < length) {
-            Some(at) => Ok(Some(first + at)),
-            None => {
-                let end = i64::try_from(length).unwrap_or(i64::MAX);
-                Err(error(index.span, &Message::IndexRange { name: text, index: at, first: 0, end }))
-            }
+        if let Some(at) = usize::try_from(at).ok().filter(|at| *at < length) {
+            return Ok(Some(first + at));
         }
+        let end = i64::try_from(length).unwrap_or(i64::MAX);
+        Err(error(index.span, &Message::IndexRange { name: text, index: at, first: 0, end }))
     }
 
     /// What a name with an index was meant to be.

@@ -13,7 +13,7 @@ const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
 #[derive(Default)]
 pub(super) struct Scope {
     names: BTreeMap<String, Meaning>,
-    /// Expressions read so far.
+    /// Expressions read so far by this definition.
     pub(super) readings: usize,
 }
 
@@ -48,8 +48,15 @@ impl Scope {
     }
 
     /// Removes an index after its range.
-    pub(super) fn forget(&mut self, name: &Ident) {
-        self.names.remove(&name.to_string());
+    pub(super) fn forget(&mut self, name: &str) {
+        self.names.remove(name);
+    }
+
+    /// Gives a declared name another meaning: an index its next value.
+    pub(super) fn set(&mut self, name: &str, meaning: Meaning) {
+        if let Some(known) = self.names.get_mut(name) {
+            *known = meaning;
+        }
     }
 
     /// What a name stands for.
