@@ -38,6 +38,7 @@ pub(super) fn items(source: &Source) -> TokenStream {
 
         impl<T: ::vi_core::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
+            #[allow(unused_variables)]
             pub fn from_f64(system: &#name<f64>) -> Self {
                 Self { #(#names: T::real(system.#names),)* #marker_value }
             }
