@@ -20,26 +20,27 @@ pub(super) fn items(source: &Source) -> TokenStream {
         quote!(#(#attributes)* #[doc = #default] pub #name: T)
     });
     let arms = names.iter().zip(texts).map(|(name, text)| quote!(#text => Some(&mut self.#name)));
+    let (marker, marker_value) = marker(names.is_empty());
     quote! {
         #(#attributes)*
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
         #visibility struct #name<T = f64> {
             #(#fields,)*
-            #[doc(hidden)]
-            pub numbers: ::core::marker::PhantomData<T>,
+            #marker
         }
 
         impl ::core::default::Default for #name<f64> {
             fn default() -> Self {
-                Self { #(#names: #defaults,)* numbers: ::core::marker::PhantomData }
+                Self { #(#names: #defaults,)* #marker_value }
             }
         }
 
         impl<T: ::vi_core::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
+            #[allow(unused_variables)]
             pub fn from_f64(system: &#name<f64>) -> Self {
-                Self { #(#names: T::real(system.#names),)* numbers: ::core::marker::PhantomData }
+                Self { #(#names: T::real(system.#names),)* #marker_value }
             }
         }
 
@@ -61,13 +62,26 @@ pub(super) fn items(source: &Source) -> TokenStream {
 pub fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
     let parameters: Vec<_> = system.parameters.iter().map(|parameter| &parameter.name).collect();
+    let (marker, marker_value) = marker(parameters.is_empty());
     quote! {
         #[allow(missing_docs, dead_code, non_snake_case)]
-        #visibility struct #name<T = f64> { #(pub #parameters: T,)* pub numbers: ::core::marker::PhantomData<T> }
+        #visibility struct #name<T = f64> { #(pub #parameters: T,)* #marker }
         impl ::core::default::Default for #name<f64> {
             fn default() -> Self {
-                Self { #(#parameters: 0.0,)* numbers: ::core::marker::PhantomData }
+                Self { #(#parameters: 0.0,)* #marker_value }
             }
         }
+    }
+}
+
+/// The field that a system without parameters knows its kind of number by, and its value; nothing for others.
+fn marker(needed: bool) -> (TokenStream, TokenStream) {
+    if needed {
+        (
+            quote!(#[doc(hidden)] pub numbers: ::core::marker::PhantomData<T>),
+            quote!(numbers: ::core::marker::PhantomData),
+        )
+    } else {
+        (TokenStream::new(), TokenStream::new())
     }
 }
