@@ -35,12 +35,20 @@ pub(crate) fn pendulum() -> Scene<systems::Pendulum, 1> {
 }
 
 pub(crate) fn hard_duffing() -> Scene<systems::HardDuffing, 1> {
-    let system = systems::HardDuffing { alpha: 1.2, beta: 0.8, c: 0.08, amplitude: 0.25, omega: 1.3, ..systems::HardDuffing::default() };
+    let system = systems::HardDuffing {
+        alpha: 1.2,
+        beta: 0.8,
+        c: 0.08,
+        amplitude: 0.25,
+        omega: 1.3,
+        ..systems::HardDuffing::default()
+    };
     Scene { system, q: [1.1], v: [0.2], h: 0.05, span: f64::INFINITY }
 }
 
 pub(crate) fn double_well_duffing() -> Scene<systems::DoubleWellDuffing, 1> {
-    let system = systems::DoubleWellDuffing { c: 0.25, amplitude: 0.3, omega: 1.1, ..systems::DoubleWellDuffing::default() };
+    let system =
+        systems::DoubleWellDuffing { c: 0.25, amplitude: 0.3, omega: 1.1, ..systems::DoubleWellDuffing::default() };
     Scene { system, q: [1.3], v: [0.1], h: 0.05, span: 8.0 }
 }
 
@@ -65,7 +73,8 @@ pub(crate) fn henon_heiles() -> Scene<systems::HenonHeiles, 2> {
 }
 
 pub(crate) fn double_pendulum() -> Scene<systems::DoublePendulum, 2> {
-    let system = systems::DoublePendulum { m1: 1.3, m2: 0.8, l1: 0.9, l2: 1.1, g: 9.81, ..systems::DoublePendulum::default() };
+    let system =
+        systems::DoublePendulum { m1: 1.3, m2: 0.8, l1: 0.9, l2: 1.1, g: 9.81, ..systems::DoublePendulum::default() };
     Scene { system, q: [0.5, -0.3], v: [0.2, 0.1], h: 0.01, span: f64::INFINITY }
 }
 
@@ -75,7 +84,8 @@ pub(crate) fn spherical_pendulum() -> Scene<systems::SphericalPendulum, 2> {
 }
 
 pub(crate) fn charged_particle() -> Scene<systems::ChargedParticle, 3> {
-    let system = systems::ChargedParticle { m: 1.3, e: 0.9, b: 1.4, s: 0.15, kappa: 1.2, ..systems::ChargedParticle::default() };
+    let system =
+        systems::ChargedParticle { m: 1.3, e: 0.9, b: 1.4, s: 0.15, kappa: 1.2, ..systems::ChargedParticle::default() };
     Scene { system, q: [0.2, 0.1, 0.5], v: [0.7, 0.4, 0.1], h: 0.05, span: f64::INFINITY }
 }
 
