@@ -222,6 +222,25 @@ fn several_mistakes_are_reported_at_once() {
 }
 
 #[test]
+fn what_builds_on_a_mistake_is_none() {
+    let rest = "L = sum(i in 0..4, dot(q[i])^2 + e[i] * q[i]) + a * dot(q[0]); force q[0] = e; discretize midpoint;";
+    case(
+        &format!("const a = 1; coord q[4]; let e[i in 0..4] = q[«i» + 1]; {}", rest.replace("= e;", "= e[1];")),
+        "`q[4]` is out",
+    );
+    case(&format!("const a = 1; coord q[4]; let e[«0»] = q[0]; {rest}"), "expected a range");
+    case(
+        &format!("const a = 1; coord q[«0»]; let e = q; {}", rest.replace("e[i]", "dot(q)")),
+        "an array of 0 coordinates",
+    );
+    case(&format!("const a = 1; coord q[«b»]; let e = q[1]; {}", rest.replace("e[i]", "e")), "unknown name `b`");
+    case(
+        &format!("const a = «ln»(0); coord q[4]; let e[i in 0..4] = a; {}", rest.replace("= e;", "= a;")),
+        "this expression has no value",
+    );
+}
+
+#[test]
 fn what_surrounds_a_system() {
     let said = |text: &str| errors(text).into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; ");
     assert!(said("").starts_with("expected `struct Name { … }`"), "{}", said(""));

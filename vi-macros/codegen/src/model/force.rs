@@ -43,6 +43,7 @@ fn entries(check: &mut Check, line: &Definition) -> Option<Vec<(usize, Expr)>> {
     let wanted = match (check.scope.meaning(&name).cloned(), &line.indices) {
         (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, check.value(line))]),
         (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
+        (Some(Meaning::Wrong), _) => Ok(Vec::new()),
         (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
         (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(check, line, indices),
         _ => {
