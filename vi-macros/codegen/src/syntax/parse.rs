@@ -18,7 +18,29 @@ const CLAUSES: [&str; 8] = ["const", "param", "coord", "let", "L", "force", "dis
 /// # Errors
 /// Every clause that cannot be read, at the token that does not fit.
 pub fn system(tokens: TokenStream) -> Result<System> {
-    header.parse2(tokens)
+    read(tokens, &mut None)
+}
+
+/// What can be read of a system whose clauses may be wrong: its head, and the clauses that are right.
+#[must_use]
+pub fn outline(tokens: TokenStream) -> Option<System> {
+    let mut outline = None;
+    read(tokens, &mut outline).ok().or(outline)
+}
+
+/// Reads a system; one with errors is left in `outline`.
+fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
+    let whole = |input: ParseStream| {
+        let (system, errors) = header(input)?;
+        match errors.finish(()) {
+            Ok(()) => Ok(system),
+            Err(error) => {
+                *outline = Some(system);
+                Err(error)
+            }
+        }
+    };
+    whole.parse2(tokens)
 }
 
 /// Reads the lines of a rule given as text, as the named rules are.
@@ -30,7 +52,7 @@ pub fn rule(text: &str) -> Result<Rule> {
 }
 
 /// `pub struct Name { … }`
-fn header(input: ParseStream) -> Result<System> {
+fn header(input: ParseStream) -> Result<(System, Errors)> {
     let attributes = input.call(Attribute::parse_outer)?;
     let visibility: Visibility = input.parse()?;
     if !input.peek(Token![struct]) {
@@ -66,7 +88,7 @@ fn header(input: ParseStream) -> Result<System> {
     if !input.is_empty() {
         errors.at(input.span(), &Message::AfterSystem);
     }
-    errors.finish(system)
+    Ok((system, errors))
 }
 
 /// Drops the tokens up to the end of a clause that could not be read.
