@@ -9,9 +9,10 @@ use vi_codegen::{discrete, model, syntax};
 /// All errors of a text: (token underlined, message).
 fn errors(text: &str) -> Vec<(String, String)> {
     let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
-    let result = syntax::parse::system(tokens)
-        .and_then(model::check::model)
-        .and_then(|mut model| discrete::system::system(&mut model).map(|_| ()));
+    let result = syntax::parse::system(tokens).and_then(model::check::model).and_then(|mut model| {
+        let system = discrete::system::system(&mut model)?;
+        program::program(&mut model, &system).map(|_| ())
+    });
     let Err(error) = result else { return Vec::new() };
     let token = |error: &syn::Error| error.span().source_text().unwrap_or_default();
     error.into_iter().map(|error| (token(&error), error.to_string())).collect()
@@ -263,6 +264,26 @@ fn depth_and_size_are_bounded() {
     let chain = format!("struct System {{ coord x; let a0 = x; {lets} L = dot(x)^2 + a1999; discretize midpoint; }}");
     let found = errors(&chain);
     assert!(found.is_empty() || found[0].1.starts_with("the system grows over"), "{:?}", found[0]);
+}
+
+#[test]
+fn delimiters_around_a_clause_are_bounded_too() {
+    for (open, close) in [("(", ")"), ("[", "]"), ("{", "}")] {
+        let nest = format!("{}{}", open.repeat(5000), close.repeat(5000));
+        for system in [format!("#[doc = {nest}] struct S {{}}"), nest.clone(), format!("struct S {{ coord x{nest}; }}")]
+        {
+            let found = errors(&system);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].1.starts_with("this expression is nested deeper than 100 levels"), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn coefficients_are_numbers() {
+    let tokens = "struct System { coord x; L = dot(x)^1e308; discretize midpoint; }".parse().expect("tokens");
+    let said = vi_codegen::expand(tokens).to_string();
+    assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{said}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
 //! its `;`, so that the next one is read too.
 
+use super::expression::DEPTH;
 use super::{Coordinate, Definition, Discretization, Expression, Indices, Rule, System};
 use crate::messages::{Errors, Message, error, nearest};
 use proc_macro2::{Ident, TokenStream, TokenTree};
@@ -12,6 +13,9 @@ use syn::{Attribute, Result, Token, Visibility};
 
 /// The words that open a clause.
 const CLAUSES: [&str; 8] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize"];
+
+/// Pairs of delimiters that an expression may stand in: those of the system, of a rule, of an index.
+const CLAUSE_DEPTH: usize = 3;
 
 /// Reads a system.
 ///
@@ -40,7 +44,25 @@ fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
             }
         }
     };
+    shallow(&tokens)?;
     whole.parse2(tokens)
+}
+
+/// Refuses parentheses, brackets and braces nested deeper than any right system has them, attributes included: they are
+/// read by recursion.
+fn shallow(tokens: &TokenStream) -> Result<()> {
+    let mut open = vec![tokens.clone().into_iter()];
+    while let Some(innermost) = open.last_mut() {
+        match innermost.next() {
+            Some(TokenTree::Group(group)) if open.len() > DEPTH + CLAUSE_DEPTH => {
+                return Err(error(group.span_open(), &Message::TooDeep { limit: DEPTH }));
+            }
+            Some(TokenTree::Group(group)) => open.push(group.stream().into_iter()),
+            Some(_) => {}
+            None => drop(open.pop()),
+        }
+    }
+    Ok(())
 }
 
 /// Reads the lines of a rule given as text, as the named rules are.
