@@ -73,7 +73,8 @@ impl Project {
         let core = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vi-core");
         fs::create_dir_all(folder.join("src")).expect("a folder");
         let manifest = format!(
-            "[package]\nname = \"expansion\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[dependencies]\nvi-core = {{ path = {core:?} }}\n[workspace]\n"
+            "[package]\nname = \"expansion\"\nversion = \"0.0.0\"\nedition = \"2024\"\n[dependencies]\nvi-core = {{ path = '{}' }}\n[workspace]\n",
+            core.display()
         );
         fs::write(folder.join("Cargo.toml"), manifest).expect("a manifest");
         Self { folder }

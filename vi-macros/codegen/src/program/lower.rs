@@ -84,7 +84,7 @@ impl<'a> Lowering<'a> {
             Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
             Node::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
             Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
-            Node::Call(_, arguments) => arguments.to_vec(),
+            Node::Call(_, arguments) => arguments.clone(),
         };
         let found = match self.pool.node(expr) {
             Node::Symbol(Symbol::Parameter(_) | Symbol::Step) => Dependence::Run,
