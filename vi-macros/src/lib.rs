@@ -1,5 +1,8 @@
 //! The macro `lagrangian!`: a mechanical system becomes its variational integrators at build time.
 
+#[cfg(feature = "expand")]
+mod file;
+
 use proc_macro::TokenStream;
 
 /// Turns a mechanical system into its variational integrators.
@@ -7,7 +10,13 @@ use proc_macro::TokenStream;
 /// In: a struct with the clauses `const`, `param`, `coord`, `let`, `L`, `force` and `discretize`.
 /// Out: the struct with its parameters, and its implementations of `vi_core`'s traits.
 /// Every mistake is a compile error at the token that is wrong.
+///
+/// With the feature `expand`, and the variable `VI_EXPAND_DIR` set while building, the expansion is written into that
+/// folder too.
 #[proc_macro]
 pub fn lagrangian(input: TokenStream) -> TokenStream {
+    #[cfg(feature = "expand")]
+    return file::expand(input.into()).into();
+    #[cfg(not(feature = "expand"))]
     vi_codegen::expand(input.into()).into()
 }

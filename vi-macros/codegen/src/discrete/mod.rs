@@ -19,6 +19,8 @@ pub use fields::Fields;
 pub use slots::Slots;
 pub use step::Equations;
 
+use crate::model::Model;
+use crate::symbol::{Field, Symbol};
 use crate::syntax::{Rule, parse};
 use vi_expr::Expr;
 
@@ -44,6 +46,23 @@ pub struct DiscreteSystem {
     pub slots: Slots,
     /// The equations of a step in the unknowns `(v, h)`.
     pub equations: Equations,
+}
+
+impl DiscreteSystem {
+    /// A symbol as the user wrote it, and where it is evaluated: `L_v_x`, `x_mid`; `L_v_x_at2` where the rule has
+    /// several points.
+    #[must_use]
+    pub fn spell(&self, model: &Model, symbol: &Symbol) -> String {
+        let at = |point: usize| if self.slots.points.len() == 1 { String::new() } else { format!("_at{}", point + 1) };
+        match symbol {
+            Symbol::Field(Field { point, .. }) => model.spell(symbol) + &at(*point),
+            Symbol::AtPoint(point, variable) => {
+                let place = if self.slots.points.len() == 1 { "_mid".to_owned() } else { at(*point) };
+                model.spell(&Symbol::Continuous(*variable)) + &place
+            }
+            _ => model.spell(symbol),
+        }
+    }
 }
 
 /// Where a rule evaluates L and f.

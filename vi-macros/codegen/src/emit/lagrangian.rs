@@ -41,7 +41,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
 impl Source<'_> {
     /// `name = formula`, as the user's names spell it.
     pub(super) fn formula(&self, name: &str, expr: Expr) -> String {
-        let spelt = self.model.pool.render(expr, &|symbol: &Symbol| self.model.spell(symbol));
+        let spelt = self.model.pool.render(expr, &|symbol: &Symbol| self.system.spell(self.model, symbol));
         format!("`{name} = {spelt}`")
     }
 

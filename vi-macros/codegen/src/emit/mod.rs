@@ -13,6 +13,7 @@ mod stepping;
 mod structure;
 
 use crate::discrete::DiscreteSystem;
+use crate::found::Findings;
 use crate::model::Model;
 use crate::program::{Function, Program};
 use proc_macro2::{Literal, TokenStream};
@@ -25,12 +26,13 @@ struct Source<'a> {
     model: &'a Model,
     system: &'a DiscreteSystem,
     program: &'a Program,
+    findings: &'a Findings,
 }
 
 /// The items of a system, in fixed order.
 #[must_use]
-pub fn items(model: &Model, system: &DiscreteSystem, program: &Program) -> TokenStream {
-    let source = Source { model, system, program };
+pub fn items(model: &Model, system: &DiscreteSystem, program: &Program, findings: &Findings) -> TokenStream {
+    let source = Source { model, system, program, findings };
     let structure = structure::items(&source);
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);

@@ -19,9 +19,11 @@ pub(super) fn items(source: &Source) -> TokenStream {
         let default = format!("Parameter `{name}`, {} by default.", parameter.default);
         quote!(#(#attributes)* #[doc = #default] pub #name: T)
     });
+    let found = found(source);
     let arms = names.iter().zip(texts).map(|(name, text)| quote!(#text => Some(&mut self.#name)));
     quote! {
         #(#attributes)*
+        #found
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
         #visibility struct #name<T = f64> {
@@ -54,6 +56,17 @@ pub(super) fn items(source: &Source) -> TokenStream {
             }
         }
     }
+}
+
+/// What the generator found out, as the end of the struct's documentation.
+fn found(source: &Source) -> TokenStream {
+    let model = source.model;
+    let rule = format!(" Discretized by the rule `{}`. What the generator found:", model.rule_name);
+    let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
+    let findings = findings.into_iter().map(|line| format!(" * {line}"));
+    // After the user's own words a paragraph of its own.
+    let pause = (!model.attributes.is_empty()).then(|| quote!(#[doc = ""]));
+    quote!(#pause #[doc = #rule] #[doc = ""] #(#[doc = #findings])*)
 }
 
 /// What is emitted beside the errors of a broken system, so that the code that uses its struct still type-checks.
