@@ -1,6 +1,5 @@
 //! The macro `lagrangian!`: a mechanical system becomes its variational integrators at build time.
 
-#[cfg(feature = "expand")]
 mod file;
 
 use proc_macro::TokenStream;
@@ -11,12 +10,8 @@ use proc_macro::TokenStream;
 /// Out: the struct with its parameters, and its implementations of `vi_core`'s traits.
 /// Every mistake is a compile error at the token that is wrong.
 ///
-/// With the feature `expand`, and the variable `VI_EXPAND_DIR` set while building, the expansion is written into that
-/// folder too.
+/// Where the variable `VI_EXPAND_DIR` is set while building, the expansion is written into that folder too.
 #[proc_macro]
 pub fn lagrangian(input: TokenStream) -> TokenStream {
-    #[cfg(feature = "expand")]
-    return file::expand(input.into()).into();
-    #[cfg(not(feature = "expand"))]
-    vi_codegen::expand(input.into()).into()
+    file::expand(input.into()).into()
 }

@@ -65,9 +65,8 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
     let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
     let rows = |name: &str| program.function(name).map(|function| (function, matrix(function, model.dimension())));
     let (equation, momentum) = (rows("momentum_equation"), program.function("momentum"));
-    let velocities = |symbol: &Symbol| {
-        matches!(symbol, Symbol::Parameter(_) | Symbol::Continuous(Variable::Velocity(_)))
-    };
+    let velocities =
+        |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_) | Symbol::Continuous(Variable::Velocity(_)));
     let parameters = |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_));
     let takes = |function: &Function, rows: &[Vec<OperationId>], allowed: &dyn Fn(&Symbol) -> bool| {
         inputs(function, rows).iter().all(allowed)

@@ -12,11 +12,10 @@
 pub mod discrete;
 pub mod emit;
 pub mod found;
-
-
+#[cfg(feature = "inspect")]
+pub mod inspect;
 pub mod messages;
 pub mod model;
-#[cfg(feature = "pretty")]
 pub mod pretty;
 pub mod program;
 pub mod symbol;

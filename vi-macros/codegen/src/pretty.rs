@@ -46,7 +46,9 @@ mod tests {
 
     #[test]
     fn names_of_files() {
-        for (name, file) in [("Kepler", "kepler"), ("DoubleWell", "double_well"), ("θSystem", "θ_system"), ("r#Match", "match")] {
+        for (name, file) in
+            [("Kepler", "kepler"), ("DoubleWell", "double_well"), ("θSystem", "θ_system"), ("r#Match", "match")]
+        {
             assert_eq!(snake_case(name), file);
         }
     }
