@@ -25,6 +25,7 @@ use std::collections::BTreeSet;
 
 /// What is special about a system.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a finding of its own")]
 pub struct Findings {
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
@@ -128,10 +129,10 @@ impl Findings {
         let list = |indices: &[usize]| indices.iter().map(|index| name(*index)).collect::<Vec<_>>().join(", ");
         let mut lines = vec![
             match (self.autonomous, self.forced) {
-                (true, false) => "No time and no force in it: the energy is conserved",
-                (true, true) => "Forced; neither `L` nor `f` depends on the time `t`",
-                (false, false) => "No force; `L` depends on the time `t`",
-                (false, true) => "Forced; `L` or `f` depends on the time `t`",
+                (true, false) => "Autonomous and without a force: the energy is conserved",
+                (true, true) => "Autonomous; a force acts",
+                (false, false) => "Not autonomous: `L` depends on the time `t`; no force acts",
+                (false, true) => "Not autonomous: `L` or `f` depends on the time `t`; a force acts",
             }
             .to_owned(),
         ];

@@ -12,7 +12,23 @@ use std::{fs, io};
 /// # Errors
 /// Tokens that are no items of Rust: a mistake of this compiler.
 pub fn text(items: TokenStream) -> syn::Result<String> {
-    Ok(prettyplease::unparse(&syn::parse2(items)?))
+    Ok(spaced(&prettyplease::unparse(&syn::parse2(items)?)))
+}
+
+/// The text with an empty line after each item, of the file and of an `impl`, but for the last.
+fn spaced(text: &str) -> String {
+    let mut spaced = String::new();
+    let mut last = "";
+    for line in text.lines() {
+        let indent = |line: &str| line.len() - line.trim_start().len();
+        let ends = matches!(last, "}" | "    }") || (last.ends_with(';') && line.trim_start().starts_with("///"));
+        if ends && indent(line) == indent(last) && indent(line) <= 4 && line.trim() != "}" {
+            spaced.push('\n');
+        }
+        spaced.extend([line, "\n"]);
+        last = line;
+    }
+    spaced
 }
 
 /// Writes the expansion of a system into a folder, which is made if it is not there: `Double2Well` as `double2_well.rs`.

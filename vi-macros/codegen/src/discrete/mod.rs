@@ -20,7 +20,7 @@ pub use slots::Slots;
 pub use step::Equations;
 
 use crate::model::Model;
-use crate::symbol::{Field, Symbol};
+use crate::symbol::{Field, Symbol, Variable};
 use crate::syntax::{Rule, parse};
 use vi_expr::Expr;
 
@@ -58,7 +58,10 @@ impl DiscreteSystem {
             Symbol::Field(Field { point, .. }) => model.spell(symbol) + &at(*point),
             Symbol::AtPoint(point, variable) => {
                 let place = if self.slots.points.len() == 1 { "_mid".to_owned() } else { at(*point) };
-                model.spell(&Symbol::Continuous(*variable)) + &place
+                match variable {
+                    Variable::Velocity(index) => format!("{}_dot{place}", model.coordinates[*index].text()),
+                    _ => model.spell(&Symbol::Continuous(*variable)) + &place,
+                }
             }
             _ => model.spell(symbol),
         }

@@ -66,9 +66,9 @@ fn blocks(size: usize, touching: &dyn Fn(usize, usize) -> bool) -> Vec<Vec<usize
         let mut open = vec![first];
         while let Some(index) = open.pop() {
             let found: Vec<usize> = left.iter().copied().filter(|other| touching(index, *other)).collect();
-            found.iter().for_each(|other| {
+            for other in &found {
                 left.remove(other);
-            });
+            }
             block.extend(&found);
             open.extend(found);
         }

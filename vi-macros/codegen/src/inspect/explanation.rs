@@ -116,7 +116,7 @@ impl Explanation {
     pub fn latex(&self) -> String {
         let mut text = format!("{PREAMBLE}\\section*{{{}}}\n", latex::plain(&self.title));
         for Section { title, lines } in &self.sections {
-            text.push_str(&format!("\n\\subsection*{{{}}}\n", words(title)));
+            text.extend(["\n\\subsection*{", &words(title), "}\n"]);
             let mut rest = lines.as_slice();
             while let Some(first) = rest.first() {
                 let equations = matches!(first, Line::Equation { .. });

@@ -27,8 +27,7 @@ pub(super) fn text(system: &System) -> String {
             }
         }
     }
-    let body: String = lines.iter().map(|line| format!("    {line}\n")).collect();
-    format!("struct {} {{\n{body}}}\n", system.name)
+    format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
 }
 
 fn definition(of: &Definition) -> String {
@@ -67,7 +66,8 @@ fn within(of: &Expression, least: Binding) -> String {
 fn written(of: &Expression) -> (Binding, String) {
     match &of.kind {
         Kind::Number(value) if value.is_integer() => (Binding::Atom, value.to_string()),
-        Kind::Number(value) => (Binding::Product, value.to_string()),
+        // As a quotient it would be read again.
+        Kind::Number(value) => (Binding::Product, format!("{} / {}", value.numer(), value.denom())),
         Kind::Name(name) => (Binding::Atom, name.to_string()),
         Kind::Entry(name, index) => (Binding::Atom, format!("{name}[{}]", expression(index))),
         Kind::Call(name, arguments) => {

@@ -96,8 +96,8 @@ impl Model {
             Symbol::T1 => "t1".to_owned(),
             Symbol::Step => "h".to_owned(),
             Symbol::E0 => "E0".to_owned(),
-            Symbol::Q0(index) => format!("{}0", coordinate(*index)),
-            Symbol::Q1(index) => format!("{}1", coordinate(*index)),
+            Symbol::Q0(index) => slot(&coordinate(*index), 0),
+            Symbol::Q1(index) => slot(&coordinate(*index), 1),
             Symbol::P0(index) => format!("p0_{}", coordinate(*index)),
             Symbol::StepVelocity(index) => format!("v_{}", coordinate(*index)),
             Symbol::Low(of) => format!("{}_low", self.spell(of)),
@@ -119,4 +119,10 @@ impl Model {
             }
         }
     }
+}
+
+/// A coordinate at an end of the interval: `x0`, `x1`; of one that ends in a digit or a bracket `θ1_0`, `q[3]_1`.
+fn slot(coordinate: &str, end: u8) -> String {
+    let separator = if coordinate.ends_with(char::is_alphabetic) { "" } else { "_" };
+    format!("{coordinate}{separator}{end}")
 }
