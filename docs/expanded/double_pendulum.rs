@@ -32,8 +32,6 @@ pub struct DoublePendulum<T = f64> {
     ///
     /// Parameter `g`, 9.81 by default.
     pub g: T,
-    #[doc(hidden)]
-    pub numbers: ::core::marker::PhantomData<T>,
 }
 
 impl ::core::default::Default for DoublePendulum<f64> {
@@ -44,13 +42,13 @@ impl ::core::default::Default for DoublePendulum<f64> {
             l1: 1.0,
             l2: 1.0,
             g: 9.81,
-            numbers: ::core::marker::PhantomData,
         }
     }
 }
 
 impl<T: ::vi_core::Real> DoublePendulum<T> {
     /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(unused_variables)]
     pub fn from_f64(system: &DoublePendulum<f64>) -> Self {
         Self {
             m1: T::real(system.m1),
@@ -58,7 +56,6 @@ impl<T: ::vi_core::Real> DoublePendulum<T> {
             l1: T::real(system.l1),
             l2: T::real(system.l2),
             g: T::real(system.g),
-            numbers: ::core::marker::PhantomData,
         }
     }
 }
@@ -194,7 +191,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         ::vi_core::linear::acceleration(time, &mass, &applied)
     }
 
-    /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - dot(θ2)*(m2*l1*l2*dot(θ2)*si …`
+    /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - …`
     ///
     /// 62 operations.
     #[inline]
@@ -223,6 +220,47 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let s12 = θ2_ddot * ((s7 * sin2 - self.g * sin4) * self.l2 * self.m2)
             - (s5 * sin3 + s6 * sin2) * self.l1 * θ1_ddot;
         Ok(s12 - θ1_dot * s10 - θ2_dot * s11)
+    }
+
+    /// The first of what L and f are made of that is not finite here.
+    ///
+    /// 23 operations.
+    #[cold]
+    fn non_finite(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::option::Option<&'static str> {
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = (θ1 - θ2).cos();
+        let s2 = θ1.cos();
+        let s3 = θ2.cos();
+        let values = [
+            ("m1", self.m1),
+            ("m2", self.m2),
+            ("l1", self.l1),
+            ("l2", self.l2),
+            ("g", self.g),
+            ("dot(θ1)", θ1_dot),
+            ("dot(θ2)", θ2_dot),
+            ("θ1", θ1),
+            ("θ2", θ2),
+            ("cos(θ1 - θ2)", s1),
+            ("cos(θ1)", s2),
+            ("cos(θ2)", s3),
+            (
+                "l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)",
+                (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * s2)
+                    * (self.m1 + self.m2) * self.l1
+                    + (self.g * s3
+                        + (self.l2 * real(0.5) * θ2_dot + self.l1 * θ1_dot * s1)
+                            * θ2_dot) * self.l2 * self.m2,
+            ),
+        ];
+        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
     }
 }
 

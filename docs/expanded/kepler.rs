@@ -17,26 +17,19 @@ pub struct Kepler<T = f64> {
     ///
     /// Parameter `mu`, 1 by default.
     pub mu: T,
-    #[doc(hidden)]
-    pub numbers: ::core::marker::PhantomData<T>,
 }
 
 impl ::core::default::Default for Kepler<f64> {
     fn default() -> Self {
-        Self {
-            mu: 1.0,
-            numbers: ::core::marker::PhantomData,
-        }
+        Self { mu: 1.0 }
     }
 }
 
 impl<T: ::vi_core::Real> Kepler<T> {
     /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(unused_variables)]
     pub fn from_f64(system: &Kepler<f64>) -> Self {
-        Self {
-            mu: T::real(system.mu),
-            numbers: ::core::marker::PhantomData,
-        }
+        Self { mu: T::real(system.mu) }
     }
 }
 
@@ -173,6 +166,35 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let s8 = x_dot * (x_dot * ((s1 * s6 * real(3.0) - s5) * self.mu) + s7 * y_dot)
             + y_dot * (s7 * x_dot + y_dot * ((s2 * s6 * real(3.0) - s5) * self.mu));
         Ok(-((x * s5 * x_ddot + y * s5 * y_ddot) * self.mu) - s8)
+    }
+
+    /// The first of what L and f are made of that is not finite here.
+    ///
+    /// 12 operations.
+    #[cold]
+    fn non_finite(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::option::Option<&'static str> {
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x, y]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = self.mu * (x * x + y * y).sqrt().recip();
+        let values = [
+            ("mu", self.mu),
+            ("x", x),
+            ("y", y),
+            ("dot(x)", x_dot),
+            ("dot(y)", y_dot),
+            ("mu/sqrt(x^2 + y^2)", s1),
+            (
+                "dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)",
+                x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + s1,
+            ),
+        ];
+        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
     }
 }
 

@@ -22,6 +22,7 @@ pub(super) fn items(source: &Source) -> TokenStream {
     });
     let found = found(source);
     let arms = names.iter().zip(texts).map(|(name, text)| quote!(#text => Some(&mut self.#name)));
+    let (marker, marker_value) = marker(names.is_empty());
     quote! {
         #(#attributes)*
         #found
@@ -29,20 +30,20 @@ pub(super) fn items(source: &Source) -> TokenStream {
         #[allow(non_snake_case)]
         #visibility struct #name<T = f64> {
             #(#fields,)*
-            #[doc(hidden)]
-            pub numbers: ::core::marker::PhantomData<T>,
+            #marker
         }
 
         impl ::core::default::Default for #name<f64> {
             fn default() -> Self {
-                Self { #(#names: #defaults,)* numbers: ::core::marker::PhantomData }
+                Self { #(#names: #defaults,)* #marker_value }
             }
         }
 
         impl<T: ::vi_core::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
+            #[allow(unused_variables)]
             pub fn from_f64(system: &#name<f64>) -> Self {
-                Self { #(#names: T::real(system.#names),)* numbers: ::core::marker::PhantomData }
+                Self { #(#names: T::real(system.#names),)* #marker_value }
             }
         }
 
@@ -79,13 +80,26 @@ fn pause(attributes: &[syn::Attribute]) -> Option<TokenStream> {
 pub fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
     let parameters: Vec<_> = system.parameters.iter().map(|parameter| &parameter.name).collect();
+    let (marker, marker_value) = marker(parameters.is_empty());
     quote! {
         #[allow(missing_docs, dead_code, non_snake_case)]
-        #visibility struct #name<T = f64> { #(pub #parameters: T,)* pub numbers: ::core::marker::PhantomData<T> }
+        #visibility struct #name<T = f64> { #(pub #parameters: T,)* #marker }
         impl ::core::default::Default for #name<f64> {
             fn default() -> Self {
-                Self { #(#parameters: 0.0,)* numbers: ::core::marker::PhantomData }
+                Self { #(#parameters: 0.0,)* #marker_value }
             }
         }
+    }
+}
+
+/// The field that a system without parameters knows its kind of number by, and its value; nothing for others.
+fn marker(needed: bool) -> (TokenStream, TokenStream) {
+    if needed {
+        (
+            quote!(#[doc(hidden)] pub numbers: ::core::marker::PhantomData<T>),
+            quote!(numbers: ::core::marker::PhantomData),
+        )
+    } else {
+        (TokenStream::new(), TokenStream::new())
     }
 }
