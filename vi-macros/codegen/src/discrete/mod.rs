@@ -1,7 +1,7 @@
 //! The forced discrete system, from a checked model and its rule.
 //!
-//! In: a [`Model`](crate::model::Model). Out: a [`DiscreteSystem`]. The rule is differentiated with L and f closed:
-//! their partial derivatives at the points of the rule are symbols, [`Field`](crate::symbol::Field)s. So the leading
+//! In: a [`Model`]. Out: a [`DiscreteSystem`]. The rule is differentiated with L and f closed:
+//! their partial derivatives at the points of the rule are symbols, [`Field`]s. So the leading
 //! terms of the equations cancel exactly, whatever L is, and L itself is differentiated once, in `(t, q, v)`.
 //! AFTER THIS every expression is one in fields, slots, the unknowns `(v, h)` and parameters.
 
