@@ -1,0 +1,221 @@
+//! Dual numbers a + b ε with ε² = 0: derivatives that owe nothing to the symbolic ones.
+//!
+//! In: a function that is generic over [`Real`]. Out, for `x = a + b ε`: `f(x) = f(a) + f'(a) b ε`, differentiated
+//! operation by operation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating
+//! Derivatives, chapter 3.
+
+use crate::{Node, Real};
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use nalgebra::SVector;
+
+/// A value and its derivative by one variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<T> {
+    /// The value.
+    pub value: T,
+    /// Its derivative.
+    pub slope: T,
+}
+
+impl<T: Real> Dual<T> {
+    /// A number that does not change.
+    #[must_use]
+    pub fn fixed(value: T) -> Self {
+        Self { value, slope: T::zero() }
+    }
+
+    /// The variable itself.
+    #[must_use]
+    pub fn variable(value: T) -> Self {
+        Self { value, slope: T::one() }
+    }
+
+    /// f(self), with f' at self.
+    fn chain(self, value: T, derivative: T) -> Self {
+        Self { value, slope: derivative * self.slope }
+    }
+}
+
+/// A vector that does not change.
+pub(super) fn lift<const N: usize>(vector: &SVector<f64, N>) -> SVector<Dual<f64>, N> {
+    vector.map(Dual::fixed)
+}
+
+/// A vector that changes in a direction.
+pub(super) fn along<const N: usize>(vector: &SVector<f64, N>, direction: &SVector<f64, N>) -> SVector<Dual<f64>, N> {
+    vector.zip_map(direction, |value, slope| Dual { value, slope })
+}
+
+/// The direction of one entry.
+pub(super) fn unit<const N: usize>(index: usize) -> SVector<f64, N> {
+    SVector::from_fn(|row, _| f64::from(u8::from(row == index)))
+}
+
+/// A node that does not change.
+pub(super) fn lift_node<const N: usize>(node: &Node<N>) -> Node<N, Dual<f64>> {
+    Node {
+        t: Dual::fixed(node.t),
+        t_low: Dual::fixed(node.t_low),
+        q: lift(&node.q),
+        q_low: lift(&node.q_low),
+        p: lift(&node.p),
+        p_low: lift(&node.p_low),
+        energy: Dual::fixed(node.energy),
+        energy_low: Dual::fixed(node.energy_low),
+    }
+}
+
+impl<T: Real> Add for Dual<T> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, slope: self.slope + other.slope }
+    }
+}
+
+impl<T: Real> Sub for Dual<T> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { value: self.value - other.value, slope: self.slope - other.slope }
+    }
+}
+
+impl<T: Real> Mul for Dual<T> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self { value: self.value * other.value, slope: self.slope * other.value + self.value * other.slope }
+    }
+}
+
+impl<T: Real> Div for Dual<T> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self { value, slope: (self.slope - value * other.slope) / other.value }
+    }
+}
+
+impl<T: Real> Neg for Dual<T> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, slope: -self.slope }
+    }
+}
+
+impl<T: Real> AddAssign for Dual<T> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Real> SubAssign for Dual<T> {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<T: Real> MulAssign for Dual<T> {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl<T: Real> num_traits::Zero for Dual<T> {
+    fn zero() -> Self {
+        Self::fixed(T::zero())
+    }
+    fn is_zero(&self) -> bool {
+        self.value.is_zero() && self.slope.is_zero()
+    }
+}
+
+impl<T: Real> num_traits::One for Dual<T> {
+    fn one() -> Self {
+        Self::fixed(T::one())
+    }
+}
+
+impl<T: Real> Real for Dual<T> {
+    fn real(value: f64) -> Self {
+        Self::fixed(T::real(value))
+    }
+    fn recip(self) -> Self {
+        Self::fixed(T::one()) / self
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, T::real(0.5) / root)
+    }
+    fn exp(self) -> Self {
+        self.chain(self.value.exp(), self.value.exp())
+    }
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), self.value.recip())
+    }
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        (self.sin(), self.cos())
+    }
+    fn tan(self) -> Self {
+        self.sin() / self.cos()
+    }
+    fn asin(self) -> Self {
+        let slope = (T::one() - self.value * self.value).sqrt().recip();
+        self.chain(self.value.asin(), slope)
+    }
+    fn acos(self) -> Self {
+        let slope = -(T::one() - self.value * self.value).sqrt().recip();
+        self.chain(self.value.acos(), slope)
+    }
+    fn atan(self) -> Self {
+        let slope = (T::one() + self.value * self.value).recip();
+        self.chain(self.value.atan(), slope)
+    }
+    fn atan2(self, other: Self) -> Self {
+        let square = self.value * self.value + other.value * other.value;
+        let slope = (self.slope * other.value - self.value * other.slope) / square;
+        Self { value: self.value.atan2(other.value), slope }
+    }
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.value.cosh())
+    }
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.value.sinh())
+    }
+    fn tanh(self) -> Self {
+        let value = self.value.tanh();
+        self.chain(value, T::one() - value * value)
+    }
+    fn abs(self) -> Self {
+        self.chain(self.value.abs(), self.value.sign())
+    }
+    fn sign(self) -> Self {
+        Self::fixed(self.value.sign())
+    }
+    fn hypot(self, other: Self) -> Self {
+        (self * self + other * other).sqrt()
+    }
+    fn pow(self, exponent: Self) -> Self {
+        let value = self.value.pow(exponent.value);
+        let by_base = self.slope * exponent.value * self.value.pow(exponent.value - T::one());
+        // A fixed exponent needs no logarithm, which a base below zero does not have.
+        let by_exponent = if exponent.slope.is_zero() { T::zero() } else { value * self.value.ln() * exponent.slope };
+        Self { value, slope: by_base + by_exponent }
+    }
+    fn max(self, other: Self) -> Self {
+        if self.value.to_f64() >= other.value.to_f64() { self } else { other }
+    }
+    fn is_finite(self) -> bool {
+        self.value.is_finite() && self.slope.is_finite()
+    }
+    fn to_f64(self) -> f64 {
+        self.value.to_f64()
+    }
+    fn least_magnitude(self) -> f64 {
+        self.value.least_magnitude()
+    }
+}
