@@ -36,7 +36,8 @@ impl<const N: usize> Motion<N> {
     pub fn at(mut self, system: &impl Lagrangian<N>, end: f64) -> Result<Self, StepError> {
         let way = end - self.t;
         let mut h = way;
-        while self.t != end {
+        let mut arrived = way == 0.0;
+        while !arrived {
             let last = (end - self.t).abs() <= h.abs();
             let step = if last { end - self.t } else { h };
             let (change, error) = self.extrapolated(system, step)?;
@@ -50,6 +51,7 @@ impl<const N: usize> Motion<N> {
                 continue;
             }
             self = Self { t: if last { end } else { self.t + step }, q: self.q + change.0, v: self.v + change.1 };
+            arrived = last;
             h *= 1.25;
         }
         Ok(self)

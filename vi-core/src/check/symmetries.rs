@@ -49,7 +49,7 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
     }
     let end = run.state();
     for index in (0..N).filter(|index| S::CYCLIC[*index]) {
-        if start.p[index] == 0.0 || end.q[index] == start.q[index] {
+        if start.p[index] == 0.0 || end.q[index] - start.q[index] == 0.0 {
             let name = S::COORDINATES[index];
             let why = format!("`{name}` stands still or its momentum is zero; choose a velocity `dot({name})`");
             return Err(check.vacuous(why));
