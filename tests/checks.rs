@@ -21,20 +21,36 @@ fn reports<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Vec<R
     results.into_iter().flatten().map(|result| result.unwrap_or_else(|failure| panic!("{failure}"))).collect()
 }
 
-/// What each check measures at most, twice and rounded up. The checks themselves allow more, for systems less tame.
+/// What each check may measure here: twice its largest number, rounded up. The checks themselves allow more, for systems
+/// that are less tame.
 fn allowed(check: &str) -> f64 {
     match check {
-        "derivatives" => 1.0,
-        _ => 1.0,
+        // Measured: 1.4e-15.
+        "derivatives" => 3e-15,
+        // Measured: 1.9e-13, the rounding of v = (q1 − q0)/h over a quarter of the step.
+        "slots" => 4e-13,
+        // Measured: 7.6e-14.
+        "steps" => 2e-13,
+        // Slopes. Measured: 2.6e-3, 1.7e-3.
+        "order" | "step law" => 6e-3,
+        // Measured: 4.6e-13.
+        "symplecticity" => 1e-12,
+        // Measured: 2.3e-16.
+        "reversibility" => 5e-16,
+        // Measured: 5.1e-15.
+        "energy" => 1e-14,
+        // Bit for bit, momenta of cyclic coordinates.
+        _ => 0.0,
     }
 }
 
+#[allow(clippy::needless_pass_by_value, reason = "as the other tests of each scene")]
 fn pass<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
     let place = Place { t: 0.2, q: scene.q.into(), v: scene.v.into(), h: scene.h };
     for report in reports(&scene.system, &place) {
         println!("{report}");
         assert!(report.worst <= allowed(report.check), "{report}");
-        assert!(report.compared >= 3, "{report}");
+        assert!(report.compared > 0, "{report}");
     }
 }
 

@@ -7,9 +7,9 @@ use super::{Checked, Place, STEPS};
 use crate::{FixedStep, State};
 use nalgebra::SVector;
 
-/// What a run forth and back again may be off by, relative to how far it went. Measured on the ready systems: 2e-13.
+/// What a run forth and back again may be off by, relative to how far it went. Measured on the ready systems: 2.3e-16.
 const RETURN: f64 = 1e-9;
-/// What `MᵀJM − J` may be by differences, in the units of the motion. Measured on the ready systems: 2e-11.
+/// What `MᵀJM − J` may be by differences, in the units of the motion. Measured on the ready systems: 4.6e-13.
 const SYMPLECTIC: f64 = 1e-8;
 /// Part of the extent of the motion by which a state is moved for a difference.
 const DISTANCE: f64 = 1e-3;
