@@ -13,6 +13,21 @@ use std::collections::BTreeMap;
 /// interval), and far below a wrong term.
 pub(super) const ROUNDING: f64 = 1e-10;
 
+/// What the difference of two numbers is measured in.
+#[derive(Clone, Copy)]
+pub(super) struct Scale {
+    /// The numbers that meet in the formula. The wanted number counts in any case.
+    pub(super) size: f64,
+    /// What the two may differ by beside the rounding of the formula, as it stands.
+    pub(super) slack: f64,
+}
+
+impl From<f64> for Scale {
+    fn from(size: f64) -> Self {
+        Self { size, slack: 0.0 }
+    }
+}
+
 /// Pairs of numbers of one check.
 pub(super) struct Comparison {
     system: &'static str,
@@ -29,26 +44,27 @@ impl Comparison {
         Self { system, check, tolerance, nonzero: BTreeMap::new(), what: String::new(), worst: 0.0 }
     }
 
-    /// Two numbers, relative to the scale or to the wanted number, whichever is larger.
+    /// Two numbers.
     pub(super) fn number(
         &mut self,
         what: &'static str,
         found: f64,
         wanted: f64,
-        scale: f64,
+        scale: impl Into<Scale>,
     ) -> Result<(), CheckFailure> {
-        self.entry(what, None, [found, wanted], scale)
+        self.entry(what, None, [found, wanted], scale.into())
     }
 
-    /// Two vectors, relative to the scale or to the largest wanted entry, whichever is larger.
+    /// Two vectors; the largest entry counts for each.
     pub(super) fn vector<const N: usize>(
         &mut self,
         what: &'static str,
         found: &SVector<f64, N>,
         wanted: &SVector<f64, N>,
-        scale: f64,
+        scale: impl Into<Scale>,
     ) -> Result<(), CheckFailure> {
-        let scale = scale.max(wanted.amax());
+        let scale: Scale = scale.into();
+        let scale = Scale { size: scale.size.max(wanted.amax()), ..scale };
         let mut pairs = found.iter().zip(wanted.iter()).enumerate();
         pairs.try_for_each(|(index, (found, wanted))| self.entry(what, Some(index), [*found, *wanted], scale))
     }
@@ -58,10 +74,10 @@ impl Comparison {
         what: &'static str,
         index: Option<usize>,
         [found, wanted]: [f64; 2],
-        scale: f64,
+        Scale { size, slack }: Scale,
     ) -> Result<(), CheckFailure> {
-        let distance = (found - wanted).abs();
-        let difference = if distance == 0.0 { 0.0 } else { distance / scale.max(wanted.abs()) };
+        let distance = (found - wanted).abs() - slack;
+        let difference = if distance <= 0.0 { 0.0 } else { distance / size.max(wanted.abs()) };
         let name = || index.map_or_else(|| what.to_owned(), |index| format!("{what}[{index}]"));
         // Not a number agrees with nothing.
         if difference.is_nan() || difference > self.tolerance {

@@ -5,7 +5,7 @@
 //! L_d/h → L        (f_d⁻ + f_d⁺)/h → f        (g_d⁻ + g_d⁺)/h → −f·v              as h → 0
 //! ```
 
-use super::comparison::{Comparison, ROUNDING};
+use super::comparison::{Comparison, ROUNDING, Scale};
 use super::derivatives::magnitude;
 use super::dual::{along, lift, unit};
 use super::report::{CheckFailure, Report};
@@ -38,11 +38,12 @@ fn by_slot<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Com
     let Interval { t0, q0, t1, q1 } = interval;
     let still = Interval { t0: Dual::fixed(t0), q0: lift(&q0), t1: Dual::fixed(t1), q1: lift(&q1) };
     let value = dual.ld(&still).value;
-    check.number("L_d", system.ld(&interval), value, sample.h * sample.size())?;
+    let Scale { size, slack } = sample.scale();
+    check.number("L_d", system.ld(&interval), value, Scale { size: sample.h * size, slack: sample.h * slack })?;
     let d1 = dual.ld(&Interval { t0: Dual::variable(t0), ..still }).slope;
-    check.number("D1", system.d1_ld(&interval), d1, sample.size())?;
+    check.number("D1", system.d1_ld(&interval), d1, sample.scale())?;
     let d3 = dual.ld(&Interval { t1: Dual::variable(t1), ..still }).slope;
-    check.number("D3", system.d3_ld(&interval), d3, sample.size())?;
+    check.number("D3", system.d3_ld(&interval), d3, sample.scale())?;
     let d2 = SVector::from_fn(|i, _| dual.ld(&Interval { q0: along(&q0, &unit(i)), ..still }).slope);
     check.vector("D2", &system.d2_ld(&interval), &d2, 0.0)?;
     let d4 = SVector::from_fn(|i, _| dual.ld(&Interval { q1: along(&q1, &unit(i)), ..still }).slope);
@@ -66,13 +67,13 @@ fn limits<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comp
     let ((ld, force, power), (ld_wanted, force_wanted, power_wanted)) = (averages(PART), wanted(PART));
     let ((ld_far, force_far, power_far), (ld_goal, force_goal, power_goal)) = (averages(1.0), wanted(1.0));
     // The distance from the whole step is allowed for, beside rounding.
-    let scale = |size: f64, far: f64| size + far.abs() * FALL / ROUNDING;
-    check.number("L_d/h", ld, ld_wanted, scale(sample.size(), ld_far - ld_goal))?;
+    let scale = |of: Scale, far: f64| Scale { slack: of.slack + far.abs() * FALL, ..of };
+    check.number("L_d/h", ld, ld_wanted, scale(sample.scale(), ld_far - ld_goal))?;
     for index in 0..N {
-        let size = scale(force_wanted.amax(), force_far[index] - force_goal[index]);
+        let size = scale(force_wanted.amax().into(), force_far[index] - force_goal[index]);
         check.number("f_d", force[index], force_wanted[index], size)?;
     }
-    check.number("g_d", power, power_wanted, scale(magnitude(&force_wanted, &sample.v), power_far - power_goal))
+    check.number("g_d", power, power_wanted, scale(magnitude(&force_wanted, &sample.v).into(), power_far - power_goal))
 }
 
 impl<const N: usize, S: Checked<N>> Sample<S, N> {
@@ -88,11 +89,16 @@ impl<const N: usize, S: Checked<N>> Sample<S, N> {
         (self.t + half, self.q + self.v * half, self.v)
     }
 
-    /// The size of the terms of an energy, with the rounding of `(q1 − q0)/h` in it.
-    pub(super) fn size(&self) -> f64 {
+    /// The terms of an energy, and what it loses where v is made of the ends of an interval.
+    pub(super) fn scale(&self) -> Scale {
         let Self { system, t, q, v, h } = self;
         let momentum = system.momentum(*t, q, v);
-        let lost = f64::EPSILON * (q.amax() / h + v.amax() * t.abs() / h) * momentum.abs().sum();
-        magnitude(&momentum, v) + system.lagrangian(*t, q, v).abs() + lost / ROUNDING
+        let size = magnitude(&momentum, v) + system.lagrangian(*t, q, v).abs();
+        Scale { size, slack: lost_velocity(q, v, *t, *h) * momentum.abs().sum() }
     }
+}
+
+/// What rounding takes from v where it is made of the ends of an interval.
+pub(super) fn lost_velocity<const N: usize>(q: &SVector<f64, N>, v: &SVector<f64, N>, t: f64, h: f64) -> f64 {
+    4.0 * f64::EPSILON * (q.amax() + v.amax() * t.abs()) / h.abs()
 }

@@ -7,10 +7,11 @@
 //!
 //! and of each step taken `p0 = −D2 L_d − f_d⁻`, `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
 
-use super::comparison::{Comparison, ROUNDING};
+use super::comparison::{Comparison, ROUNDING, Scale};
 use super::derivatives::{magnitude, node};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
+use super::slots::lost_velocity;
 use super::{Checked, Place};
 use crate::{FixedStep, Interval, State, Stepping};
 use nalgebra::SVector;
@@ -52,22 +53,18 @@ fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut C
     let [d2, d4] = [system.d2_ld(&interval), system.d4_ld(&interval)];
     let [fd_minus, fd_plus] = [system.fd_minus(&interval), system.fd_plus(&interval)];
     let row = -d2 - fd_minus - node.p;
-    let lost = lost_velocity(&node.q, v, node.t, h) * found.momentum.jacobian.amax() / ROUNDING;
-    let scale = d2.amax() + fd_minus.amax() + node.p.amax() + lost;
+    let slack = lost_velocity(&node.q, v, node.t, h) * found.momentum.jacobian.amax();
+    let scale = Scale { size: d2.amax() + fd_minus.amax() + node.p.amax(), slack };
     check.vector("residual", &found.momentum.residual, &row, scale)?;
     check.vector("residual alone", &alone.residual, &row, scale)?;
     check.vector("p1 - p0", &gain.momentum, &(d2 + d4 + fd_minus + fd_plus), scale)?;
 
     let energy = system.d1_ld(&interval) + system.gd_minus(&interval) - node.energy;
-    let scale = sample.size() + node.energy.abs() + scale * v.abs().sum();
+    let size = sample.scale().size + node.energy.abs() + scale.size * v.abs().sum();
+    let scale = Scale { size, slack: sample.scale().slack + slack * v.abs().sum() };
     check.number("energy residual", found.energy_residual, energy - v.dot(&row), scale)?;
     let wanted = energy + node.energy + system.d3_ld(&interval) + system.gd_plus(&interval);
     check.number("E1 - E0", gain.energy, -wanted, scale)
-}
-
-/// What rounding takes from v where it is made of the ends of an interval.
-fn lost_velocity<const N: usize>(q: &SVector<f64, N>, v: &SVector<f64, N>, t: f64, h: f64) -> f64 {
-    4.0 * f64::EPSILON * (q.amax() + v.amax() * t.abs()) / h.abs()
 }
 
 /// What the slots say of the step between two states.
@@ -75,8 +72,8 @@ pub(super) struct Between<const N: usize> {
     momentum_before: SVector<f64, N>,
     momentum_after: SVector<f64, N>,
     pub(super) energy_after: f64,
-    momentum_scale: f64,
-    pub(super) energy_scale: f64,
+    momentum_scale: Scale,
+    pub(super) energy_scale: Scale,
 }
 
 impl<const N: usize> Between<N> {
@@ -85,15 +82,14 @@ impl<const N: usize> Between<N> {
         let h = after.t - before.t;
         let v = (after.q - before.q) / h;
         let slope = system.momentum_equation(&crate::Node::new(*before, 0.0), h, &v).jacobian.amax();
-        let lost = lost_velocity(&after.q, &v, after.t, h) * slope / ROUNDING;
-        let momentum_scale = before.p.amax() + after.p.amax() + lost;
+        let slack = lost_velocity(&after.q, &v, after.t, h) * slope;
         let energy_after = -system.d3_ld(&interval) - system.gd_plus(&interval);
         Self {
             momentum_before: -system.d2_ld(&interval) - system.fd_minus(&interval),
             momentum_after: system.d4_ld(&interval) + system.fd_plus(&interval),
             energy_after,
-            momentum_scale,
-            energy_scale: magnitude(&after.p, &v) + energy_after.abs() + lost * v.abs().sum(),
+            momentum_scale: Scale { size: before.p.amax() + after.p.amax(), slack },
+            energy_scale: Scale { size: magnitude(&after.p, &v) + energy_after.abs(), slack: slack * v.abs().sum() },
         }
     }
 }
