@@ -6,8 +6,10 @@
 use crate::{Lagrangian, StepError};
 use nalgebra::SVector;
 
-/// Substeps of the rows of the extrapolation tableau, whose last entry is of order 14.
-const SUBSTEPS: [u32; 7] = [2, 4, 6, 8, 10, 12, 14];
+/// Rows of the extrapolation tableau.
+const ROWS: u32 = 7;
+/// Substeps of the rows; the last entry of the tableau is of order 14.
+const SUBSTEPS: [u32; ROWS as usize] = [2, 4, 6, 8, 10, 12, 14];
 /// Difference of the last two columns up to which a step is accepted, relative to the state; the last column is better by
 /// far. At the very floor of rounding no step would pass for sure.
 const TOLERANCE: f64 = 1e-14;
@@ -40,16 +42,19 @@ impl<const N: usize> Motion<N> {
         while !arrived {
             let last = (end - self.t).abs() <= h.abs();
             let step = if last { end - self.t } else { h };
-            let (change, error) = self.extrapolated(system, step)?;
             let scale = self.q.amax().max(self.v.amax()).max(f64::MIN_POSITIVE);
-            // Not a number is no accurate step either.
-            if error.is_nan() || error > TOLERANCE * scale {
-                h = step / 2.0;
-                if h.abs() < SHORTEST * way.abs() {
-                    return Err(StepError::NotConverged { t: self.t, h, iterations: 14, residual: error });
+            // A trial step that is too long may end anywhere, even where there is no acceleration.
+            let change = match self.extrapolated(system, step) {
+                Ok((change, error)) if error <= TOLERANCE * scale => change,
+                _ if h.abs() > SHORTEST * way.abs() => {
+                    h = step / 2.0;
+                    continue;
                 }
-                continue;
-            }
+                Ok((_, residual)) => {
+                    return Err(StepError::NotConverged { t: self.t, h, iterations: ROWS, residual });
+                }
+                Err(error) => return Err(error),
+            };
             self = Self { t: if last { end } else { self.t + step }, q: self.q + change.0, v: self.v + change.1 };
             arrived = last;
             h *= 1.25;
