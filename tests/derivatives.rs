@@ -6,7 +6,7 @@
 mod support;
 
 use support::Sequence;
-use support::dual::Dual;
+use vi_core::check::Dual;
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, Parameters, SVector, Stepping};
 use vi_systems as systems;
 

@@ -38,6 +38,8 @@ pub(crate) fn named_rule(name: &str) -> Option<syn::Result<Rule>> {
 
 /// A discretized system.
 pub struct DiscreteSystem {
+    /// The named rule that the system's rule is, written out or not.
+    pub rule: Option<&'static str>,
     /// The continuous functions: momentum, mass matrix, …
     pub continuous: Continuous,
     /// Partial derivatives of L and f, as far as they were asked for.

@@ -2,9 +2,11 @@
 //!
 //! In: a [`Model`], its [`DiscreteSystem`] and its
 //! [`Program`]. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
-//! One file per kind of item: the struct, the continuous system, the discrete one, the stepper.
+//! One file per kind of item: the struct, the continuous system, the discrete one, the stepper, the
+//! checks.
 
 mod body;
+mod check;
 mod discrete;
 mod formula;
 mod lagrangian;
@@ -37,7 +39,8 @@ pub fn items(model: &Model, system: &DiscreteSystem, program: &Program, findings
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);
     let stepping = stepping::item(&source);
-    quote! { #structure #lagrangian #discrete #stepping }
+    let check = check::items(&source);
+    quote! { #structure #lagrangian #discrete #stepping #check }
 }
 
 impl Source<'_> {

@@ -7,8 +7,11 @@
 pub mod check;
 mod force;
 mod mass;
+mod place;
 mod resolve;
 mod scope;
+
+pub use place::Place;
 
 use crate::symbol::Symbol;
 use crate::syntax::Rule;
@@ -39,6 +42,8 @@ pub struct Model {
     pub rule: Rule,
     /// The rule as the documentation names it.
     pub rule_name: String,
+    /// Where the system is checked, if it says so.
+    pub place: Option<Place>,
 }
 
 /// A coordinate.
