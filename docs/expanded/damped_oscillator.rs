@@ -428,3 +428,91 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         }
     }
 }
+
+impl ::vi_core::check::Checked<1> for DampedOscillator<f64> {
+    type In<T: ::vi_core::Real> = DampedOscillator<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
+        DampedOscillator::from_f64(self)
+    }
+}
+
+/// Checks of [`DampedOscillator`](super::DampedOscillator) at the place that it names.
+#[cfg(test)]
+#[allow(clippy::all, clippy::pedantic)]
+mod damped_oscillator_checks {
+    fn place() -> ::vi_core::check::Place<1> {
+        ::vi_core::check::Place {
+            t: 0.0,
+            q: [0.8].into(),
+            v: [0.5].into(),
+            h: 0.05,
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn derivatives() {
+        let checked = ::vi_core::check::derivatives(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn slots() {
+        let checked = ::vi_core::check::slots(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn steps() {
+        let checked = ::vi_core::check::steps(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn order() {
+        let checked = ::vi_core::check::order(
+            &super::DampedOscillator::default(),
+            &place(),
+            2,
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn reversibility() {
+        let checked = ::vi_core::check::reversibility(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy() {
+        let checked = ::vi_core::check::energy(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+}

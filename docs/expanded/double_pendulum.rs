@@ -658,3 +658,113 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         }
     }
 }
+
+impl ::vi_core::check::Checked<2> for DoublePendulum<f64> {
+    type In<T: ::vi_core::Real> = DoublePendulum<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
+        DoublePendulum::from_f64(self)
+    }
+}
+
+/// Checks of [`DoublePendulum`](super::DoublePendulum) at the place that it names.
+#[cfg(test)]
+#[allow(clippy::all, clippy::pedantic)]
+mod double_pendulum_checks {
+    fn place() -> ::vi_core::check::Place<2> {
+        ::vi_core::check::Place {
+            t: 0.0,
+            q: [0.5, -0.3].into(),
+            v: [0.2, 0.1].into(),
+            h: 0.01,
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn derivatives() {
+        let checked = ::vi_core::check::derivatives(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn slots() {
+        let checked = ::vi_core::check::slots(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn steps() {
+        let checked = ::vi_core::check::steps(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn order() {
+        let checked = ::vi_core::check::order(
+            &super::DoublePendulum::default(),
+            &place(),
+            2,
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn symplecticity() {
+        let checked = ::vi_core::check::symplecticity(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn reversibility() {
+        let checked = ::vi_core::check::reversibility(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy() {
+        let checked = ::vi_core::check::energy(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn step_law() {
+        let checked = ::vi_core::check::step_law(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+}

@@ -495,3 +495,94 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         }
     }
 }
+
+impl ::vi_core::check::Checked<2> for Kepler<f64> {
+    type In<T: ::vi_core::Real> = Kepler<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
+        Kepler::from_f64(self)
+    }
+}
+
+/// Checks of [`Kepler`](super::Kepler) at the place that it names.
+#[cfg(test)]
+#[allow(clippy::all, clippy::pedantic)]
+mod kepler_checks {
+    fn place() -> ::vi_core::check::Place<2> {
+        ::vi_core::check::Place {
+            t: 0.0,
+            q: [0.6, 0.1].into(),
+            v: [-0.2, 1.4].into(),
+            h: 0.02,
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn derivatives() {
+        let checked = ::vi_core::check::derivatives(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn slots() {
+        let checked = ::vi_core::check::slots(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn steps() {
+        let checked = ::vi_core::check::steps(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn order() {
+        let checked = ::vi_core::check::order(&super::Kepler::default(), &place(), 2);
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn symplecticity() {
+        let checked = ::vi_core::check::symplecticity(
+            &super::Kepler::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn reversibility() {
+        let checked = ::vi_core::check::reversibility(
+            &super::Kepler::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy() {
+        let checked = ::vi_core::check::energy(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn step_law() {
+        let checked = ::vi_core::check::step_law(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+}
