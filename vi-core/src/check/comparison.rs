@@ -9,8 +9,7 @@ use nalgebra::SVector;
 use std::collections::BTreeMap;
 
 /// What two evaluations of one formula may differ by, relative to the numbers that meet in it: far above the rounding of
-/// some hundred operations, measured at up to 1.4e-15 on the ready systems (6.6e-14 where a force is made of the ends of an
-/// interval), and far below a wrong term.
+/// some hundred operations, measured at up to 8.7e-15 over twenty draws of each ready system, and far below a wrong term.
 pub(super) const ROUNDING: f64 = 1e-10;
 
 /// What the difference of two numbers is measured in.

@@ -50,5 +50,5 @@ pub fn order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, order:
     if difference.is_nan() || difference > TOLERANCE {
         return Err(check.differs(what, fit.slope, wanted, difference, TOLERANCE));
     }
-    Ok(check.fitted(fit.points.len(), what, difference.abs(), TOLERANCE))
+    Ok(check.fitted(fit.points.len(), what, difference.max(0.0), TOLERANCE))
 }

@@ -14,7 +14,7 @@ pub struct Report {
     pub compared: usize,
     /// Where the difference was worst.
     pub what: String,
-    /// The worst difference, relative to the numbers that met there.
+    /// The worst difference, relative to the numbers that met there; of a slope, what it falls short by.
     pub worst: f64,
     /// What would have been allowed.
     pub tolerance: f64,

@@ -83,10 +83,12 @@ impl<const N: usize, S: Checked<N>> Sample<S, N> {
         Interval { t0: self.t, q0: self.q, t1: self.t + h, q1: self.q + self.v * h }
     }
 
-    /// The middle of that interval.
+    /// The middle of that interval, with the velocity that its ends say: what rounding takes from it is the same here and
+    /// in the slots.
     fn middle(&self, part: f64) -> (f64, SVector<f64, N>, SVector<f64, N>) {
-        let half = self.h * part / 2.0;
-        (self.t + half, self.q + self.v * half, self.v)
+        let Interval { t0, q0, t1, q1 } = self.interval(part);
+        let h = t1 - t0;
+        (t0 + h / 2.0, (q0 + q1) / 2.0, (q1 - q0) / h)
     }
 
     /// The terms of an energy, and what it loses where v is made of the ends of an interval.
