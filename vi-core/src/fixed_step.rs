@@ -154,7 +154,10 @@ where
                 Err(failure) if part <= LEAST_PART => {
                     let failure = match failure {
                         // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
-                        Failure::Singular => Failure::Stalled { iterations: spent, residual: self.residual(v) },
+                        Failure::Singular => match self.residual(v) {
+                            residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
+                            _ => Failure::NonFinite,
+                        },
                         Failure::Stalled { iterations, residual } => {
                             Failure::Stalled { iterations: spent + iterations, residual }
                         }

@@ -41,7 +41,7 @@ pub(super) struct Root<const N: usize, T> {
 pub(super) enum Failure<T> {
     /// The equations hold, and would for other lengths too.
     Degenerate { h: T, density: T },
-    /// The iteration left the range, met a singular matrix or did not reach the floor.
+    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor.
     NoRoot,
 }
 
@@ -75,10 +75,10 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Some(Self { residual, residual_dh, schur, schur_magnitude })
     }
 
-    /// Step density D of the interval.
+    /// Step density D of the interval; `None` where a term of it is not finite.
     #[inline]
-    pub(super) fn density(&self) -> T {
-        self.schur * T::real(-4.0)
+    pub(super) fn density(&self) -> Option<T> {
+        (self.schur_magnitude * T::real(4.0)).is_finite().then(|| self.schur * T::real(-4.0))
     }
 
     /// Whether S is zero but for its rounding.
@@ -86,11 +86,6 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     fn is_degenerate(&self) -> bool {
         self.schur.to_f64().abs() <= VANISHING * T::EPSILON * self.schur_magnitude.to_f64()
     }
-}
-
-/// Step density of the interval that these equations belong to; `None` where A is singular.
-pub(super) fn density<const N: usize, T: Scalar>(equations: &ExtendedSystem<N, T>) -> Option<T> {
-    Elimination::of(equations).map(|elimination| elimination.density())
 }
 
 /// The root that Newton's iteration reaches from `trial` with h inside `range`.
@@ -106,7 +101,8 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
         let equations = system.extended_system(node, trial.h, &trial.v);
         let elimination = Elimination::of(&equations).ok_or(Failure::NoRoot)?;
         let rows = Rows::of(&equations);
-        let (v, h, density) = (trial.v, trial.h, elimination.density());
+        let density = elimination.density().ok_or(Failure::NoRoot)?;
+        let (v, h) = (trial.v, trial.h);
         if rows.are_at_floor(&before) {
             let root = Root { v, h, density, iterations, residual: momentum::worse(rows.momentum, rows.energy) };
             return if elimination.is_degenerate() { Err(Failure::Degenerate { h, density }) } else { Ok(root) };

@@ -3,7 +3,8 @@
 //! In: the middle of the first interval, or its two ends, or the state of an earlier run. Out: an integrator whose node is
 //! the end of that interval, with the p1 and E1 of the slot derivatives.
 
-use super::{EnergyPreserving, Last, newton};
+use super::newton::Elimination;
+use super::{EnergyPreserving, Last};
 use crate::{Node, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -85,7 +86,9 @@ where
         let node = start.advanced(h, &v, &system.increment(&start, h, &v));
         node.check_finite(t)?;
         let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
-        let density = newton::density(&system.extended_system(&start, h, &v)).ok_or(singular)?;
+        let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density" };
+        let elimination = Elimination::of(&system.extended_system(&start, h, &v)).ok_or(singular)?;
+        let density = elimination.density().ok_or(infinite)?;
         let (t_mid, q_mid) = start.midpoint(h, &v);
         // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
         let slope = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
