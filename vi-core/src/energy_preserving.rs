@@ -136,7 +136,7 @@ where
         let Self { system, node, last, .. } = self;
         let start = guess::predict(system, node, last);
         let ratio = T::real(RATIO);
-        match newton::solve(system, node, start, (last.h / ratio, last.h * ratio)) {
+        match newton::solve(system, node, start, (last.h / ratio, last.h * ratio), |_| ()) {
             // At the smallest root D has the sign that it had: past a change of sign lies another root.
             Ok(root) if root.density.to_f64() * last.density.to_f64() > 0.0 => Ok(root),
             Err(Failure::Degenerate { h, density }) => {

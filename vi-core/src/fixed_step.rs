@@ -11,12 +11,9 @@
 //! compensated. Where Newton's iteration fails from the guess, v is followed from the velocity that belongs to p by
 //! continuation in h. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
-use crate::momentum::{self, Failure, Solution};
-use crate::{Node, Scalar, State, StepError, Stepping};
+use crate::momentum::{self, Solution};
+use crate::{Node, Scalar, State, StepError, Stepping, continuation};
 use nalgebra::SVector;
-
-/// Smallest part of h by which continuation goes on before it gives up.
-const LEAST_PART: f64 = 1.0 / 64.0;
 
 /// The variational integrator with a given step; see the [module](self).
 #[derive(Clone, Debug)]
@@ -119,7 +116,7 @@ where
         let guess = (v1 - v2) * T::real(3.0) + v3;
         let Solution { v, iterations } = match momentum::solve(&self.system, &self.node, self.h, guess) {
             Ok(solution) => solution,
-            Err(_) => self.continued()?,
+            Err(_) => continuation::solve(&self.system, &self.node, self.h, v1)?,
         };
         let gain = self.system.increment(&self.node, self.h, &v);
         let node = self.node.advanced(self.h, &v, &gain);
@@ -134,47 +131,6 @@ where
         self.steps += 1;
         self.iterations = iterations;
         Ok(node.state())
-    }
-
-    /// The root that is connected with the velocity belonging to p, followed from h = 0 in parts that double after a
-    /// success and halve after a failure.
-    #[cold]
-    fn continued(&self) -> Result<Solution<N, T>, StepError> {
-        let t = self.node.t.to_f64();
-        let [v1, ..] = self.velocities;
-        let mut v = momentum::velocity(&self.system, &self.node, [v1, self.node.p])?;
-        let (mut reached, mut part, mut spent) = (0.0, 1.0, 0);
-        while reached < 1.0 {
-            let target = f64::min(reached + part, 1.0);
-            match momentum::solve(&self.system, &self.node, self.h * T::real(target), v) {
-                Ok(solution) => {
-                    (v, reached, part) = (solution.v, target, 2.0 * part);
-                    spent += solution.iterations;
-                }
-                Err(failure) if part <= LEAST_PART => {
-                    let failure = match failure {
-                        // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
-                        Failure::Singular => match self.residual(v) {
-                            residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
-                            _ => Failure::NonFinite,
-                        },
-                        Failure::Stalled { iterations, residual } => {
-                            Failure::Stalled { iterations: spent + iterations, residual }
-                        }
-                        Failure::NonFinite => failure,
-                    };
-                    return Err(failure.at(t, self.h.to_f64(), "derivative of the momentum equation"));
-                }
-                Err(_) => part /= 2.0,
-            }
-        }
-        Ok(Solution { v, iterations: spent })
-    }
-
-    /// Residual at the whole step, in roundings.
-    fn residual(&self, v: SVector<T, N>) -> f64 {
-        let equation = self.system.momentum_equation(&self.node, self.h, &v);
-        momentum::worst(&equation.residual, &equation.magnitude)
     }
 }
 

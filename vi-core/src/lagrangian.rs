@@ -44,6 +44,11 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// # Errors
     /// [`StepError::Singular`] where the mass matrix cannot be inverted.
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError>;
+    /// Where a value was lost: the first of what L and f are made of that is not finite at `(t, q, v)`, as text; parts
+    /// before wholes. `None` where everything is finite, and for a system that does not say.
+    fn non_finite(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<&'static str> {
+        None
+    }
 }
 
 /// The discrete system: the discrete Lagrangian, its slot derivatives, discrete forces and powers.
@@ -171,6 +176,11 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for &S {
     #[inline]
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
         S::step_density(self, t, q, v)
+    }
+
+    #[inline]
+    fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
+        S::non_finite(self, t, q, v)
     }
 }
 

@@ -19,6 +19,7 @@
 
 mod compensated;
 pub mod condition;
+mod continuation;
 pub mod energy_preserving;
 pub mod error;
 pub mod fixed_step;
@@ -30,7 +31,7 @@ pub mod real;
 pub mod state;
 
 pub use energy_preserving::EnergyPreserving;
-pub use error::StepError;
+pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
     DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, MomentumEquation, Parameters, Stepping,

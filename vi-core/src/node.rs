@@ -88,7 +88,7 @@ impl<const N: usize, T: Scalar> Node<N, T> {
             (self.energy.is_finite() && self.energy_low.is_finite(), "energy"),
         ];
         match quantities.into_iter().find(|(finite, _)| !finite) {
-            Some((_, quantity)) => Err(StepError::NonFinite { t: t.to_f64(), quantity }),
+            Some((_, quantity)) => Err(StepError::NonFinite { t: t.to_f64(), quantity, expression: None }),
             None => Ok(()),
         }
     }
