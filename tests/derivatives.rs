@@ -11,7 +11,7 @@ use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, Parameters, SVecto
 use vi_systems as systems;
 
 /// Draws for each system.
-const DRAWS: u64 = 20;
+const DRAWS: usize = 20;
 /// Relative to the largest number that meets in a comparison. Measured: 1.7e-15.
 const TOLERANCE: f64 = 4e-15;
 
@@ -215,7 +215,7 @@ macro_rules! derivatives {
                 check_step(&$s, &dual, (&node, h, &$v), &mut check);
             }
             println!("{}: {} numbers other than zero, worst difference {:e}", check.name, check.nonzero, check.worst);
-            assert!(check.nonzero > 10 * DRAWS as usize, "almost everything compared was zero");
+            assert!(check.nonzero > 10 * DRAWS, "almost everything compared was zero");
         }
     };
 }

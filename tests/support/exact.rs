@@ -6,7 +6,7 @@ use vi_core::{Lagrangian, SVector};
 /// Substeps of the rows of the extrapolation tableau, whose last entry is of order 14.
 const SUBSTEPS: [u32; 7] = [2, 4, 6, 8, 10, 12, 14];
 /// Difference of the last two columns up to which a step is accepted; the last column is better by far.
-const TOLERANCE: f64 = 1e-14;
+const TOLERANCE: f64 = 1e-15;
 
 /// Where a motion is: time, coordinates, velocities.
 #[derive(Clone, Copy, Debug)]
@@ -24,16 +24,17 @@ impl<const N: usize> Motion<N> {
         Self { t, q: q.into(), v: v.into() }
     }
 
-    /// The same motion at the time `end`, later or earlier. Measured: 7e-14 after the time 50.
+    /// The same motion at the time `end`, later or earlier. Measured: at most 4e-12 at the time 50.
     pub(crate) fn at(mut self, system: &impl Lagrangian<N>, end: f64) -> Self {
         let mut h = (end - self.t).clamp(-0.1, 0.1);
-        while self.t != end {
-            let last = (end - self.t).abs() <= h.abs();
+        let mut last = h == 0.0;
+        while !last {
+            last = (end - self.t).abs() <= h.abs();
             let step = if last { end - self.t } else { h };
             let (change, error) = self.extrapolated(system, step);
             let scale = 1.0 + self.q.amax().max(self.v.amax());
             if error > TOLERANCE * scale {
-                h = step / 2.0;
+                (h, last) = (step / 2.0, false);
                 assert!(h.abs() > 1e-12, "no accurate motion at t = {}", self.t);
                 continue;
             }

@@ -132,6 +132,50 @@ where
         self.iterations = iterations;
         Ok(node.state())
     }
+<<<<<<< HEAD
+=======
+
+    /// The root that is connected with the velocity belonging to p, followed from h = 0 in parts that double after a
+    /// success and halve after a failure.
+    #[cold]
+    fn continued(&self) -> Result<Solution<N, T>, StepError> {
+        let t = self.node.t.to_f64();
+        let [v1, ..] = self.velocities;
+        let mut v = momentum::velocity(&self.system, &self.node, [v1, self.node.p])?;
+        let (mut reached, mut part, mut spent) = (0.0, 1.0, 0);
+        while reached < 1.0 {
+            let target = f64::min(reached + part, 1.0);
+            match momentum::solve(&self.system, &self.node, self.h * T::real(target), v) {
+                Ok(solution) => {
+                    (v, reached, part) = (solution.v, target, 2.0 * part);
+                    spent += solution.iterations;
+                }
+                Err(failure) if part <= LEAST_PART => {
+                    let failure = match failure {
+                        // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
+                        Failure::Singular => match self.residual(v) {
+                            residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
+                            _ => Failure::NonFinite,
+                        },
+                        Failure::Stalled { iterations, residual } => {
+                            Failure::Stalled { iterations: spent + iterations, residual }
+                        }
+                        Failure::NonFinite => failure,
+                    };
+                    return Err(failure.at(t, self.h.to_f64(), "derivative of the momentum equation"));
+                }
+                Err(_) => part /= 2.0,
+            }
+        }
+        Ok(Solution { v, iterations: spent })
+    }
+
+    /// Residual at the whole step, in roundings.
+    fn residual(&self, v: SVector<T, N>) -> f64 {
+        let equation = self.system.momentum_equation(&self.node, self.h, &v);
+        momentum::worst(&equation.residual, &equation.magnitude)
+    }
+>>>>>>> main
 }
 
 impl<S, const N: usize, T> Iterator for FixedStep<S, N, T>

@@ -177,8 +177,6 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for &S {
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
         S::step_density(self, t, q, v)
     }
-
-    #[inline]
     fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
         S::non_finite(self, t, q, v)
     }

@@ -86,7 +86,11 @@ where
         let node = start.advanced(h, &v, &system.increment(&start, h, &v));
         node.check_finite(t)?;
         let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
+<<<<<<< HEAD
         let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
+=======
+        let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density" };
+>>>>>>> main
         let elimination = Elimination::of(&system.extended_system(&start, h, &v)).ok_or(singular)?;
         let density = elimination.density().ok_or(infinite)?;
         let (t_mid, q_mid) = start.midpoint(h, &v);

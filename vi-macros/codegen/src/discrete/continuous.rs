@@ -11,7 +11,7 @@
 use super::Fields;
 use crate::model::Model;
 use crate::symbol::{Quantity, Symbol, Variable};
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, Node, Pool, Rational};
 
 /// Expressions in time, coordinates, velocities and parameters; the density in accelerations too.
 pub struct Continuous {
@@ -29,6 +29,9 @@ pub struct Continuous {
     pub mass_times_acceleration: Vec<Expr>,
     /// D.
     pub step_density: Expr,
+    /// What can lose its value first: variables and parameters, calls, roots and quotients, then L and f; parts before
+    /// wholes.
+    pub watched: Vec<Expr>,
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
     /// Per coordinate: it does not appear in L and has no force.
@@ -75,6 +78,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         lagrangian: model.lagrangian,
         energy: energy(pool, &momentum, model.lagrangian),
         cyclic: cyclic(pool, model),
+        watched: watched(pool, model),
         force: model.forces.clone(),
         momentum,
         mass,
@@ -82,6 +86,20 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         step_density: pool.sum(&density),
         autonomous: autonomous && !forced_time,
     }
+}
+
+fn watched(pool: &Pool<Symbol>, model: &Model) -> Vec<Expr> {
+    let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
+    let one = Rational::from_integer(1.into());
+    let (parts, others): (Vec<Expr>, Vec<Expr>) = pool.reachable(&wholes).into_iter().partition(|expr| {
+        match pool.node(*expr) {
+            Node::Symbol(_) | Node::Call(..) => true,
+            // A product of positive powers is finite where its factors are, short of overflow.
+            Node::Product(product) => product.factors.iter().any(|(_, exponent)| *exponent < one),
+            Node::Number(_) | Node::Pi | Node::Sum(_) => false,
+        }
+    });
+    parts.into_iter().chain(others.into_iter().filter(|expr| wholes.contains(expr) && !pool.is_zero(*expr))).collect()
 }
 
 fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {

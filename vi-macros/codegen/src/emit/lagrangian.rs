@@ -24,6 +24,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         vector(source, "force", &source.formulas("f", &of.force)),
         acceleration(source),
         step_density(source, of.step_density),
+        non_finite(source),
     ];
     quote! {
         #[allow(clippy::all, clippy::pedantic, non_snake_case, uncommon_codepoints, unused_variables, unused_parens)]
@@ -41,8 +42,12 @@ pub(super) fn item(source: &Source) -> TokenStream {
 impl Source<'_> {
     /// `name = formula`, as the user's names spell it.
     pub(super) fn formula(&self, name: &str, expr: Expr) -> String {
-        let spelt = self.model.pool.render(expr, &|symbol: &Symbol| self.model.spell(symbol));
-        format!("`{name} = {spelt}`")
+        format!("`{name} = {}`", self.spelt(expr))
+    }
+
+    /// An expression in the user's names.
+    fn spelt(&self, expr: Expr) -> String {
+        self.model.pool.render(expr, &|symbol: &Symbol| self.model.spell(symbol))
     }
 
     /// One formula per coordinate.
@@ -176,6 +181,31 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
             #inputs #statements
             Ok(#result)
+        }
+    }
+}
+
+fn non_finite(source: &Source) -> TokenStream {
+    let dimension = source.dimension();
+    let formula = "The first of what L and f are made of that is not finite here.";
+    let Some((body, documentation)) = source.documented("non_finite", formula, Place::Argument) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
+    let texts = source.system.continuous.watched.iter().map(|expr| source.spelt(*expr));
+    let values = body.results[0].iter();
+    quote! {
+        #documentation
+        #[cold]
+        fn non_finite(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::core::option::Option<&'static str> {
+            #inputs #statements
+            let values = [#((#texts, #values)),*];
+            values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Rust, printed from a program.
 //!
-//! In: a [`Model`](crate::model::Model), its [`DiscreteSystem`](crate::discrete::DiscreteSystem) and its
-//! [`Program`](crate::program::Program). Out: tokens that name only `::vi_core`, `::core` and what the user declared.
+//! In: a [`Model`], its [`DiscreteSystem`] and its
+//! [`Program`]. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
 //! One file per kind of item: the struct, the continuous system, the discrete one, the stepper.
 
 mod body;

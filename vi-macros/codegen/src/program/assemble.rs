@@ -135,6 +135,7 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function("force", core::slice::from_ref(&of.force)),
         assembly.function("acceleration", &acceleration),
         assembly.function("step_density", &[vec![of.step_density]]),
+        assembly.function("non_finite", core::slice::from_ref(&of.watched)),
     ]
 }
 

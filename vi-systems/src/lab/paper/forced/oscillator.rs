@@ -33,7 +33,7 @@ pub(super) struct Run {
 
 /// The system with damping ratio ζ: `c = 2 ζ ω m`.
 pub(super) fn system(zeta: f64) -> DampedOscillator {
-    DampedOscillator { m: 1.0, k: OMEGA * OMEGA, c: 2.0 * zeta * OMEGA, ..DampedOscillator::default() }
+    DampedOscillator { m: 1.0, k: OMEGA * OMEGA, c: 2.0 * zeta * OMEGA }
 }
 
 /// Coordinate and velocity of the exact motion from `(1, 0)`.
