@@ -1,6 +1,8 @@
 //! Every way in which a step can fail, with its numbers.
 
+use crate::{Lagrangian, Node, Scalar};
 use core::fmt;
+use nalgebra::SVector;
 
 /// Why a step was not taken. The integrator still holds the last good state, and a further call returns the same error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +88,26 @@ pub enum StepError {
     },
 }
 
+impl StepError {
+    /// With the expression that is not finite where the step `(v, h)` from `node` was sought, if that is the error and the
+    /// system says so.
+    #[cold]
+    pub(crate) fn explained<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
+        self,
+        system: &S,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> Self {
+        let Self::NonFinite { t, quantity, expression: None } = self else { return self };
+        // The middle of the step, the node, and the middle of the longest step that is looked at.
+        let lengths = [h, T::zero(), h * T::real(3.0)];
+        let mut places = lengths.into_iter().map(|h| node.midpoint(h, v));
+        let expression = places.find_map(|(t, q)| system.non_finite(t, &q, v));
+        Self::NonFinite { t, quantity, expression }
+    }
+}
+
 impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -110,7 +132,9 @@ impl fmt::Display for StepError {
                 "no solution found from t = {t:.9} with h = {h:.3e}: residual {residual:.3e} roundings after {iterations} iterations{residuals}"
             ),
             Self::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
-            Self::NonFinite { t, quantity, expression: None } => write!(f, "the {quantity} is not finite at t = {t:.9}"),
+            Self::NonFinite { t, quantity, expression: None } => {
+                write!(f, "the {quantity} is not finite at t = {t:.9}")
+            }
             Self::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }

@@ -30,7 +30,7 @@ pub mod node;
 pub mod real;
 pub mod state;
 
-pub use energy_preserving::EnergyPreserving;
+pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
@@ -40,5 +40,5 @@ pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};
 pub use node::Node;
 pub use real::{Real, Scalar};
-pub use state::{Interval, State, Step};
+pub use state::{Interval, Method, State, Step};
 pub use vi_macros::lagrangian;

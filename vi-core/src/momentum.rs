@@ -38,9 +38,7 @@ impl Failure {
         match self {
             Self::Singular => StepError::Singular { t, matrix },
             Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation", expression: None },
-            Self::Stalled { iterations, residual } => {
-                StepError::NotConverged { t, h, iterations, residual, residuals }
-            }
+            Self::Stalled { iterations, residual } => StepError::NotConverged { t, h, iterations, residual, residuals },
         }
     }
 }

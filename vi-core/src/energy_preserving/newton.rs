@@ -88,12 +88,8 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     }
 }
 
-<<<<<<< HEAD
 /// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of
 /// the rows before each iteration, in roundings.
-=======
-/// The root that Newton's iteration reaches from `trial` with h inside `range`.
->>>>>>> main
 #[inline]
 pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
@@ -107,10 +103,7 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
         let equations = system.extended_system(node, trial.h, &trial.v);
         let elimination = Elimination::of(&equations).ok_or(Failure::NoRoot)?;
         let rows = Rows::of(&equations);
-<<<<<<< HEAD
         observe(momentum::worse(rows.momentum, rows.energy));
-=======
->>>>>>> main
         let density = elimination.density().ok_or(Failure::NoRoot)?;
         let (v, h) = (trial.v, trial.h);
         if rows.are_at_floor(&before) {
