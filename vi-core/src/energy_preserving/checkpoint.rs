@@ -1,7 +1,7 @@
 //! What a run carries from step to step, as one value.
 //!
 //! In: a run, between two steps. Out: a [`Checkpoint`] that may be stored, with the feature `serde` in any format that
-//! keeps numbers exactly, and the run again. AFTER A RESTART every number of every further step, and every error, is bit
+//! keeps numbers exactly (`serde_json` with its feature `float_roundtrip`), and the run again. AFTER A RESTART every number of every further step, and every error, is bit
 //! for bit that of the run which was not interrupted. An error is not stored: the restarted run meets it again, for the
 //! state before it is unchanged and nothing else enters.
 
