@@ -87,12 +87,19 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        self.advance().map_err(|failure| {
-            let Last { v, h, .. } = self.run.last;
-            let failure = failure.explained(&self.system, &self.run.node, h, &v);
-            self.failure = Some(failure);
-            failure
-        })
+        match self.advance() {
+            Ok(step) => Ok(step),
+            Err(failure) => Err(self.fail(failure)),
+        }
+    }
+
+    /// Ends the run.
+    #[cold]
+    fn fail(&mut self, failure: StepError) -> StepError {
+        let Last { v, h, .. } = self.run.last;
+        let failure = failure.explained(&self.system, &self.run.node, h, &v);
+        self.failure = Some(failure);
+        failure
     }
 
     /// The state reached last.

@@ -97,11 +97,18 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        self.advance().map_err(|failure| {
-            let failure = failure.explained(&self.system, &self.run.node, self.run.h, &self.v());
-            self.failure = Some(failure);
-            failure
-        })
+        match self.advance() {
+            Ok(step) => Ok(step),
+            Err(failure) => Err(self.fail(failure)),
+        }
+    }
+
+    /// Ends the run.
+    #[cold]
+    fn fail(&mut self, failure: StepError) -> StepError {
+        let failure = failure.explained(&self.system, &self.run.node, self.run.h, &self.v());
+        self.failure = Some(failure);
+        failure
     }
 
     /// The state reached last.

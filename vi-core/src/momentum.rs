@@ -120,7 +120,7 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
                 (v, equation) = (trial_v, trial);
                 break;
             }
-            if residual <= FLOOR || is_still(&step, &v) {
+            if residual <= FLOOR || is_still(step, v) {
                 return Ok(Solution { v, iterations });
             }
             if halvings == HALVINGS {
@@ -134,9 +134,10 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
 
 /// Whether a Newton step is below the rounding of v.
 #[cold]
-fn is_still<T: Scalar, const N: usize>(step: &SVector<T, N>, v: &SVector<T, N>) -> bool {
+#[inline(never)]
+fn is_still<T: Scalar, const N: usize>(step: SVector<T, N>, v: SVector<T, N>) -> bool {
     let largest = |vector: &SVector<T, N>| vector.iter().fold(0.0, |largest, x| worse(x.to_f64().abs(), largest));
-    largest(step) <= STILL * T::EPSILON * largest(v)
+    largest(&step) <= STILL * T::EPSILON * largest(&v)
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.

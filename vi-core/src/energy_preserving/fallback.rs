@@ -206,9 +206,10 @@ where
         let (length, shorter) = match (self.run.fallback, failure) {
             (Fallback::Stop, _) => return Err(failure),
             (_, StepError::StepBounds { found, h_min, .. }) => (bounded(T::real(found)), found < h_min),
-            (_, StepError::NoForwardStep { .. } | StepError::DegenerateStep { .. } | StepError::StepRatio { .. })
-            | (_, StepError::NotConverged { .. }) => (bounded(h), false),
-            _ => return Err(failure),
+            (_, StepError::Singular { .. } | StepError::NonFinite { .. } | StepError::InvalidInput { .. }) => {
+                return Err(failure);
+            }
+            _ => (bounded(h), false),
         };
         let phase = Phase { h: length, shorter, law_h: h, law_density: density, density_next: density, gap: T::zero() };
         let step = self.fixed_step(phase)?;
