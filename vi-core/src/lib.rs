@@ -21,6 +21,7 @@
 pub mod check;
 mod compensated;
 pub mod condition;
+mod continuation;
 pub mod energy_preserving;
 pub mod error;
 pub mod fixed_step;
@@ -31,8 +32,8 @@ pub mod node;
 pub mod real;
 pub mod state;
 
-pub use energy_preserving::EnergyPreserving;
-pub use error::StepError;
+pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
+pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
     DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, MomentumEquation, Parameters, Stepping,
@@ -41,5 +42,5 @@ pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};
 pub use node::Node;
 pub use real::{Real, Scalar};
-pub use state::{Interval, State, Step};
+pub use state::{Interval, Method, State, Step};
 pub use vi_macros::lagrangian;
