@@ -3,6 +3,7 @@
 //!
 //! In: a system, of which nothing is used but its acceleration, and a state. Out: the state at another time.
 
+use crate::error::Residuals;
 use crate::{Lagrangian, StepError};
 use nalgebra::SVector;
 
@@ -51,7 +52,8 @@ impl<const N: usize> Motion<N> {
                     continue;
                 }
                 Ok((_, residual)) => {
-                    return Err(StepError::NotConverged { t: self.t, h, iterations: ROWS, residual });
+                    let residuals = Residuals::new();
+                    return Err(StepError::NotConverged { t: self.t, h, iterations: ROWS, residual, residuals });
                 }
                 Err(error) => return Err(error),
             };
