@@ -330,3 +330,30 @@ derivatives!(
     },
     [0.0, 0.0, 0.0]
 );
+derivatives!(
+    n_pendulum,
+    NPendulum,
+    4,
+    |s, t, q, v| {
+        // Every mass where it is and as it moves, in the plane.
+        let (mut height, mut velocity, mut sum) = (0.0, [0.0, 0.0], 0.0);
+        for i in 0..4 {
+            height -= s.l * q[i].cos();
+            velocity = [velocity[0] + s.l * v[i] * q[i].cos(), velocity[1] + s.l * v[i] * q[i].sin()];
+            sum += s.m * (velocity[0].powi(2) + velocity[1].powi(2)) / 2.0 - s.m * s.g * height;
+        }
+        sum
+    },
+    [0.0; 4]
+);
+derivatives!(
+    fpu_chain,
+    FpuChain,
+    16,
+    |s, t, q, v| {
+        let at = |i: usize| if (1..=16).contains(&i) { q[i - 1] } else { 0.0 };
+        let potential = |r: f64| s.k * r.powi(2) / 2.0 + s.alpha * r.powi(3) / 3.0 + s.beta * r.powi(4) / 4.0;
+        s.m * v.norm_squared() / 2.0 - (0..=16).map(|i| potential(at(i + 1) - at(i))).sum::<f64>()
+    },
+    [0.0; 16]
+);

@@ -44,9 +44,12 @@ pub struct Derived {
 /// What a `lagrangian!` becomes: the items of the system, or its errors with a stub of the struct.
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
-    let system = match parse::system(tokens) {
+    let system = match parse::system(tokens.clone()) {
         Ok(system) => system,
-        Err(error) => return error.into_compile_error(),
+        Err(error) => {
+            let (errors, stub) = (error.into_compile_error(), parse::outline(tokens).map(|system| emit::stub(&system)));
+            return quote! { #errors #stub };
+        }
     };
     let stub = emit::stub(&system);
     match derive(system) {

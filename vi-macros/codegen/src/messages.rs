@@ -103,6 +103,8 @@ pub enum Message {
     NotDecimal,
     /// A number out of the range of `f64`.
     NumberRange,
+    /// A coefficient of the equations that no `f64` holds.
+    CoefficientRange,
     /// Parentheses nested too deep.
     TooDeep { limit: usize },
     /// An expression that grew over the limit.
@@ -169,6 +171,7 @@ impl Message {
             Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
             Self::NotDecimal => "not a decimal number".to_owned(),
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
+            Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
             Self::TooLarge { limit } => format!("the system grows over {limit} terms"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
@@ -259,6 +262,7 @@ impl Message {
             Self::NumberSuffix { digits, suffix } => format!("write `{digits} * {suffix}` for a product"),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
+            Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLarge { .. } => "use fewer coordinates or a simpler Lagrangian".to_owned(),
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),

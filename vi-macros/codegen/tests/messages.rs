@@ -4,14 +4,15 @@
 //! exactly there, with the text given.
 
 use proc_macro2::TokenStream;
-use vi_codegen::{discrete, model, syntax};
+use vi_codegen::{discrete, model, program, syntax};
 
 /// All errors of a text: (token underlined, message).
 fn errors(text: &str) -> Vec<(String, String)> {
     let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
-    let result = syntax::parse::system(tokens)
-        .and_then(model::check::model)
-        .and_then(|mut model| discrete::system::system(&mut model).map(|_| ()));
+    let result = syntax::parse::system(tokens).and_then(model::check::model).and_then(|mut model| {
+        let system = discrete::system::system(&mut model)?;
+        program::program(&mut model, &system).map(|_| ())
+    });
     let Err(error) = result else { return Vec::new() };
     let token = |error: &syn::Error| error.span().source_text().unwrap_or_default();
     error.into_iter().map(|error| (token(&error), error.to_string())).collect()
@@ -261,6 +262,25 @@ fn several_mistakes_are_reported_at_once() {
 }
 
 #[test]
+fn what_builds_on_a_mistake_is_none() {
+    let rest = "L = sum(i in 0..4, dot(q[i])^2 + e[i] * q[i]) + a * dot(q[0]); force q[0] = e; discretize midpoint;";
+    case(
+        &format!("const a = 1; coord q[4]; let e[i in 0..4] = q[«i» + 1]; {}", rest.replace("= e;", "= e[1];")),
+        "`q[4]` is out",
+    );
+    case(&format!("const a = 1; coord q[4]; let e[«0»] = q[0]; {rest}"), "expected a range");
+    case(
+        &format!("const a = 1; coord q[«0»]; let e = q; {}", rest.replace("e[i]", "dot(q)")),
+        "an array of 0 coordinates",
+    );
+    case(&format!("const a = 1; coord q[«b»]; let e = q[1]; {}", rest.replace("e[i]", "e")), "unknown name `b`");
+    case(
+        &format!("const a = «ln»(0); coord q[4]; let e[i in 0..4] = a; {}", rest.replace("= e;", "= a;")),
+        "this expression has no value",
+    );
+}
+
+#[test]
 fn what_surrounds_a_system() {
     let said = |text: &str| errors(text).into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; ");
     assert!(said("").starts_with("expected `struct Name { … }`"), "{}", said(""));
@@ -283,6 +303,26 @@ fn depth_and_size_are_bounded() {
     let chain = format!("struct System {{ coord x; let a0 = x; {lets} L = dot(x)^2 + a1999; discretize midpoint; }}");
     let found = errors(&chain);
     assert!(found.is_empty() || found[0].1.starts_with("the system grows over"), "{:?}", found[0]);
+}
+
+#[test]
+fn delimiters_around_a_clause_are_bounded_too() {
+    for (open, close) in [("(", ")"), ("[", "]"), ("{", "}")] {
+        let nest = format!("{}{}", open.repeat(5000), close.repeat(5000));
+        for system in [format!("#[doc = {nest}] struct S {{}}"), nest.clone(), format!("struct S {{ coord x{nest}; }}")]
+        {
+            let found = errors(&system);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].1.starts_with("this expression is nested deeper than 100 levels"), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn coefficients_are_numbers() {
+    let tokens = "struct System { coord x; L = dot(x)^1e308; discretize midpoint; }".parse().expect("tokens");
+    let said = vi_codegen::expand(tokens).to_string();
+    assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{said}");
 }
 
 #[test]

@@ -138,16 +138,17 @@ impl Check {
                 continue;
             };
             let length = self.scope.integer(&mut self.pool, written);
-            let Some(length) = self.report(length) else { continue };
-            match usize::try_from(length)
-                .ok()
-                .filter(|length| (1..=COORDINATES - first.min(COORDINATES)).contains(length))
-            {
-                Some(length) => {
-                    coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
-                    self.declare(name, Meaning::Coordinates { first, length });
-                }
-                None => self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES }),
+            let Some(length) = self.report(length) else {
+                self.declare(name, Meaning::Wrong);
+                continue;
+            };
+            let fitting = 1..=COORDINATES - first.min(COORDINATES);
+            if let Some(length) = usize::try_from(length).ok().filter(|length| fitting.contains(length)) {
+                coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
+                self.declare(name, Meaning::Coordinates { first, length });
+            } else {
+                self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES });
+                self.declare(name, Meaning::Wrong);
             }
         }
         coordinates
@@ -166,12 +167,15 @@ impl Check {
                     let entries = self
                         .scope
                         .each(&mut self.pool, range, &mut |scope, pool, _| scope.expression(pool, &named.value));
-                    if let (Some(entries), Ok(first)) = (self.report(entries), first) {
-                        self.declare(&named.name, Meaning::Values { first, entries });
-                    }
+                    let meaning = match (self.report(entries), first) {
+                        (Some(entries), Ok(first)) => Meaning::Values { first, entries },
+                        _ => Meaning::Wrong,
+                    };
+                    self.declare(&named.name, meaning);
                 }
                 Some(Indices::One(index)) => {
                     self.errors.at(index.span, &Message::Expected { what: "a range, as in `i in 0..8`" });
+                    self.declare(&named.name, Meaning::Wrong);
                 }
             }
         }

@@ -46,6 +46,7 @@ pub(super) fn entries(check: &mut Check, line: &Definition, other: Other) -> Opt
     let wanted = match (check.scope.meaning(&name).cloned(), &line.indices) {
         (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, check.value(line))]),
         (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
+        (Some(Meaning::Wrong), _) => Ok(Vec::new()),
         (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
         (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(check, line, indices),
         _ => {

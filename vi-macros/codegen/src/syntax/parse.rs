@@ -3,6 +3,7 @@
 //! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
 //! its `;`, so that the next one is read too.
 
+use super::expression::DEPTH;
 use super::{Check, Coordinate, Definition, Discretization, Entry, Expression, Indices, Rule, System};
 use crate::messages::{Errors, Message, error, nearest};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
@@ -13,12 +14,55 @@ use syn::{Attribute, Result, Token, Visibility};
 /// The words that open a clause.
 const CLAUSES: [&str; 9] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
 
+/// Pairs of delimiters that an expression may stand in: those of the system, of a rule, of an index.
+const CLAUSE_DEPTH: usize = 3;
+
 /// Reads a system.
 ///
 /// # Errors
 /// Every clause that cannot be read, at the token that does not fit.
 pub fn system(tokens: TokenStream) -> Result<System> {
-    header.parse2(tokens)
+    read(tokens, &mut None)
+}
+
+/// What can be read of a system whose clauses may be wrong: its head, and the clauses that are right.
+#[must_use]
+pub fn outline(tokens: TokenStream) -> Option<System> {
+    let mut outline = None;
+    read(tokens, &mut outline).ok().or(outline)
+}
+
+/// Reads a system; one with errors is left in `outline`.
+fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
+    let whole = |input: ParseStream| {
+        let (system, errors) = header(input)?;
+        match errors.finish(()) {
+            Ok(()) => Ok(system),
+            Err(error) => {
+                *outline = Some(system);
+                Err(error)
+            }
+        }
+    };
+    shallow(&tokens)?;
+    whole.parse2(tokens)
+}
+
+/// Refuses parentheses, brackets and braces nested deeper than any right system has them, attributes included: they are
+/// read by recursion.
+fn shallow(tokens: &TokenStream) -> Result<()> {
+    let mut open = vec![tokens.clone().into_iter()];
+    while let Some(innermost) = open.last_mut() {
+        match innermost.next() {
+            Some(TokenTree::Group(group)) if open.len() > DEPTH + CLAUSE_DEPTH => {
+                return Err(error(group.span_open(), &Message::TooDeep { limit: DEPTH }));
+            }
+            Some(TokenTree::Group(group)) => open.push(group.stream().into_iter()),
+            Some(_) => {}
+            None => drop(open.pop()),
+        }
+    }
+    Ok(())
 }
 
 /// Reads the lines of a rule given as text, as the named rules are.
@@ -30,7 +74,7 @@ pub fn rule(text: &str) -> Result<Rule> {
 }
 
 /// `pub struct Name { … }`
-fn header(input: ParseStream) -> Result<System> {
+fn header(input: ParseStream) -> Result<(System, Errors)> {
     let attributes = input.call(Attribute::parse_outer)?;
     let visibility: Visibility = input.parse()?;
     if !input.peek(Token![struct]) {
@@ -67,7 +111,7 @@ fn header(input: ParseStream) -> Result<System> {
     if !input.is_empty() {
         errors.at(input.span(), &Message::AfterSystem);
     }
-    errors.finish(system)
+    Ok((system, errors))
 }
 
 /// Drops the tokens up to the end of a clause that could not be read.
