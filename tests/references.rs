@@ -11,7 +11,7 @@ use vi_core::{EnergyPreserving, FixedStep, State, Stepping};
 use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, Kepler, Pendulum};
 
 /// Steps up to which the limits are stated.
-const STEPS: usize = 1000;
+const STEPS: u32 = 1000;
 /// Largest difference of fixed steps in (q, p, t). Measured: 1.8e-14.
 const FIXED: f64 = 4e-14;
 /// Largest difference of energy-preserving steps in (q, p, t). Measured: 9.5e-11.
@@ -44,7 +44,7 @@ fn fixed<const N: usize>(name: &str, system: impl Stepping<N>, state: State<N>, 
 fn energy_preserving<const N: usize, S: Stepping<N>>(
     name: &str,
     mut integrator: EnergyPreserving<S, N>,
-    first: usize,
+    first: u32,
     list: &Value,
 ) {
     let (mut taken, mut worst, mut iterations) = (first, 0.0_f64, 0);
@@ -58,7 +58,7 @@ fn energy_preserving<const N: usize, S: Stepping<N>>(
         let energy = integrator.energy() - number(&entry["E"]);
         assert!(energy.abs() <= ENERGY_PRESERVING, "{name}: energy off by {energy:e}");
     }
-    let mean = f64::from(iterations) / (taken - first) as f64;
+    let mean = f64::from(iterations) / f64::from(taken - first);
     println!("{name}: energy-preserving, {taken} steps, off by {worst:.2e}, {mean:.2} iterations a step");
     assert_eq!(taken, STEPS);
     assert!(worst <= ENERGY_PRESERVING, "{name}: off by {worst:e}");
@@ -118,7 +118,9 @@ fn double_well() {
     let runs = file("double_well.json");
     let runs = runs.as_array().expect("a list of runs");
     assert_eq!(runs.len(), 4);
-    runs.iter().for_each(|run| paper(DoubleWell::default(), run));
+    for run in runs {
+        paper(DoubleWell::default(), run);
+    }
 }
 
 #[test]

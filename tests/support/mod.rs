@@ -1,7 +1,9 @@
 //! What the tests of several files share. Each file uses its part of it.
-#![allow(dead_code)]
+#![allow(dead_code, unused_macros, unused_imports)]
+// Step numbers and drawn mantissas are far below 2^53.
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
-pub(crate) mod dual;
+pub(crate) mod ending;
 pub(crate) mod exact;
 pub(crate) mod reference;
 pub(crate) mod scenes;

@@ -32,8 +32,9 @@ pub(crate) fn vector<const N: usize>(value: &Value) -> [f64; N] {
 }
 
 /// The entries of a list with the number of steps that each is reached after.
-pub(crate) fn steps(list: &Value) -> Vec<(usize, &Value)> {
+pub(crate) fn steps(list: &Value) -> Vec<(u32, &Value)> {
     let count = |entry: &Value| entry.get("step").or_else(|| entry.get("steps_after_start")).and_then(Value::as_u64);
     let list = list.as_array().expect("a list of steps");
-    list.iter().map(|entry| (count(entry).expect("a step number") as usize, entry)).collect()
+    let step = |entry| count(entry).and_then(|step| u32::try_from(step).ok()).expect("a step number");
+    list.iter().map(|entry| (step(entry), entry)).collect()
 }

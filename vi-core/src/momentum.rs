@@ -2,14 +2,18 @@
 //!
 //! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor: each residual is at most
 //! one ulp of the sum of the absolute values of its terms, or stopped decreasing within [`FLOOR`] of it.
-//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
+//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere. Where the terms cancel
+//! inside a magnitude, as for `h ω ≫ 1`, a Newton step below the rounding of v itself is the floor.
 
+use crate::error::Residuals;
 use crate::{Node, Scalar, StepError, Stepping, linear};
 use nalgebra::SVector;
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
 /// cancellation inside a term.
 const FLOOR: f64 = 256.0;
+/// Newton step, in roundings of v, that moves v no more than its rounding does.
+const STILL: f64 = 4.0;
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 
@@ -30,11 +34,11 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// The error that this is, for the step h from time t.
-    pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str) -> StepError {
+    pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str, residuals: Residuals) -> StepError {
         match self {
             Self::Singular => StepError::Singular { t, matrix },
-            Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation" },
-            Self::Stalled { iterations, residual } => StepError::NotConverged { t, h, iterations, residual },
+            Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation", expression: None },
+            Self::Stalled { iterations, residual } => StepError::NotConverged { t, h, iterations, residual, residuals },
         }
     }
 }
@@ -75,12 +79,25 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
+    v: SVector<T, N>,
+) -> Result<Solution<N, T>, Failure> {
+    observed(system, node, h, v, |_| ())
+}
+
+/// As [`solve`], with `observe` told the residual before each iteration, in roundings.
+#[inline]
+pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
     mut v: SVector<T, N>,
+    mut observe: impl FnMut(f64),
 ) -> Result<Solution<N, T>, Failure> {
     let mut equation = system.momentum_equation(node, h, &v);
     let mut iterations = 0;
     loop {
         let residual = worst(&equation.residual, &equation.magnitude);
+        observe(residual);
         if residual <= 1.0 {
             return Ok(Solution { v, iterations });
         }
@@ -103,7 +120,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
                 (v, equation) = (trial_v, trial);
                 break;
             }
-            if residual <= FLOOR {
+            if residual <= FLOOR || is_still(step, v) {
                 return Ok(Solution { v, iterations });
             }
             if halvings == HALVINGS {
@@ -113,6 +130,14 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
             step *= T::real(0.5);
         }
     }
+}
+
+/// Whether a Newton step is below the rounding of v.
+#[cold]
+#[inline(never)]
+fn is_still<T: Scalar, const N: usize>(step: SVector<T, N>, v: SVector<T, N>) -> bool {
+    let largest = |vector: &SVector<T, N>| vector.iter().fold(0.0, |largest, x| worse(x.to_f64().abs(), largest));
+    largest(&step) <= STILL * T::EPSILON * largest(&v)
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.
@@ -125,8 +150,11 @@ pub(crate) fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
     guesses: [SVector<T, N>; 2],
 ) -> Result<SVector<T, N>, StepError> {
     let [first, second] = guesses;
-    solve(system, node, T::zero(), first)
-        .or_else(|_| solve(system, node, T::zero(), second))
+    if let Ok(solution) = solve(system, node, T::zero(), first) {
+        return Ok(solution.v);
+    }
+    let mut residuals = Residuals::new();
+    observed(system, node, T::zero(), second, |residual| residuals.push(residual))
         .map(|solution| solution.v)
-        .map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix"))
+        .map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix", residuals))
 }

@@ -31,7 +31,7 @@ fn improve<const N: usize, T: Scalar, S: Stepping<N, T>>(
 ) -> Option<Trial<N, T>> {
     let equations = system.extended_system(node, trial.h, &trial.v);
     let elimination = Elimination::of(&equations)?;
-    let ratio = last.density.to_f64() / elimination.density().to_f64();
+    let ratio = last.density.to_f64() / elimination.density()?.to_f64();
     let factor = if ratio > 0.0 && ratio.is_finite() { ratio.cbrt().clamp(1.0 / RATIO, RATIO) } else { 1.0 };
     let h = last.h * T::real(factor);
     let v: SVector<T, N> = trial.v - elimination.residual - elimination.residual_dh * (h - trial.h);

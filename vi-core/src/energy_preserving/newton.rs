@@ -41,7 +41,7 @@ pub(super) struct Root<const N: usize, T> {
 pub(super) enum Failure<T> {
     /// The equations hold, and would for other lengths too.
     Degenerate { h: T, density: T },
-    /// The iteration left the range, met a singular matrix or did not reach the floor.
+    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor.
     NoRoot,
 }
 
@@ -75,10 +75,10 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Some(Self { residual, residual_dh, schur, schur_magnitude })
     }
 
-    /// Step density D of the interval.
+    /// Step density D of the interval; `None` where a term of it is not finite.
     #[inline]
-    pub(super) fn density(&self) -> T {
-        self.schur * T::real(-4.0)
+    pub(super) fn density(&self) -> Option<T> {
+        (self.schur_magnitude * T::real(4.0)).is_finite().then(|| self.schur * T::real(-4.0))
     }
 
     /// Whether S is zero but for its rounding.
@@ -88,25 +88,24 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     }
 }
 
-/// Step density of the interval that these equations belong to; `None` where A is singular.
-pub(super) fn density<const N: usize, T: Scalar>(equations: &ExtendedSystem<N, T>) -> Option<T> {
-    Elimination::of(equations).map(|elimination| elimination.density())
-}
-
-/// The root that Newton's iteration reaches from `trial` with h inside `range`.
+/// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of
+/// the rows before each iteration, in roundings.
 #[inline]
 pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     mut trial: Trial<N, T>,
     (shortest, longest): (T, T),
+    mut observe: impl FnMut(f64),
 ) -> Result<Root<N, T>, Failure<T>> {
     let mut before = Rows { momentum: f64::INFINITY, energy: f64::INFINITY };
     for iterations in 0..=ITERATIONS {
         let equations = system.extended_system(node, trial.h, &trial.v);
         let elimination = Elimination::of(&equations).ok_or(Failure::NoRoot)?;
         let rows = Rows::of(&equations);
-        let (v, h, density) = (trial.v, trial.h, elimination.density());
+        observe(momentum::worse(rows.momentum, rows.energy));
+        let density = elimination.density().ok_or(Failure::NoRoot)?;
+        let (v, h) = (trial.v, trial.h);
         if rows.are_at_floor(&before) {
             let root = Root { v, h, density, iterations, residual: momentum::worse(rows.momentum, rows.energy) };
             return if elimination.is_degenerate() { Err(Failure::Degenerate { h, density }) } else { Ok(root) };

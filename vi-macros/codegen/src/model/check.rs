@@ -3,12 +3,12 @@
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
 use super::scope::{Meaning, Scope};
-use super::{Coordinate, Model, Parameter, force, mass};
+use super::{Coordinate, Model, Parameter, force, mass, place};
 use crate::discrete;
 use crate::messages::{Errors, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{self, Definition, Discretization, Indices, System};
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
@@ -28,6 +28,7 @@ pub fn model(system: System) -> Result<Model> {
     let lagrangian = check.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut check, &system.forces, &system.dissipations, coordinates.len());
     let rule = check.rule(system.discretizations, &system.name);
+    let place = place::place(&mut check, &system.checks, coordinates.len());
     if check.errors.is_empty() {
         check.every_parameter_acts(&system.parameters, lagrangian, &forces);
     }
@@ -51,6 +52,7 @@ pub fn model(system: System) -> Result<Model> {
         forces,
         rule,
         rule_name,
+        place,
         pool,
     })
 }
@@ -83,20 +85,28 @@ impl Check {
         self.report(value).unwrap_or_else(|| self.pool.one())
     }
 
-    /// The finite number that a constant expression stands for.
-    fn number(&mut self, written: &Definition) -> (Expr, f64) {
+    /// The finite number that a constant definition stands for.
+    pub(super) fn number(&mut self, written: &Definition) -> (Expr, f64) {
         let value = self.value(written);
-        let name = written.name.to_string();
+        match self.finite(value, written.value.span, &written.name) {
+            Some(number) => (value, number),
+            None => (self.pool.one(), 1.0),
+        }
+    }
+
+    /// The finite number that an expression stands for; where it has none, a report.
+    pub(super) fn finite(&mut self, value: Expr, span: Span, name: &Ident) -> Option<f64> {
+        let name = name.to_string();
         if !self.pool.symbols(value).is_empty() {
-            self.errors.at(written.value.span, &Message::NotConstant { name });
-            return (self.pool.one(), 1.0);
+            self.errors.at(span, &Message::NotConstant { name });
+            return None;
         }
         let number = self.pool.evaluate(value, &mut |_| f64::NAN);
         if !number.is_finite() {
-            self.errors.at(written.value.span, &Message::NotFinite { name });
-            return (self.pool.one(), 1.0);
+            self.errors.at(span, &Message::NotFinite { name });
+            return None;
         }
-        (value, number)
+        Some(number)
     }
 
     fn constants(&mut self, constants: &[Definition]) {

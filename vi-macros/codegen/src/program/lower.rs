@@ -252,6 +252,11 @@ impl<'a> Lowering<'a> {
             }
         }
         let factor = self.pool.power(base, &exponent);
+        // A bare sum left inside would dissolve in the sum of the quotients: e²/2 + e³/3 stays as it is.
+        let dissolves = |quotient: &Expr| matches!(self.pool.node(*quotient), Node::Sum(sum) if sum.terms.len() > 1);
+        if inside.iter().any(dissolves) {
+            return None;
+        }
         let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
         self.record_powers(&[inside, rest]);
         Some((factor, inside, (!self.pool.is_zero(rest)).then_some(rest)))

@@ -1,0 +1,104 @@
+//! Whatever the numbers: a step or a typed error, never a panic, a value that is not a number, or an iteration without end.
+//!
+//! States, steps and parameters are drawn over many magnitudes, with zeros, infinities and values that are no numbers
+//! among them. The sequence is fixed.
+
+mod support;
+
+use support::Sequence;
+use support::ending::{self, assert_typed};
+use support::scenes::{Scene, each_system};
+use vi_core::{EnergyPreserving, FixedStep, Parameters, SVector, State, StepError, Stepping};
+
+/// Draws for each system, each from four starts.
+const DRAWS: usize = 3000;
+const STEPS: usize = 5;
+
+/// A number that no one should give, and everyone does.
+fn wild(draw: &mut Sequence) -> f64 {
+    let sign = if draw.next() < 0.5 { -1.0 } else { 1.0 };
+    match draw.next() {
+        x if x < 0.05 => f64::NAN,
+        x if x < 0.10 => sign * f64::INFINITY,
+        x if x < 0.15 => sign * f64::MAX,
+        x if x < 0.20 => sign * f64::MIN_POSITIVE,
+        x if x < 0.30 => 0.0,
+        x if x < 0.65 => sign * 10_f64.powf(draw.within(-150.0, 150.0)),
+        _ => sign * 10_f64.powf(draw.within(-12.0, 12.0)),
+    }
+}
+
+/// One draw: which quantities are wild, and what they are.
+struct Drawn<S, const N: usize> {
+    system: S,
+    t: f64,
+    q: SVector<f64, N>,
+    v: SVector<f64, N>,
+    h: f64,
+}
+
+fn drawn<const N: usize, S: Stepping<N> + Parameters + Copy>(scene: &Scene<S, N>, draw: &mut Sequence) -> Drawn<S, N> {
+    // Each quantity is wild in three draws of ten; otherwise it stays near the scene, where steps exist.
+    let is_wild: [bool; 5] = core::array::from_fn(|_| draw.next() < 0.3);
+    let mut vector = |near: [f64; N], is_wild: bool| {
+        SVector::from_fn(|index: usize, _| if is_wild { wild(draw) } else { near[index] * draw.within(0.5, 1.5) })
+    };
+    let (q, v) = (vector(scene.q, is_wild[0]), vector(scene.v, is_wild[1]));
+    let t = if is_wild[2] { wild(draw) } else { draw.within(-1.0, 1.0) };
+    // From 1e-9 to 1e3, or anything.
+    let h = if is_wild[3] { wild(draw) } else { 10_f64.powf(draw.within(-9.0, 3.0)) };
+    let mut system = scene.system;
+    for name in S::PARAMETERS {
+        if is_wild[4] && draw.next() < 0.5 {
+            *system.parameter_mut(name).expect("a name of the list") = wild(draw);
+        }
+    }
+    Drawn { system, t, q, v, h }
+}
+
+/// How often each outcome was met.
+#[derive(Debug, Default)]
+struct Tally {
+    refused: usize,
+    ended: usize,
+    ran: usize,
+}
+
+impl Tally {
+    fn count<R>(&mut self, start: Result<R, StepError>, run: impl FnOnce(R) -> Option<StepError>) {
+        match start.map(run) {
+            Err(error) => {
+                assert_typed(error);
+                self.refused += 1;
+            }
+            Ok(Some(_)) => self.ended += 1,
+            Ok(None) => self.ran += 1,
+        }
+    }
+}
+
+fn check<const N: usize, S: Stepping<N> + Parameters + Copy>(scene: Scene<S, N>) {
+    let mut draw = Sequence::new(23);
+    let (mut fixed, mut energy_preserving) = (Tally::default(), Tally::default());
+    for _ in 0..DRAWS {
+        let Drawn { system, t, q, v, h } = drawn(&scene, &mut draw);
+        let state = State { t, q, p: if draw.next() < 0.5 { v } else { system.momentum(t, &q, &v) } };
+        fixed.count(FixedStep::new(system, state, h), |run| ending::fixed(run, STEPS));
+        let starts = [
+            EnergyPreserving::from_midpoint(system, t, q, v, h),
+            EnergyPreserving::from_points(system, (t, q), (t + h, q + v * h)),
+            EnergyPreserving::from_state(system, state, wild(&mut draw), h, v),
+            EnergyPreserving::from_state(system, state, system.energy(t, &q, &v), h, v),
+        ];
+        for start in starts {
+            energy_preserving.count(start, |run| ending::energy_preserving(run, STEPS).error);
+        }
+    }
+    println!("{}: fixed {fixed:?}, energy-preserving {energy_preserving:?}", S::NAME);
+    for tally in [fixed, energy_preserving] {
+        let least = tally.refused.min(tally.ended).min(tally.ran);
+        assert!(least >= 10, "{}: a kind of outcome is hardly met: {tally:?}", S::NAME);
+    }
+}
+
+each_system!(check);

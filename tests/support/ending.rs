@@ -1,0 +1,93 @@
+//! How runs end: the steps that were taken, and the error that ended them.
+
+use vi_core::{EnergyPreserving, FixedStep, State, Step, StepError, Stepping};
+
+/// The end of a run of the energy-preserving integrator.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ending {
+    /// Steps taken before the error.
+    pub(crate) steps: usize,
+    /// Time of the last good node.
+    pub(crate) t: f64,
+    /// Length of the last good step.
+    pub(crate) h: f64,
+    /// What ended the run; none where the limit did.
+    pub(crate) error: Option<StepError>,
+}
+
+/// Runs to the first error, at most `limit` steps, and checks each step: finite, forward, not the last one backwards.
+/// After the error the state stays and the error repeats.
+pub(crate) fn energy_preserving<const N: usize, S: Stepping<N>>(
+    mut run: EnergyPreserving<S, N>,
+    limit: usize,
+) -> Ending {
+    let (mut last, mut steps) = (None, 0);
+    while steps < limit {
+        let (before, h, v) = (run.state(), run.h(), run.v());
+        match run.step() {
+            Ok(step) => {
+                assert_step(S::NAME, &step);
+                assert!(step.t >= before.t && step.midpoint.0 >= before.t, "{}: {step:?}", S::NAME);
+                // The spurious root: the last interval, traversed backwards.
+                assert!((step.h, step.midpoint.2) != (-h, v), "{}: {step:?}", S::NAME);
+                (last, steps) = (Some(State { t: step.t, q: step.q, p: step.p }), steps + 1);
+            }
+            Err(error) => {
+                assert_typed(error);
+                assert_eq!(run.state(), last.unwrap_or(before), "{}: the last good state stays", S::NAME);
+                assert_eq!((run.step(), run.next()), (Err(error), Some(Err(error))), "{}: the error repeats", S::NAME);
+                assert_eq!(run.state(), before, "{}: the last good state stays", S::NAME);
+                return Ending { steps, t: before.t, h, error: Some(error) };
+            }
+        }
+    }
+    Ending { steps, t: run.state().t, h: run.h(), error: None }
+}
+
+/// Runs to the first error, at most `limit` steps, with the same checks.
+pub(crate) fn fixed<const N: usize, S: Stepping<N>>(mut run: FixedStep<S, N>, limit: usize) -> Option<StepError> {
+    for _ in 0..limit {
+        let before = run.state();
+        match run.step() {
+            Ok(state) => {
+                let numbers = state.q.iter().chain(state.p.iter()).chain([&state.t]);
+                assert!(numbers.copied().all(f64::is_finite), "{}: {state:?}", S::NAME);
+                assert_eq!(state, run.state());
+            }
+            Err(error) => {
+                assert_typed(error);
+                assert_eq!((run.step(), run.next()), (Err(error), Some(Err(error))), "{}: the error repeats", S::NAME);
+                assert_eq!(run.state(), before, "{}: the last good state stays", S::NAME);
+                return Some(error);
+            }
+        }
+    }
+    None
+}
+
+/// Largest residual, in roundings of its terms, that a solved equation may leave.
+const RESIDUAL: f64 = 256.0;
+
+/// Every number of a step is finite, it leads forward, and it solves the equations.
+fn assert_step<const N: usize>(name: &str, step: &Step<N>) {
+    let (t, q, v) = step.midpoint;
+    let scalars = [step.t, step.energy, step.h, step.density, step.residual, t];
+    let vectors = [&step.q, &step.p, &q, &v];
+    let numbers = scalars.iter().chain(vectors.into_iter().flat_map(|vector| vector.iter()));
+    assert!(numbers.copied().all(f64::is_finite), "{name}: {step:?}");
+    assert!(step.h > 0.0 && step.residual <= RESIDUAL, "{name}: {step:?}");
+}
+
+/// Every number of an error is one. Only what the caller gave may be anything.
+pub(crate) fn assert_typed(error: StepError) {
+    let numbers = match error {
+        StepError::InvalidInput { .. } => vec![],
+        StepError::NoForwardStep { t, h, excess, density } => vec![t, h, excess, density],
+        StepError::DegenerateStep { t, h, density } => vec![t, h, density],
+        StepError::StepRatio { t, previous, found } => vec![t, previous, found],
+        StepError::NotConverged { t, h, residual, .. } => vec![t, h, residual],
+        StepError::Singular { t, .. } | StepError::NonFinite { t, .. } => vec![t],
+        other => panic!("an error that this test does not know: {other:?}"),
+    };
+    assert!(numbers.into_iter().all(f64::is_finite), "{error:?}");
+}
