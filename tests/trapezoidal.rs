@@ -3,9 +3,9 @@
 
 mod support;
 
-use support::dual::Dual;
 use support::exact::Motion;
-use vi_core::{DiscreteLagrangian, FixedStep, Interval, Lagrangian, SVector, State, Stepping, lagrangian};
+use vi_core::check::Dual;
+use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, Stepping, lagrangian};
 
 type D = Dual<f64>;
 
@@ -96,7 +96,9 @@ fn order<const N: usize, S: Stepping<N> + Copy>(system: S, q: [f64; N], v: [f64;
     let momentum = system.momentum(2.0, &exact.q, &exact.v);
     let errors = [50, 100, 200, 400].map(|steps: u32| {
         let mut run = run(system, q, v, 2.0 / f64::from(steps));
-        (0..steps).for_each(|_| drop(run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME))));
+        for _ in 0..steps {
+            run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
+        }
         (run.state().q - exact.q).amax().max((run.state().p - momentum).amax())
     });
     for pair in errors.windows(2) {
