@@ -3,8 +3,8 @@
 
 mod support;
 
-use support::dual::Dual;
 use support::exact::Motion;
+use vi_core::check::Dual;
 use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, Stepping, lagrangian};
 
 type D = Dual<f64>;
