@@ -2,11 +2,12 @@
 //!
 //! In: a node, a step h and a guess of the velocity at h = 0. Out: the root v(h) on the branch that is connected with
 //! h = 0: followed in parts of h that double after a success and halve after a failure. Where the branch ends, at a
-//! singular derivative of the equation, no part is small enough and the step has no such root.
+//! singular derivative of the equation, no part is small enough and the step has no such root. On the way there the
+//! determinant of the derivative keeps its sign, and beyond the turn it has the other one.
 
 use crate::error::Residuals;
 use crate::momentum::{self, Failure, Solution};
-use crate::{Node, Scalar, StepError, Stepping};
+use crate::{Node, Scalar, StepError, Stepping, linear};
 use nalgebra::SVector;
 
 /// How the branch is followed: by which parts of h, and how close to the last root the next one must be.
@@ -17,13 +18,17 @@ pub(crate) struct Pace {
     least_part: f64,
     /// Newton iterations above the rounding floor from one root to the next; more, and it may belong to another branch.
     iterations: u32,
+    /// Whether the determinant of the derivative must keep its sign.
+    signed: bool,
 }
 
 impl Pace {
     /// To find a root where Newton's iteration from the guess found none: the branch is left where the iteration leaps.
-    pub(crate) const RESCUE: Self = Self { largest_part: 1.0, least_part: 1.0 / 64.0, iterations: u32::MAX };
+    pub(crate) const RESCUE: Self =
+        Self { largest_part: 1.0, least_part: 1.0 / 64.0, iterations: u32::MAX, signed: false };
     /// To stay on the branch.
-    pub(crate) const CLOSE: Self = Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 65536.0, iterations: 3 };
+    pub(crate) const CLOSE: Self =
+        Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 65536.0, iterations: 3, signed: true };
 }
 
 /// The root at `h` on the branch connected with h = 0.
@@ -39,6 +44,10 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     pace: Pace,
 ) -> Result<Solution<N, T>, StepError> {
     let mut v = momentum::velocity(system, node, [guess, node.p])?;
+    let sign = |h: T, v: &SVector<T, N>| {
+        if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian) } else { 1 }
+    };
+    let forward = sign(T::zero(), &v);
     let (mut reached, mut part, mut spent) = (0.0, pace.largest_part, 0);
     while reached < 1.0 {
         let target = f64::min(reached + part, 1.0);
@@ -47,9 +56,10 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
             residuals.push(residual);
             iterations += u32::from(residual > momentum::FLOOR);
         };
-        let solution = momentum::observed(system, node, h * T::real(target), v, observe);
+        let at = h * T::real(target);
+        let solution = momentum::observed(system, node, at, v, observe);
         match solution {
-            Ok(solution) if iterations <= pace.iterations => {
+            Ok(solution) if iterations <= pace.iterations && sign(at, &solution.v) == forward => {
                 (v, reached, part) = (solution.v, target, pace.largest_part.min(2.0 * part));
                 spent += solution.iterations;
             }
