@@ -14,9 +14,11 @@
 //! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`error`] | every way in which a step can fail, with its numbers |
+//! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
 //!
 //! Nothing here panics, allocates in a step, or prints.
 
+pub mod check;
 mod compensated;
 pub mod condition;
 mod continuation;
