@@ -2,8 +2,7 @@
 //!
 //! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor: each residual is at most
 //! one ulp of the sum of the absolute values of its terms, or stopped decreasing within [`FLOOR`] of it.
-//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere. Where the terms cancel
-//! inside a magnitude, as for `h ω ≫ 1`, a Newton step below the rounding of v itself is the floor.
+//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
 
 use crate::error::Residuals;
 use crate::{Node, Scalar, StepError, Stepping, linear};
@@ -11,9 +10,7 @@ use nalgebra::SVector;
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
 /// cancellation inside a term.
-const FLOOR: f64 = 256.0;
-/// Newton step, in roundings of v, that moves v no more than its rounding does.
-const STILL: f64 = 4.0;
+pub(crate) const FLOOR: f64 = 256.0;
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 
@@ -120,7 +117,7 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
                 (v, equation) = (trial_v, trial);
                 break;
             }
-            if residual <= FLOOR || is_still(step, v) {
+            if residual <= FLOOR {
                 return Ok(Solution { v, iterations });
             }
             if halvings == HALVINGS {
@@ -130,14 +127,6 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
             step *= T::real(0.5);
         }
     }
-}
-
-/// Whether a Newton step is below the rounding of v.
-#[cold]
-#[inline(never)]
-fn is_still<T: Scalar, const N: usize>(step: SVector<T, N>, v: SVector<T, N>) -> bool {
-    let largest = |vector: &SVector<T, N>| vector.iter().fold(0.0, |largest, x| worse(x.to_f64().abs(), largest));
-    largest(&step) <= STILL * T::EPSILON * largest(&v)
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.
