@@ -5,7 +5,7 @@
 //! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
 
 use crate::error::Residuals;
-use crate::{Node, Scalar, StepError, Stepping, linear};
+use crate::{MomentumEquation, Node, Scalar, StepError, Stepping, linear};
 use nalgebra::SVector;
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
@@ -120,6 +120,10 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
             if residual <= FLOOR {
                 return Ok(Solution { v, iterations });
             }
+            if halvings == 0 && contracts(&equation, &trial, &step) {
+                (v, equation) = (trial_v, trial);
+                break;
+            }
             if halvings == HALVINGS {
                 return Err(Failure::Stalled { iterations, residual });
             }
@@ -127,6 +131,20 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
             step *= T::real(0.5);
         }
     }
+}
+
+/// Whether the step that would follow, by the same matrix, is less than half as long: Newton's own measure (Deuflhard,
+/// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at v, as at rest at the bottom
+/// of a potential, and so no magnitude to measure its residual in.
+#[cold]
+fn contracts<const N: usize, T: Scalar>(
+    equation: &MomentumEquation<N, T>,
+    trial: &MomentumEquation<N, T>,
+    step: &SVector<T, N>,
+) -> bool {
+    let longest = |step: &SVector<T, N>| step.iter().fold(0.0, |longest, entry| worse(entry.abs().to_f64(), longest));
+    worst(&trial.residual, &trial.magnitude).is_finite()
+        && linear::solve(&equation.jacobian, &trial.residual).is_some_and(|next| longest(&next) < 0.5 * longest(step))
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.
