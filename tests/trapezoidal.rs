@@ -125,8 +125,8 @@ struct Comparison {
 impl Comparison {
     fn equal(&mut self, what: &str, found: f64, wanted: f64) {
         let difference = (found - wanted).abs() / wanted.abs().max(1.0);
-        // Measured: 2.4e-16.
-        assert!(difference <= 5e-16, "{what}: {found:e}, wanted {wanted:e}");
+        // Measured: 6.8e-16, where terms of D1 cancel.
+        assert!(difference <= 2e-15, "{what}: {found:e}, wanted {wanted:e}");
         self.worst = self.worst.max(difference);
         self.nonzero += usize::from(wanted != 0.0);
     }

@@ -9,10 +9,11 @@
 //!
 //! The guess of v is extrapolated over the last three steps; the iteration ends at the rounding floor, and sums are
 //! compensated. Where Newton's iteration fails from the guess, v is followed from the velocity that belongs to p by
-//! continuation in h. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! continuation in h. Beyond a certain h the equation has several roots: see [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
+use crate::continuation::{self, Pace};
 use crate::momentum::{self, Solution};
-use crate::{Node, Scalar, State, StepError, Stepping, continuation};
+use crate::{Node, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
 /// The variational integrator with a given step; see the [module](self).
@@ -21,6 +22,24 @@ pub struct FixedStep<S, const N: usize, T = f64> {
     system: S,
     run: Checkpoint<N, T>,
     failure: Option<StepError>,
+}
+
+/// Which root of the momentum equation is a step, where it has several.
+///
+/// With `L = v·Mv/2 − V(q)` and the midpoint rule the derivative of the equation is `M + (h²/4) ∇²V`: the root is the only
+/// one for `h < 2/√(−V''_min/m)`, and then this makes no difference. Beyond, roots appear and vanish in pairs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Branch {
+    /// The root that Newton's iteration reaches from the velocity extrapolated over the last three steps. It depends on
+    /// the steps before, and on nothing else.
+    #[default]
+    Nearest,
+    /// The root that is connected with h = 0, where it is the velocity that belongs to p: it depends on the state alone.
+    /// The step is followed in sixteen parts or more, at 20 to 40 times the effort. Where the branch ends before h,
+    /// [`StepError::NotConverged`].
+    Connected,
 }
 
 /// Everything that [`FixedStep`] carries but the system, to be stored and resumed bit for bit; see
@@ -41,6 +60,7 @@ pub struct Checkpoint<const N: usize, T = f64> {
     velocities: [SVector<T, N>; 3],
     steps: u64,
     iterations: u32,
+    branch: Branch,
 }
 
 impl<S, const N: usize, T> FixedStep<S, N, T>
@@ -61,8 +81,15 @@ where
         // Most Lagrangians give the velocity in one iteration from rest; where the mass matrix vanishes there,
         // any other start will do.
         let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p]).map_err(explained)?;
-        let run = Checkpoint { node, h, velocities: [v; 3], steps: 0, iterations: 0 };
+        let run = Checkpoint { node, h, velocities: [v; 3], steps: 0, iterations: 0, branch: Branch::Nearest };
         Ok(Self { system, run, failure: None })
+    }
+
+    /// Which root to take where there are several; [`Branch::Nearest`] unless this is called.
+    #[must_use]
+    pub fn with_branch(mut self, branch: Branch) -> Self {
+        self.run.branch = branch;
+        self
     }
 
     /// Everything that the run carries: the node with its low parts, the step, the velocities that the next guess is made
@@ -161,9 +188,13 @@ where
     fn advance(&mut self) -> Result<State<N, T>, StepError> {
         let [v1, v2, v3] = self.run.velocities;
         let guess = (v1 - v2) * T::real(3.0) + v3;
-        let Solution { v, iterations } = match momentum::solve(&self.system, &self.run.node, self.run.h, guess) {
-            Ok(solution) => solution,
-            Err(_) => continuation::solve(&self.system, &self.run.node, self.run.h, v1)?,
+        let Self { system, run: Checkpoint { node, h, .. }, .. } = self;
+        let Solution { v, iterations } = match self.run.branch {
+            Branch::Nearest => match momentum::solve(system, node, *h, guess) {
+                Ok(solution) => solution,
+                Err(_) => continuation::solve(system, node, *h, v1, Pace::RESCUE)?,
+            },
+            Branch::Connected => continuation::solve(system, node, *h, v1, Pace::CLOSE)?,
         };
         let gain = self.system.increment(&self.run.node, self.run.h, &v);
         let node = self.run.node.advanced(self.run.h, &v, &gain);

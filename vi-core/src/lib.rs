@@ -11,7 +11,7 @@
 //! | [`node`] | nodes as the steppers carry them |
 //! | [`linear`] | small dense linear systems |
 //! | [`fixed_step`] | the variational integrator with a given step |
-//! | [`energy_preserving`] | the integrator that solves for its own step |
+//! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |

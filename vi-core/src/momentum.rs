@@ -2,18 +2,15 @@
 //!
 //! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor: each residual is at most
 //! one ulp of the sum of the absolute values of its terms, or stopped decreasing within [`FLOOR`] of it.
-//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere. Where the terms cancel
-//! inside a magnitude, as for `h ω ≫ 1`, a Newton step below the rounding of v itself is the floor.
+//! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
 
 use crate::error::Residuals;
-use crate::{Node, Scalar, StepError, Stepping, linear};
+use crate::{MomentumEquation, Node, Scalar, StepError, Stepping, linear};
 use nalgebra::SVector;
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
 /// cancellation inside a term.
-const FLOOR: f64 = 256.0;
-/// Newton step, in roundings of v, that moves v no more than its rounding does.
-const STILL: f64 = 4.0;
+pub(crate) const FLOOR: f64 = 256.0;
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 
@@ -120,8 +117,12 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
                 (v, equation) = (trial_v, trial);
                 break;
             }
-            if residual <= FLOOR || is_still(step, v) {
+            if residual <= FLOOR {
                 return Ok(Solution { v, iterations });
+            }
+            if halvings == 0 && contracts(&equation, &trial, &step) {
+                (v, equation) = (trial_v, trial);
+                break;
             }
             if halvings == HALVINGS {
                 return Err(Failure::Stalled { iterations, residual });
@@ -132,12 +133,18 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
     }
 }
 
-/// Whether a Newton step is below the rounding of v.
+/// Whether the step that would follow, by the same matrix, is less than half as long: Newton's own measure (Deuflhard,
+/// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at v, as at rest at the bottom
+/// of a potential, and so no magnitude to measure its residual in.
 #[cold]
-#[inline(never)]
-fn is_still<T: Scalar, const N: usize>(step: SVector<T, N>, v: SVector<T, N>) -> bool {
-    let largest = |vector: &SVector<T, N>| vector.iter().fold(0.0, |largest, x| worse(x.to_f64().abs(), largest));
-    largest(&step) <= STILL * T::EPSILON * largest(&v)
+fn contracts<const N: usize, T: Scalar>(
+    equation: &MomentumEquation<N, T>,
+    trial: &MomentumEquation<N, T>,
+    step: &SVector<T, N>,
+) -> bool {
+    let longest = |step: &SVector<T, N>| step.iter().fold(0.0, |longest, entry| worse(entry.abs().to_f64(), longest));
+    worst(&trial.residual, &trial.magnitude).is_finite()
+        && linear::solve(&equation.jacobian, &trial.residual).is_some_and(|next| longest(&next) < 0.5 * longest(step))
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.

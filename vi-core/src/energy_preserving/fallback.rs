@@ -19,9 +19,10 @@
 //! AFTER A SWITCH q, p and t go on without a jump.
 
 use super::{EnergyPreserving, Last, newton::Elimination};
+use crate::continuation::{self, Pace};
 use crate::momentum::{self, Solution};
 use crate::state::Method;
-use crate::{Node, Scalar, Step, StepError, Stepping, compensated, continuation};
+use crate::{Node, Scalar, Step, StepError, Stepping, compensated};
 
 /// With the fallback a step may be longer than the last by this factor at most: where D falls linearly to zero, the step
 /// law gives it at the distance of 0.7 h.
@@ -251,7 +252,7 @@ where
         let guess = last.v + last.slope * ((last.h + h) * T::real(0.5));
         let Solution { v, iterations } = match momentum::solve(system, &start, h, guess) {
             Ok(solution) => solution,
-            Err(_) => continuation::solve(system, &start, h, last.v)?,
+            Err(_) => continuation::solve(system, &start, h, last.v, Pace::RESCUE)?,
         };
         let equations = system.extended_system(&start, h, &v);
         let t = start.t.to_f64();

@@ -4,7 +4,7 @@
 //! exactly there, with the text given.
 
 use proc_macro2::TokenStream;
-use vi_codegen::{discrete, model, program, syntax};
+use vi_codegen::{discrete, model, syntax};
 
 /// All errors of a text: (token underlined, message).
 fn errors(text: &str) -> Vec<(String, String)> {

@@ -22,16 +22,18 @@ pub(crate) struct Arguments {
 }
 
 /// The declarations of the ready systems.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 15] = [
     include_str!("../systems/charged_particle.rs"),
     include_str!("../systems/damped_oscillator.rs"),
     include_str!("../systems/double_pendulum.rs"),
     include_str!("../systems/double_well.rs"),
     include_str!("../systems/double_well_duffing.rs"),
+    include_str!("../systems/fpu_chain.rs"),
     include_str!("../systems/hard_duffing.rs"),
     include_str!("../systems/harmonic_oscillator.rs"),
     include_str!("../systems/henon_heiles.rs"),
     include_str!("../systems/kepler.rs"),
+    include_str!("../systems/n_pendulum.rs"),
     include_str!("../systems/parametric_pendulum.rs"),
     include_str!("../systems/pendulum.rs"),
     include_str!("../systems/rotating_hoop.rs"),
