@@ -1,8 +1,8 @@
 //! What an expansion costs, over two families of systems: operations, seconds of the macro, seconds of rustc.
 //!
-//! `cargo bench -p vi-codegen` prints the table of `docs/expansion.md`. Seconds of the macro are those of an optimized
-//! build and, in parentheses, of the unoptimized one that cargo makes of a macro unless told otherwise; seconds of rustc
-//! are those of a program that runs both integrators of the system, less those of an empty one.
+//! `cargo bench -p vi-codegen --bench expansion` prints the table of `docs/expansion.md`; with `--profile dev` the macro is
+//! not optimized, as cargo builds it unless told otherwise. Seconds of rustc are those of a program that runs both
+//! integrators of the system, less those of an empty one.
 
 #[path = "../tests/families/mod.rs"]
 mod families;
