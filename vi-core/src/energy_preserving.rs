@@ -170,9 +170,10 @@ where
         node.check_finite(start.t)?;
         let (t_mid, q_mid) = start.midpoint(h, &v);
         let last = &self.run.last;
-        let both = h + last.h;
-        let slope = (v - last.v) * (T::real(2.0) / both);
-        let density_next = density + (density - last.density) * (T::real(2.0) * h / both);
+        // One over the time between the middles of the two intervals.
+        let frequency = T::real(2.0) / (h + last.h);
+        let slope = (v - last.v) * frequency;
+        let density_next = density + (density - last.density) * (frequency * h);
         self.run.last = Last { v, h, previous: last.h, density, slope };
         self.run.node = node;
         Ok(Step {
