@@ -8,10 +8,10 @@
 //! D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
 //! ```
 
-use super::Fields;
+use super::{Fields, bounded};
 use crate::model::Model;
 use crate::symbol::{Quantity, Symbol, Variable};
-use vi_expr::{Expr, Node, Pool, Rational};
+use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
 
 /// Expressions in time, coordinates, velocities and parameters; the density in accelerations too.
 pub struct Continuous {
@@ -39,7 +39,7 @@ pub struct Continuous {
 }
 
 /// Derives the continuous functions.
-pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model) -> Continuous {
+pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model) -> Result<Continuous, TooLarge> {
     let dimension = model.dimension();
     let mut l = |pool: &mut Pool<Symbol>, by: &[Variable]| fields.partial(pool, Quantity::Lagrangian, by.to_vec());
     let coordinate = Variable::Coordinate;
@@ -49,6 +49,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let mut mass_times_acceleration = Vec::with_capacity(dimension);
     let mut density = Vec::new();
     for i in 0..dimension {
+        bounded(pool)?;
         mass.push((0..dimension).map(|j| l(pool, &[velocity(i), velocity(j)])).collect());
         let (lq, lvt) = (l(pool, &[coordinate(i)]), l(pool, &[velocity(i), Variable::Time]));
         let applied = pool.add(lq, model.forces[i]);
@@ -74,7 +75,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let ltt = l(pool, &[Variable::Time, Variable::Time]);
     density.push(pool.neg(ltt));
     let (forced_time, autonomous) = dependence(pool, model);
-    Continuous {
+    Ok(Continuous {
         lagrangian: model.lagrangian,
         energy: energy(pool, model.lagrangian, dimension),
         cyclic: cyclic(pool, model),
@@ -85,7 +86,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         mass_times_acceleration,
         step_density: pool.sum(&density),
         autonomous: autonomous && !forced_time,
-    }
+    })
 }
 
 fn watched(pool: &Pool<Symbol>, model: &Model) -> Vec<Expr> {

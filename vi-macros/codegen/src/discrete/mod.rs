@@ -22,7 +22,15 @@ pub use step::Equations;
 use crate::model::Model;
 use crate::symbol::{Field, Symbol, Variable};
 use crate::syntax::{Rule, parse};
-use vi_expr::Expr;
+use vi_expr::{Expr, Pool, TooLarge};
+
+/// Distinct terms that the expressions of one system may have together, those of all stages.
+pub(crate) const NODES: usize = 150_000;
+
+/// Whether a system is still within its size.
+pub(crate) fn bounded(pool: &Pool<Symbol>) -> Result<(), TooLarge> {
+    if pool.len() > NODES { Err(TooLarge { limit: NODES }) } else { Ok(()) }
+}
 
 /// The rules that have a name.
 pub(crate) const RULES: [&str; 2] = ["midpoint", "trapezoidal"];

@@ -10,7 +10,7 @@
 
 use super::fields::{Changes, changes};
 use super::rule::Evaluated;
-use super::{Fields, Point};
+use super::{Fields, Point, bounded};
 use crate::symbol::Symbol;
 use vi_expr::{Expr, Pool, TooLarge};
 
@@ -47,6 +47,7 @@ pub(super) fn slots(
 ) -> Result<Slots, TooLarge> {
     let Evaluated { ld, fd: [fd_minus, fd_plus], gd: [gd_minus, gd_plus], points } = rule;
     let mut by_slot = |pool: &mut Pool<Symbol>, slot: Symbol| {
+        bounded(pool)?;
         let changes = changes(pool, &points, &|pool, symbol| direct(pool, symbol, &slot));
         let slope = derivative(pool, fields, ld, &slot, &changes);
         in_step(pool, slope)

@@ -11,7 +11,7 @@
 //! ```
 
 use super::fields::changes;
-use super::{Fields, Point, Slots};
+use super::{Fields, Point, Slots, bounded};
 use crate::symbol::Symbol;
 use vi_expr::{Expr, Pool, Rational, TooLarge};
 
@@ -138,6 +138,7 @@ fn by_unknown(
     energy: Expr,
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
+    bounded(pool)?;
     let direct = |pool: &mut Pool<Symbol>, symbol: &Symbol| {
         if symbol == unknown { pool.one() } else { pool.zero() }
     };

@@ -23,10 +23,10 @@ pub fn system(model: &mut Model) -> Result<DiscreteSystem> {
 
 fn derive(model: &Model, pool: &mut Pool<Symbol>) -> Result<DiscreteSystem> {
     let mut fields = Fields::new(model);
-    let continuous = continuous::continuous(pool, &mut fields, model);
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
+    let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
     let evaluated = rule::evaluate(pool, &model.rule, model.dimension(), model.forced)?;
     let rule = known_rule(pool, model, &evaluated);
-    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
     let slots = slots::slots(pool, &mut fields, evaluated, model.dimension()).map_err(too_large)?;
     every_slot_acts(pool, model, &slots)?;
     let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;

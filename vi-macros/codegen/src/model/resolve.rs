@@ -3,6 +3,7 @@
 //! In: an [`Expression`] and the names in [`Scope`]. Out: an expression of the pool, or the message at the token.
 
 use super::scope::{Meaning, Scope};
+use crate::discrete::NODES;
 use crate::messages::{Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator, Range};
@@ -11,8 +12,6 @@ use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Function, Pool, Rational};
 
-/// Nodes that the expressions of one system may have together.
-const NODES: usize = 400_000;
 /// Expressions that one definition may read, those of sums and arrays once for each value of the index.
 const READINGS: usize = 100_000;
 

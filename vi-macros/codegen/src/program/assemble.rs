@@ -7,12 +7,13 @@ use super::lower::Lowering;
 use super::magnitude::magnitude;
 use super::verify;
 use super::{Function, Program};
-use crate::discrete::{DiscreteSystem, Fields, Point};
+use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
+use crate::messages::{Message, error};
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeMap;
 use syn::Result;
-use vi_expr::{Expr, Node, Pool};
+use vi_expr::{Expr, Node, Pool, TooLarge};
 
 /// Assembles all functions.
 ///
@@ -22,9 +23,10 @@ use vi_expr::{Expr, Node, Pool};
 pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
     let mut pool: Pool<Symbol> = core::mem::take(&mut model.pool);
     let assembled = (|| {
-        let continuous = continuous(&mut Assembly::new(&mut pool, system, &[]), system);
-        let slots = slots(&mut Assembly::new(&mut pool, system, &system.slots.points), system);
-        let step = step(&mut Assembly::new(&mut pool, system, &system.equations.points), system);
+        let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
+        let continuous = continuous(&mut Assembly::new(&mut pool, system, &[]), system).map_err(too_large)?;
+        let slots = slots(&mut Assembly::new(&mut pool, system, &system.slots.points), system).map_err(too_large)?;
+        let step = step(&mut Assembly::new(&mut pool, system, &system.equations.points), system).map_err(too_large)?;
         let check = |(function, expressions): (Function, Expressions)| {
             verify::has_finite_constants(&function, &model.name)?;
             verify::agrees(&pool, &function, &expressions, &model.name).map(|()| function)
@@ -38,7 +40,7 @@ pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
 
 /// The expressions that a function lowers, with the arguments of the points in place.
 pub(super) type Expressions = Vec<Vec<Expr>>;
-type Assembled = Vec<(Function, Expressions)>;
+type Assembled = core::result::Result<Vec<(Function, Expressions)>, TooLarge>;
 
 struct Assembly<'a> {
     pool: &'a mut Pool<Symbol>,
@@ -84,7 +86,12 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
     }
 
-    fn function(&mut self, name: &'static str, groups: &[Vec<Expr>]) -> (Function, Expressions) {
+    fn function(
+        &mut self,
+        name: &'static str,
+        groups: &[Vec<Expr>],
+    ) -> core::result::Result<(Function, Expressions), TooLarge> {
+        bounded(self.pool)?;
         let flat: Vec<Expr> = groups.iter().flatten().copied().collect();
         let mut used = BTreeMap::new();
         for expr in &flat {
@@ -99,7 +106,7 @@ impl<'a> Assembly<'a> {
         let operations = lowering.operations;
         let results = groups.iter().map(|group| values.by_ref().take(group.len()).collect()).collect();
         let closed = groups.iter().map(|group| group.iter().map(|e| close(self.pool, &used, *e)).collect()).collect();
-        (Function { name, operations, results }, closed)
+        Ok((Function { name, operations, results }, closed))
     }
 }
 
@@ -130,15 +137,15 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.continuous;
     let mut acceleration = of.mass.clone();
     acceleration.push(of.mass_times_acceleration.clone());
-    vec![
-        assembly.function("lagrangian", &[vec![of.lagrangian]]),
-        assembly.function("energy", &[vec![of.energy]]),
-        assembly.function("momentum", core::slice::from_ref(&of.momentum)),
-        assembly.function("force", core::slice::from_ref(&of.force)),
-        assembly.function("acceleration", &acceleration),
-        assembly.function("step_density", &[vec![of.step_density]]),
-        assembly.function("non_finite", core::slice::from_ref(&of.watched)),
-    ]
+    Ok(vec![
+        assembly.function("lagrangian", &[vec![of.lagrangian]])?,
+        assembly.function("energy", &[vec![of.energy]])?,
+        assembly.function("momentum", core::slice::from_ref(&of.momentum))?,
+        assembly.function("force", core::slice::from_ref(&of.force))?,
+        assembly.function("acceleration", &acceleration)?,
+        assembly.function("step_density", &[vec![of.step_density]])?,
+        assembly.function("non_finite", core::slice::from_ref(&of.watched))?,
+    ])
 }
 
 fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
@@ -176,9 +183,9 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
     let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
-    vec![
-        assembly.function("momentum_equation", &momentum),
-        assembly.function("extended_system", &extended),
-        assembly.function("increment", &gains),
-    ]
+    Ok(vec![
+        assembly.function("momentum_equation", &momentum)?,
+        assembly.function("extended_system", &extended)?,
+        assembly.function("increment", &gains)?,
+    ])
 }

@@ -1,18 +1,36 @@
-//! What rounding is measured in: the sum of the absolute values of the terms of a residual.
+//! What rounding is measured in.
 //!
-//! In: an expression. Out: Σ |coefficient|·|term|, where a factor of a term that is itself a sum counts term by term.
-//! A residual below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out.
+//! In: a residual r. Out: Σ |coefficient|·|term|, where a factor of a term that is itself a sum counts term by term, and
+//! what the rounding of the arguments of L and f does to it,
+//!
+//! ```text
+//! Σ |∂r/∂q_i|·|q_i| + |∂r/∂t|·|t|      at the points of the rule
+//! ```
+//!
+//! A pendulum that turns at θ = π/2 shows why: there cos θ and all terms of its energy vanish, but not the rounding of
+//! θ. A residual below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out.
 
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, Variable};
 use num_traits::{Signed, Zero};
 use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
 
 /// The magnitude of an expression.
 pub(super) fn magnitude(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
-    match pool.node(expr).clone() {
+    let own = match pool.node(expr).clone() {
         Node::Sum(sum) => terms(pool, &sum, term),
         _ => term(pool, expr),
+    };
+    let mut found = vec![own];
+    for symbol in pool.symbols(expr) {
+        if let Symbol::AtPoint(_, Variable::Time | Variable::Coordinate(_)) = symbol {
+            let slope =
+                pool.derivative(expr, &mut |pool, other| if *other == symbol { pool.one() } else { pool.zero() });
+            let argument = pool.symbol(symbol);
+            let change = pool.mul(slope, argument);
+            found.push(absolute(pool, change));
+        }
     }
+    pool.sum(&found)
 }
 
 fn terms(pool: &mut Pool<Symbol>, sum: &Sum, of: fn(&mut Pool<Symbol>, Expr) -> Expr) -> Expr {
