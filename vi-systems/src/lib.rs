@@ -5,6 +5,6 @@
 pub mod systems;
 
 pub use systems::{
-    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, HardDuffing, HarmonicOscillator,
-    HenonHeiles, Kepler, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
+    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
+    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };

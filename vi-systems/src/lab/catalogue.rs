@@ -7,8 +7,8 @@ use super::simulation::{self, Plan, Simulation};
 use super::table::Table;
 use vi_core::{Parameters, StepError, Stepping};
 use vi_systems::{
-    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, HardDuffing, HarmonicOscillator,
-    HenonHeiles, Kepler, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
+    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
+    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };
 
 /// A system with its parameters, its number of degrees of freedom erased.
@@ -75,6 +75,10 @@ where
     Entry { system: Box::new(Registered::<S, N>(S::default())), about, q: q.to_vec(), v: v.to_vec(), h }
 }
 
+/// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
+const LOWEST_MODE: [f64; 16] =
+    [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996, 0.996, 0.962, 0.895, 0.798, 0.674, 0.526, 0.361, 0.184];
+
 /// All systems, in the order in which they are listed.
 pub(crate) fn entries() -> Vec<Entry> {
     let rest = [0.0];
@@ -93,6 +97,8 @@ pub(crate) fn entries() -> Vec<Entry> {
         entry::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
         entry::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
         entry::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
+        entry::<NPendulum, 4>("four pendula, each hanging from the one above", [0.6, 0.4, 0.2, 0.1], [0.0; 4], 0.005),
+        entry::<FpuChain, 16>("sixteen masses on nonlinear springs, in their lowest mode", LOWEST_MODE, [0.0; 16], 0.1),
     ]
 }
 
@@ -121,7 +127,7 @@ pub(crate) fn table() -> Table {
     for Entry { system, about, q, v, h } in entries() {
         let parameters: Vec<String> =
             system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
-        let coordinates = system.coordinates().join(", ");
+        let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
         let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
         table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
     }
@@ -129,7 +135,15 @@ pub(crate) fn table() -> Table {
 }
 
 fn list(values: &[f64]) -> String {
-    values.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+    shortened(values.iter().map(f64::to_string).collect())
+}
+
+/// A list that fits in a table: of more than four entries the first two and the last.
+fn shortened(mut entries: Vec<String>) -> String {
+    if entries.len() > 4 {
+        entries.splice(2..entries.len() - 1, ["…".to_owned()]);
+    }
+    entries.join(", ")
 }
 
 /// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.
