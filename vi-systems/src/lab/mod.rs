@@ -10,12 +10,13 @@
 //! | [`run`] | `vi-lab run`: rows as CSV or NPY |
 //! | [`paper`] | `vi-lab paper`: figures, tables and the page |
 //! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
-//! | [`progress`], [`machine`], [`failure`] | bars, versions, errors |
+//! | [`numbers`], [`progress`], [`machine`], [`failure`] | numbers in prose, bars, versions, errors |
 
 mod catalogue;
 mod chart;
 mod failure;
 mod machine;
+mod numbers;
 mod paper;
 mod progress;
 mod report;

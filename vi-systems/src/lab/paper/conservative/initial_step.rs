@@ -2,10 +2,10 @@
 
 use super::super::super::chart::{Axis, Chart, Look, Series};
 use super::super::super::failure::Failure;
+use super::super::super::numbers::{extremes, order, scientific};
 use super::super::super::start::motion;
 use super::super::super::table::Table;
 use super::super::book::{Book, Verdict};
-use super::super::numbers::{extremes, order, scientific};
 use super::super::raw::RawNode;
 use super::super::{Study, unexpected};
 use super::runs::Case;
