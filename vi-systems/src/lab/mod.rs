@@ -9,6 +9,7 @@
 //! | [`simulation`] | one run of any system, as rows |
 //! | [`run`] | `vi-lab run`: rows as CSV or NPY |
 //! | [`paper`] | `vi-lab paper`: figures, tables and the page |
+//! | [`stability`] | `vi-lab stability`: where methods fail, as maps |
 //! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
 //! | [`numbers`], [`progress`], [`machine`], [`failure`] | numbers in prose, bars, versions, errors |
 
@@ -22,6 +23,7 @@ mod progress;
 mod report;
 mod run;
 mod simulation;
+mod stability;
 mod start;
 mod table;
 
@@ -52,6 +54,8 @@ enum Action {
     },
     /// Simulate one system, and write its states
     Run(run::Arguments),
+    /// Chart where methods fail: the whole page, or the map of one system
+    Stability(stability::Arguments),
     /// List the systems, their parameters and where they start
     List,
 }
@@ -85,6 +89,7 @@ fn act(action: Action) -> Result<(), Failure> {
             print(&summary)
         }
         Action::Run(arguments) => run::run(&arguments),
+        Action::Stability(arguments) => print(&stability::write(&arguments)?),
         Action::List => print(&catalogue::table().text()),
     }
 }

@@ -1,0 +1,125 @@
+//! The maps of one system: how its runs end, over the phase plane or any two quantities.
+//!
+//! In: an entry of the catalogue and two axes. Out: a map for the energy-preserving integrator, with the curve D = 0 of
+//! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
+
+use super::super::catalogue::{Entry, System, kebab};
+use super::super::chart::{Class, boundary};
+use super::super::failure::Failure;
+use super::super::simulation::{Method, Plan, Start};
+use super::atlas::Atlas;
+use super::ending::{Course, Ending, Limit};
+use super::quantity::{Quantity, Span};
+
+/// Steps of a run.
+const STEPS: u32 = 1500;
+/// A coordinate that grows beyond this many times its scale is instability.
+const BOUND: f64 = 1e3;
+
+/// The two axes that are asked for, or those that show most: the phase plane in one degree of freedom; otherwise the
+/// largest initial value, and the step.
+pub(super) fn axes(entry: &Entry, x: Option<&str>, y: Option<&str>) -> Result<[Span; 2], Failure> {
+    let [first, second] = usual(entry);
+    let axis = |text: Option<&str>, usual: Span| text.map_or(Ok(usual), |text| Span::parse(entry, text));
+    let axes = [axis(x, first)?, axis(y, second)?];
+    match &axes {
+        [x, y] if x.quantity == y.quantity => {
+            Err(Failure::Input(format!("both axes vary `{}`; give two different ones with --x and --y", x.name)))
+        }
+        _ => Ok(axes),
+    }
+}
+
+fn usual(entry: &Entry) -> [Span; 2] {
+    let span = |quantity, name: String, low, high| Span { quantity, name, range: (low, high) };
+    let coordinates = entry.system.coordinates();
+    let name = |index: usize| coordinates.get(index).copied().unwrap_or_default();
+    if let [q] = entry.q.as_slice() {
+        let width = 2.0 * q.abs().max(0.75);
+        let plane = span(Quantity::Coordinate(0), name(0).to_owned(), -width, width);
+        return [plane, span(Quantity::Velocity(0), format!("v_{}", name(0)), -width, width)];
+    }
+    let places = entry.q.iter().enumerate().map(|(index, q)| (*q, Quantity::Coordinate(index), name(index).to_owned()));
+    let velocities =
+        entry.v.iter().enumerate().map(|(index, v)| (*v, Quantity::Velocity(index), format!("v_{}", name(index))));
+    let largest = places.chain(velocities).max_by(|(a, ..), (b, ..)| a.abs().total_cmp(&b.abs()));
+    let (value, quantity, name) = largest.unwrap_or((1.0, Quantity::Coordinate(0), String::new()));
+    let reach = 2.0 * value.abs().max(0.1);
+    [span(quantity, name, 0.0, reach), span(Quantity::Step, "h".to_owned(), entry.h / 5.0, entry.h * 50.0)]
+}
+
+/// Two maps and what they mean.
+pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
+    let [x, y] = axes;
+    let grid = atlas.grid((x.axis(), y.axis()));
+    let name = kebab(entry.system.name());
+    let fixed: Vec<String> =
+        entry.system.parameters().iter().map(|(parameter, value)| format!("{parameter} = {value}")).collect();
+    atlas.section("The energy-preserving integrator");
+    atlas.prose(&format!(
+        "Each cell is a run of {STEPS} steps at most, from the midpoint start. What the axes do not vary: {}, q = {:?}, v = \
+         {:?}, h = {}.",
+        if fixed.is_empty() { "no parameters".to_owned() } else { fixed.join(", ") },
+        entry.q,
+        entry.v,
+        entry.h
+    ));
+    let zeros = grid.zeros(|a, b| {
+        let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
+        system.step_density(&plan.q, &plan.v).unwrap_or(f64::NAN)
+    });
+    let caption = "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
+                   <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.";
+    let title = format!("{name}: energy-preserving");
+    atlas.map(("energy", &title, caption), &grid, boundary("D = 0", zeros), |a, b| {
+        class(entry, axes, (a, b), Method::Energy)
+    })?;
+    atlas.section("Fixed steps");
+    let caption = "The same with fixed steps: no step density limits them, but the equation may have no solution, and a \
+                   motion may grow without bound.";
+    let title = format!("{name}: fixed step");
+    atlas.map(("fixed", &title, caption), &grid, Vec::new(), |a, b| class(entry, axes, (a, b), Method::Fixed))?;
+    atlas.advice(
+        "Start where both maps are pale, and away from the dashed curve. Where only the second is, take fixed steps. Where \
+         neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
+    );
+    Ok(())
+}
+
+/// The system and the plan of the cell at `place`.
+fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> (Box<dyn System>, Plan) {
+    let mut system = entry.system.copy();
+    let (q, v) = (entry.q.clone(), entry.v.clone());
+    let mut plan = Plan { method, start: Start::Midpoint, h: entry.h, t: 0.0, q, v };
+    for (span, value) in axes.iter().zip([place.0, place.1]) {
+        match &span.quantity {
+            Quantity::Coordinate(index) => plan.q.iter_mut().skip(*index).take(1).for_each(|q| *q = value),
+            Quantity::Velocity(index) => plan.v.iter_mut().skip(*index).take(1).for_each(|v| *v = value),
+            Quantity::Parameter(name) => {
+                system.set(name, value);
+            }
+            Quantity::Step => plan.h = value,
+        }
+    }
+    (system, plan)
+}
+
+/// How the run of a cell ends.
+fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> Class {
+    let (system, plan) = varied(entry, axes, place, method);
+    let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let scale = size(&plan.q).max(size(&plan.v)).max(1.0);
+    let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND * scale };
+    let ending = match system.begin(&plan) {
+        Ok(mut run) => {
+            Course::of(limit, || {
+                run.advance()?;
+                let row = run.row();
+                Ok((row.t, size(&row.q)))
+            })
+            .ending
+        }
+        Err(error) => Ending::Failing(error),
+    };
+    ending.class()
+}
