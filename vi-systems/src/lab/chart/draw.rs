@@ -98,7 +98,12 @@ impl Chart {
             .with_legend_entries(legend)
             .with_show_grid(grid)
             .with_legend_box(false);
-        let plots = drawn.iter().flat_map(plots).collect();
+        let mut plots: Vec<Plot> = drawn.iter().flat_map(plots).collect();
+        if plots.is_empty() {
+            // The library draws no axes around nothing.
+            let ends = [(x.range.0, y.range.0), (x.range.1, y.range.1)];
+            plots.push(Plot::Line(LinePlot::new().with_data(ends).with_color("none").with_stroke_width(0.0)));
+        }
         let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
         // Names of clipping areas are the page's: two figures of different size must not share one.
         svg.replace("kuva-clip-", &format!("{}-clip-", self.name))

@@ -24,7 +24,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
          step that is stable for a gentle motion blows up in a violent one.",
     );
     let linear = linear_limit();
-    let line = || boundary("linear limit, h = 1.015", vec![vec![(AMPLITUDES.0, linear), (AMPLITUDES.1, linear)]]);
+    let line = boundary("linear limit, h = 1.015", vec![vec![(AMPLITUDES.0, linear), (AMPLITUDES.1, linear)]]);
     let grid = atlas.coarse_grid((
         Axis::log10("amplitude").over(AMPLITUDES.0, AMPLITUDES.1),
         Axis::linear("h").over(STEPS.0, STEPS.1),
@@ -34,12 +34,12 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     atlas.map(
         ("chain-trapezoidal", "Chain of springs: trapezoidal rule", caption),
         &grid,
-        line(),
+        line,
         |amplitude, h| class(TrapezoidalChain::default(), amplitude, h),
     )?;
-    let caption = "Midpoint rule, 1000 steps: no limit at small amplitude. The springs have no negative curvature, so the \
-                   solver has one solution everywhere; how far the motion can still be believed is another matter.";
-    atlas.map(("chain-midpoint", "Chain of springs: midpoint rule", caption), &grid, line(), |amplitude, h| {
+    let caption = "Midpoint rule, 1000 steps: no limit at small amplitude. The springs have no negative curvature, so that \
+                   every step has one solution; yet a violent motion may still run away.";
+    atlas.map(("chain-midpoint", "Chain of springs: midpoint rule", caption), &grid, Vec::new(), |amplitude, h| {
         class(Chain::default(), amplitude, h)
     })?;
     atlas.advice(

@@ -17,7 +17,9 @@ const STEPS: u32 = 2000;
 /// Growth that counts as instability, beside that of the motion itself.
 const BOUND: f64 = 1e4;
 /// A run has seen enough when the motion itself has grown by e to this power.
-const GROWTH: f64 = 200.0;
+const GROWTH: f64 = 100.0;
+/// Amplitude of a motion that has come to rest: far above the smallest numbers, where rounding is no longer relative.
+const REST: f64 = 1e-200;
 
 const DECAYS: Class = Class { label: "bounded, as the motion", ..LASTING };
 const GROWS: Class = Class { number: OWN, label: "grows, as the motion", colour: "#CDE8DC" };
@@ -78,7 +80,11 @@ fn class<S: Stepping<1>>(system: S, h: f64, zeta: f64) -> Class {
     let course = FixedStep::new(system, state, h).map(|mut run| {
         // Displacement and momentum both: at an extreme one of them vanishes.
         Course::of(limit, || {
-            run.step().map(|state| (state.t, state.q.x.hypot(state.p.x) * (-2.0 * rate * state.t).exp()))
+            run.step().map(|state| {
+                let size = state.q.x.hypot(state.p.x);
+                let t = if size < REST { f64::INFINITY } else { state.t };
+                (t, size * (-2.0 * rate * state.t).exp())
+            })
         })
     });
     match course.map_or_else(Ending::Failing, |course| course.ending) {
@@ -117,7 +123,7 @@ fn survival(h: f64, zeta: f64) -> (u32, Class) {
     let system = DampedOscillator { m: 1.0, k: 1.0, c: 2.0 * zeta };
     let course = Course::energy(system, ([1.0], [0.0]), h, limit);
     let class = match course.ending {
-        Ending::Failing(StepError::NoForwardStep { .. }) => {
+        Ending::Failing(StepError::NoForwardStep { .. } | StepError::StepRatio { .. }) => {
             SURVIVAL.into_iter().find(|(steps, _)| course.steps < *steps).map_or(SURVIVES, |(_, class)| class)
         }
         Ending::Lasting => SURVIVES,

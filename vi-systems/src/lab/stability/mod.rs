@@ -38,7 +38,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Maps on the whole page.
-const MAPS: u32 = 20;
+const MAPS: u32 = 19;
 
 /// `vi-lab stability [SYSTEM]`.
 #[derive(Debug, Args)]
@@ -126,8 +126,8 @@ mod tests {
             .filter_map(|rest| rest.split('"').next())
             .filter(|name| !name.starts_with('#'))
             .collect();
-        // 20 maps and 3 charts, in two forms each.
-        assert_eq!(files.len(), 2 * 23);
+        // 19 maps and 3 charts, in two forms each.
+        assert_eq!(files.len(), 2 * 22);
         for name in files {
             let text = fs::read_to_string(out.join(name)).unwrap_or_default();
             assert!(text.len() > 100 && !text.contains("NaN"), "{name}");

@@ -67,12 +67,12 @@ fn count<S: Stepping<1>>(system: &S, w: f64, h: f64, reach: f64) -> Class {
 
 /// The curve on which two solutions meet: `V' = 2x³ − x`, `V'' = 6x² − 1`.
 fn well_fold() -> Vec<Vec<(f64, f64)>> {
-    vec![fold(0.35, 0.0, |x| (2.0 * x.powi(3) - x, 6.0 * x * x - 1.0))]
+    vec![fold(0.36, 0.0, |x| (2.0 * x.powi(3) - x, 6.0 * x * x - 1.0))]
 }
 
 /// The same for `V' = sin x`, `V'' = cos x`, about x = π.
 fn pendulum_fold() -> Vec<Vec<(f64, f64)>> {
-    vec![fold(1.3, PI, |x| (x.sin(), x.cos()))]
+    vec![fold(1.35, PI, |x| (x.sin(), x.cos()))]
 }
 
 fn fold(half_width: f64, centre: f64, slopes: impl Fn(f64) -> (f64, f64)) -> Vec<(f64, f64)> {
