@@ -31,12 +31,9 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     ));
     let caption = "Trapezoidal rule, 1000 steps. Dashed: 2/<i>ω</i><sub>max</sub> of the linear chain, which holds at small \
                    amplitude only.";
-    atlas.map(
-        ("chain-trapezoidal", "Chain of springs: trapezoidal rule", caption),
-        &grid,
-        line,
-        |amplitude, h| class(TrapezoidalChain::default(), amplitude, h),
-    )?;
+    atlas.map(("chain-trapezoidal", "Chain of springs: trapezoidal rule", caption), &grid, line, |amplitude, h| {
+        class(TrapezoidalChain::default(), amplitude, h)
+    })?;
     let caption = "Midpoint rule, 1000 steps: no limit at small amplitude. The springs have no negative curvature, so that \
                    every step has one solution; yet a violent motion may still run away.";
     atlas.map(("chain-midpoint", "Chain of springs: midpoint rule", caption), &grid, Vec::new(), |amplitude, h| {

@@ -51,12 +51,16 @@ impl Span {
         Ok(Self { quantity, name: name.trim().to_owned(), range })
     }
 
+    /// Whether a value lies in the range.
+    pub(super) fn contains(&self, value: f64) -> bool {
+        (self.range.0..=self.range.1).contains(&value)
+    }
+
     /// The axis that shows it: the step by its logarithm.
     pub(super) fn axis(&self) -> Axis {
         let axis = match self.quantity {
             Quantity::Step => Axis::log10("first step h"),
-            Quantity::Coordinate(_) => Axis::linear(format!("initial {}", self.name)),
-            Quantity::Velocity(_) => Axis::linear(format!("initial {}", self.name)),
+            Quantity::Coordinate(_) | Quantity::Velocity(_) => Axis::linear(format!("initial {}", self.name)),
             Quantity::Parameter(_) => Axis::linear(self.name.clone()),
         };
         axis.over(self.range.0, self.range.1)
@@ -95,7 +99,7 @@ mod tests {
 
     #[test]
     fn axes_are_read_and_mistakes_named() {
-        let entry = catalogue::find("kepler").ok().expect("an entry");
+        let entry = catalogue::find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
         let span = |text: &str| Span::parse(&entry, text).map_err(|failure| failure.to_string());
         assert_eq!(span("y=-1:2").map(|span| (span.quantity, span.range)), Ok((Quantity::Coordinate(1), (-1.0, 2.0))));
         assert_eq!(span("v_x=0:1").map(|span| span.quantity), Ok(Quantity::Velocity(0)));

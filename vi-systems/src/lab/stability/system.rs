@@ -4,7 +4,7 @@
 //! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
 
 use super::super::catalogue::{Entry, System, kebab};
-use super::super::chart::{Class, boundary};
+use super::super::chart::{Class, Look, Series, boundary, middles};
 use super::super::failure::Failure;
 use super::super::simulation::{Method, Plan, Start};
 use super::atlas::Atlas;
@@ -12,7 +12,9 @@ use super::ending::{Course, Ending, Limit};
 use super::quantity::{Quantity, Span};
 
 /// Steps of a run.
-const STEPS: u32 = 1500;
+const STEPS: u32 = 2500;
+/// Runs across and upwards whose ends are marked.
+const ENDS: (usize, usize) = (15, 11);
 /// A coordinate that grows beyond this many times its scale is instability.
 const BOUND: f64 = 1e3;
 
@@ -64,16 +66,10 @@ pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result
         entry.v,
         entry.h
     ));
-    let zeros = grid.zeros(|a, b| {
-        let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
-        system.step_density(&plan.q, &plan.v).unwrap_or(f64::NAN)
-    });
+    let title = format!("{name}: energy-preserving");
     let caption = "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
                    <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.";
-    let title = format!("{name}: energy-preserving");
-    atlas.map(("energy", &title, caption), &grid, boundary("D = 0", zeros), |a, b| {
-        class(entry, axes, (a, b), Method::Energy)
-    })?;
+    energy(atlas, ("energy", &title, caption), entry, axes)?;
     atlas.section("Fixed steps");
     let caption = "The same with fixed steps: no step density limits them, but the equation may have no solution, and a \
                    motion may grow without bound.";
@@ -84,6 +80,49 @@ pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result
          neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
     );
     Ok(())
+}
+
+/// The map of the energy-preserving integrator: how runs end, the curve D = 0, and in the phase plane of one degree of
+/// freedom the middles of the last steps of some runs.
+pub(super) fn energy(
+    atlas: &mut Atlas,
+    names: (&'static str, &str, &str),
+    entry: &Entry,
+    axes: &[Span; 2],
+) -> Result<(), Failure> {
+    let [x, y] = axes;
+    let grid = atlas.grid((x.axis(), y.axis()));
+    let zeros = grid.zeros(|a, b| {
+        let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
+        system.step_density(&plan.q, &plan.v).unwrap_or(f64::NAN)
+    });
+    let mut curves = boundary("D = 0", zeros);
+    if entry.q.len() == 1 && (&x.quantity, &y.quantity) == (&Quantity::Coordinate(0), &Quantity::Velocity(0)) {
+        let ends = middles(&grid.y, ENDS.1)
+            .flat_map(|v| middles(&grid.x, ENDS.0).map(move |q| (q, v)))
+            .filter_map(|place| last_middle(entry, axes, place))
+            .filter(|(q, v)| x.contains(*q) && y.contains(*v))
+            .collect();
+        curves.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
+    }
+    atlas.map(names, &grid, curves, |a, b| class(entry, axes, (a, b), Method::Energy))?;
+    Ok(())
+}
+
+/// Coordinate and velocity in the middle of the last step of a run that failed; none where it did not.
+fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f64, f64)> {
+    let (system, plan) = varied(entry, axes, place, Method::Energy);
+    let mut run = system.begin(&plan).ok()?;
+    let mut before = run.row();
+    for _ in 0..STEPS {
+        let now = run.row();
+        if run.advance().is_err() {
+            let (q0, q1) = (before.q.first()?, now.q.first()?);
+            return (now.t > before.t).then(|| ((q0 + q1) / 2.0, (q1 - q0) / (now.t - before.t)));
+        }
+        before = now;
+    }
+    None
 }
 
 /// The system and the plan of the cell at `place`.
