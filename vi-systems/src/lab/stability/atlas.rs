@@ -92,9 +92,9 @@ impl Atlas {
         Grid::new(axes, self.columns)
     }
 
-    /// A grid of half as many columns, for runs that are dear.
-    pub(super) fn coarse_grid(&self, axes: (Axis, Axis)) -> Grid {
-        Grid::new(axes, self.columns.div_ceil(2))
+    /// A grid of so many times fewer columns, for runs that are dear.
+    pub(super) fn coarse_grid(&self, axes: (Axis, Axis), times: usize) -> Grid {
+        Grid::new(axes, self.columns.div_ceil(times.max(1)))
     }
 
     /// Starts a section.

@@ -25,10 +25,10 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     );
     let linear = linear_limit();
     let line = boundary("linear limit, h = 1.015", vec![vec![(AMPLITUDES.0, linear), (AMPLITUDES.1, linear)]]);
-    let grid = atlas.coarse_grid((
-        Axis::log10("amplitude").over(AMPLITUDES.0, AMPLITUDES.1),
-        Axis::linear("h").over(STEPS.0, STEPS.1),
-    ));
+    let grid = atlas.coarse_grid(
+        (Axis::log10("amplitude").over(AMPLITUDES.0, AMPLITUDES.1), Axis::linear("h").over(STEPS.0, STEPS.1)),
+        2,
+    );
     let caption = "Trapezoidal rule, 1000 steps. Dashed: 2/<i>ω</i><sub>max</sub> of the linear chain, which holds at small \
                    amplitude only.";
     atlas.map(("chain-trapezoidal", "Chain of springs: trapezoidal rule", caption), &grid, line, |amplitude, h| {

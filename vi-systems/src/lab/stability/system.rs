@@ -7,7 +7,7 @@ use super::super::catalogue::{Entry, System, kebab};
 use super::super::chart::{Class, Look, Series, boundary, middles};
 use super::super::failure::Failure;
 use super::super::simulation::{Method, Plan, Start};
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Grid};
 use super::ending::{Course, Ending, Limit};
 use super::quantity::{Quantity, Span};
 
@@ -52,8 +52,7 @@ fn usual(entry: &Entry) -> [Span; 2] {
 
 /// Two maps and what they mean.
 pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
-    let [x, y] = axes;
-    let grid = atlas.grid((x.axis(), y.axis()));
+    let grid = grid(atlas, entry, axes);
     let name = kebab(entry.system.name());
     let fixed: Vec<String> =
         entry.system.parameters().iter().map(|(parameter, value)| format!("{parameter} = {value}")).collect();
@@ -82,6 +81,11 @@ pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result
     Ok(())
 }
 
+/// The grid of a system's maps: coarser for many degrees of freedom, whose steps take long.
+fn grid(atlas: &Atlas, entry: &Entry, [x, y]: &[Span; 2]) -> Grid {
+    atlas.coarse_grid((x.axis(), y.axis()), entry.q.len() / 2)
+}
+
 /// The map of the energy-preserving integrator: how runs end, the curve D = 0, and in the phase plane of one degree of
 /// freedom the middles of the last steps of some runs.
 pub(super) fn energy(
@@ -91,19 +95,21 @@ pub(super) fn energy(
     axes: &[Span; 2],
 ) -> Result<(), Failure> {
     let [x, y] = axes;
-    let grid = atlas.grid((x.axis(), y.axis()));
+    let grid = grid(atlas, entry, axes);
     let zeros = grid.zeros(|a, b| {
         let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
         system.step_density(&plan.q, &plan.v).unwrap_or(f64::NAN)
     });
     let mut curves = boundary("D = 0", zeros);
     if entry.q.len() == 1 && (&x.quantity, &y.quantity) == (&Quantity::Coordinate(0), &Quantity::Velocity(0)) {
-        let ends = middles(&grid.y, ENDS.1)
+        let ends: Vec<(f64, f64)> = middles(&grid.y, ENDS.1)
             .flat_map(|v| middles(&grid.x, ENDS.0).map(move |q| (q, v)))
             .filter_map(|place| last_middle(entry, axes, place))
             .filter(|(q, v)| x.contains(*q) && y.contains(*v))
             .collect();
-        curves.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
+        if !ends.is_empty() {
+            curves.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
+        }
     }
     atlas.map(names, &grid, curves, |a, b| class(entry, axes, (a, b), Method::Energy))?;
     Ok(())

@@ -33,12 +33,13 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Mass 1 on a spring of length 1 and stiffness k, under gravity 1.
+    /// Mass 1 on a spring of length 1 and stiffness k, under gravity 1: its stretch, and its angle from the lowest
+    /// point.
     pub(super) struct SpringPendulum {
         /// Stiffness.
         param k = 100.0;
-        coord x, y;
-        L = (dot(x)^2 + dot(y)^2) / 2 - k * (sqrt(x^2 + y^2) - 1)^2 / 2 - y;
+        coord s, θ;
+        L = (dot(s)^2 + (1 + s)^2 * dot(θ)^2) / 2 - k * s^2 / 2 + (1 + s) * cos(θ);
         discretize midpoint;
     }
 }
@@ -48,8 +49,8 @@ lagrangian! {
     pub(super) struct TrapezoidalSpringPendulum {
         /// Stiffness.
         param k = 100.0;
-        coord x, y;
-        L = (dot(x)^2 + dot(y)^2) / 2 - k * (sqrt(x^2 + y^2) - 1)^2 / 2 - y;
+        coord s, θ;
+        L = (dot(s)^2 + (1 + s)^2 * dot(θ)^2) / 2 - k * s^2 / 2 + (1 + s) * cos(θ);
         discretize trapezoidal;
     }
 }
