@@ -57,9 +57,9 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
          negative damping it shrinks at the same rate, and the run never arrives: not a failure, but no use either.",
     )?;
     atlas.advice(
-        "Use the energy-preserving integrator over times <i>t</i> ≪ 1/(<i>ζω</i>) · ln(1/<i>h</i><sub>0</sub><i>ω</i>), and \
-         the fixed step beyond. With damping choose <i>h</i><sub>0</sub> so that 1/(<i>ζωh</i><sub>0</sub>) is well above \
-         the steps you need.",
+        "Use the energy-preserving integrator over times well below ln(1/<i>ζωh</i><sub>0</sub>)/(<i>ζω</i>), where the step \
+         has grown to 1/(<i>ζω</i>), and the fixed step beyond; choose <i>h</i><sub>0</sub> so that \
+         1/(<i>ζωh</i><sub>0</sub>) is well above the steps you need.",
     );
     Ok(())
 }
