@@ -8,7 +8,7 @@ mod support;
 use support::Sequence;
 use support::ending::{self, assert_typed};
 use support::scenes::{Scene, each_system};
-use vi_core::{EnergyPreserving, FixedStep, Parameters, SVector, State, StepError, Stepping};
+use vi_core::{EnergyPreserving, Fallback, FixedStep, Parameters, SVector, State, StepError, Stepping};
 
 /// Draws for each system, each from four starts.
 const DRAWS: usize = 3000;
@@ -79,7 +79,7 @@ impl Tally {
 
 fn check<const N: usize, S: Stepping<N> + Parameters + Copy>(scene: Scene<S, N>) {
     let mut draw = Sequence::new(23);
-    let (mut fixed, mut energy_preserving) = (Tally::default(), Tally::default());
+    let [mut fixed, mut energy_preserving, mut falling_back] = [(); 3].map(|()| Tally::default());
     for _ in 0..DRAWS {
         let Drawn { system, t, q, v, h } = drawn(&scene, &mut draw);
         let state = State { t, q, p: if draw.next() < 0.5 { v } else { system.momentum(t, &q, &v) } };
@@ -91,11 +91,15 @@ fn check<const N: usize, S: Stepping<N> + Parameters + Copy>(scene: Scene<S, N>)
             EnergyPreserving::from_state(system, state, system.energy(t, &q, &v), h, v),
         ];
         for start in starts {
+            let fallback = start.clone().map(|run| run.with_fallback(Fallback::FixedSteps));
+            let bounded = fallback.clone().and_then(|run| run.with_step_bounds(h.abs() / 2.0, wild(&mut draw)));
             energy_preserving.count(start, |run| ending::energy_preserving(run, STEPS).error);
+            falling_back.count(fallback, |run| ending::energy_preserving(run, STEPS).error);
+            falling_back.count(bounded, |run| ending::energy_preserving(run, STEPS).error);
         }
     }
-    println!("{}: fixed {fixed:?}, energy-preserving {energy_preserving:?}", S::NAME);
-    for tally in [fixed, energy_preserving] {
+    println!("{}: fixed {fixed:?}, energy-preserving {energy_preserving:?}, falling back {falling_back:?}", S::NAME);
+    for tally in [fixed, energy_preserving, falling_back] {
         let least = tally.refused.min(tally.ended).min(tally.ran);
         assert!(least >= 10, "{}: a kind of outcome is hardly met: {tally:?}", S::NAME);
     }

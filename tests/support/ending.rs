@@ -85,7 +85,10 @@ pub(crate) fn assert_typed(error: StepError) {
         StepError::NoForwardStep { t, h, excess, density } => vec![t, h, excess, density],
         StepError::DegenerateStep { t, h, density } => vec![t, h, density],
         StepError::StepRatio { t, previous, found } => vec![t, previous, found],
-        StepError::NotConverged { t, h, residual, .. } => vec![t, h, residual],
+        StepError::StepBounds { t, found, h_min, h_max } => vec![t, found, h_min, h_max],
+        StepError::NotConverged { t, h, residual, residuals, .. } => {
+            [t, h, residual].into_iter().chain(residuals.iter()).collect()
+        }
         StepError::Singular { t, .. } | StepError::NonFinite { t, .. } => vec![t],
         other => panic!("an error that this test does not know: {other:?}"),
     };

@@ -3,7 +3,6 @@
 // Step numbers and drawn mantissas are far below 2^53.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
-pub(crate) mod dual;
 pub(crate) mod ending;
 pub(crate) mod exact;
 pub(crate) mod reference;

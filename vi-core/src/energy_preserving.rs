@@ -17,14 +17,23 @@
 //! | `guess` | v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `newton` | the n + 1 equations to the rounding floor |
 //! | `bracket` | where that fails: the smallest h > 0 that solves them, or the proof that there is none |
+//! | `fallback` | what is done then: an error, or fixed steps until a step exists again |
+//! | `checkpoint` | what a run carries, to be stored and resumed bit for bit |
 //!
 //! AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 mod bracket;
+mod checkpoint;
+mod fallback;
 mod guess;
 mod newton;
 mod starts;
 
+pub use checkpoint::Checkpoint;
+pub use fallback::{Fallback, Switches};
+
+use crate::condition::Condition;
+use crate::state::Method;
 use crate::{Node, Scalar, State, Step, StepError, Stepping};
 use nalgebra::SVector;
 use newton::{Failure, Root};
@@ -33,10 +42,20 @@ use newton::{Failure, Root};
 const RATIO: f64 = 3.0;
 
 /// The interval that the next step follows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: crate::Real + serde::Serialize",
+        deserialize = "T: crate::Real + serde::Deserialize<'de>"
+    ))
+)]
 struct Last<const N: usize, T> {
     v: SVector<T, N>,
     h: T,
+    /// Length of the interval before.
+    previous: T,
     /// Step density D of the interval.
     density: T,
     /// Change of v by time, between the middles of the last two intervals.
@@ -47,8 +66,7 @@ struct Last<const N: usize, T> {
 #[derive(Clone, Debug)]
 pub struct EnergyPreserving<S, const N: usize, T = f64> {
     system: S,
-    node: Node<N, T>,
-    last: Last<N, T>,
+    run: Checkpoint<N, T>,
     failure: Option<StepError>,
 }
 
@@ -61,24 +79,38 @@ where
     ///
     /// # Errors
     /// [`StepError::NoForwardStep`] where no step exists, [`StepError::StepRatio`] where the only one is beyond a factor
-    /// of 3 of the last, [`StepError::DegenerateStep`] where every length would do; [`StepError::NotConverged`],
-    /// [`StepError::Singular`], [`StepError::NonFinite`]. The same error again after an error.
+    /// of 3 of the last, [`StepError::StepBounds`] where it is outside the bounds, [`StepError::DegenerateStep`] where
+    /// every length would do; instead of these a fixed step with [`Fallback::FixedSteps`].
+    /// [`StepError::NotConverged`], [`StepError::Singular`], [`StepError::NonFinite`]. The same error again after an error.
     #[inline]
     pub fn step(&mut self) -> Result<Step<N, T>, StepError> {
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        self.advance().inspect_err(|failure| self.failure = Some(*failure))
+        match self.advance() {
+            Ok(step) => Ok(step),
+            Err(failure) => Err(self.fail(failure)),
+        }
+    }
+
+    /// Ends the run.
+    #[cold]
+    fn fail(&mut self, failure: StepError) -> StepError {
+        let Last { v, h, .. } = self.run.last;
+        let failure = failure.explained(&self.system, &self.run.node, h, &v);
+        self.failure = Some(failure);
+        failure
     }
 
     /// The state reached last.
     pub fn state(&self) -> State<N, T> {
-        self.node.state()
+        self.run.node.state()
     }
 
-    /// The node reached last: the state and the discrete energy with the low parts of their sums.
+    /// The node reached last: the state and the discrete energy with the low parts of their sums. During fixed steps its
+    /// energy is the one that was preserved before them, with the work done since.
     pub fn node(&self) -> &Node<N, T> {
-        &self.node
+        &self.run.node
     }
 
     /// The system.
@@ -86,37 +118,64 @@ where
         &self.system
     }
 
-    /// Discrete energy of the node reached last, as it is carried.
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the node reached last.
     pub fn energy(&self) -> T {
-        self.node.energy
+        match &self.run.phase {
+            None => self.run.node.energy,
+            Some(phase) => phase.energy(&self.run.node),
+        }
     }
 
     /// Length of the last step, in units of time.
     pub fn h(&self) -> T {
-        self.last.h
+        self.run.last.h
     }
 
     /// Velocity of the last interval, `(q1 − q0)/h` without its cancellation.
     pub fn v(&self) -> SVector<T, N> {
-        self.last.v
+        self.run.last.v
     }
 
     /// Step density D of the last interval.
     pub fn density(&self) -> T {
-        self.last.density
+        self.run.last.density
+    }
+
+    /// Condition numbers of the equations that the last step solved. Allocates.
+    pub fn condition(&self) -> Condition {
+        let Last { v, h, previous, .. } = &self.run.last;
+        let mut start = self.run.node;
+        start.shift(-*h, v);
+        Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
     }
 
     #[inline]
     fn advance(&mut self) -> Result<Step<N, T>, StepError> {
-        let root = self.root()?;
+        if let Some(phase) = self.run.phase {
+            return self.advance_in_phase(phase);
+        }
+        match self.root(&self.run.node) {
+            Ok(root) if self.runs_away(root.h) => self.fall_back_from(root),
+            Ok(root) => self.take(self.run.node, root, Method::EnergyPreserving),
+            Err(failure) => self.fall_back(failure),
+        }
+    }
+
+    /// Takes the step `root` from `start`.
+    #[inline]
+    fn take(&mut self, start: Node<N, T>, root: Root<N, T>, method: Method<T>) -> Result<Step<N, T>, StepError> {
         let Root { v, h, density, iterations, residual } = root;
-        let gain = self.system.increment(&self.node, h, &v);
-        let node = self.node.advanced(h, &v, &gain);
-        node.check_finite(self.node.t)?;
-        let (t_mid, q_mid) = self.node.midpoint(h, &v);
-        let slope = (v - self.last.v) * (T::real(2.0) / (h + self.last.h));
-        self.node = node;
-        self.last = Last { v, h, density, slope };
+        let gain = self.system.increment(&start, h, &v);
+        let node = start.advanced(h, &v, &gain);
+        node.check_finite(start.t)?;
+        let (t_mid, q_mid) = start.midpoint(h, &v);
+        let last = &self.run.last;
+        // One over the time between the middles of the two intervals.
+        let frequency = T::real(2.0) / (h + last.h);
+        let slope = (v - last.v) * frequency;
+        let density_next = density + (density - last.density) * (frequency * h);
+        self.run.last = Last { v, h, previous: last.h, density, slope };
+        self.run.node = node;
         Ok(Step {
             t: node.t,
             q: node.q,
@@ -125,24 +184,31 @@ where
             h,
             midpoint: (t_mid, q_mid, v),
             density,
+            density_next,
             iterations,
             residual: T::real(residual),
+            method,
         })
     }
 
-    /// The forward step from the node.
+    /// The forward step from `node`, within the bounds.
     #[inline]
-    fn root(&self) -> Result<Root<N, T>, StepError> {
-        let Self { system, node, last, .. } = self;
+    fn root(&self, node: &Node<N, T>) -> Result<Root<N, T>, StepError> {
+        let Self { system, run: Checkpoint { last, .. }, .. } = self;
         let start = guess::predict(system, node, last);
         let ratio = T::real(RATIO);
-        match newton::solve(system, node, start, (last.h / ratio, last.h * ratio)) {
+        let root = match newton::solve(system, node, start, (last.h / ratio, last.h * ratio), |_| ()) {
             // At the smallest root D has the sign that it had: past a change of sign lies another root.
-            Ok(root) if root.density.to_f64() * last.density.to_f64() > 0.0 => Ok(root),
+            Ok(root) if root.density.to_f64() * last.density.to_f64() > 0.0 => root,
             Err(Failure::Degenerate { h, density }) => {
-                Err(StepError::DegenerateStep { t: node.t.to_f64(), h: h.to_f64(), density: density.to_f64() })
+                let (t, h, density) = (node.t.to_f64(), h.to_f64(), density.to_f64());
+                return Err(StepError::DegenerateStep { t, h, density });
             }
-            _ => bracket::smallest_root(system, node, last),
+            _ => bracket::smallest_root(system, node, last)?,
+        };
+        match &self.run.bounds {
+            Some(bounds) if !bounds.admit(root.h) => Err(bounds.refusal(node.t, root.h)),
+            _ => Ok(root),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Every way in which a step can fail, with its numbers.
 
+use crate::{Lagrangian, Node, Scalar};
 use core::fmt;
+use nalgebra::SVector;
 
 /// Why a step was not taken. The integrator still holds the last good state, and a further call returns the same error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +37,17 @@ pub enum StepError {
         /// Length of the step that solves the equations.
         found: f64,
     },
+    /// The step that solves the equations is shorter or longer than the caller allows.
+    StepBounds {
+        /// Time of the last good node.
+        t: f64,
+        /// Length of the step that solves the equations.
+        found: f64,
+        /// Shortest length allowed.
+        h_min: f64,
+        /// Longest length allowed.
+        h_max: f64,
+    },
     /// Newton's iteration ended above the rounding floor.
     NotConverged {
         /// Time of the last good node.
@@ -45,6 +58,8 @@ pub enum StepError {
         iterations: u32,
         /// Residual left, in units of rounding.
         residual: f64,
+        /// The last residuals on the way there.
+        residuals: Residuals,
     },
     /// A matrix that has to be inverted is singular.
     Singular {
@@ -59,6 +74,8 @@ pub enum StepError {
         t: f64,
         /// Which quantity.
         quantity: &'static str,
+        /// The part of L or f that is not finite there, where the system says so.
+        expression: Option<&'static str>,
     },
     /// The caller gave a number with which no step can be taken.
     InvalidInput {
@@ -69,6 +86,26 @@ pub enum StepError {
         /// What was given.
         value: f64,
     },
+}
+
+impl StepError {
+    /// With the expression that is not finite where the step `(v, h)` from `node` was sought, if that is the error and the
+    /// system says so.
+    #[cold]
+    pub(crate) fn explained<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
+        self,
+        system: &S,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> Self {
+        let Self::NonFinite { t, quantity, expression: None } = self else { return self };
+        // The middle of the step, the node, and the middle of the longest step that is looked at.
+        let lengths = [h, T::zero(), h * T::real(3.0)];
+        let mut places = lengths.into_iter().map(|h| node.midpoint(h, v));
+        let expression = places.find_map(|(t, q)| system.non_finite(t, &q, v));
+        Self::NonFinite { t, quantity, expression }
+    }
 }
 
 impl fmt::Display for StepError {
@@ -86,15 +123,69 @@ impl fmt::Display for StepError {
                 f,
                 "the forward step from t = {t:.9} has h = {found:.3e} after {previous:.3e}, beyond the allowed factor of 3"
             ),
-            Self::NotConverged { t, h, iterations, residual } => write!(
+            Self::StepBounds { t, found, h_min, h_max } => write!(
                 f,
-                "no solution found from t = {t:.9} with h = {h:.3e}: residual {residual:.3e} roundings after {iterations} iterations"
+                "the forward step from t = {t:.9} has h = {found:.3e}, outside the bounds {h_min:.3e} to {h_max:.3e}"
+            ),
+            Self::NotConverged { t, h, iterations, residual, residuals } => write!(
+                f,
+                "no solution found from t = {t:.9} with h = {h:.3e}: residual {residual:.3e} roundings after {iterations} iterations{residuals}"
             ),
             Self::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
-            Self::NonFinite { t, quantity } => write!(f, "the {quantity} is not finite at t = {t:.9}"),
+            Self::NonFinite { t, quantity, expression: None } => {
+                write!(f, "the {quantity} is not finite at t = {t:.9}")
+            }
+            Self::NonFinite { t, quantity, expression: Some(expression) } => {
+                write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
+            }
             Self::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value}"),
         }
     }
 }
 
 impl core::error::Error for StepError {}
+
+/// The last residuals of an iteration that did not converge, in units of rounding: whether it stalled, wandered or was
+/// cut short.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residuals {
+    /// The newest last; those that are not there yet are zero.
+    kept: [f64; Self::KEPT],
+    count: usize,
+}
+
+impl Residuals {
+    /// So many are kept.
+    pub const KEPT: usize = 6;
+
+    /// None yet.
+    pub(crate) fn new() -> Self {
+        Self { kept: [0.0; Self::KEPT], count: 0 }
+    }
+
+    /// Adds the newest; one that is not finite says nothing and is left out.
+    pub(crate) fn push(&mut self, residual: f64) {
+        if residual.is_finite() {
+            self.kept.rotate_left(1);
+            if let Some(newest) = self.kept.last_mut() {
+                *newest = residual;
+            }
+            self.count = Self::KEPT.min(self.count + 1);
+        }
+    }
+
+    /// The residuals, the oldest first.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+        self.kept.iter().copied().skip(Self::KEPT - self.count)
+    }
+}
+
+impl fmt::Display for Residuals {
+    /// `, residuals up to there 1.2e3, 4.5e2`; nothing where there are none.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, residual) in self.iter().enumerate() {
+            write!(f, "{}{residual:.1e}", if index == 0 { ", residuals up to there " } else { ", " })?;
+        }
+        Ok(())
+    }
+}

@@ -9,26 +9,58 @@
 //!
 //! The guess of v is extrapolated over the last three steps; the iteration ends at the rounding floor, and sums are
 //! compensated. Where Newton's iteration fails from the guess, v is followed from the velocity that belongs to p by
-//! continuation in h. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! continuation in h. Beyond a certain h the equation has several roots: see [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
-use crate::momentum::{self, Failure, Solution};
+use crate::continuation::{self, Pace};
+use crate::momentum::{self, Solution};
 use crate::{Node, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
-
-/// Smallest part of h by which continuation goes on before it gives up.
-const LEAST_PART: f64 = 1.0 / 64.0;
 
 /// The variational integrator with a given step; see the [module](self).
 #[derive(Clone, Debug)]
 pub struct FixedStep<S, const N: usize, T = f64> {
     system: S,
+    run: Checkpoint<N, T>,
+    failure: Option<StepError>,
+}
+
+/// Which root of the momentum equation is a step, where it has several.
+///
+/// With `L = v·Mv/2 − V(q)` and the midpoint rule the derivative of the equation is `M + (h²/4) ∇²V`: the root is the only
+/// one for `h < 2/√(−V''_min/m)`, and then this makes no difference. Beyond, roots appear and vanish in pairs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Branch {
+    /// The root that Newton's iteration reaches from the velocity extrapolated over the last three steps. It depends on
+    /// the steps before, and on nothing else.
+    #[default]
+    Nearest,
+    /// The root that is connected with h = 0, where it is the velocity that belongs to p: it depends on the state alone.
+    /// The step is followed in sixteen parts or more, at 20 to 40 times the effort. Where the branch ends before h,
+    /// [`StepError::NotConverged`].
+    Connected,
+}
+
+/// Everything that [`FixedStep`] carries but the system, to be stored and resumed bit for bit; see
+/// [`energy_preserving::Checkpoint`](crate::energy_preserving::Checkpoint), which is the same for the other integrator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: crate::Real + serde::Serialize",
+        deserialize = "T: crate::Real + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Checkpoint<const N: usize, T = f64> {
     node: Node<N, T>,
     h: T,
     /// Velocities of the last three intervals, the newest first; before there are three the oldest stands in.
     velocities: [SVector<T, N>; 3],
     steps: u64,
     iterations: u32,
-    failure: Option<StepError>,
+    branch: Branch,
 }
 
 impl<S, const N: usize, T> FixedStep<S, N, T>
@@ -42,16 +74,44 @@ where
     /// [`StepError::InvalidInput`] for an h that is zero or not finite, [`StepError::NonFinite`] for such a state,
     /// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to its momenta.
     pub fn new(system: S, state: State<N, T>, h: T) -> Result<Self, StepError> {
-        let value = h.to_f64();
-        if !value.is_finite() || value == 0.0 {
-            return Err(StepError::InvalidInput { input: "the step h", allowed: "finite and not zero", value });
-        }
+        check_step(h)?;
         let node = Node::new(state, T::zero());
-        node.check_finite(T::zero())?;
+        let explained = |failure: StepError| failure.explained(&system, &node, h, &SVector::zeros());
+        node.check_finite(T::zero()).map_err(explained)?;
         // Most Lagrangians give the velocity in one iteration from rest; where the mass matrix vanishes there,
         // any other start will do.
-        let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p])?;
-        Ok(Self { system, node, h, velocities: [v; 3], steps: 0, iterations: 0, failure: None })
+        let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p]).map_err(explained)?;
+        let run = Checkpoint { node, h, velocities: [v; 3], steps: 0, iterations: 0, branch: Branch::Nearest };
+        Ok(Self { system, run, failure: None })
+    }
+
+    /// Which root to take where there are several; [`Branch::Nearest`] unless this is called.
+    #[must_use]
+    pub fn with_branch(mut self, branch: Branch) -> Self {
+        self.run.branch = branch;
+        self
+    }
+
+    /// Everything that the run carries: the node with its low parts, the step, the velocities that the next guess is made
+    /// of.
+    pub fn checkpoint(&self) -> Checkpoint<N, T> {
+        self.run
+    }
+
+    /// The run that was at `checkpoint`, bit for bit. The system must be the one that it was taken of, with the same
+    /// parameters.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`] and [`StepError::InvalidInput`] for a checkpoint that no run can have left.
+    pub fn restart(system: S, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
+        let Checkpoint { node, h, velocities, .. } = &checkpoint;
+        check_step(*h)?;
+        let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
+        node.check_finite(t)?;
+        if !velocities.iter().all(|v| v.iter().all(|entry| entry.is_finite())) {
+            return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None });
+        }
+        Ok(Self { system, run: checkpoint, failure: None })
     }
 
     /// Takes one step and returns the state reached.
@@ -64,18 +124,29 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        self.advance().inspect_err(|failure| self.failure = Some(*failure))
+        match self.advance() {
+            Ok(step) => Ok(step),
+            Err(failure) => Err(self.fail(failure)),
+        }
+    }
+
+    /// Ends the run.
+    #[cold]
+    fn fail(&mut self, failure: StepError) -> StepError {
+        let failure = failure.explained(&self.system, &self.run.node, self.run.h, &self.v());
+        self.failure = Some(failure);
+        failure
     }
 
     /// The state reached last.
     pub fn state(&self) -> State<N, T> {
-        self.node.state()
+        self.run.node.state()
     }
 
     /// The node reached last: the state with the low parts of its sums. Its energy has no meaning here; see
     /// [`FixedStep::discrete_energy`].
     pub fn node(&self) -> &Node<N, T> {
-        &self.node
+        &self.run.node
     }
 
     /// The system.
@@ -85,19 +156,19 @@ where
 
     /// The step, in units of time.
     pub fn h(&self) -> T {
-        self.h
+        self.run.h
     }
 
     /// Velocity of the last interval, `(q1 − q0)/h` without its cancellation; before the first step the velocity that
     /// belongs to the momenta.
     pub fn v(&self) -> SVector<T, N> {
-        let [v, ..] = self.velocities;
+        let [v, ..] = self.run.velocities;
         v
     }
 
     /// Newton iterations of the last step.
     pub fn iterations(&self) -> u32 {
-        self.iterations
+        self.run.iterations
     }
 
     /// Discrete energy of the last interval, `E1 = −D3 L_d − g_d⁺`; `None` before the first step.
@@ -105,76 +176,39 @@ where
     /// Evaluated from v inside the interval: from the stored nodes it would carry the cancellation of `(q1 − q0)/h`.
     pub fn discrete_energy(&self) -> Option<T> {
         let v = self.v();
-        (self.steps > 0).then(|| {
-            let mut start = self.node;
-            start.shift(-self.h, &v);
-            let start = start.leaving(&self.system, self.h, &v);
-            start.energy + self.system.increment(&start, self.h, &v).energy
+        (self.run.steps > 0).then(|| {
+            let mut start = self.run.node;
+            start.shift(-self.run.h, &v);
+            let start = start.leaving(&self.system, self.run.h, &v);
+            start.energy + self.system.increment(&start, self.run.h, &v).energy
         })
     }
 
     #[inline]
     fn advance(&mut self) -> Result<State<N, T>, StepError> {
-        let [v1, v2, v3] = self.velocities;
+        let [v1, v2, v3] = self.run.velocities;
         let guess = (v1 - v2) * T::real(3.0) + v3;
-        let Solution { v, iterations } = match momentum::solve(&self.system, &self.node, self.h, guess) {
-            Ok(solution) => solution,
-            Err(_) => self.continued()?,
+        let Self { system, run: Checkpoint { node, h, .. }, .. } = self;
+        let Solution { v, iterations } = match self.run.branch {
+            Branch::Nearest => match momentum::solve(system, node, *h, guess) {
+                Ok(solution) => solution,
+                Err(_) => continuation::solve(system, node, *h, v1, Pace::RESCUE)?,
+            },
+            Branch::Connected => continuation::solve(system, node, *h, v1, Pace::CLOSE)?,
         };
-        let gain = self.system.increment(&self.node, self.h, &v);
-        let node = self.node.advanced(self.h, &v, &gain);
-        node.check_finite(self.node.t)?;
-        self.node = node;
+        let gain = self.system.increment(&self.run.node, self.run.h, &v);
+        let node = self.run.node.advanced(self.run.h, &v, &gain);
+        node.check_finite(self.run.node.t)?;
+        self.run.node = node;
         // One step knows no slope: it repeats v, and the next guess is v itself.
-        self.velocities = match self.steps {
+        self.run.velocities = match self.run.steps {
             0 => [v; 3],
             1 => [v, v1, v1 + v1 - v],
             _ => [v, v1, v2],
         };
-        self.steps += 1;
-        self.iterations = iterations;
+        self.run.steps += 1;
+        self.run.iterations = iterations;
         Ok(node.state())
-    }
-
-    /// The root that is connected with the velocity belonging to p, followed from h = 0 in parts that double after a
-    /// success and halve after a failure.
-    #[cold]
-    fn continued(&self) -> Result<Solution<N, T>, StepError> {
-        let t = self.node.t.to_f64();
-        let [v1, ..] = self.velocities;
-        let mut v = momentum::velocity(&self.system, &self.node, [v1, self.node.p])?;
-        let (mut reached, mut part, mut spent) = (0.0, 1.0, 0);
-        while reached < 1.0 {
-            let target = f64::min(reached + part, 1.0);
-            match momentum::solve(&self.system, &self.node, self.h * T::real(target), v) {
-                Ok(solution) => {
-                    (v, reached, part) = (solution.v, target, 2.0 * part);
-                    spent += solution.iterations;
-                }
-                Err(failure) if part <= LEAST_PART => {
-                    let failure = match failure {
-                        // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
-                        Failure::Singular => match self.residual(v) {
-                            residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
-                            _ => Failure::NonFinite,
-                        },
-                        Failure::Stalled { iterations, residual } => {
-                            Failure::Stalled { iterations: spent + iterations, residual }
-                        }
-                        Failure::NonFinite => failure,
-                    };
-                    return Err(failure.at(t, self.h.to_f64(), "derivative of the momentum equation"));
-                }
-                Err(_) => part /= 2.0,
-            }
-        }
-        Ok(Solution { v, iterations: spent })
-    }
-
-    /// Residual at the whole step, in roundings.
-    fn residual(&self, v: SVector<T, N>) -> f64 {
-        let equation = self.system.momentum_equation(&self.node, self.h, &v);
-        momentum::worst(&equation.residual, &equation.magnitude)
     }
 }
 
@@ -189,5 +223,15 @@ where
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
         Some(self.step())
+    }
+}
+
+/// A step must lead somewhere.
+fn check_step<T: Scalar>(h: T) -> Result<(), StepError> {
+    let value = h.to_f64();
+    if value.is_finite() && value != 0.0 {
+        Ok(())
+    } else {
+        Err(StepError::InvalidInput { input: "the step h", allowed: "finite and not zero", value })
     }
 }

@@ -11,14 +11,17 @@
 //! | [`node`] | nodes as the steppers carry them |
 //! | [`linear`] | small dense linear systems |
 //! | [`fixed_step`] | the variational integrator with a given step |
-//! | [`energy_preserving`] | the integrator that solves for its own step |
+//! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`error`] | every way in which a step can fail, with its numbers |
+//! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
 //!
 //! Nothing here panics, allocates in a step, or prints.
 
+pub mod check;
 mod compensated;
 pub mod condition;
+mod continuation;
 pub mod energy_preserving;
 pub mod error;
 pub mod fixed_step;
@@ -29,8 +32,8 @@ pub mod node;
 pub mod real;
 pub mod state;
 
-pub use energy_preserving::EnergyPreserving;
-pub use error::StepError;
+pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
+pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
     DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, MomentumEquation, Parameters, Stepping,
@@ -39,5 +42,5 @@ pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};
 pub use node::Node;
 pub use real::{Real, Scalar};
-pub use state::{Interval, State, Step};
+pub use state::{Interval, Method, State, Step};
 pub use vi_macros::lagrangian;

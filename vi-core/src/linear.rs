@@ -36,6 +36,38 @@ pub fn acceleration<T: Real, const N: usize>(
     solve(mass, applied).ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
 }
 
+/// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 where an entry is not a number.
+#[must_use]
+pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i8 {
+    let mut a = *matrix;
+    let mut sign = 1;
+    for column in 0..N {
+        let mut pivot = column;
+        for row in column + 1..N {
+            if a[(row, column)].least_magnitude() > a[(pivot, column)].least_magnitude() {
+                pivot = row;
+            }
+        }
+        if pivot != column {
+            a.swap_rows(column, pivot);
+            sign = -sign;
+        }
+        match a[(column, column)].to_f64() {
+            pivot if pivot > 0.0 => {}
+            pivot if pivot < 0.0 => sign = -sign,
+            _ => return 0,
+        }
+        for row in column + 1..N {
+            let factor = a[(row, column)] / a[(column, column)];
+            for k in column..N {
+                let eliminated = factor * a[(column, k)];
+                a[(row, k)] -= eliminated;
+            }
+        }
+    }
+    sign
+}
+
 #[inline]
 fn solve_1<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
     let pivot = a[(0, 0)];
@@ -106,7 +138,7 @@ fn eliminate<T: Real, const N: usize, const M: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::solve;
+    use super::{determinant_sign, solve};
     use nalgebra::{SMatrix, SVector};
 
     /// Entries of no pattern, in [−1, 1], with a zero in the corner so that closed forms and pivoting are both needed.
@@ -135,6 +167,18 @@ mod tests {
         for defect in [defect::<1>(), defect::<2>(), defect::<3>(), defect::<4>(), defect::<5>(), defect::<8>()] {
             assert!(defect < 2e-15, "{defect:e}");
         }
+    }
+
+    #[test]
+    fn the_sign_of_the_determinant_is_that_of_nalgebra() {
+        let sign = |determinant: f64| if determinant > 0.0 { 1 } else { -1 };
+        assert_eq!(determinant_sign(&matrix::<1>()), sign(matrix::<1>().determinant()));
+        assert_eq!(determinant_sign(&matrix::<2>()), sign(matrix::<2>().determinant()));
+        assert_eq!(determinant_sign(&matrix::<3>()), sign(matrix::<3>().determinant()));
+        assert_eq!(determinant_sign(&matrix::<5>()), sign(matrix::<5>().determinant()));
+        assert_eq!(determinant_sign(&-matrix::<5>()), -sign(matrix::<5>().determinant()));
+        assert_eq!(determinant_sign(&SMatrix::<f64, 3, 3>::repeat(2.0)), 0);
+        assert_eq!(determinant_sign(&SMatrix::<f64, 2, 2>::repeat(f64::NAN)), 0);
     }
 
     #[test]

@@ -4,12 +4,13 @@
 //! one ulp of the sum of the absolute values of its terms, or stopped decreasing within [`FLOOR`] of it.
 //! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
 
-use crate::{Node, Scalar, StepError, Stepping, linear};
+use crate::error::Residuals;
+use crate::{MomentumEquation, Node, Scalar, StepError, Stepping, linear};
 use nalgebra::SVector;
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
 /// cancellation inside a term.
-const FLOOR: f64 = 256.0;
+pub(crate) const FLOOR: f64 = 256.0;
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 
@@ -30,11 +31,11 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// The error that this is, for the step h from time t.
-    pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str) -> StepError {
+    pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str, residuals: Residuals) -> StepError {
         match self {
             Self::Singular => StepError::Singular { t, matrix },
-            Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation" },
-            Self::Stalled { iterations, residual } => StepError::NotConverged { t, h, iterations, residual },
+            Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation", expression: None },
+            Self::Stalled { iterations, residual } => StepError::NotConverged { t, h, iterations, residual, residuals },
         }
     }
 }
@@ -75,12 +76,25 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
+    v: SVector<T, N>,
+) -> Result<Solution<N, T>, Failure> {
+    observed(system, node, h, v, |_| ())
+}
+
+/// As [`solve`], with `observe` told the residual before each iteration, in roundings.
+#[inline]
+pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
     mut v: SVector<T, N>,
+    mut observe: impl FnMut(f64),
 ) -> Result<Solution<N, T>, Failure> {
     let mut equation = system.momentum_equation(node, h, &v);
     let mut iterations = 0;
     loop {
         let residual = worst(&equation.residual, &equation.magnitude);
+        observe(residual);
         if residual <= 1.0 {
             return Ok(Solution { v, iterations });
         }
@@ -106,6 +120,10 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
             if residual <= FLOOR {
                 return Ok(Solution { v, iterations });
             }
+            if halvings == 0 && contracts(&equation, &trial, &step) {
+                (v, equation) = (trial_v, trial);
+                break;
+            }
             if halvings == HALVINGS {
                 return Err(Failure::Stalled { iterations, residual });
             }
@@ -113,6 +131,20 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
             step *= T::real(0.5);
         }
     }
+}
+
+/// Whether the step that would follow, by the same matrix, is less than half as long: Newton's own measure (Deuflhard,
+/// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at v, as at rest at the bottom
+/// of a potential, and so no magnitude to measure its residual in.
+#[cold]
+fn contracts<const N: usize, T: Scalar>(
+    equation: &MomentumEquation<N, T>,
+    trial: &MomentumEquation<N, T>,
+    step: &SVector<T, N>,
+) -> bool {
+    let longest = |step: &SVector<T, N>| step.iter().fold(0.0, |longest, entry| worse(entry.abs().to_f64(), longest));
+    worst(&trial.residual, &trial.magnitude).is_finite()
+        && linear::solve(&equation.jacobian, &trial.residual).is_some_and(|next| longest(&next) < 0.5 * longest(step))
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.
@@ -125,8 +157,11 @@ pub(crate) fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
     guesses: [SVector<T, N>; 2],
 ) -> Result<SVector<T, N>, StepError> {
     let [first, second] = guesses;
-    solve(system, node, T::zero(), first)
-        .or_else(|_| solve(system, node, T::zero(), second))
+    if let Ok(solution) = solve(system, node, T::zero(), first) {
+        return Ok(solution.v);
+    }
+    let mut residuals = Residuals::new();
+    observed(system, node, T::zero(), second, |residual| residuals.push(residual))
         .map(|solution| solution.v)
-        .map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix"))
+        .map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix", residuals))
 }

@@ -9,6 +9,11 @@ use nalgebra::SVector;
 /// A node as the steppers carry it: each quantity as the unevaluated sum of a number and its low part, so that
 /// ten million additions cost no digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
 pub struct Node<const N: usize, T = f64> {
     /// Time.
     pub t: T,
@@ -88,7 +93,7 @@ impl<const N: usize, T: Scalar> Node<N, T> {
             (self.energy.is_finite() && self.energy_low.is_finite(), "energy"),
         ];
         match quantities.into_iter().find(|(finite, _)| !finite) {
-            Some((_, quantity)) => Err(StepError::NonFinite { t: t.to_f64(), quantity }),
+            Some((_, quantity)) => Err(StepError::NonFinite { t: t.to_f64(), quantity, expression: None }),
             None => Ok(()),
         }
     }

@@ -3,7 +3,7 @@
 //! `q`, `p` and `v` are column vectors of N entries, in the order in which the system declares its coordinates and
 //! in the system's own units.
 
-use crate::{Lagrangian, Real};
+use crate::{Lagrangian, Real, Scalar};
 use nalgebra::SVector;
 
 /// Where a system is: time, coordinates, momenta.
@@ -55,8 +55,38 @@ pub struct Step<const N: usize, T = f64> {
     pub midpoint: (T, SVector<T, N>, SVector<T, N>),
     /// Step density D of the interval, from the determinant that the solution was found with.
     pub density: T,
+    /// D in the middle of the next interval, were D to change as it did over the last two: where it does not have the sign
+    /// of `density`, the next step is in danger. See [`Step::h_next`].
+    pub density_next: T,
     /// Newton iterations on the n + 1 equations that found the step.
     pub iterations: u32,
     /// Largest residual left, in units of rounding: 1 is one ulp of the sum of the absolute values of the terms.
     pub residual: T,
+    /// How the step was found.
+    pub method: Method<T>,
+}
+
+impl<const N: usize, T: Scalar> Step<N, T> {
+    /// Length of the next step by the step law, `h (D/D_next)^(1/3)`; `None` where D is about to change its sign, and no
+    /// step may exist.
+    pub fn h_next(&self) -> Option<T> {
+        let ratio = self.density.to_f64() / self.density_next.to_f64();
+        (ratio > 0.0 && ratio.is_finite()).then(|| self.h * T::real(ratio.cbrt()))
+    }
+}
+
+/// How a step of the energy-preserving integrator was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Method<T = f64> {
+    /// From the momentum and the energy equation.
+    EnergyPreserving,
+    /// From both equations, the first after fixed steps, where no step had the energy of before: the energy to preserve
+    /// was set to the discrete energy of the last fixed interval.
+    Reseeded {
+        /// By so much the energy to preserve has changed.
+        energy_change: T,
+    },
+    /// From the momentum equation alone, its length given: no energy-preserving step was found, and
+    /// [`Fallback::FixedSteps`](crate::energy_preserving::Fallback::FixedSteps) was chosen.
+    FixedStep,
 }

@@ -231,3 +231,64 @@ fn wrong_axes_are_status_2() {
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
     fs::remove_file(missing).expect("the file can be removed");
 }
+
+#[test]
+fn a_file_is_expanded_stage_by_stage() {
+    let kepler = concat!(env!("CARGO_MANIFEST_DIR"), "/src/systems/kepler.rs");
+    for (stage, line) in [
+        ("syntax", "    let r = sqrt(x^2 + y^2);"),
+        ("model", "    p_x = dot(x)"),
+        ("discrete", "    (D4 L_d)_x = L_v_x + h*L_x/2"),
+        ("program", "momentum: 0 operations"),
+        ("rust", "impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {"),
+    ] {
+        let (status, output, errors) = lab(&["expand", kepler, "--stage", stage]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{stage}");
+        assert!(output.lines().any(|shown| shown == line), "{stage}: {output}");
+    }
+    let (_, rust, _) = lab(&["expand", kepler]);
+    let documented = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/expanded/kepler.rs");
+    assert_eq!(rust, fs::read_to_string(documented).expect("the documented expansion"));
+}
+
+#[test]
+fn mistakes_in_a_file_are_shown_at_their_places() {
+    let file = temporary("wrong.rs");
+    let right = "lagrangian! { struct Right { coord x; L = dot(x)^2; discretize midpoint; } }";
+    let wrong = "lagrangian! { struct Wrong { coord x; L = a * dot(x)^2; discretize midpoint; } }";
+    fs::write(&file, format!("{wrong}\nmod inner {{\n    {right}\n}}\n")).expect("the file");
+    let (status, output, errors) = lab(&["expand", path(&file), "--stage", "syntax"]);
+    assert_eq!((status, errors.as_str(), output.matches("struct").count()), (Some(0), "", 2), "the syntax is right");
+    let (status, output, errors) = lab(&["expand", path(&file), "--stage", "model"]);
+    assert_eq!(status, Some(1));
+    assert!(output.starts_with("Right\n"), "what is right is shown: {output}");
+    let begins = format!("error: unknown name `a`\n --> {}:1:43\n  |\n1 | {wrong}\n  | {:>43}\n", path(&file), "^");
+    assert!(errors.starts_with(&begins), "{errors}");
+    for (text, message) in
+        [("fn main() {}\n", "declares no system with `lagrangian!`"), ("fn 1() {}\n", ":1:4: expected identifier")]
+    {
+        fs::write(&file, text).expect("the file");
+        let (status, output, errors) = lab(&["expand", path(&file)]);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{errors}");
+        assert!(errors.contains(message) && errors.lines().count() == 1, "{errors}");
+    }
+    fs::remove_file(&file).expect("the file can be removed");
+    let (status, _, errors) = lab(&["expand", path(&file)]);
+    assert_eq!((status, errors.lines().count()), (Some(2), 1), "{errors}");
+}
+
+#[test]
+fn a_system_is_explained_in_text_and_in_latex() {
+    let (status, text, errors) = lab(&["explain", "damped-oscillator"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    for line in ["    f_x = -c*dot(x)", "    A_x,x = m + c*h/2 + k*h^2/4", "    momentum               1"] {
+        assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
+    }
+    let (status, latex, errors) = lab(&["explain", "DampedOscillator", "--latex"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(latex.contains("A_{x,x} &= m + \\frac{c h}{2} + \\frac{k h^{2}}{4}"), "{latex}");
+    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/src/systems/damped_oscillator.rs");
+    assert_eq!(lab(&["explain", own]).1, text, "a file is explained as a ready system is");
+    let (status, _, errors) = lab(&["explain", "keppler"]);
+    assert_eq!((status, errors.as_str()), (Some(2), "error: there is no system `keppler`; did you mean `kepler`?\n"));
+}

@@ -7,12 +7,14 @@
 //! φ(0) = H − E = h² D/8        and        φ(h) = φ(0) − h² D/8        to leading order,
 //! ```
 //!
-//! φ starts with the sign of D and the forward step is its first change of sign.
+//! φ starts with the sign of D and the forward step is its first change of sign. Between two points of the search φ can
+//! change its sign twice, where D is about to vanish: an extremum of φ that points to zero is followed to its bottom.
 
 use super::newton::{self, Failure, Root, Trial};
 use super::{Last, RATIO};
+use crate::error::Residuals;
 use crate::momentum;
-use crate::{Node, Scalar, StepError, Stepping};
+use crate::{Node, Scalar, StepError, Stepping, linear};
 use nalgebra::SVector;
 
 /// φ is looked at from `h_last/REACH` to `REACH · h_last`: wide enough to tell a step beyond the factor from none.
@@ -20,6 +22,11 @@ const REACH: f64 = RATIO * RATIO;
 /// Points at which φ is looked at, in geometric progression: 1.15 from one to the next.
 const POINTS: u32 = 32;
 const BISECTIONS: u32 = 200;
+/// Sections of an extremum: each leaves 0.62 of it.
+const SECTIONS: u32 = 48;
+/// Newton step, in roundings of v, that moves v no more than its rounding does.
+const STILL: f64 = 4.0;
+const ITERATIONS: u32 = 20;
 /// Roundings within which φ counts as zero.
 const NOISE: f64 = 16.0;
 
@@ -34,18 +41,48 @@ struct Point<const N: usize, T> {
 
 impl<const N: usize, T: Scalar> Point<N, T> {
     /// The point at `h`, v sought from `guess`.
-    fn at<S: Stepping<N, T>>(system: &S, node: &Node<N, T>, h: T, guess: SVector<T, N>) -> Option<Self> {
-        let v = momentum::solve(system, node, h, guess).ok()?.v;
+    fn at<S: Stepping<N, T>>(
+        system: &S,
+        node: &Node<N, T>,
+        h: T,
+        guess: SVector<T, N>,
+    ) -> Result<Self, momentum::Failure> {
+        let v = match momentum::solve(system, node, h, guess) {
+            Ok(solution) => solution.v,
+            Err(failure @ momentum::Failure::Stalled { .. }) => settled(system, node, h, guess).ok_or(failure)?,
+            Err(failure) => return Err(failure),
+        };
         let equations = system.extended_system(node, h, &v);
         let size = momentum::roundings(equations.energy_residual, equations.energy_magnitude);
         let negative = equations.energy_residual.to_f64() < 0.0;
-        size.is_finite().then_some(Self { v, h, roundings: if negative { -size } else { size } })
+        let roundings = if negative { -size } else { size };
+        if size.is_finite() { Ok(Self { v, h, roundings }) } else { Err(momentum::Failure::NonFinite) }
     }
 
     /// −1 or 1; 0 where φ is not to be told from rounding.
     fn sign(&self) -> i8 {
         sign(self.roundings)
     }
+}
+
+/// The v that Newton's iteration on the momentum equation no longer moves but by its rounding. For `h ω ≫ 1`, where the
+/// terms cancel inside their magnitudes, this is all that can be had: enough to see the sign of φ, not to take a step.
+fn settled<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    mut v: SVector<T, N>,
+) -> Option<SVector<T, N>> {
+    let largest = |vector: &SVector<T, N>| vector.iter().fold(0.0, |most, x| momentum::worse(x.to_f64().abs(), most));
+    for _ in 0..ITERATIONS {
+        let equation = system.momentum_equation(node, h, &v);
+        let step = linear::solve(&equation.jacobian, &equation.residual)?;
+        v -= step;
+        if largest(&step) <= STILL * T::EPSILON * largest(&v) {
+            return Some(v);
+        }
+    }
+    None
 }
 
 /// −1 or 1; 0 at the rounding floor.
@@ -55,6 +92,16 @@ fn sign(roundings: f64) -> i8 {
         x if x < -NOISE => -1,
         _ => 0,
     }
+}
+
+/// What the search for a change of sign comes to.
+enum Search<const N: usize, T> {
+    /// φ changes its sign between these.
+    Change(Point<N, T>, Point<N, T>),
+    /// It does not, as far as h reaches or the momentum equation has a solution.
+    NoChange,
+    /// It does not, up to an h at which the equations have no value.
+    NonFinite(T),
 }
 
 /// The forward step with the smallest h.
@@ -74,7 +121,7 @@ pub(super) fn smallest_root<const N: usize, T: Scalar, S: Stepping<N, T>>(
     let excess = (energy - node.energy - node.energy_low).to_f64();
     let density = system.step_density(node.t, &node.q, &v)?.to_f64();
     if !excess.is_finite() || !density.is_finite() {
-        return Err(StepError::NonFinite { t, quantity: "energy or step density" });
+        return Err(StepError::NonFinite { t, quantity: "energy or step density", expression: None });
     }
     let floor = T::EPSILON * (energy.to_f64().abs() + node.energy.to_f64().abs());
     let start = sign(excess / floor);
@@ -83,9 +130,12 @@ pub(super) fn smallest_root<const N: usize, T: Scalar, S: Stepping<N, T>>(
         return Err(none);
     }
     match first_change(system, node, last, v, start) {
-        Some((before, after)) => polished(system, node, last, before, after),
-        None if density == 0.0 && start == 0 => Err(StepError::DegenerateStep { t, h, density }),
-        None => Err(none),
+        Search::Change(before, after) => polished(system, node, last, before, after),
+        Search::NonFinite(at) if at <= last.h * T::real(RATIO) => {
+            Err(StepError::NonFinite { t, quantity: "system of equations", expression: None })
+        }
+        _ if density == 0.0 && start == 0 => Err(StepError::DegenerateStep { t, h, density }),
+        _ => Err(none),
     }
 }
 
@@ -96,22 +146,63 @@ fn first_change<const N: usize, T: Scalar, S: Stepping<N, T>>(
     last: &Last<N, T>,
     v: SVector<T, N>,
     start: i8,
-) -> Option<(Point<N, T>, Point<N, T>)> {
+) -> Search<N, T> {
     let factor = T::real((REACH * REACH).powf(1.0 / f64::from(POINTS)));
-    let mut before = Point { v, h: T::zero(), roundings: f64::INFINITY.copysign(f64::from(start)) };
+    let mut earlier = Point { v, h: T::zero(), roundings: f64::INFINITY.copysign(f64::from(start)) };
+    let mut before = earlier;
     let mut known = start;
     let mut h = last.h / T::real(REACH);
     for _ in 0..=POINTS {
         // Where the momentum equation has no solution the curve ends, and with it the search.
-        let point = Point::at(system, node, h, before.v)?;
+        let point = match Point::at(system, node, h, before.v) {
+            Ok(point) => point,
+            Err(momentum::Failure::NonFinite) => return Search::NonFinite(h),
+            Err(_) => return Search::NoChange,
+        };
         if known * point.sign() < 0 {
-            return Some((before, point));
+            return Search::Change(before, point);
         }
         if point.sign() != 0 {
             known = point.sign();
         }
-        before = point;
+        let height = |point: &Point<N, T>| point.roundings * f64::from(known);
+        if height(&before) <= height(&earlier)
+            && height(&before) < height(&point)
+            && let Some(bottom) = other_side(system, node, known, earlier, point)
+        {
+            return Search::Change(earlier, bottom);
+        }
+        (earlier, before) = (before, point);
         h *= factor;
+    }
+    Search::NoChange
+}
+
+/// A point between two at which φ does not have the sign `known`, by golden sections towards the extremum; none where φ
+/// has that sign there as well.
+fn other_side<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    known: i8,
+    earlier: Point<N, T>,
+    later: Point<N, T>,
+) -> Option<Point<N, T>> {
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let at = |low: T, high: T, part: f64| Point::at(system, node, low + (high - low) * T::real(part), later.v).ok();
+    let height = |point: &Point<N, T>| point.roundings * f64::from(known);
+    let (mut low, mut high) = (earlier.h, later.h);
+    let (mut left, mut right) = (at(low, high, 1.0 - golden)?, at(low, high, golden)?);
+    for _ in 0..SECTIONS {
+        if let Some(found) = [left, right].into_iter().find(|point| known * point.sign() < 0) {
+            return Some(found);
+        }
+        if height(&left) < height(&right) {
+            (high, right) = (right.h, left);
+            left = at(low, high, 1.0 - golden)?;
+        } else {
+            (low, left) = (left.h, right);
+            right = at(low, high, golden)?;
+        }
     }
     None
 }
@@ -131,24 +222,28 @@ fn polished<const N: usize, T: Scalar, S: Stepping<N, T>>(
         if h <= before.h || h >= after.h {
             break;
         }
-        let Some(middle) = Point::at(system, node, h, after.v) else { break };
+        let Ok(middle) = Point::at(system, node, h, after.v) else { break };
         if middle.sign() == 0 {
             after = middle;
             break;
         }
         if middle.sign() == upper { after = middle } else { before = middle }
     }
+    let beyond = |found: f64| found * RATIO < previous || found > previous * RATIO;
     let h = after.h.to_f64();
     let half = T::real(0.5);
-    let root = newton::solve(system, node, Trial { v: after.v, h: after.h }, (after.h * half, after.h / half));
+    let mut residuals = Residuals::new();
+    let trial = Trial { v: after.v, h: after.h };
+    let range = (after.h * half, after.h / half);
+    let root = newton::solve(system, node, trial, range, |residual| residuals.push(residual));
     let root = root.map_err(|failure| match failure {
         Failure::Degenerate { h, density } => StepError::DegenerateStep { t, h: h.to_f64(), density: density.to_f64() },
-        Failure::NoRoot => StepError::NotConverged { t, h, iterations: BISECTIONS, residual: after.roundings.abs() },
+        Failure::NoRoot if beyond(h) => StepError::StepRatio { t, previous, found: h },
+        Failure::NoRoot => {
+            let residual = residuals.iter().last().unwrap_or(after.roundings.abs());
+            StepError::NotConverged { t, h, iterations: BISECTIONS, residual, residuals }
+        }
     })?;
     let found = root.h.to_f64();
-    if found * RATIO >= previous && found <= previous * RATIO {
-        Ok(root)
-    } else {
-        Err(StepError::StepRatio { t, previous, found })
-    }
+    if beyond(found) { Err(StepError::StepRatio { t, previous, found }) } else { Ok(root) }
 }

@@ -88,19 +88,22 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     }
 }
 
-/// The root that Newton's iteration reaches from `trial` with h inside `range`.
+/// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of
+/// the rows before each iteration, in roundings.
 #[inline]
 pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     mut trial: Trial<N, T>,
     (shortest, longest): (T, T),
+    mut observe: impl FnMut(f64),
 ) -> Result<Root<N, T>, Failure<T>> {
     let mut before = Rows { momentum: f64::INFINITY, energy: f64::INFINITY };
     for iterations in 0..=ITERATIONS {
         let equations = system.extended_system(node, trial.h, &trial.v);
         let elimination = Elimination::of(&equations).ok_or(Failure::NoRoot)?;
         let rows = Rows::of(&equations);
+        observe(momentum::worse(rows.momentum, rows.energy));
         let density = elimination.density().ok_or(Failure::NoRoot)?;
         let (v, h) = (trial.v, trial.h);
         if rows.are_at_floor(&before) {

@@ -4,7 +4,7 @@
 //! the end of that interval, with the p1 and E1 of the slot derivatives.
 
 use super::newton::Elimination;
-use super::{EnergyPreserving, Last};
+use super::{Checkpoint, EnergyPreserving, Last};
 use crate::{Node, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -54,7 +54,7 @@ where
         let v = (q1 - q).map(|distance| distance / h);
         let mut integrator = Self::after(system, Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero()), h, v)?;
         // The end is the point given, not the start plus h v with its roundings.
-        let node = &mut integrator.node;
+        let node = &mut integrator.run.node;
         (node.t, node.t_low, node.q, node.q_low) = (t1, T::zero(), q1, SVector::zeros());
         Ok(integrator)
     }
@@ -75,29 +75,44 @@ where
         let (node, v) = (Node::new(state, energy), v.into());
         let mut start = node;
         start.shift(-h, &v);
-        Ok(Self { node, ..Self::after(system, start, h, v)? })
+        let mut integrator = Self::after(system, start, h, v)?;
+        integrator.run.node = node;
+        Ok(integrator)
     }
 
     /// The integrator at the end of the step `(v, h)` from the place of `start`.
     fn after(system: S, start: Node<N, T>, h: T, v: SVector<T, N>) -> Result<Self, StepError> {
-        let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
-        start.check_finite(t)?;
-        let start = start.leaving(&system, h, &v);
-        let node = start.advanced(h, &v, &system.increment(&start, h, &v));
-        node.check_finite(t)?;
-        let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
-        let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density" };
-        let elimination = Elimination::of(&system.extended_system(&start, h, &v)).ok_or(singular)?;
-        let density = elimination.density().ok_or(infinite)?;
-        let (t_mid, q_mid) = start.midpoint(h, &v);
-        // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
-        let slope = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
-        Ok(Self { system, node, last: Last { v, h, density, slope }, failure: None })
+        match first_interval(&system, start, h, v) {
+            Ok(run) => Ok(Self { system, run, failure: None }),
+            Err(failure) => Err(failure.explained(&system, &start, h, &v)),
+        }
     }
 }
 
+/// The run at the end of the step `(v, h)` from the place of `start`.
+fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    start: Node<N, T>,
+    h: T,
+    v: SVector<T, N>,
+) -> Result<Checkpoint<N, T>, StepError> {
+    let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
+    start.check_finite(t)?;
+    let start = start.leaving(system, h, &v);
+    let node = start.advanced(h, &v, &system.increment(&start, h, &v));
+    node.check_finite(t)?;
+    let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
+    let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
+    let elimination = Elimination::of(&system.extended_system(&start, h, &v)).ok_or(singular)?;
+    let density = elimination.density().ok_or(infinite)?;
+    let (t_mid, q_mid) = start.midpoint(h, &v);
+    // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
+    let slope = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
+    Ok(Checkpoint::new(node, Last { v, h, previous: h, density, slope }))
+}
+
 /// A step must lead forward.
-fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
+pub(super) fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
     let value = h.to_f64();
     if value.is_finite() && value > 0.0 {
         Ok(())

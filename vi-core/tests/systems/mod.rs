@@ -59,6 +59,7 @@ pub(crate) trait Potential<const N: usize, T: Real> {
 }
 
 /// `V = (q⁴ − q²)/2`.
+#[derive(Clone, Copy)]
 pub(crate) struct DoubleWell;
 
 impl<T: Real> Potential<1, T> for DoubleWell {
@@ -75,6 +76,7 @@ impl<T: Real> Potential<1, T> for DoubleWell {
 }
 
 /// `V = k q²/2`, `f = −c v`.
+#[derive(Clone, Copy)]
 pub(crate) struct DampedOscillator {
     pub(crate) k: f64,
     pub(crate) c: f64,
@@ -90,6 +92,7 @@ impl<T: Real> Potential<1, T> for DampedOscillator {
 }
 
 /// `V = −μ/|q|`.
+#[derive(Clone, Copy)]
 pub(crate) struct Kepler {
     pub(crate) mu: f64,
 }
@@ -106,6 +109,7 @@ impl<T: Real> Potential<2, T> for Kepler {
 }
 
 /// `V = q²/2 + q⁴/4`, `f = −0.1 v + 0.3 cos 1.2 t`.
+#[derive(Clone, Copy)]
 pub(crate) struct ForcedDuffing;
 
 impl<T: Real> Potential<1, T> for ForcedDuffing {
@@ -130,6 +134,7 @@ impl<T: Real> Potential<1, T> for ForcedDuffing {
 }
 
 /// `V = −(1 + cos(2t)/2) cos q` and the force `f = −0.2 q v`: every derivative that the rule can meet.
+#[derive(Clone, Copy)]
 pub(crate) struct PumpedPendulum;
 
 impl<T: Real> Potential<1, T> for PumpedPendulum {
@@ -158,6 +163,7 @@ impl<T: Real> Potential<1, T> for PumpedPendulum {
 }
 
 /// `V = 0`: every step length solves the equations.
+#[derive(Clone, Copy)]
 pub(crate) struct FreeParticle;
 
 impl<T: Real> Potential<1, T> for FreeParticle {
@@ -167,6 +173,7 @@ impl<T: Real> Potential<1, T> for FreeParticle {
 }
 
 /// A particle of unit mass in a potential.
+#[derive(Clone, Copy)]
 pub(crate) struct UnitMass<P>(pub(crate) P);
 
 fn magnitude<const N: usize, T: Real>(a: &SVector<T, N>, b: &SVector<T, N>) -> T {

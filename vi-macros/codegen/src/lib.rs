@@ -11,34 +11,70 @@
 
 pub mod discrete;
 pub mod emit;
+pub mod found;
+#[cfg(feature = "inspect")]
+pub mod inspect;
 pub mod messages;
 pub mod model;
+pub mod pretty;
 pub mod program;
 pub mod symbol;
 pub mod syntax;
 
-use model::check;
+use discrete::DiscreteSystem;
+use found::Findings;
+use model::{Model, check};
 use proc_macro2::TokenStream;
+use program::Program;
 use quote::quote;
 use syntax::parse;
+
+/// A system with all that was derived from it.
+pub struct Derived {
+    /// The checked system, and the pool of all expressions.
+    pub model: Model,
+    /// L_d, its slot derivatives, and the equations of a step.
+    pub system: DiscreteSystem,
+    /// The functions as operations.
+    pub program: Program,
+    /// What is special about the system.
+    pub findings: Findings,
+}
 
 /// What a `lagrangian!` becomes: the items of the system, or its errors with a stub of the struct.
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
-    let system = match parse::system(tokens) {
+    let system = match parse::system(tokens.clone()) {
         Ok(system) => system,
-        Err(error) => return error.into_compile_error(),
+        Err(error) => {
+            let (errors, stub) = (error.into_compile_error(), parse::outline(tokens).map(|system| emit::stub(&system)));
+            return quote! { #errors #stub };
+        }
     };
     let stub = emit::stub(&system);
-    items(system).unwrap_or_else(|error| {
-        let errors = error.into_compile_error();
-        quote! { #errors #stub }
-    })
+    match derive(system) {
+        Ok(derived) => items(&derived),
+        Err(error) => {
+            let errors = error.into_compile_error();
+            quote! { #errors #stub }
+        }
+    }
 }
 
-fn items(system: syntax::System) -> syn::Result<TokenStream> {
+/// The stages from a system as written up to its program.
+///
+/// # Errors
+/// Everything that the first stage which fails finds wrong.
+pub fn derive(system: syntax::System) -> syn::Result<Derived> {
     let mut model = check::model(system)?;
     let system = discrete::system::system(&mut model)?;
     let program = program::program(&mut model, &system)?;
-    Ok(emit::items(&model, &system, &program))
+    let findings = found::findings(&model, &system, &program);
+    Ok(Derived { model, system, program, findings })
+}
+
+/// The items of a derived system.
+#[must_use]
+pub fn items(derived: &Derived) -> TokenStream {
+    emit::items(&derived.model, &derived.system, &derived.program, &derived.findings)
 }

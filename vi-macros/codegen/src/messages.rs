@@ -63,6 +63,16 @@ pub enum Message {
     MissingRule,
     /// A second line `discretize …;`.
     SecondRule,
+    /// A second `check { … }`.
+    SecondCheck,
+    /// A check without `h = …;`.
+    MissingStep,
+    /// A check with a step that is zero or negative.
+    StepNotPositive,
+    /// A line of a check for a name that is no coordinate.
+    CheckOfOther { name: String, near: Option<String> },
+    /// A second line of a check for one coordinate or velocity.
+    SecondEntry { name: String },
     /// No line `coord …;`.
     MissingCoordinates,
     /// A force on a name that is no coordinate.
@@ -93,6 +103,8 @@ pub enum Message {
     NotDecimal,
     /// A number out of the range of `f64`.
     NumberRange,
+    /// A coefficient of the equations that no `f64` holds.
+    CoefficientRange,
     /// Parentheses nested too deep.
     TooDeep { limit: usize },
     /// An expression that grew over the limit.
@@ -139,6 +151,11 @@ impl Message {
             Self::SecondLagrangian => "a second `L`".to_owned(),
             Self::MissingRule => "the system is not discretized".to_owned(),
             Self::SecondRule => "a second `discretize`".to_owned(),
+            Self::SecondCheck => "a second `check`".to_owned(),
+            Self::MissingStep => "the check has no step".to_owned(),
+            Self::StepNotPositive => "the step `h` is not positive".to_owned(),
+            Self::CheckOfOther { name, .. } => format!("`{name}` is not a coordinate"),
+            Self::SecondEntry { name } => format!("`{name}` is given twice"),
             Self::MissingCoordinates => "the system has no coordinates".to_owned(),
             Self::ForceOnOther { name, .. } => format!("a force on `{name}`, which is not a coordinate"),
             Self::SecondForce { name } => format!("a second force on `{name}`"),
@@ -154,6 +171,7 @@ impl Message {
             Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
             Self::NotDecimal => "not a decimal number".to_owned(),
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
+            Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
             Self::TooLarge { limit } => format!("the system grows over {limit} terms"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
@@ -206,6 +224,14 @@ impl Message {
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
             Self::MissingRule => "write `discretize midpoint;`".to_owned(),
             Self::SecondRule => "write `discretize` once".to_owned(),
+            Self::SecondCheck => "write `check` once".to_owned(),
+            Self::MissingStep => "end it with the step, as in `h = 0.01;`".to_owned(),
+            Self::StepNotPositive => "give a step with which the system moves well, as in `h = 0.01;`".to_owned(),
+            Self::CheckOfOther { near, .. } => did_you_mean(
+                near.as_ref(),
+                "a check gives coordinates, `dot(…)` of them, the time `t` and the step `h`",
+            ),
+            Self::SecondEntry { .. } => "give each coordinate and each velocity once".to_owned(),
             Self::MissingCoordinates => "declare them: `coord x, y;`".to_owned(),
             Self::ForceOnOther { near, .. } => {
                 did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`")
@@ -230,12 +256,13 @@ impl Message {
             }
             Self::UnknownClause { near, .. } => did_you_mean(
                 near.as_ref(),
-                "the clauses are const, param, coord, let, L, force, dissipation, discretize",
+                "the clauses are const, param, coord, let, L, force, dissipation, discretize, check",
             ),
             Self::Expected { .. } => "a clause reads `name = expression;`, and a sum `a + 2 * b`".to_owned(),
             Self::NumberSuffix { digits, suffix } => format!("write `{digits} * {suffix}` for a product"),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
+            Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLarge { .. } => "use fewer coordinates or a simpler Lagrangian".to_owned(),
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),

@@ -206,6 +206,45 @@ fn rules() {
 }
 
 #[test]
+fn checks() {
+    let system = |check: &str| {
+        let rest = "L = sum(i in 0..3, dot(q[i])^2) + a * dot(x)^2; discretize midpoint;";
+        format!("const N = 3; param a = 1; coord x, q[N]; {rest} {check}")
+    };
+    case(&system("check { h = 1; } «check» { h = 1; }"), "a second `check`\nhelp: write `check` once");
+    case(&system("«check» { x = 1; }"), "the check has no step\nhelp: end it with the step, as in `h = 0.01;`");
+    case(&system("«check» { }"), "the check has no step");
+    case(&system("check { h = «0»; }"), "the step `h` is not positive\nhelp: give a step");
+    case(&system("check { h = «-»1; }"), "the step `h` is not positive");
+    case(
+        "coord angle; L = dot(angle)^2; discretize midpoint; check { «angel» = 1; h = 1; }",
+        "`angel` is not a coordinate\nhelp: did you mean `angle`?",
+    );
+    case(&system("check { «mass» = 1; h = 1; }"), "`mass` is not a coordinate\nhelp: a check gives coordinates");
+    case(&system("check { «a» = 1; h = 1; }"), "`a` is not a coordinate\nhelp: a check gives coordinates");
+    case(&system("check { «h» = 2; h = 1; }"), "`h` is not a coordinate");
+    case(&system("check { dot(«a») = 1; h = 1; }"), "`dot(a)`: `a` is not a coordinate");
+    case(&system("check { «sin»(x) = 1; h = 1; }"), "expected a coordinate, `dot(…)`, `t` or `h`");
+    case(&system("check { dot(x «x») = 1; h = 1; }"), "expected `)`");
+    case(&system("check { x = 1, «x» = 2; h = 1; }"), "`x` is given twice\nhelp: give each coordinate");
+    case(&system("check { dot(x) = 1; dot(«x») = 2; h = 1; }"), "`x` is given twice");
+    case(&system("check { t = 1; «t» = 2; h = 1; }"), "`t` is given twice");
+    case(&system("check { q[i in 0..N] = i; «q»[0] = 1; h = 1; }"), "`q` is given twice");
+    case(&system("check { «q» = 1; h = 1; }"), "`q` is an array");
+    case(&system("check { dot(«x»[0]) = 1; h = 1; }"), "`x` is not an array");
+    case(&system("check { dot(q[i in 0..«4»]) = 1; h = 1; }"), "`q[3]` is out of range 0..3");
+    case(&system("check { x = «a»; h = 1; }"), "`x` is not a constant\nhelp: use numbers");
+    case(&system("check { x = «exp»(1000); h = 1; }"), "the value of `x` is not finite");
+    case(&system("check { x = 1 / «0»; h = 1; }"), "division by zero");
+    case(&system("check { h = «x»; }"), "`h` is not a constant");
+    case(&system("check { x = 1 «y» = 2; h = 1; }"), "expected an operator, `,` or `;`");
+    case(&system("check «;»"), "expected `{` and a place");
+    let two = errors(&format!("struct System {{ {} }}", system("check { y = 1; z = 2; }")));
+    let said: Vec<&str> = two.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
+    assert_eq!(said, ["the check has no step", "`y` is not a coordinate", "`z` is not a coordinate"]);
+}
+
+#[test]
 fn several_mistakes_are_reported_at_once() {
     let found = errors("struct System { parm a = 1; coord x L = 1; force y 2; }");
     assert_eq!(found.len(), 3, "{found:?}");
@@ -219,6 +258,25 @@ fn several_mistakes_are_reported_at_once() {
         "unknown rule `some`",
     ];
     assert_eq!(said, wanted);
+}
+
+#[test]
+fn what_builds_on_a_mistake_is_none() {
+    let rest = "L = sum(i in 0..4, dot(q[i])^2 + e[i] * q[i]) + a * dot(q[0]); force q[0] = e; discretize midpoint;";
+    case(
+        &format!("const a = 1; coord q[4]; let e[i in 0..4] = q[«i» + 1]; {}", rest.replace("= e;", "= e[1];")),
+        "`q[4]` is out",
+    );
+    case(&format!("const a = 1; coord q[4]; let e[«0»] = q[0]; {rest}"), "expected a range");
+    case(
+        &format!("const a = 1; coord q[«0»]; let e = q; {}", rest.replace("e[i]", "dot(q)")),
+        "an array of 0 coordinates",
+    );
+    case(&format!("const a = 1; coord q[«b»]; let e = q[1]; {}", rest.replace("e[i]", "e")), "unknown name `b`");
+    case(
+        &format!("const a = «ln»(0); coord q[4]; let e[i in 0..4] = a; {}", rest.replace("= e;", "= a;")),
+        "this expression has no value",
+    );
 }
 
 #[test]
@@ -247,6 +305,26 @@ fn depth_and_size_are_bounded() {
 }
 
 #[test]
+fn delimiters_around_a_clause_are_bounded_too() {
+    for (open, close) in [("(", ")"), ("[", "]"), ("{", "}")] {
+        let nest = format!("{}{}", open.repeat(5000), close.repeat(5000));
+        for system in [format!("#[doc = {nest}] struct S {{}}"), nest.clone(), format!("struct S {{ coord x{nest}; }}")]
+        {
+            let found = errors(&system);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].1.starts_with("this expression is nested deeper than 100 levels"), "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn coefficients_are_numbers() {
+    let tokens = "struct System { coord x; L = dot(x)^1e308; discretize midpoint; }".parse().expect("tokens");
+    let said = vi_codegen::expand(tokens).to_string();
+    assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{said}");
+}
+
+#[test]
 fn right_systems_pass() {
     for body in [
         "coord q; L = dot(q)^2 / 2 - q^4 / 4; discretize midpoint;",
@@ -256,6 +334,8 @@ fn right_systems_pass() {
         "coord x; L = dot(x)^2 - x^2; force x = t; discretize trapezoidal;",
         "const N = 5; coord θ[N]; let x[i in 0..N] = sum(j in 0..i + 1, dot(θ[j]) * cos(θ[j])); L = sum(i in 0..N, x[i]^2 + dot(θ[i])^2); dissipation = sum(i in 0..N, i * dot(θ[i])^2); force θ[0] = cos(t); discretize midpoint;",
         "coord q[3]; L = sum(i in 0..3, dot(q[i])^2) - sum(i in 3..3, q[i]); force q[i in 1..3] = -q[i - 1]; discretize trapezoidal;",
+        "coord h, x; L = dot(h)^2 + dot(x)^2 - h * x; discretize midpoint; check { h = 2, dot(h) = 1; h = 0.01; }",
+        "const g = 2; coord x, q[2]; L = dot(x)^2 + sum(i in 0..2, dot(q[i])^2); discretize midpoint; check { x = sqrt(g) * pi, q[i in 0..2] = i, dot(q[i in 0..2]) = -i; t = 1; h = 1e-2 };",
     ] {
         assert_eq!(errors(&format!("struct System {{ {body} }}")), [], "{body}");
     }

@@ -17,6 +17,13 @@ pub(crate) enum Failure {
         /// The last good state and how many steps led to it.
         before: String,
     },
+    /// Systems have mistakes: exit status 1.
+    System {
+        /// What is shown of the systems that are right.
+        shown: String,
+        /// The mistakes at their places.
+        wrong: String,
+    },
     /// A file could not be written or read: exit status 1.
     File {
         /// Which file.
@@ -52,7 +59,7 @@ impl Failure {
     pub(crate) fn exit_status(&self) -> u8 {
         match self {
             Self::Input(_) => 2,
-            Self::Step { .. } | Self::File { .. } => 1,
+            Self::Step { .. } | Self::System { .. } | Self::File { .. } => 1,
         }
     }
 
@@ -67,6 +74,7 @@ impl fmt::Display for Failure {
         match self {
             Self::Input(message) => f.write_str(message),
             Self::Step { error, before } => write!(f, "{error}\nlast good state: {before}"),
+            Self::System { wrong, .. } => f.write_str(wrong),
             Self::File { name, error } => write!(f, "{name}: {error}"),
         }
     }

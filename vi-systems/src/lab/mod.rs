@@ -10,11 +10,14 @@
 //! | [`run`] | `vi-lab run`: rows as CSV or NPY |
 //! | [`paper`] | `vi-lab paper`: figures, tables and the page |
 //! | [`stability`] | `vi-lab stability`: where methods fail, as maps |
+//! | [`expand`], [`explain`] | what a system becomes, stage by stage; its mathematics |
 //! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
 //! | [`numbers`], [`progress`], [`machine`], [`failure`] | numbers in prose, bars, versions, errors |
 
 mod catalogue;
 mod chart;
+mod expand;
+mod explain;
 mod failure;
 mod machine;
 mod numbers;
@@ -56,6 +59,10 @@ enum Action {
     Run(run::Arguments),
     /// Chart where methods fail: the whole page, or the map of one system
     Stability(stability::Arguments),
+    /// Show what the systems in a file become, stage by stage
+    Expand(expand::Arguments),
+    /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
+    Explain(explain::Arguments),
     /// List the systems, their parameters and where they start
     List,
 }
@@ -74,6 +81,12 @@ pub(crate) fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Err(Failure::System { shown, wrong }) => {
+            // What is right is shown first; where nobody reads it, the mistakes are still told.
+            let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
+            let _ = write!(io::stderr(), "{wrong}");
+            ExitCode::FAILURE
+        }
         Err(failure) => {
             // Standard error may be closed; the exit status says the same.
             let _ = writeln!(io::stderr(), "error: {failure}");
@@ -90,6 +103,8 @@ fn act(action: Action) -> Result<(), Failure> {
         }
         Action::Run(arguments) => run::run(&arguments),
         Action::Stability(arguments) => print(&stability::write(&arguments)?),
+        Action::Expand(arguments) => print(&expand::expand(&arguments)?),
+        Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
         Action::List => print(&catalogue::table().text()),
     }
 }

@@ -24,5 +24,6 @@ lagrangian! {
         let potential = b * x + s * x^2 / 2;
         L = m * (dot(x)^2 + dot(y)^2 + dot(z)^2) / 2 + e * potential * dot(y) - e * kappa * z^2 / 2;
         discretize midpoint;
+        check { x = 0.2, y = 0.1, z = 0.5, dot(x) = 0.7, dot(y) = 0.4, dot(z) = 0.1; h = 0.05; }
     }
 }

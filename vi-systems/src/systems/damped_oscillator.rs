@@ -19,5 +19,6 @@ lagrangian! {
         L = m * v^2 / 2 - k * x^2 / 2;
         force x = -c * v;
         discretize midpoint;
+        check { x = 0.8, dot(x) = 0.5; h = 0.05; }
     }
 }

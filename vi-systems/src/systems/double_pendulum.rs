@@ -23,5 +23,6 @@ lagrangian! {
         let lower = m2 * l2^2 * dot(θ2)^2 / 2 + m2 * l1 * l2 * dot(θ1) * dot(θ2) * cos(θ1 - θ2);
         L = upper + lower + (m1 + m2) * g * l1 * cos(θ1) + m2 * g * l2 * cos(θ2);
         discretize midpoint;
+        check { θ1 = 0.5, θ2 = -0.3, dot(θ1) = 0.2, dot(θ2) = 0.1; h = 0.01; }
     }
 }

@@ -14,5 +14,6 @@ lagrangian! {
         coord q;
         L = m * dot(q)^2 / 2 - (q^4 - q^2) / 2;
         discretize midpoint;
+        check { q = 0.9, dot(q) = 0.1; h = 0.05; }
     }
 }

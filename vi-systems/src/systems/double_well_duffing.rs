@@ -18,5 +18,6 @@ lagrangian! {
         L = dot(x)^2 / 2 + x^2 / 2 - x^4 / 4;
         force x = -c * dot(x) + amplitude * cos(omega * t);
         discretize midpoint;
+        check { x = 1.3, dot(x) = 0.1; h = 0.05; }
     }
 }

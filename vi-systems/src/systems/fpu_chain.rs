@@ -27,5 +27,6 @@ lagrangian! {
         let kinetic = m * sum(i in 0..N, dot(q[i])^2) / 2;
         L = kinetic - k * squares / 2 - alpha * cubes / 3 - beta * fourths / 4;
         discretize midpoint;
+        check { q[i in 0..N] = sin((i + 1) * pi / (N + 1)), dot(q[3]) = 0.2; h = 0.1; }
     }
 }

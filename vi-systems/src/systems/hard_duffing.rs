@@ -22,5 +22,6 @@ lagrangian! {
         L = dot(x)^2 / 2 - alpha * x^2 / 2 - beta * x^4 / 4;
         force x = -c * dot(x) + amplitude * cos(omega * t);
         discretize midpoint;
+        check { x = 1.1, dot(x) = 0.2; h = 0.05; }
     }
 }

@@ -15,5 +15,6 @@ lagrangian! {
         coord x;
         L = m * dot(x)^2 / 2 - k * x^2 / 2;
         discretize midpoint;
+        check { x = 0.8, dot(x) = 0.5; h = 0.05; }
     }
 }

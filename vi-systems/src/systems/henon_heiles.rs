@@ -13,5 +13,6 @@ lagrangian! {
         coord x, y;
         L = (dot(x)^2 + dot(y)^2) / 2 - (x^2 + y^2) / 2 - lambda * (x^2 * y - y^3 / 3);
         discretize midpoint;
+        check { x = 0.3, y = -0.2, dot(x) = 0.1, dot(y) = 0.25; h = 0.05; }
     }
 }

@@ -15,5 +15,6 @@ lagrangian! {
         let r = sqrt(x^2 + y^2);
         L = (dot(x)^2 + dot(y)^2) / 2 + mu / r;
         discretize midpoint;
+        check { x = 0.6, y = 0.1, dot(x) = -0.2, dot(y) = 1.4; h = 0.02; }
     }
 }

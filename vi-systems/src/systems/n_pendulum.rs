@@ -22,5 +22,6 @@ lagrangian! {
         let pairs = sum(i in 1..N, (N - i) * sum(j in 0..i, dot(θ[i]) * dot(θ[j]) * cos(θ[i] - θ[j])));
         L = m * l^2 * (alone + pairs) + m * g * l * sum(i in 0..N, (N - i) * cos(θ[i]));
         discretize midpoint;
+        check { θ[i in 0..N] = 0.4 - i / 5; h = 0.005; }
     }
 }

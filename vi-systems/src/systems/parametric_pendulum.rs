@@ -15,5 +15,6 @@ lagrangian! {
         coord θ;
         L = dot(θ)^2 / 2 + (1 + epsilon * cos(omega * t)) * cos(θ);
         discretize midpoint;
+        check { θ = 0.9, dot(θ) = 0.3, t = 1; h = 0.02; }
     }
 }

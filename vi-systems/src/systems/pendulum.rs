@@ -17,5 +17,6 @@ lagrangian! {
         coord θ;
         L = m * l^2 * dot(θ)^2 / 2 + m * g * l * cos(θ);
         discretize midpoint;
+        check { θ = 1.2, dot(θ) = 0.4; h = 0.05; }
     }
 }

@@ -19,5 +19,6 @@ lagrangian! {
         coord θ;
         L = m * r^2 * (dot(θ)^2 + Ω^2 * sin(θ)^2) / 2 + m * g * r * cos(θ);
         discretize midpoint;
+        check { θ = 1.2, dot(θ) = 0.3; h = 0.02; }
     }
 }

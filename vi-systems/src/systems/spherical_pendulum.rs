@@ -17,5 +17,6 @@ lagrangian! {
         coord θ, φ;
         L = m * l^2 * (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + m * g * l * cos(θ);
         discretize midpoint;
+        check { θ = 1.0, φ = 0.3, dot(θ) = 0.2, dot(φ) = 1.5; h = 0.02; }
     }
 }

@@ -76,7 +76,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let (forced_time, autonomous) = dependence(pool, model);
     Continuous {
         lagrangian: model.lagrangian,
-        energy: energy(pool, &momentum, model.lagrangian),
+        energy: energy(pool, model.lagrangian, dimension),
         cyclic: cyclic(pool, model),
         watched: watched(pool, model),
         force: model.forces.clone(),
@@ -106,16 +106,31 @@ fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {
     pool.symbol(Symbol::Continuous(Variable::Velocity(index)))
 }
 
-/// v·L_v − L.
-fn energy(pool: &mut Pool<Symbol>, momentum: &[Expr], lagrangian: Expr) -> Expr {
-    let mut terms = vec![pool.neg(lagrangian)];
-    for (index, momentum) in momentum.iter().enumerate() {
+/// v·L_v − L, term by term: a term without velocities only changes its sign, and keeps the form that its writer gave it.
+fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+    let terms = match pool.node(lagrangian).clone() {
+        Node::Sum(sum) => {
+            let mut terms: Vec<Expr> = sum.terms.iter().map(|(term, factor)| pool.scale(*term, factor)).collect();
+            terms.push(pool.number(sum.constant));
+            terms
+        }
+        _ => vec![lagrangian],
+    };
+    let (moving_terms, still): (Vec<Expr>, Vec<Expr>) = terms.into_iter().partition(|t| pool.depends_on(*t, &moves));
+    let (kinetic, still) = (pool.sum(&moving_terms), pool.sum(&still));
+    let mut gains = vec![pool.neg(kinetic)];
+    for index in 0..dimension {
         let v = moving(pool, index);
-        terms.push(pool.mul(v, *momentum));
+        let momentum = pool.derivative(kinetic, &mut |pool, symbol| {
+            if *symbol == Symbol::Continuous(Variable::Velocity(index)) { pool.one() } else { pool.zero() }
+        });
+        gains.push(pool.mul(v, momentum));
     }
-    let closed = pool.sum(&terms);
+    let closed = pool.sum(&gains);
     // Multiplied out, `m v² − m v²/2` becomes `m v²/2`; where that is too long, the closed form is as right.
-    pool.expand(closed).unwrap_or(closed)
+    let gains = pool.expand(closed).unwrap_or(closed);
+    pool.sub(gains, still)
 }
 
 /// Whether f, and whether L, depend on the time: (f does, L does not).

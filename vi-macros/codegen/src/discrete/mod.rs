@@ -1,7 +1,7 @@
 //! The forced discrete system, from a checked model and its rule.
 //!
-//! In: a [`Model`](crate::model::Model). Out: a [`DiscreteSystem`]. The rule is differentiated with L and f closed:
-//! their partial derivatives at the points of the rule are symbols, [`Field`](crate::symbol::Field)s. So the leading
+//! In: a [`Model`]. Out: a [`DiscreteSystem`]. The rule is differentiated with L and f closed:
+//! their partial derivatives at the points of the rule are symbols, [`Field`]s. So the leading
 //! terms of the equations cancel exactly, whatever L is, and L itself is differentiated once, in `(t, q, v)`.
 //! AFTER THIS every expression is one in fields, slots, the unknowns `(v, h)` and parameters.
 
@@ -19,6 +19,8 @@ pub use fields::Fields;
 pub use slots::Slots;
 pub use step::Equations;
 
+use crate::model::Model;
+use crate::symbol::{Field, Symbol, Variable};
 use crate::syntax::{Rule, parse};
 use vi_expr::Expr;
 
@@ -36,6 +38,8 @@ pub(crate) fn named_rule(name: &str) -> Option<syn::Result<Rule>> {
 
 /// A discretized system.
 pub struct DiscreteSystem {
+    /// The named rule that the system's rule is, written out or not.
+    pub rule: Option<&'static str>,
     /// The continuous functions: momentum, mass matrix, …
     pub continuous: Continuous,
     /// Partial derivatives of L and f, as far as they were asked for.
@@ -44,6 +48,26 @@ pub struct DiscreteSystem {
     pub slots: Slots,
     /// The equations of a step in the unknowns `(v, h)`.
     pub equations: Equations,
+}
+
+impl DiscreteSystem {
+    /// A symbol as the user wrote it, and where it is evaluated: `L_v_x`, `x_mid`; `L_v_x_at2` where the rule has
+    /// several points.
+    #[must_use]
+    pub fn spell(&self, model: &Model, symbol: &Symbol) -> String {
+        let at = |point: usize| if self.slots.points.len() == 1 { String::new() } else { format!("_at{}", point + 1) };
+        match symbol {
+            Symbol::Field(Field { point, .. }) => model.spell(symbol) + &at(*point),
+            Symbol::AtPoint(point, variable) => {
+                let place = if self.slots.points.len() == 1 { "_mid".to_owned() } else { at(*point) };
+                match variable {
+                    Variable::Velocity(index) => format!("{}_dot{place}", model.coordinates[*index].text()),
+                    _ => model.spell(&Symbol::Continuous(*variable)) + &place,
+                }
+            }
+            _ => model.spell(symbol),
+        }
+    }
 }
 
 /// Where a rule evaluates L and f.

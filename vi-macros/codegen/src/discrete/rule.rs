@@ -12,6 +12,7 @@ use syn::Result;
 use vi_expr::{Expr, Pool, Rational};
 
 /// What the lines of a rule say.
+#[derive(PartialEq)]
 pub(super) struct Evaluated {
     /// L_d.
     pub(super) ld: Expr,

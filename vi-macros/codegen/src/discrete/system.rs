@@ -2,7 +2,8 @@
 //!
 //! In: a [`Model`]. Out: a [`DiscreteSystem`], or the message that a rule is written wrongly or the system too large.
 
-use super::{DiscreteSystem, Fields, Slots, continuous, rule, slots, step};
+use super::rule::Evaluated;
+use super::{DiscreteSystem, Fields, RULES, Slots, continuous, named_rule, rule, slots, step};
 use crate::messages::{Message, error};
 use crate::model::Model;
 use crate::symbol::Symbol;
@@ -24,11 +25,24 @@ fn derive(model: &Model, pool: &mut Pool<Symbol>) -> Result<DiscreteSystem> {
     let mut fields = Fields::new(model);
     let continuous = continuous::continuous(pool, &mut fields, model);
     let evaluated = rule::evaluate(pool, &model.rule, model.dimension(), model.forced)?;
+    let rule = known_rule(pool, model, &evaluated);
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
     let slots = slots::slots(pool, &mut fields, evaluated, model.dimension()).map_err(too_large)?;
     every_slot_acts(pool, model, &slots)?;
     let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;
-    Ok(DiscreteSystem { continuous, fields, slots, equations })
+    Ok(DiscreteSystem { rule, continuous, fields, slots, equations })
+}
+
+/// The named rule that says the same as the system's.
+fn known_rule(pool: &mut Pool<Symbol>, model: &Model, evaluated: &Evaluated) -> Option<&'static str> {
+    let by_name = RULES.into_iter().find(|name| *name == model.rule_name);
+    by_name.or_else(|| {
+        RULES.into_iter().find(|name| {
+            let named = named_rule(name).and_then(Result::ok);
+            let named = named.and_then(|rule| rule::evaluate(pool, &rule, model.dimension(), model.forced).ok());
+            named.is_some_and(|named| named == *evaluated)
+        })
+    })
 }
 
 /// A discrete Lagrangian that leaves an end of its interval out has no equations of a step.

@@ -53,6 +53,7 @@ struct Printer<'a> {
     function: &'a Function,
     names: Names<'a>,
     uses: BTreeMap<OperationId, usize>,
+    results: BTreeSet<OperationId>,
     written: BTreeMap<OperationId, Formula>,
     inputs: BTreeMap<Symbol, Ident>,
     statements: TokenStream,
@@ -75,6 +76,7 @@ pub(super) fn body(model: &Model, function: &Function, points: usize, place: Pla
         function,
         names: Names::new(model, points),
         uses,
+        results: function.results.iter().flatten().copied().collect(),
         written: BTreeMap::new(),
         inputs: BTreeMap::new(),
         statements: TokenStream::new(),
@@ -126,10 +128,13 @@ impl Printer<'_> {
         if self.written.contains_key(&id) {
             return;
         }
-        let shared = self.uses.get(&id).copied().unwrap_or(0) > 1 && formula.operations > 0;
+        let uses = self.uses.get(&id).copied().unwrap_or(0);
+        let shared = uses > 1 && formula.operations > 0;
+        // A long formula gets a line of its own, unless it is a result, which stands by itself already.
+        let long = formula.operations > LINE && !self.results.contains(&id);
         let name = match self.function.operations.name(id) {
             Some(symbol) => Some(self.names.of(symbol)),
-            None if shared || formula.operations > LINE => Some(self.names.next_shared()),
+            None if shared || long => Some(self.names.next_shared()),
             None => None,
         };
         let formula = match name {

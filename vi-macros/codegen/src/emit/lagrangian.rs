@@ -10,6 +10,8 @@ use vi_expr::Expr;
 
 /// Rows up to which a matrix is written out, zeros included.
 const DENSE: usize = 3;
+/// Characters of a formula that documentation shows.
+const CHARACTERS: usize = 400;
 
 /// The implementation of `Lagrangian`.
 pub(super) fn item(source: &Source) -> TokenStream {
@@ -27,7 +29,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         non_finite(source),
     ];
     quote! {
-        #[allow(clippy::all, clippy::pedantic, non_snake_case, uncommon_codepoints, unused_variables, unused_parens)]
+        #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;
             const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
@@ -42,12 +44,21 @@ pub(super) fn item(source: &Source) -> TokenStream {
 impl Source<'_> {
     /// `name = formula`, as the user's names spell it.
     pub(super) fn formula(&self, name: &str, expr: Expr) -> String {
-        format!("`{name} = {}`", self.spelt(expr))
+        let spelt = self.spelt(expr);
+        match spelt.char_indices().nth(CHARACTERS) {
+            Some((end, _)) => {
+                // Up to the last whole word.
+                let shown = &spelt[..end];
+                let words = shown.rsplit_once(' ').map_or(shown, |(words, _)| words);
+                format!("`{name} = {words} …`")
+            }
+            None => format!("`{name} = {spelt}`"),
+        }
     }
 
     /// An expression in the user's names.
     fn spelt(&self, expr: Expr) -> String {
-        self.model.pool.render(expr, &|symbol: &Symbol| self.model.spell(symbol))
+        self.model.pool.render(expr, &|symbol: &Symbol| self.system.spell(self.model, symbol))
     }
 
     /// One formula per coordinate.
@@ -73,7 +84,7 @@ impl Source<'_> {
 
 /// The vector of one group of results, its type known from where it stands.
 pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
-    quote!([#(#entries),*].into())
+    quote!(::vi_core::SVector::from([#(#entries),*]))
 }
 
 /// The matrix whose rows are these groups of results; what is zero for every input is left out of larger ones.

@@ -2,9 +2,11 @@
 //!
 //! In: a [`Model`], its [`DiscreteSystem`] and its
 //! [`Program`]. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
-//! One file per kind of item: the struct, the continuous system, the discrete one, the stepper.
+//! One file per kind of item: the struct, the continuous system, the discrete one, the stepper, the
+//! checks.
 
 mod body;
+mod check;
 mod discrete;
 mod formula;
 mod lagrangian;
@@ -13,6 +15,7 @@ mod stepping;
 mod structure;
 
 use crate::discrete::DiscreteSystem;
+use crate::found::Findings;
 use crate::model::Model;
 use crate::program::{Function, Program};
 use proc_macro2::{Literal, TokenStream};
@@ -25,17 +28,19 @@ struct Source<'a> {
     model: &'a Model,
     system: &'a DiscreteSystem,
     program: &'a Program,
+    findings: &'a Findings,
 }
 
 /// The items of a system, in fixed order.
 #[must_use]
-pub fn items(model: &Model, system: &DiscreteSystem, program: &Program) -> TokenStream {
-    let source = Source { model, system, program };
+pub fn items(model: &Model, system: &DiscreteSystem, program: &Program, findings: &Findings) -> TokenStream {
+    let source = Source { model, system, program, findings };
     let structure = structure::items(&source);
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);
     let stepping = stepping::item(&source);
-    quote! { #structure #lagrangian #discrete #stepping }
+    let check = check::items(&source);
+    quote! { #structure #lagrangian #discrete #stepping #check }
 }
 
 impl Source<'_> {

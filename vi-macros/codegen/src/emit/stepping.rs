@@ -13,7 +13,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let functions = [momentum_equation(source), extended_system(source), increment(source)];
     quote! {
-        #[allow(clippy::all, clippy::pedantic, non_snake_case, uncommon_codepoints, unused_variables, unused_parens)]
+        #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
             #(#functions)*
         }

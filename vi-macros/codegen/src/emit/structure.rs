@@ -16,15 +16,18 @@ pub(super) fn items(source: &Source) -> TokenStream {
     let defaults = model.parameters.iter().map(|parameter| number(parameter.default));
     let fields = model.parameters.iter().map(|parameter| {
         let (name, attributes) = (&parameter.name, &parameter.attributes);
-        let default = format!("Parameter `{name}`, {} by default.", parameter.default);
-        quote!(#(#attributes)* #[doc = #default] pub #name: T)
+        let default = format!(" Parameter `{name}`, {} by default.", parameter.default);
+        let pause = pause(attributes);
+        quote!(#(#attributes)* #pause #[doc = #default] pub #name: T)
     });
+    let found = found(source);
     let arms = names.iter().zip(texts).map(|(name, text)| quote!(#text => Some(&mut self.#name)));
     let (marker, marker_value) = marker(names.is_empty());
     quote! {
         #(#attributes)*
+        #found
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+        #[allow(non_snake_case)]
         #visibility struct #name<T = f64> {
             #(#fields,)*
             #marker
@@ -55,6 +58,21 @@ pub(super) fn items(source: &Source) -> TokenStream {
             }
         }
     }
+}
+
+/// What the generator found out, as the end of the struct's documentation.
+fn found(source: &Source) -> TokenStream {
+    let model = source.model;
+    let rule = format!(" Discretized by the rule `{}`. What the generator found:", model.rule_name);
+    let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
+    let findings = findings.into_iter().map(|line| format!(" * {line}"));
+    let pause = pause(&model.attributes);
+    quote!(#pause #[doc = #rule] #[doc = ""] #(#[doc = #findings])*)
+}
+
+/// An empty line of documentation after the user's own words, so that ours are a paragraph of their own.
+fn pause(attributes: &[syn::Attribute]) -> Option<TokenStream> {
+    attributes.iter().any(|attribute| attribute.path().is_ident("doc")).then(|| quote!(#[doc = ""]))
 }
 
 /// What is emitted beside the errors of a broken system, so that the code that uses its struct still type-checks.

@@ -3,12 +3,12 @@
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
 use super::scope::{Meaning, Scope};
-use super::{Coordinate, Model, Parameter, force, mass};
+use super::{Coordinate, Model, Parameter, force, mass, place};
 use crate::discrete;
 use crate::messages::{Errors, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{self, Definition, Discretization, Indices, System};
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
@@ -28,6 +28,7 @@ pub fn model(system: System) -> Result<Model> {
     let lagrangian = check.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut check, &system.forces, &system.dissipations, coordinates.len());
     let rule = check.rule(system.discretizations, &system.name);
+    let place = place::place(&mut check, &system.checks, coordinates.len());
     if check.errors.is_empty() {
         check.every_parameter_acts(&system.parameters, lagrangian, &forces);
     }
@@ -51,6 +52,7 @@ pub fn model(system: System) -> Result<Model> {
         forces,
         rule,
         rule_name,
+        place,
         pool,
     })
 }
@@ -83,20 +85,28 @@ impl Check {
         self.report(value).unwrap_or_else(|| self.pool.one())
     }
 
-    /// The finite number that a constant expression stands for.
-    fn number(&mut self, written: &Definition) -> (Expr, f64) {
+    /// The finite number that a constant definition stands for.
+    pub(super) fn number(&mut self, written: &Definition) -> (Expr, f64) {
         let value = self.value(written);
-        let name = written.name.to_string();
+        match self.finite(value, written.value.span, &written.name) {
+            Some(number) => (value, number),
+            None => (self.pool.one(), 1.0),
+        }
+    }
+
+    /// The finite number that an expression stands for; where it has none, a report.
+    pub(super) fn finite(&mut self, value: Expr, span: Span, name: &Ident) -> Option<f64> {
+        let name = name.to_string();
         if !self.pool.symbols(value).is_empty() {
-            self.errors.at(written.value.span, &Message::NotConstant { name });
-            return (self.pool.one(), 1.0);
+            self.errors.at(span, &Message::NotConstant { name });
+            return None;
         }
         let number = self.pool.evaluate(value, &mut |_| f64::NAN);
         if !number.is_finite() {
-            self.errors.at(written.value.span, &Message::NotFinite { name });
-            return (self.pool.one(), 1.0);
+            self.errors.at(span, &Message::NotFinite { name });
+            return None;
         }
-        (value, number)
+        Some(number)
     }
 
     fn constants(&mut self, constants: &[Definition]) {
@@ -128,16 +138,17 @@ impl Check {
                 continue;
             };
             let length = self.scope.integer(&mut self.pool, written);
-            let Some(length) = self.report(length) else { continue };
-            match usize::try_from(length)
-                .ok()
-                .filter(|length| (1..=COORDINATES - first.min(COORDINATES)).contains(length))
-            {
-                Some(length) => {
-                    coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
-                    self.declare(name, Meaning::Coordinates { first, length });
-                }
-                None => self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES }),
+            let Some(length) = self.report(length) else {
+                self.declare(name, Meaning::Wrong);
+                continue;
+            };
+            let fitting = 1..=COORDINATES - first.min(COORDINATES);
+            if let Some(length) = usize::try_from(length).ok().filter(|length| fitting.contains(length)) {
+                coordinates.extend((0..length).map(|i| Coordinate { name: name.clone(), index: Some(i) }));
+                self.declare(name, Meaning::Coordinates { first, length });
+            } else {
+                self.errors.at(written.span, &Message::Length { given: length, limit: COORDINATES });
+                self.declare(name, Meaning::Wrong);
             }
         }
         coordinates
@@ -156,12 +167,15 @@ impl Check {
                     let entries = self
                         .scope
                         .each(&mut self.pool, range, &mut |scope, pool, _| scope.expression(pool, &named.value));
-                    if let (Some(entries), Ok(first)) = (self.report(entries), first) {
-                        self.declare(&named.name, Meaning::Values { first, entries });
-                    }
+                    let meaning = match (self.report(entries), first) {
+                        (Some(entries), Ok(first)) => Meaning::Values { first, entries },
+                        _ => Meaning::Wrong,
+                    };
+                    self.declare(&named.name, meaning);
                 }
                 Some(Indices::One(index)) => {
                     self.errors.at(index.span, &Message::Expected { what: "a range, as in `i in 0..8`" });
+                    self.declare(&named.name, Meaning::Wrong);
                 }
             }
         }

@@ -23,7 +23,7 @@ pub(super) fn forces(
 ) -> Vec<Expr> {
     let mut forces: Vec<Option<Expr>> = vec![None; dimension];
     for line in lines {
-        let Some(entries) = entries(check, line) else { continue };
+        let Some(entries) = entries(check, line, &|name, near| Message::ForceOnOther { name, near }) else { continue };
         for (coordinate, value) in entries {
             if forces[coordinate].replace(value).is_some() {
                 check.errors.at(line.name.span(), &Message::SecondForce { name: line.name.to_string() });
@@ -37,19 +37,23 @@ pub(super) fn forces(
     forces
 }
 
-/// The coordinates that a line acts on, with their forces.
-fn entries(check: &mut Check, line: &Definition) -> Option<Vec<(usize, Expr)>> {
+/// What a line says that is about no coordinate: its name, and the coordinate nearest to it.
+pub(super) type Other<'a> = &'a dyn Fn(String, Option<String>) -> Message;
+
+/// The coordinates that a line is about, with their values.
+pub(super) fn entries(check: &mut Check, line: &Definition, other: Other) -> Option<Vec<(usize, Expr)>> {
     let name = line.name.to_string();
     let wanted = match (check.scope.meaning(&name).cloned(), &line.indices) {
         (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, check.value(line))]),
         (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
+        (Some(Meaning::Wrong), _) => Ok(Vec::new()),
         (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
         (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(check, line, indices),
         _ => {
-            // What acts on nothing may be wrong itself.
+            // The value may be wrong too.
             check.value(line);
             let near = check.scope.near_coordinate(&name);
-            Err(error(line.name.span(), &Message::ForceOnOther { name, near }))
+            Err(error(line.name.span(), &other(name, near)))
         }
     };
     check.report(wanted)

@@ -7,8 +7,11 @@
 pub mod check;
 mod force;
 mod mass;
+mod place;
 mod resolve;
 mod scope;
+
+pub use place::Place;
 
 use crate::symbol::Symbol;
 use crate::syntax::Rule;
@@ -39,6 +42,8 @@ pub struct Model {
     pub rule: Rule,
     /// The rule as the documentation names it.
     pub rule_name: String,
+    /// Where the system is checked, if it says so.
+    pub place: Option<Place>,
 }
 
 /// A coordinate.
@@ -96,8 +101,8 @@ impl Model {
             Symbol::T1 => "t1".to_owned(),
             Symbol::Step => "h".to_owned(),
             Symbol::E0 => "E0".to_owned(),
-            Symbol::Q0(index) => format!("{}0", coordinate(*index)),
-            Symbol::Q1(index) => format!("{}1", coordinate(*index)),
+            Symbol::Q0(index) => slot(&coordinate(*index), 0),
+            Symbol::Q1(index) => slot(&coordinate(*index), 1),
             Symbol::P0(index) => format!("p0_{}", coordinate(*index)),
             Symbol::StepVelocity(index) => format!("v_{}", coordinate(*index)),
             Symbol::Low(of) => format!("{}_low", self.spell(of)),
@@ -119,4 +124,10 @@ impl Model {
             }
         }
     }
+}
+
+/// A coordinate at an end of the interval: `x0`, `x1`; of one that ends in a digit or a bracket `θ1_0`, `q[3]_1`.
+fn slot(coordinate: &str, end: u8) -> String {
+    let separator = if coordinate.ends_with(char::is_alphabetic) { "" } else { "_" };
+    format!("{coordinate}{separator}{end}")
 }

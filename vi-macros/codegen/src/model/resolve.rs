@@ -108,6 +108,7 @@ impl Scope {
         let text = name.to_string();
         match (self.meaning(&text), text.as_str()) {
             (Some(Meaning::Value(value)), _) => Ok(*value),
+            (Some(Meaning::Wrong), _) => Ok(pool.one()),
             (Some(Meaning::Coordinate(index)), _) => Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index)))),
             (Some(Meaning::Values { .. } | Meaning::Coordinates { .. }), _) => {
                 Err(error(name.span(), &Message::ArrayWithoutIndex { name: text }))
@@ -125,8 +126,10 @@ impl Scope {
         }
         let at = self.integer(pool, index)?;
         let text = name.to_string();
-        let Some(Meaning::Values { first, entries }) = self.meaning(&text) else {
-            return Err(error(name.span(), &self.no_array(text)));
+        let (first, entries) = match self.meaning(&text) {
+            Some(Meaning::Values { first, entries }) => (first, entries),
+            Some(Meaning::Wrong) => return Ok(pool.one()),
+            _ => return Err(error(name.span(), &self.no_array(text))),
         };
         let entry = usize::try_from(at - first).ok().and_then(|offset| entries.get(offset));
         entry.copied().ok_or_else(|| {
@@ -206,6 +209,7 @@ impl Scope {
         let coordinate = match &argument.kind {
             Kind::Name(name) => match self.meaning(&name.to_string()) {
                 Some(Meaning::Coordinate(index)) => *index,
+                Some(Meaning::Wrong) => return Ok(pool.one()),
                 Some(Meaning::Coordinates { .. }) => {
                     return Err(error(name.span(), &Message::ArrayWithoutIndex { name: name.to_string() }));
                 }
@@ -216,6 +220,7 @@ impl Scope {
             },
             Kind::Entry(name, index) => match self.coordinate_entry(pool, name, index)? {
                 Some(coordinate) => coordinate,
+                None if self.meaning(&name.to_string()) == Some(&Meaning::Wrong) => return Ok(pool.one()),
                 None if self.meaning(&name.to_string()).is_some() => {
                     return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() }));
                 }

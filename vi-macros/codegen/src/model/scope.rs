@@ -28,6 +28,8 @@ pub(super) enum Meaning {
     Coordinate(usize),
     /// An array of coordinates: the number of its first one, its length.
     Coordinates { first: usize, length: usize },
+    /// Something that was reported wrong where it was declared: it reads as 1, with or without an index.
+    Wrong,
 }
 
 impl Scope {

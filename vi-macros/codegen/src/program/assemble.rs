@@ -17,6 +17,7 @@ use vi_expr::{Expr, Node, Pool};
 /// Assembles all functions.
 ///
 /// # Errors
+/// A coefficient outside the range of `f64`, at the name of the system.
 /// Operations that do not reproduce their expressions: a mistake of this compiler, reported and not emitted.
 pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
     let mut pool: Pool<Symbol> = core::mem::take(&mut model.pool);
@@ -25,6 +26,7 @@ pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
         let slots = slots(&mut Assembly::new(&mut pool, system, &system.slots.points), system);
         let step = step(&mut Assembly::new(&mut pool, system, &system.equations.points), system);
         let check = |(function, expressions): (Function, Expressions)| {
+            verify::has_finite_constants(&function, &model.name)?;
             verify::agrees(&pool, &function, &expressions, &model.name).map(|()| function)
         };
         let all = |list: Vec<_>| list.into_iter().map(check).collect::<Result<Vec<_>>>();

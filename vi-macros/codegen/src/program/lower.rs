@@ -12,20 +12,32 @@ use num_traits::{One, Signed, Zero};
 use std::collections::BTreeMap;
 use vi_expr::{Expr, Node, Pool, Rational, Sum};
 
+/// What an expression depends on, the widest last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Dependence {
+    /// Nothing: it is a number.
+    None,
+    /// Parameters and the step: it is constant over a run.
+    Run,
+    /// What changes from step to step.
+    Step,
+}
+
 /// The lowering of one function.
 pub(super) struct Lowering<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
     pub(super) operations: Operations,
     pub(super) occurrences: BTreeMap<Expr, Occurrence>,
     values: BTreeMap<Expr, OperationId>,
+    dependences: BTreeMap<Expr, Dependence>,
     arguments: &'a BTreeMap<(usize, Variable), Expr>,
 }
 
 impl<'a> Lowering<'a> {
     /// A function with these arguments of the points.
     pub(super) fn new(pool: &'a mut Pool<Symbol>, arguments: &'a BTreeMap<(usize, Variable), Expr>) -> Self {
-        let (operations, occurrences, values) = (Operations::default(), BTreeMap::new(), BTreeMap::new());
-        Self { pool, operations, occurrences, values, arguments }
+        let (operations, occurrences) = (Operations::default(), BTreeMap::new());
+        Self { pool, operations, occurrences, values: BTreeMap::new(), dependences: BTreeMap::new(), arguments }
     }
 
     /// Lowers expressions and all that they need, children first.
@@ -44,8 +56,7 @@ impl<'a> Lowering<'a> {
             return *known;
         }
         let node = self.pool.node(expr).clone();
-        let constant = !matches!(node, Node::Symbol(_)) && self.pool.symbols(expr).is_empty();
-        let value = if constant {
+        let value = if self.dependence(expr) == Dependence::None {
             let number = match &node {
                 Node::Number(number) => Self::number(number),
                 _ => self.pool.evaluate(expr, &mut |_| f64::NAN),
@@ -62,6 +73,26 @@ impl<'a> Lowering<'a> {
         };
         self.values.insert(expr, value);
         value
+    }
+
+    /// What an expression depends on; its children are known but for those that lowering made.
+    fn dependence(&mut self, expr: Expr) -> Dependence {
+        if let Some(known) = self.dependences.get(&expr) {
+            return *known;
+        }
+        let children: Vec<Expr> = match self.pool.node(expr) {
+            Node::Number(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
+            Node::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
+            Node::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
+            Node::Call(_, arguments) => arguments.clone(),
+        };
+        let found = match self.pool.node(expr) {
+            Node::Symbol(Symbol::Parameter(_) | Symbol::Step) => Dependence::Run,
+            Node::Symbol(_) => Dependence::Step,
+            _ => children.into_iter().map(|child| self.dependence(child)).max().unwrap_or(Dependence::None),
+        };
+        self.dependences.insert(expr, found);
+        found
     }
 
     fn symbol(&mut self, symbol: Symbol) -> OperationId {
@@ -221,6 +252,11 @@ impl<'a> Lowering<'a> {
             }
         }
         let factor = self.pool.power(base, &exponent);
+        // A bare sum left inside would dissolve in the sum of the quotients: e²/2 + e³/3 stays as it is.
+        let dissolves = |quotient: &Expr| matches!(self.pool.node(*quotient), Node::Sum(sum) if sum.terms.len() > 1);
+        if inside.iter().any(dissolves) {
+            return None;
+        }
         let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
         self.record_powers(&[inside, rest]);
         Some((factor, inside, (!self.pool.is_zero(rest)).then_some(rest)))
@@ -284,12 +320,13 @@ impl<'a> Lowering<'a> {
         let (mut constant, mut number) = (Vec::new(), Self::number(coefficient));
         let (mut varying, mut below) = (Vec::new(), Vec::new());
         for (base, exponent) in factors {
-            if self.pool.symbols(*base).is_empty() {
+            let dependence = self.dependence(*base);
+            if dependence == Dependence::None {
                 let value = self.pool.evaluate(*base, &mut |_| f64::NAN);
                 number *= value.powf(Self::number(exponent));
                 continue;
             }
-            let fixed = !self.pool.depends_on(*base, &|symbol| !matches!(symbol, Symbol::Parameter(_) | Symbol::Step));
+            let fixed = dependence == Dependence::Run;
             match self.factor(*base, exponent) {
                 Factor::Above(value) if fixed => constant.push(value),
                 Factor::Above(value) => varying.push(value),

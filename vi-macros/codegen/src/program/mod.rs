@@ -38,6 +38,11 @@ impl Program {
     /// The function of this name.
     #[must_use]
     pub fn function(&self, name: &str) -> Option<&Function> {
-        self.continuous.iter().chain(&self.slots).chain(&self.step).find(|function| function.name == name)
+        self.functions().find(|function| function.name == name)
+    }
+
+    /// All functions, in the order in which they are emitted.
+    pub fn functions(&self) -> impl Iterator<Item = &Function> {
+        self.continuous.iter().chain(&self.slots).chain(&self.step)
     }
 }

@@ -1,7 +1,8 @@
 //! The operations compute what the expressions say.
 //!
-//! In: a function and the expressions it was lowered from. Out: nothing, or an internal error at the system's name.
-//! Both are evaluated at one point drawn from a fixed sequence, in builds with debug assertions only.
+//! In: a function and the expressions it was lowered from. Out: nothing, or an error at the system's name: a constant
+//! that is not finite, or an internal one where function and expressions differ at one point drawn from a fixed
+//! sequence, in builds with debug assertions only.
 
 use super::assemble::Expressions;
 use super::operations::Operation;
@@ -15,6 +16,18 @@ use vi_expr::{Expr, Pool};
 
 /// Relative difference that reordering may cause: cancellation in the residuals included.
 const TOLERANCE: f64 = 1e-7;
+
+/// Checks that every constant of a function is a finite number: derivatives multiply by exponents.
+pub(super) fn has_finite_constants(function: &Function, system: &Ident) -> Result<()> {
+    let finite = |id| match function.operations.get(id) {
+        Operation::Constant(bits) => f64::from_bits(*bits).is_finite(),
+        _ => true,
+    };
+    if function.operations.needed(&function.results).into_iter().all(finite) {
+        return Ok(());
+    }
+    Err(error(system.span(), &Message::CoefficientRange))
+}
 
 /// Compares a function with its expressions.
 pub(super) fn agrees(

@@ -33,6 +33,8 @@ pub struct System {
     pub dissipations: Vec<Definition>,
     /// `discretize …;`, each one that was written.
     pub discretizations: Vec<Discretization>,
+    /// `check { … }`, each one that was written.
+    pub checks: Vec<Check>,
 }
 
 /// A name with its expression.
@@ -77,4 +79,20 @@ pub struct Rule {
     pub span: Span,
     /// `Ld`, `fd_minus`, `fd_plus`, `gd_minus`, `gd_plus`.
     pub lines: Vec<Definition>,
+}
+
+/// `check { x = 1, dot(x) = 0; h = 0.01; }`: where the system is checked.
+pub struct Check {
+    /// Where the word `check` stands.
+    pub span: Span,
+    /// The entries, in order; the last plain `h` is the step.
+    pub entries: Vec<Entry>,
+}
+
+/// One entry of a check.
+pub struct Entry {
+    /// Whether it is written `dot(…)`.
+    pub velocity: bool,
+    /// The name, its index and the value.
+    pub definition: Definition,
 }

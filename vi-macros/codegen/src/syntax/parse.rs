@@ -3,22 +3,66 @@
 //! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
 //! its `;`, so that the next one is read too.
 
-use super::{Coordinate, Definition, Discretization, Expression, Indices, Rule, System};
+use super::expression::DEPTH;
+use super::{Check, Coordinate, Definition, Discretization, Entry, Expression, Indices, Rule, System};
 use crate::messages::{Errors, Message, error, nearest};
-use proc_macro2::{Ident, TokenStream, TokenTree};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Attribute, Result, Token, Visibility};
 
 /// The words that open a clause.
-const CLAUSES: [&str; 8] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize"];
+const CLAUSES: [&str; 9] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
+
+/// Pairs of delimiters that an expression may stand in: those of the system, of a rule, of an index.
+const CLAUSE_DEPTH: usize = 3;
 
 /// Reads a system.
 ///
 /// # Errors
 /// Every clause that cannot be read, at the token that does not fit.
 pub fn system(tokens: TokenStream) -> Result<System> {
-    header.parse2(tokens)
+    read(tokens, &mut None)
+}
+
+/// What can be read of a system whose clauses may be wrong: its head, and the clauses that are right.
+#[must_use]
+pub fn outline(tokens: TokenStream) -> Option<System> {
+    let mut outline = None;
+    read(tokens, &mut outline).ok().or(outline)
+}
+
+/// Reads a system; one with errors is left in `outline`.
+fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
+    let whole = |input: ParseStream| {
+        let (system, errors) = header(input)?;
+        match errors.finish(()) {
+            Ok(()) => Ok(system),
+            Err(error) => {
+                *outline = Some(system);
+                Err(error)
+            }
+        }
+    };
+    shallow(&tokens)?;
+    whole.parse2(tokens)
+}
+
+/// Refuses parentheses, brackets and braces nested deeper than any right system has them, attributes included: they are
+/// read by recursion.
+fn shallow(tokens: &TokenStream) -> Result<()> {
+    let mut open = vec![tokens.clone().into_iter()];
+    while let Some(innermost) = open.last_mut() {
+        match innermost.next() {
+            Some(TokenTree::Group(group)) if open.len() > DEPTH + CLAUSE_DEPTH => {
+                return Err(error(group.span_open(), &Message::TooDeep { limit: DEPTH }));
+            }
+            Some(TokenTree::Group(group)) => open.push(group.stream().into_iter()),
+            Some(_) => {}
+            None => drop(open.pop()),
+        }
+    }
+    Ok(())
 }
 
 /// Reads the lines of a rule given as text, as the named rules are.
@@ -30,7 +74,7 @@ pub fn rule(text: &str) -> Result<Rule> {
 }
 
 /// `pub struct Name { … }`
-fn header(input: ParseStream) -> Result<System> {
+fn header(input: ParseStream) -> Result<(System, Errors)> {
     let attributes = input.call(Attribute::parse_outer)?;
     let visibility: Visibility = input.parse()?;
     if !input.peek(Token![struct]) {
@@ -55,6 +99,7 @@ fn header(input: ParseStream) -> Result<System> {
         forces: Vec::new(),
         dissipations: Vec::new(),
         discretizations: Vec::new(),
+        checks: Vec::new(),
     };
     let mut errors = Errors::default();
     while !body.is_empty() {
@@ -66,7 +111,7 @@ fn header(input: ParseStream) -> Result<System> {
     if !input.is_empty() {
         errors.at(input.span(), &Message::AfterSystem);
     }
-    errors.finish(system)
+    Ok((system, errors))
 }
 
 /// Drops the tokens up to the end of a clause that could not be read.
@@ -101,6 +146,13 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             return Ok(());
         }
         "discretize" => system.discretizations.push(Discretization::Named(name(input)?)),
+        "check" => {
+            system.checks.push(check(word.span(), input)?);
+            if input.peek(Token![;]) {
+                input.parse::<Token![;]>()?;
+            }
+            return Ok(());
+        }
         found => {
             let near = nearest(found, CLAUSES);
             return Err(error(word.span(), &Message::UnknownClause { found: found.to_owned(), near }));
@@ -117,6 +169,46 @@ fn rule_lines(input: ParseStream) -> Result<Rule> {
         semicolon(input)?;
     }
     Ok(rule)
+}
+
+/// `{ x = 1, dot(x) = 0; h = 0.01; }`
+fn check(span: Span, input: ParseStream) -> Result<Check> {
+    if !input.peek(syn::token::Brace) {
+        return Err(error(input.span(), &Message::Expected { what: "`{` and a place, as in `{ x = 1; h = 0.01; }`" }));
+    }
+    let inner;
+    syn::braced!(inner in input);
+    let mut entries = Vec::new();
+    while !inner.is_empty() {
+        entries.push(entry(&inner)?);
+        if inner.peek(Token![,]) {
+            inner.parse::<Token![,]>()?;
+        } else if inner.peek(Token![;]) {
+            inner.parse::<Token![;]>()?;
+        } else if !inner.is_empty() {
+            return Err(error(inner.span(), &Message::Expected { what: "an operator, `,` or `;`" }));
+        }
+    }
+    Ok(Check { span, entries })
+}
+
+/// `x = 1`, `q[i in 0..8] = 1`, `dot(x) = 1` or `dot(q[0]) = 1`
+fn entry(input: ParseStream) -> Result<Entry> {
+    let velocity = input.peek(syn::Ident) && input.peek2(syn::token::Paren);
+    if !velocity {
+        return Ok(Entry { velocity, definition: indexed(input, &[])? });
+    }
+    let dot = name(input)?;
+    if dot != "dot" {
+        return Err(error(dot.span(), &Message::Expected { what: "a coordinate, `dot(…)`, `t` or `h`" }));
+    }
+    let inner;
+    syn::parenthesized!(inner in input);
+    let (name, indices) = (name(&inner)?, indices(&inner)?);
+    if !inner.is_empty() {
+        return Err(error(inner.span(), &Message::Expected { what: "`)`" }));
+    }
+    Ok(Entry { velocity, definition: Definition { indices, ..value_of(name, input, Vec::new())? } })
 }
 
 /// One or more, separated by commas.
@@ -136,9 +228,14 @@ fn definition(input: ParseStream, attributes: &[Attribute]) -> Result<Definition
 
 /// `a = 1`, `a[i in 0..8] = 1` or `a[0] = 1`
 fn indexed(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
-    let name = name(input)?;
+    let (name, indices) = (name(input)?, indices(input)?);
+    Ok(Definition { indices, ..value_of(name, input, attributes.to_vec())? })
+}
+
+/// Nothing, `[i in 0..8]` or `[0]`
+fn indices(input: ParseStream) -> Result<Option<Indices>> {
     if !input.peek(syn::token::Bracket) {
-        return value_of(name, input, attributes.to_vec());
+        return Ok(None);
     }
     let inner;
     syn::bracketed!(inner in input);
@@ -146,7 +243,7 @@ fn indexed(input: ParseStream, attributes: &[Attribute]) -> Result<Definition> {
     let indices =
         if range { Indices::Range(Expression::range(&inner, 0)?) } else { Indices::One(Expression::parse(&inner)?) };
     close(&inner)?;
-    Ok(Definition { indices: Some(indices), ..value_of(name, input, attributes.to_vec())? })
+    Ok(Some(indices))
 }
 
 /// Nothing may be left in the brackets.

@@ -1,34 +1,67 @@
 //! Dual numbers a + b ε with ε² = 0: derivatives that owe nothing to the symbolic ones.
 //!
-//! `Dual<Dual<f64>>` gives second derivatives. A generated function, evaluated with them, is differentiated operation
-//! by operation.
+//! In: a function that is generic over [`Real`]. Out, for `x = a + b ε`: `f(x) = f(a) + f'(a) b ε`, differentiated
+//! operation by operation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating
+//! Derivatives, chapter 3.
 
+use crate::{Node, Real};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
-use vi_core::Real;
+use nalgebra::SVector;
 
 /// A value and its derivative by one variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Dual<T> {
+pub struct Dual<T> {
     /// The value.
-    pub(crate) value: T,
+    pub value: T,
     /// Its derivative.
-    pub(crate) slope: T,
+    pub slope: T,
 }
 
 impl<T: Real> Dual<T> {
     /// A number that does not change.
-    pub(crate) fn fixed(value: T) -> Self {
+    #[must_use]
+    pub fn fixed(value: T) -> Self {
         Self { value, slope: T::zero() }
     }
 
     /// The variable itself.
-    pub(crate) fn variable(value: T) -> Self {
+    #[must_use]
+    pub fn variable(value: T) -> Self {
         Self { value, slope: T::one() }
     }
 
     /// f(self), with f' at self.
     fn chain(self, value: T, derivative: T) -> Self {
         Self { value, slope: derivative * self.slope }
+    }
+}
+
+/// A vector that does not change.
+pub(super) fn lift<const N: usize>(vector: &SVector<f64, N>) -> SVector<Dual<f64>, N> {
+    vector.map(Dual::fixed)
+}
+
+/// A vector that changes in a direction.
+pub(super) fn along<const N: usize>(vector: &SVector<f64, N>, direction: &SVector<f64, N>) -> SVector<Dual<f64>, N> {
+    vector.zip_map(direction, |value, slope| Dual { value, slope })
+}
+
+/// The direction of one entry.
+pub(super) fn unit<const N: usize>(index: usize) -> SVector<f64, N> {
+    SVector::from_fn(|row, _| f64::from(u8::from(row == index)))
+}
+
+/// A node that does not change.
+pub(super) fn lift_node<const N: usize>(node: &Node<N>) -> Node<N, Dual<f64>> {
+    Node {
+        t: Dual::fixed(node.t),
+        t_low: Dual::fixed(node.t_low),
+        q: lift(&node.q),
+        q_low: lift(&node.q_low),
+        p: lift(&node.p),
+        p_low: lift(&node.p_low),
+        energy: Dual::fixed(node.energy),
+        energy_low: Dual::fixed(node.energy_low),
     }
 }
 
@@ -106,7 +139,7 @@ impl<T: Real> Real for Dual<T> {
         Self::fixed(T::real(value))
     }
     fn recip(self) -> Self {
-        Self::real(1.0) / self
+        Self::fixed(T::one()) / self
     }
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
@@ -154,7 +187,8 @@ impl<T: Real> Real for Dual<T> {
         self.chain(self.value.cosh(), self.value.sinh())
     }
     fn tanh(self) -> Self {
-        self.sinh() / self.cosh()
+        let value = self.value.tanh();
+        self.chain(value, T::one() - value * value)
     }
     fn abs(self) -> Self {
         self.chain(self.value.abs(), self.value.sign())
@@ -166,7 +200,11 @@ impl<T: Real> Real for Dual<T> {
         (self * self + other * other).sqrt()
     }
     fn pow(self, exponent: Self) -> Self {
-        (self.ln() * exponent).exp()
+        let value = self.value.pow(exponent.value);
+        let by_base = self.slope * exponent.value * self.value.pow(exponent.value - T::one());
+        // A fixed exponent needs no logarithm, which a base below zero does not have.
+        let by_exponent = if exponent.slope.is_zero() { T::zero() } else { value * self.value.ln() * exponent.slope };
+        Self { value, slope: by_base + by_exponent }
     }
     fn max(self, other: Self) -> Self {
         if self.value.to_f64() >= other.value.to_f64() { self } else { other }

@@ -1,0 +1,518 @@
+/// Damped harmonic oscillator, m a + c v + k x = 0.
+///
+/// With ω = √(k/m) and ζ = c/(2 √(k m)), the energy-preserving step grows as h ≈ h0 e^{ζ ω t} and ends after about
+/// 1/(ζ ω h0) steps. Source: Sharma, Patil, Woolsey, section 5.2.
+///
+/// Discretized by the rule `midpoint`. What the generator found:
+///
+/// * Autonomous; a force acts
+/// * `L = T(v) + U(t, q)` with a constant mass matrix
+/// * The step's equation in `v` is linear: its Jacobian `A` depends on parameters and `h` only
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)]
+pub struct DampedOscillator<T = f64> {
+    /// Mass.
+    ///
+    /// Parameter `m`, 1 by default.
+    pub m: T,
+    /// Stiffness.
+    ///
+    /// Parameter `k`, 4 by default.
+    pub k: T,
+    /// Damping: the force −c v.
+    ///
+    /// Parameter `c`, 0.04 by default.
+    pub c: T,
+}
+
+impl ::core::default::Default for DampedOscillator<f64> {
+    fn default() -> Self {
+        Self { m: 1.0, k: 4.0, c: 0.04 }
+    }
+}
+
+impl<T: ::vi_core::Real> DampedOscillator<T> {
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(unused_variables)]
+    pub fn from_f64(system: &DampedOscillator<f64>) -> Self {
+        Self {
+            m: T::real(system.m),
+            k: T::real(system.k),
+            c: T::real(system.c),
+        }
+    }
+}
+
+impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DampedOscillator<T> {
+    const PARAMETERS: &'static [&'static str] = &["m", "k", "c"];
+    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+        match name {
+            "m" => Some(&mut self.m),
+            "k" => Some(&mut self.k),
+            "c" => Some(&mut self.c),
+            _ => None,
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
+    const NAME: &'static str = "DampedOscillator";
+    const COORDINATES: [&'static str; 1] = ["x"];
+    const AUTONOMOUS: bool = true;
+    const FORCED: bool = true;
+    const CYCLIC: [bool; 1] = [false];
+
+    /// `L = m*dot(x)^2/2 - k*x^2/2`
+    ///
+    /// 6 operations.
+    #[inline]
+    fn lagrangian(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> T {
+        let [x_dot]: [T; 1] = (*v).into();
+        let [x]: [T; 1] = (*q).into();
+        let real = T::real;
+        (self.m * (x_dot * x_dot) - self.k * (x * x)) * real(0.5)
+    }
+
+    /// `v·L_v − L = m*dot(x)^2/2 + k*x^2/2`
+    ///
+    /// 6 operations.
+    #[inline]
+    fn energy(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> T {
+        let [x_dot]: [T; 1] = (*v).into();
+        let [x]: [T; 1] = (*q).into();
+        let real = T::real;
+        (self.m * (x_dot * x_dot) + self.k * (x * x)) * real(0.5)
+    }
+
+    /// `p_x = m*dot(x)`
+    ///
+    /// 1 operation.
+    #[inline]
+    fn momentum(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::SVector<T, 1> {
+        let [x_dot]: [T; 1] = (*v).into();
+        ::vi_core::SVector::from([self.m * x_dot])
+    }
+
+    /// `f_x = -c*dot(x)`
+    ///
+    /// 2 operations.
+    #[inline]
+    fn force(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::SVector<T, 1> {
+        let [x_dot]: [T; 1] = (*v).into();
+        ::vi_core::SVector::from([-(self.c * x_dot)])
+    }
+
+    /// Solves `M a = L_q + f − L_vt − L_vq v`.
+    ///
+    /// 4 operations.
+    #[inline]
+    fn acceleration(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::core::result::Result<::vi_core::SVector<T, 1>, ::vi_core::StepError> {
+        let time = t;
+        let [x_dot]: [T; 1] = (*v).into();
+        let [x]: [T; 1] = (*q).into();
+        let mass: ::vi_core::SMatrix<T, 1, 1> = ::vi_core::SMatrix::from_row_slice(
+            &[self.m],
+        );
+        let applied: ::vi_core::SVector<T, 1> = ::vi_core::SVector::from([
+            -(self.c * x_dot + self.k * x),
+        ]);
+        ::vi_core::linear::acceleration(time, &mass, &applied)
+    }
+
+    /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
+    ///
+    /// 7 operations.
+    #[inline]
+    fn step_density(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::core::result::Result<T, ::vi_core::StepError> {
+        let [x_ddot]: [T; 1] = self.acceleration(t, q, v)?.into();
+        let [x_dot]: [T; 1] = (*v).into();
+        let [x]: [T; 1] = (*q).into();
+        Ok(self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot)
+    }
+
+    /// The first of what L and f are made of that is not finite here.
+    ///
+    /// 8 operations.
+    #[cold]
+    fn non_finite(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 1>,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::core::option::Option<&'static str> {
+        let [x_dot]: [T; 1] = (*v).into();
+        let [x]: [T; 1] = (*q).into();
+        let real = T::real;
+        let values = [
+            ("m", self.m),
+            ("k", self.k),
+            ("c", self.c),
+            ("dot(x)", x_dot),
+            ("x", x),
+            (
+                "m*dot(x)^2/2 - k*x^2/2",
+                (self.m * (x_dot * x_dot) - self.k * (x * x)) * real(0.5),
+            ),
+            ("-c*dot(x)", -(self.c * x_dot)),
+        ];
+        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillator<T> {
+    /// `ld = h*L`
+    ///
+    /// 9 operations.
+    #[inline]
+    fn ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        h * ((self.m * (x_dot * x_dot) - self.k * (x_mid * x_mid)) * real(0.5))
+    }
+
+    /// `d1_ld = L_v_x*v_x - L`
+    ///
+    /// 8 operations.
+    #[inline]
+    fn d1_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        (self.m * (x_dot * x_dot) + self.k * (x_mid * x_mid)) * real(0.5)
+    }
+
+    /// `d2_ld_x = h*L_x/2 - L_v_x`
+    ///
+    /// 8 operations.
+    #[inline]
+    fn d2_ld(&self, interval: &::vi_core::Interval<1, T>) -> ::vi_core::SVector<T, 1> {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        ::vi_core::SVector::from([-(self.m * x_dot) - self.k * h * real(0.5) * x_mid])
+    }
+
+    /// `d3_ld = L - L_v_x*v_x`
+    ///
+    /// 9 operations.
+    #[inline]
+    fn d3_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        -((self.m * (x_dot * x_dot) + self.k * (x_mid * x_mid)) * real(0.5))
+    }
+
+    /// `d4_ld_x = L_v_x + h*L_x/2`
+    ///
+    /// 7 operations.
+    #[inline]
+    fn d4_ld(&self, interval: &::vi_core::Interval<1, T>) -> ::vi_core::SVector<T, 1> {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        ::vi_core::SVector::from([self.m * x_dot - self.k * h * real(0.5) * x_mid])
+    }
+
+    /// `fd_minus_x = h*f_x/2`
+    ///
+    /// 4 operations.
+    #[inline]
+    fn fd_minus(
+        &self,
+        interval: &::vi_core::Interval<1, T>,
+    ) -> ::vi_core::SVector<T, 1> {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
+    }
+
+    /// `fd_plus_x = h*f_x/2`
+    ///
+    /// 4 operations.
+    #[inline]
+    fn fd_plus(&self, interval: &::vi_core::Interval<1, T>) -> ::vi_core::SVector<T, 1> {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
+    }
+
+    /// `gd_minus = -h*f_x*v_x/2`
+    ///
+    /// 4 operations.
+    #[inline]
+    fn gd_minus(&self, interval: &::vi_core::Interval<1, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        self.c * h * real(0.5) * (x_dot * x_dot)
+    }
+
+    /// `gd_plus = -h*f_x*v_x/2`
+    ///
+    /// 4 operations.
+    #[inline]
+    fn gd_plus(&self, interval: &::vi_core::Interval<1, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0]: [T; 1] = interval.q0.into();
+        let [x1]: [T; 1] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let real = T::real;
+        self.c * h * real(0.5) * (x_dot * x_dot)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
+    /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
+    ///
+    /// 31 operations.
+    #[inline]
+    fn momentum_equation(
+        &self,
+        node: &::vi_core::Node<1, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::MomentumEquation<1, T> {
+        let [x0]: [T; 1] = node.q.into();
+        let [x0_low]: [T; 1] = node.q_low.into();
+        let [p0_x]: [T; 1] = node.p.into();
+        let [p0_x_low]: [T; 1] = node.p_low.into();
+        let [x_dot]: [T; 1] = (*v).into();
+        let real = T::real;
+        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+        let s1 = self.k * h;
+        let s2 = self.m * x_dot;
+        ::vi_core::MomentumEquation {
+            residual: ::vi_core::SVector::from([
+                s2 - p0_x
+                    + ((self.k * x_mid + self.c * x_dot) * real(0.5) * h - p0_x_low),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                p0_x.abs() + s2.abs() + (self.c * h * x_dot).abs() * real(0.5)
+                    + (s1 * x_mid).abs() * real(0.5),
+            ]),
+            jacobian: ::vi_core::SMatrix::from_row_slice(
+                &[self.m + (self.c * real(0.5) + s1 * real(0.25)) * h],
+            ),
+        }
+    }
+
+    /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
+    ///
+    /// 70 operations.
+    #[inline]
+    fn extended_system(
+        &self,
+        node: &::vi_core::Node<1, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::ExtendedSystem<1, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [x0]: [T; 1] = node.q.into();
+        let [x0_low]: [T; 1] = node.q_low.into();
+        let [p0_x]: [T; 1] = node.p.into();
+        let [p0_x_low]: [T; 1] = node.p_low.into();
+        let [x_dot]: [T; 1] = (*v).into();
+        let real = T::real;
+        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+        let s1 = self.k * h;
+        let s2 = s1 * real(0.25);
+        let s3 = self.m * x_dot;
+        let s4 = x_dot * x_dot;
+        let s5 = x_mid * x_mid;
+        let s6 = (self.k * x_mid + self.c * x_dot) * real(0.5);
+        let s7 = s2 * x_dot;
+        let s8 = energy0.abs() + (x_dot * p0_x).abs() + (self.m * s4).abs() * real(0.5)
+            + (self.k * s5).abs() * real(0.5);
+        ::vi_core::ExtendedSystem {
+            momentum: ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([s3 - p0_x + (s6 * h - p0_x_low)]),
+                magnitude: ::vi_core::SVector::from([
+                    p0_x.abs() + s3.abs() + (self.c * h * x_dot).abs() * real(0.5)
+                        + (s1 * x_mid).abs() * real(0.5),
+                ]),
+                jacobian: ::vi_core::SMatrix::from_row_slice(
+                    &[self.m + (self.c * real(0.5) + s2) * h],
+                ),
+            },
+            residual_dh: ::vi_core::SVector::from([s6 + s7]),
+            energy_residual: self.k * real(0.5) * s5 - energy0
+                + (p0_x - self.m * real(0.5) * x_dot) * x_dot
+                + ((p0_x_low - s1 * real(0.5) * x_mid) * x_dot - energy0_low),
+            energy_magnitude: s8 + (s1 * x_dot * x_mid).abs() * real(0.5),
+            energy_dv: ::vi_core::SVector::from([s6 - s7]),
+            energy_dh: -(self.k * real(0.25) * s4),
+        }
+    }
+
+    /// `p1 − p0_x = h*f_x + h*L_x`
+    ///
+    /// `E1 − E0 = h*f_x*v_x`
+    ///
+    /// 13 operations.
+    #[inline]
+    fn increment(
+        &self,
+        node: &::vi_core::Node<1, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::Increment<1, T> {
+        let [x0]: [T; 1] = node.q.into();
+        let [x0_low]: [T; 1] = node.q_low.into();
+        let [x_dot]: [T; 1] = (*v).into();
+        let real = T::real;
+        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([
+                -((self.k * x_mid + self.c * x_dot) * h),
+            ]),
+            energy: -(self.c * h * (x_dot * x_dot)),
+        }
+    }
+}
+
+impl ::vi_core::check::Checked<1> for DampedOscillator<f64> {
+    type In<T: ::vi_core::Real> = DampedOscillator<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
+        DampedOscillator::from_f64(self)
+    }
+}
+
+/// Checks of [`DampedOscillator`](super::DampedOscillator) at the place that it names.
+#[cfg(test)]
+#[allow(clippy::all, clippy::pedantic)]
+mod damped_oscillator_checks {
+    fn place() -> ::vi_core::check::Place<1> {
+        ::vi_core::check::Place {
+            t: 0.0,
+            q: [0.8].into(),
+            v: [0.5].into(),
+            h: 0.05,
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn derivatives() {
+        let checked = ::vi_core::check::derivatives(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn slots() {
+        let checked = ::vi_core::check::slots(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn steps() {
+        let checked = ::vi_core::check::steps(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn order() {
+        let checked = ::vi_core::check::order(
+            &super::DampedOscillator::default(),
+            &place(),
+            2,
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn reversibility() {
+        let checked = ::vi_core::check::reversibility(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy() {
+        let checked = ::vi_core::check::energy(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+}

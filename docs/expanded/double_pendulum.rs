@@ -1,0 +1,765 @@
+/// Double pendulum in absolute angles; θ1 = θ2 = 0 hangs down.
+///
+/// The mass matrix depends on the configuration. Released from (2, 2) rad, the energy-preserving step ends at
+/// t = 4.025. Source: Landau and Lifshitz, Mechanics, section 5.
+///
+/// Discretized by the rule `midpoint`. What the generator found:
+///
+/// * Autonomous and without a force: the energy is conserved
+/// * The mass matrix depends on the state
+/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`
+/// * `A` is dense, not symmetric
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)]
+pub struct DoublePendulum<T = f64> {
+    /// Upper mass.
+    ///
+    /// Parameter `m1`, 1 by default.
+    pub m1: T,
+    /// Lower mass.
+    ///
+    /// Parameter `m2`, 1 by default.
+    pub m2: T,
+    /// Length of the upper rod.
+    ///
+    /// Parameter `l1`, 1 by default.
+    pub l1: T,
+    /// Length of the lower rod.
+    ///
+    /// Parameter `l2`, 1 by default.
+    pub l2: T,
+    /// Gravity.
+    ///
+    /// Parameter `g`, 9.81 by default.
+    pub g: T,
+}
+
+impl ::core::default::Default for DoublePendulum<f64> {
+    fn default() -> Self {
+        Self {
+            m1: 1.0,
+            m2: 1.0,
+            l1: 1.0,
+            l2: 1.0,
+            g: 9.81,
+        }
+    }
+}
+
+impl<T: ::vi_core::Real> DoublePendulum<T> {
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(unused_variables)]
+    pub fn from_f64(system: &DoublePendulum<f64>) -> Self {
+        Self {
+            m1: T::real(system.m1),
+            m2: T::real(system.m2),
+            l1: T::real(system.l1),
+            l2: T::real(system.l2),
+            g: T::real(system.g),
+        }
+    }
+}
+
+impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DoublePendulum<T> {
+    const PARAMETERS: &'static [&'static str] = &["m1", "m2", "l1", "l2", "g"];
+    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+        match name {
+            "m1" => Some(&mut self.m1),
+            "m2" => Some(&mut self.m2),
+            "l1" => Some(&mut self.l1),
+            "l2" => Some(&mut self.l2),
+            "g" => Some(&mut self.g),
+            _ => None,
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
+    const NAME: &'static str = "DoublePendulum";
+    const COORDINATES: [&'static str; 2] = ["θ1", "θ2"];
+    const AUTONOMOUS: bool = true;
+    const FORCED: bool = false;
+    const CYCLIC: [bool; 2] = [false, false];
+
+    /// `L = l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)`
+    ///
+    /// 23 operations.
+    #[inline]
+    fn lagrangian(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> T {
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = self.g * θ2.cos()
+            + (self.l2 * real(0.5) * θ2_dot + self.l1 * θ1_dot * (θ1 - θ2).cos())
+                * θ2_dot;
+        (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * θ1.cos())
+            * (self.m1 + self.m2) * self.l1 + s1 * self.l2 * self.m2
+    }
+
+    /// `v·L_v − L = m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1) - m2*l2*g*cos(θ2) + m1*l1^2*dot(θ1)^2/2 + m2*l1^2*dot(θ1)^2/2`
+    ///
+    /// 28 operations.
+    #[inline]
+    fn energy(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> T {
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = θ1_dot * θ1_dot;
+        let s2 = (self.l2 * real(0.5) * θ2_dot + self.l1 * θ1_dot * (θ1 - θ2).cos())
+            * θ2_dot - self.g * θ2.cos();
+        (self.m1 * self.l1 * real(0.5) * s1 - self.g * (self.m1 + self.m2) * θ1.cos())
+            * self.l1 + (self.l1 * self.l1 * real(0.5) * s1 + s2 * self.l2) * self.m2
+    }
+
+    /// `p_θ1 = l1^2*(m1 + m2)*dot(θ1) + m2*l1*l2*dot(θ2)*cos(θ1 - θ2)`
+    ///
+    /// `p_θ2 = m2*l2^2*dot(θ2) + m2*l1*l2*dot(θ1)*cos(θ1 - θ2)`
+    ///
+    /// 16 operations.
+    #[inline]
+    fn momentum(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let s1 = (θ1 - θ2).cos();
+        ::vi_core::SVector::from([
+            (self.l1 * (self.m1 + self.m2) * θ1_dot + self.m2 * self.l2 * θ2_dot * s1)
+                * self.l1,
+            (self.l2 * θ2_dot + self.l1 * θ1_dot * s1) * self.l2 * self.m2,
+        ])
+    }
+
+    /// `f_θ1 = 0`
+    ///
+    /// `f_θ2 = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn force(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let real = T::real;
+        ::vi_core::SVector::from([real(0.0), real(0.0)])
+    }
+
+    /// Solves `M a = L_q + f − L_vt − L_vq v`.
+    ///
+    /// 29 operations.
+    #[inline]
+    fn acceleration(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
+        let time = t;
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let s1 = self.m1 + self.m2;
+        let s2 = θ1 - θ2;
+        let (sin3, cos3) = s2.sin_cos();
+        let s4 = self.m2 * self.l1 * self.l2 * cos3;
+        let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
+            &[self.l1 * self.l1 * s1, s4, s4, self.m2 * (self.l2 * self.l2)],
+        );
+        let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
+            -((self.g * s1 * θ1.sin() + self.m2 * self.l2 * (θ2_dot * θ2_dot) * sin3)
+                * self.l1),
+            (self.l1 * (θ1_dot * θ1_dot) * sin3 - self.g * θ2.sin()) * self.l2
+                * self.m2,
+        ]);
+        ::vi_core::linear::acceleration(time, &mass, &applied)
+    }
+
+    /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - …`
+    ///
+    /// 62 operations.
+    #[inline]
+    fn step_density(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::result::Result<T, ::vi_core::StepError> {
+        let [θ1_ddot, θ2_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let s1 = θ1 - θ2;
+        let (sin2, cos2) = s1.sin_cos();
+        let (sin3, cos3) = θ1.sin_cos();
+        let (sin4, cos4) = θ2.sin_cos();
+        let s5 = self.g * (self.m1 + self.m2);
+        let s6 = self.m2 * self.l2 * θ1_dot * θ2_dot;
+        let s7 = self.l1 * θ1_dot * θ2_dot;
+        let s8 = sin2 * θ2_ddot;
+        let s9 = θ2_dot * sin2 * θ1_ddot;
+        let s10 = ((θ2_dot * θ2_dot * cos2 - s8) * θ1_dot - s9) * self.l2 * self.l1
+            * self.m2 - θ1_dot * ((s5 * cos3 + s6 * cos2) * self.l1);
+        let s11 = (s9 + (s8 + θ1_dot * θ2_dot * cos2) * θ1_dot) * self.l2 * self.l1
+            * self.m2 - θ2_dot * ((s7 * cos2 + self.g * cos4) * self.l2 * self.m2);
+        let s12 = θ2_ddot * ((s7 * sin2 - self.g * sin4) * self.l2 * self.m2)
+            - (s5 * sin3 + s6 * sin2) * self.l1 * θ1_ddot;
+        Ok(s12 - θ1_dot * s10 - θ2_dot * s11)
+    }
+
+    /// The first of what L and f are made of that is not finite here.
+    ///
+    /// 23 operations.
+    #[cold]
+    fn non_finite(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::option::Option<&'static str> {
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1, θ2]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = (θ1 - θ2).cos();
+        let s2 = θ1.cos();
+        let s3 = θ2.cos();
+        let values = [
+            ("m1", self.m1),
+            ("m2", self.m2),
+            ("l1", self.l1),
+            ("l2", self.l2),
+            ("g", self.g),
+            ("dot(θ1)", θ1_dot),
+            ("dot(θ2)", θ2_dot),
+            ("θ1", θ1),
+            ("θ2", θ2),
+            ("cos(θ1 - θ2)", s1),
+            ("cos(θ1)", s2),
+            ("cos(θ2)", s3),
+            (
+                "l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)",
+                (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * s2)
+                    * (self.m1 + self.m2) * self.l1
+                    + (self.g * s3
+                        + (self.l2 * real(0.5) * θ2_dot + self.l1 * θ1_dot * s1)
+                            * θ2_dot) * self.l2 * self.m2,
+            ),
+        ];
+        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
+    /// `ld = h*L`
+    ///
+    /// 28 operations.
+    #[inline]
+    fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+        let θ1_dot = (θ1_1 - θ1_0) / h;
+        let θ2_dot = (θ2_1 - θ2_0) / h;
+        let real = T::real;
+        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+        let s1 = self.g * θ2_mid.cos()
+            + (self.l2 * real(0.5) * θ2_dot
+                + self.l1 * θ1_dot * (θ1_mid - θ2_mid).cos()) * θ2_dot;
+        let s2 = (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * θ1_mid.cos())
+            * (self.m1 + self.m2) * self.l1 + s1 * self.l2 * self.m2;
+        h * s2
+    }
+
+    /// `d1_ld = L_v_θ1*v_θ1 - L + L_v_θ2*v_θ2`
+    ///
+    /// 43 operations.
+    #[inline]
+    fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+        let θ1_dot = (θ1_1 - θ1_0) / h;
+        let θ2_dot = (θ2_1 - θ2_0) / h;
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+        let s2 = (θ1_mid - θ2_mid).cos();
+        let s3 = self.l1 * θ1_dot * s2;
+        let s4 = θ1_dot
+            * ((self.l1 * s1 * θ1_dot + self.m2 * self.l2 * θ2_dot * s2) * self.l1)
+            + θ2_dot * ((self.l2 * θ2_dot + s3) * self.l2 * self.m2);
+        s4
+            - (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * θ1_mid.cos()) * s1
+                * self.l1
+            + (-((self.l2 * real(0.5) * θ2_dot + s3) * θ2_dot)
+                - self.g * θ2_mid.cos()) * self.l2 * self.m2
+    }
+
+    /// `d2_ld_θ1 = h*L_θ1/2 - L_v_θ1`
+    ///
+    /// `d2_ld_θ2 = h*L_θ2/2 - L_v_θ2`
+    ///
+    /// 42 operations.
+    #[inline]
+    fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let h = interval.t1 - interval.t0;
+        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+        let θ1_dot = (θ1_1 - θ1_0) / h;
+        let θ2_dot = (θ2_1 - θ2_0) / h;
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+        let s2 = θ1_mid - θ2_mid;
+        let (sin3, cos3) = s2.sin_cos();
+        let s4 = self.m2 * self.l2;
+        let s5 = h * real(0.5);
+        let s6 = self.l1 * θ1_dot;
+        ::vi_core::SVector::from([
+            -((self.l1 * s1 * θ1_dot + s4 * θ2_dot * cos3) * self.l1)
+                - s5
+                    * ((s4 * θ1_dot * θ2_dot * sin3 + self.g * s1 * θ1_mid.sin())
+                        * self.l1),
+            s5 * ((s6 * θ2_dot * sin3 - self.g * θ2_mid.sin()) * self.l2 * self.m2)
+                - (self.l2 * θ2_dot + s6 * cos3) * self.l2 * self.m2,
+        ])
+    }
+
+    /// `d3_ld = L - L_v_θ1*v_θ1 - L_v_θ2*v_θ2`
+    ///
+    /// 42 operations.
+    #[inline]
+    fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+        let θ1_dot = (θ1_1 - θ1_0) / h;
+        let θ2_dot = (θ2_1 - θ2_0) / h;
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+        let s2 = (θ1_mid - θ2_mid).cos();
+        let s3 = self.l1 * θ1_dot * s2;
+        let s4 = θ1_dot
+            * ((self.l1 * s1 * θ1_dot + self.m2 * self.l2 * θ2_dot * s2) * self.l1)
+            + θ2_dot * ((self.l2 * θ2_dot + s3) * self.l2 * self.m2);
+        (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * θ1_mid.cos()) * s1
+            * self.l1 - s4
+            + (self.g * θ2_mid.cos() + (self.l2 * real(0.5) * θ2_dot + s3) * θ2_dot)
+                * self.l2 * self.m2
+    }
+
+    /// `d4_ld_θ1 = L_v_θ1 + h*L_θ1/2`
+    ///
+    /// `d4_ld_θ2 = L_v_θ2 + h*L_θ2/2`
+    ///
+    /// 41 operations.
+    #[inline]
+    fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let h = interval.t1 - interval.t0;
+        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+        let θ1_dot = (θ1_1 - θ1_0) / h;
+        let θ2_dot = (θ2_1 - θ2_0) / h;
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+        let s2 = θ1_mid - θ2_mid;
+        let (sin3, cos3) = s2.sin_cos();
+        let s4 = self.m2 * self.l2;
+        let s5 = self.l1 * θ1_dot;
+        let s6 = h * real(0.5);
+        ::vi_core::SVector::from([
+            (self.l1 * s1 * θ1_dot + s4 * θ2_dot * cos3) * self.l1
+                - s6
+                    * ((s4 * θ1_dot * θ2_dot * sin3 + self.g * s1 * θ1_mid.sin())
+                        * self.l1),
+            (self.l2 * θ2_dot + s5 * cos3) * self.l2 * self.m2
+                + s6
+                    * ((s5 * θ2_dot * sin3 - self.g * θ2_mid.sin()) * self.l2
+                        * self.m2),
+        ])
+    }
+
+    /// `fd_minus_θ1 = 0`
+    ///
+    /// `fd_minus_θ2 = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn fd_minus(
+        &self,
+        interval: &::vi_core::Interval<2, T>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let real = T::real;
+        ::vi_core::SVector::from([real(0.0), real(0.0)])
+    }
+
+    /// `fd_plus_θ1 = 0`
+    ///
+    /// `fd_plus_θ2 = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn fd_plus(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let real = T::real;
+        ::vi_core::SVector::from([real(0.0), real(0.0)])
+    }
+
+    /// `gd_minus = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let real = T::real;
+        real(0.0)
+    }
+
+    /// `gd_plus = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let real = T::real;
+        real(0.0)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
+    /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
+    ///
+    /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
+    ///
+    /// 126 operations.
+    #[inline]
+    fn momentum_equation(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::MomentumEquation<2, T> {
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s3 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s3 * θ2_dot + θ2_0_low);
+        let s4 = self.l1 * self.l1;
+        let s5 = θ1_mid - θ2_mid;
+        let (sin6, cos6) = s5.sin_cos();
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let (sin9, cos9) = θ1_mid.sin_cos();
+        let (sin10, cos10) = θ2_mid.sin_cos();
+        let s11 = self.m2 * self.l2;
+        let s12 = s11 * θ1_dot * θ2_dot;
+        let s13 = self.g * s1;
+        let s14 = self.l1 * θ1_dot;
+        let s15 = s14 * θ2_dot;
+        let s16 = (s8 * θ2_dot * sin6).abs();
+        let s17 = h.abs() * real(0.5);
+        let s18 = p0_θ1.abs() + (self.m1.abs() + self.m2.abs()) * (s4 * θ1_dot).abs()
+            + (s7 * θ2_dot * cos6).abs();
+        let s19 = h * h * real(0.25);
+        let s20 = s7 * cos6;
+        let s21 = (θ1_dot + θ2_dot) * real(0.5) * sin6 * self.l2 * self.l1 * self.m2;
+        let s22 = s7 * h * real(0.25) * θ1_dot * θ2_dot * cos6;
+        ::vi_core::MomentumEquation {
+            residual: ::vi_core::SVector::from([
+                (self.l1 * s1 * θ1_dot + s11 * θ2_dot * cos6) * self.l1 - p0_θ1
+                    - (p0_θ1_low - s3 * ((s12 * sin6 + s13 * sin9) * self.l1)),
+                (self.l2 * θ2_dot + s14 * cos6) * self.l2 * self.m2 - p0_θ2
+                    - (p0_θ2_low
+                        + s3 * ((s15 * sin6 - self.g * sin10) * self.l2 * self.m2)),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                s18 + s17 * (s16 + (self.l1 * self.g * s1 * sin9).abs()),
+                p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * cos6).abs()
+                    + s17 * (s16 + (s11 * self.g * sin10).abs()),
+            ]),
+            jacobian: ::vi_core::SMatrix::from_row_slice(
+                &[
+                    s1 * s4 + s19 * ((s13 * cos9 + s12 * cos6) * self.l1),
+                    s20 + (s21 - s22) * h,
+                    s20 - (s21 + s22) * h,
+                    s2 + s19 * ((s15 * cos6 + self.g * cos10) * self.l2 * self.m2),
+                ],
+            ),
+        }
+    }
+
+    /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
+    ///
+    /// 229 operations.
+    #[inline]
+    fn extended_system(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::ExtendedSystem<2, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s3 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s3 * θ2_dot + θ2_0_low);
+        let s4 = θ1_dot * p0_θ1;
+        let s5 = θ2_dot * p0_θ2;
+        let s6 = self.l1 * self.l1;
+        let s7 = θ1_dot * θ1_dot;
+        let s8 = θ2_dot * θ2_dot;
+        let s9 = θ1_mid - θ2_mid;
+        let (sin10, cos10) = s9.sin_cos();
+        let s11 = self.m2 * self.l1 * self.l2;
+        let s12 = s11 * θ1_dot;
+        let s13 = s12 * θ2_dot;
+        let (sin14, cos14) = θ1_mid.sin_cos();
+        let s15 = self.l1 * self.g;
+        let (sin16, cos16) = θ2_mid.sin_cos();
+        let s17 = self.m2 * self.l2;
+        let s18 = s17 * self.g;
+        let s19 = s17 * θ1_dot * θ2_dot;
+        let s20 = self.g * s1;
+        let s21 = s20 * sin14;
+        let s22 = (s19 * sin10 + s21) * self.l1;
+        let s23 = self.l1 * θ1_dot;
+        let s24 = s23 * θ2_dot;
+        let s25 = self.g * sin16;
+        let s26 = (s24 * sin10 - s25) * self.l2 * self.m2;
+        let s27 = s23 * cos10;
+        let s28 = self.m1.abs() + self.m2.abs();
+        let s29 = (s13 * sin10).abs();
+        let s30 = s29 + (s15 * s1 * sin14).abs();
+        let s31 = h.abs() * real(0.5);
+        let s32 = s29 + (s18 * sin16).abs();
+        let s33 = (s20 * cos14 + s19 * cos10) * self.l1;
+        let s34 = h * h * real(0.25);
+        let s35 = s11 * cos10;
+        let s36 = (θ1_dot + θ2_dot) * real(0.5) * sin10 * self.l2 * self.l1 * self.m2;
+        let s37 = s11 * h * real(0.25) * θ1_dot * θ2_dot * cos10;
+        let s38 = self.g * cos16;
+        let s39 = (s24 * cos10 + s38) * self.l2 * self.m2;
+        let s40 = s4 + s5 - energy0
+            - (self.l1 * real(0.5) * s7 + self.g * cos14) * s1 * self.l1
+            + (-((self.l2 * real(0.5) * θ2_dot + s27) * θ2_dot) - s38) * self.l2
+                * self.m2;
+        let s41 = (s21 + s17 * s8 * sin10) * real(0.5) * self.l1;
+        let s42 = (s12 * s8 * cos10 - θ1_dot * s33) * real(0.25) * h;
+        let s43 = (s25 - self.l1 * s7 * sin10) * real(0.5) * self.l2 * self.m2;
+        let s44 = (s11 * s7 * θ2_dot * cos10 - θ2_dot * s39) * real(0.25) * h;
+        let s45 = energy0.abs() + s4.abs() + s5.abs() + (s2 * s8).abs() * real(0.5)
+            + (s13 * cos10).abs();
+        let s46 = s45 + (s18 * cos16).abs() + s30 * (h * θ1_dot).abs() * real(0.5)
+            + s32 * (h * θ2_dot).abs() * real(0.5);
+        ::vi_core::ExtendedSystem {
+            momentum: ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([
+                    (self.l1 * s1 * θ1_dot + s17 * θ2_dot * cos10) * self.l1 - p0_θ1
+                        - (p0_θ1_low - s3 * s22),
+                    (self.l2 * θ2_dot + s27) * self.l2 * self.m2 - p0_θ2
+                        - (p0_θ2_low + s3 * s26),
+                ]),
+                magnitude: ::vi_core::SVector::from([
+                    p0_θ1.abs() + s28 * (s6 * θ1_dot).abs()
+                        + (s11 * θ2_dot * cos10).abs() + s31 * s30,
+                    p0_θ2.abs() + (s2 * θ2_dot).abs() + (s12 * cos10).abs() + s31 * s32,
+                ]),
+                jacobian: ::vi_core::SMatrix::from_row_slice(
+                    &[
+                        s1 * s6 + s34 * s33,
+                        s35 + (s36 - s37) * h,
+                        s35 - (s36 + s37) * h,
+                        s2 + s34 * s39,
+                    ],
+                ),
+            },
+            residual_dh: ::vi_core::SVector::from([s41 - s42, s43 - s44]),
+            energy_residual: s40
+                + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
+                    + (θ2_dot * s26 - θ1_dot * s22) * real(0.5) * h),
+            energy_magnitude: s46 + (s6 * real(0.5) * s7 + (s15 * cos14).abs()) * s28,
+            energy_dv: ::vi_core::SVector::from([s41 + s42, s43 + s44]),
+            energy_dh: s11 * real(0.5) * s7 * s8 * cos10 - s7 * s33 * real(0.25)
+                - s8 * s39 * real(0.25),
+        }
+    }
+
+    /// `p1 − p0_θ1 = h*L_θ1`
+    ///
+    /// `p1 − p0_θ2 = h*L_θ2`
+    ///
+    /// `E1 − E0 = 0`
+    ///
+    /// 30 operations.
+    #[inline]
+    fn increment(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Increment<2, T> {
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = (θ1_mid - θ2_mid).sin();
+        let s3 = h
+            * ((self.m2 * self.l2 * θ1_dot * θ2_dot * s2
+                + self.g * (self.m1 + self.m2) * θ1_mid.sin()) * self.l1);
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([
+                -s3,
+                h
+                    * ((self.l1 * θ1_dot * θ2_dot * s2 - self.g * θ2_mid.sin())
+                        * self.l2 * self.m2),
+            ]),
+            energy: real(0.0),
+        }
+    }
+}
+
+impl ::vi_core::check::Checked<2> for DoublePendulum<f64> {
+    type In<T: ::vi_core::Real> = DoublePendulum<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
+        DoublePendulum::from_f64(self)
+    }
+}
+
+/// Checks of [`DoublePendulum`](super::DoublePendulum) at the place that it names.
+#[cfg(test)]
+#[allow(clippy::all, clippy::pedantic)]
+mod double_pendulum_checks {
+    fn place() -> ::vi_core::check::Place<2> {
+        ::vi_core::check::Place {
+            t: 0.0,
+            q: [0.5, -0.3].into(),
+            v: [0.2, 0.1].into(),
+            h: 0.01,
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn derivatives() {
+        let checked = ::vi_core::check::derivatives(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn slots() {
+        let checked = ::vi_core::check::slots(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn steps() {
+        let checked = ::vi_core::check::steps(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn order() {
+        let checked = ::vi_core::check::order(
+            &super::DoublePendulum::default(),
+            &place(),
+            2,
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn symplecticity() {
+        let checked = ::vi_core::check::symplecticity(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn reversibility() {
+        let checked = ::vi_core::check::reversibility(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy() {
+        let checked = ::vi_core::check::energy(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn step_law() {
+        let checked = ::vi_core::check::step_law(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+}

@@ -1,0 +1,588 @@
+/// Plane Kepler problem, a = −μ r/|r|³.
+///
+/// Conserved: energy, angular momentum x v_y − y v_x. Started at the pericentre of an orbit of eccentricity e, the
+/// energy-preserving integrator runs for e ≤ 0.785 and cannot run for e ≥ √(5/8).
+/// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.
+///
+/// Discretized by the rule `midpoint`. What the generator found:
+///
+/// * Autonomous and without a force: the energy is conserved
+/// * `L = T(v) + U(t, q)` with a constant mass matrix
+/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`
+/// * `A` is dense, symmetric
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)]
+pub struct Kepler<T = f64> {
+    /// Gravitational parameter.
+    ///
+    /// Parameter `mu`, 1 by default.
+    pub mu: T,
+}
+
+impl ::core::default::Default for Kepler<f64> {
+    fn default() -> Self {
+        Self { mu: 1.0 }
+    }
+}
+
+impl<T: ::vi_core::Real> Kepler<T> {
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(unused_variables)]
+    pub fn from_f64(system: &Kepler<f64>) -> Self {
+        Self { mu: T::real(system.mu) }
+    }
+}
+
+impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Kepler<T> {
+    const PARAMETERS: &'static [&'static str] = &["mu"];
+    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+        match name {
+            "mu" => Some(&mut self.mu),
+            _ => None,
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
+    const NAME: &'static str = "Kepler";
+    const COORDINATES: [&'static str; 2] = ["x", "y"];
+    const AUTONOMOUS: bool = true;
+    const FORCED: bool = false;
+    const CYCLIC: [bool; 2] = [false, false];
+
+    /// `L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)`
+    ///
+    /// 12 operations.
+    #[inline]
+    fn lagrangian(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> T {
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x, y]: [T; 2] = (*q).into();
+        let real = T::real;
+        x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+            + self.mu * (x * x + y * y).sqrt().recip()
+    }
+
+    /// `v·L_v − L = dot(x)^2/2 + dot(y)^2/2 - mu/sqrt(x^2 + y^2)`
+    ///
+    /// 12 operations.
+    #[inline]
+    fn energy(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> T {
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x, y]: [T; 2] = (*q).into();
+        let real = T::real;
+        x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+            - self.mu * (x * x + y * y).sqrt().recip()
+    }
+
+    /// `p_x = dot(x)`
+    ///
+    /// `p_y = dot(y)`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn momentum(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        ::vi_core::SVector::from([x_dot, y_dot])
+    }
+
+    /// `f_x = 0`
+    ///
+    /// `f_y = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn force(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let real = T::real;
+        ::vi_core::SVector::from([real(0.0), real(0.0)])
+    }
+
+    /// Solves `M a = L_q + f − L_vt − L_vq v`.
+    ///
+    /// 13 operations.
+    #[inline]
+    fn acceleration(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
+        let time = t;
+        let [x, y]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = (x * x + y * y).sqrt().recip();
+        let s2 = s1 * s1 * s1;
+        let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
+            &[real(1.0), real(0.0), real(0.0), real(1.0)],
+        );
+        let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
+            -(self.mu * x * s2),
+            -(self.mu * y * s2),
+        ]);
+        ::vi_core::linear::acceleration(time, &mass, &applied)
+    }
+
+    /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
+    ///
+    /// 38 operations.
+    #[inline]
+    fn step_density(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::result::Result<T, ::vi_core::StepError> {
+        let [x_ddot, y_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x, y]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = x * x;
+        let s2 = y * y;
+        let s3 = (s1 + s2).sqrt().recip();
+        let s4 = s3 * s3;
+        let s5 = s4 * s3;
+        let s6 = s4 * s4 * s3;
+        let s7 = self.mu * real(3.0) * x * y * s6;
+        let s8 = x_dot * (x_dot * ((s1 * s6 * real(3.0) - s5) * self.mu) + s7 * y_dot)
+            + y_dot * (s7 * x_dot + y_dot * ((s2 * s6 * real(3.0) - s5) * self.mu));
+        Ok(-((x * s5 * x_ddot + y * s5 * y_ddot) * self.mu) - s8)
+    }
+
+    /// The first of what L and f are made of that is not finite here.
+    ///
+    /// 12 operations.
+    #[cold]
+    fn non_finite(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::option::Option<&'static str> {
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x, y]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = self.mu * (x * x + y * y).sqrt().recip();
+        let values = [
+            ("mu", self.mu),
+            ("x", x),
+            ("y", y),
+            ("dot(x)", x_dot),
+            ("dot(y)", y_dot),
+            ("mu/sqrt(x^2 + y^2)", s1),
+            (
+                "dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)",
+                x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + s1,
+            ),
+        ];
+        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
+    /// `ld = h*L`
+    ///
+    /// 17 operations.
+    #[inline]
+    fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0, y0]: [T; 2] = interval.q0.into();
+        let [x1, y1]: [T; 2] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let y_dot = (y1 - y0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        let y_mid = (y0 + y1) * real(0.5);
+        let s1 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+            + self.mu * (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
+        h * s1
+    }
+
+    /// `d1_ld = L_v_x*v_x - L + L_v_y*v_y`
+    ///
+    /// 16 operations.
+    #[inline]
+    fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0, y0]: [T; 2] = interval.q0.into();
+        let [x1, y1]: [T; 2] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let y_dot = (y1 - y0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        let y_mid = (y0 + y1) * real(0.5);
+        x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+            - self.mu * (x_mid * x_mid + y_mid * y_mid).sqrt().recip()
+    }
+
+    /// `d2_ld_x = h*L_x/2 - L_v_x`
+    ///
+    /// `d2_ld_y = h*L_y/2 - L_v_y`
+    ///
+    /// 21 operations.
+    #[inline]
+    fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let h = interval.t1 - interval.t0;
+        let [x0, y0]: [T; 2] = interval.q0.into();
+        let [x1, y1]: [T; 2] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let y_dot = (y1 - y0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        let y_mid = (y0 + y1) * real(0.5);
+        let s1 = (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
+        let s2 = s1 * s1 * s1;
+        let s3 = self.mu * h * real(0.5);
+        ::vi_core::SVector::from([-x_dot - s3 * x_mid * s2, -y_dot - s3 * y_mid * s2])
+    }
+
+    /// `d3_ld = L - L_v_x*v_x - L_v_y*v_y`
+    ///
+    /// 16 operations.
+    #[inline]
+    fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [x0, y0]: [T; 2] = interval.q0.into();
+        let [x1, y1]: [T; 2] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let y_dot = (y1 - y0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        let y_mid = (y0 + y1) * real(0.5);
+        self.mu * (x_mid * x_mid + y_mid * y_mid).sqrt().recip()
+            - x_dot * x_dot * real(0.5) - y_dot * y_dot * real(0.5)
+    }
+
+    /// `d4_ld_x = L_v_x + h*L_x/2`
+    ///
+    /// `d4_ld_y = L_v_y + h*L_y/2`
+    ///
+    /// 19 operations.
+    #[inline]
+    fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let h = interval.t1 - interval.t0;
+        let [x0, y0]: [T; 2] = interval.q0.into();
+        let [x1, y1]: [T; 2] = interval.q1.into();
+        let x_dot = (x1 - x0) / h;
+        let y_dot = (y1 - y0) / h;
+        let real = T::real;
+        let x_mid = (x0 + x1) * real(0.5);
+        let y_mid = (y0 + y1) * real(0.5);
+        let s1 = (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
+        let s2 = s1 * s1 * s1;
+        let s3 = self.mu * h * real(0.5);
+        ::vi_core::SVector::from([x_dot - s3 * x_mid * s2, y_dot - s3 * y_mid * s2])
+    }
+
+    /// `fd_minus_x = 0`
+    ///
+    /// `fd_minus_y = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn fd_minus(
+        &self,
+        interval: &::vi_core::Interval<2, T>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let real = T::real;
+        ::vi_core::SVector::from([real(0.0), real(0.0)])
+    }
+
+    /// `fd_plus_x = 0`
+    ///
+    /// `fd_plus_y = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn fd_plus(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let real = T::real;
+        ::vi_core::SVector::from([real(0.0), real(0.0)])
+    }
+
+    /// `gd_minus = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let real = T::real;
+        real(0.0)
+    }
+
+    /// `gd_plus = 0`
+    ///
+    /// 0 operations.
+    #[inline]
+    fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let real = T::real;
+        real(0.0)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
+    /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
+    ///
+    /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
+    ///
+    /// 64 operations.
+    #[inline]
+    fn momentum_equation(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::MomentumEquation<2, T> {
+        let [x0, y0]: [T; 2] = node.q.into();
+        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let x_mid = x0 + (s1 * x_dot + x0_low);
+        let y_mid = y0 + (s1 * y_dot + y0_low);
+        let s2 = x_mid * x_mid;
+        let s3 = y_mid * y_mid;
+        let s4 = (s2 + s3).sqrt().recip();
+        let s5 = s4 * s4;
+        let s6 = s5 * s4;
+        let s7 = self.mu * h;
+        let s8 = s7 * real(0.5);
+        let s9 = s5 * s5 * s4;
+        let s10 = h * h;
+        let s11 = s10 * real(0.25);
+        let s12 = -(self.mu * s10 * real(0.75) * x_mid * y_mid * s9);
+        ::vi_core::MomentumEquation {
+            residual: ::vi_core::SVector::from([
+                x_dot - p0_x + (s8 * x_mid * s6 - p0_x_low),
+                y_dot - p0_y + (s8 * y_mid * s6 - p0_y_low),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                x_dot.abs() + p0_x.abs() + (s7 * x_mid * s6).abs() * real(0.5),
+                y_dot.abs() + p0_y.abs() + (s7 * y_mid * s6).abs() * real(0.5),
+            ]),
+            jacobian: ::vi_core::SMatrix::from_row_slice(
+                &[
+                    real(1.0) - s11 * ((s2 * s9 * real(3.0) - s6) * self.mu),
+                    s12,
+                    s12,
+                    real(1.0) - s11 * ((s3 * s9 * real(3.0) - s6) * self.mu),
+                ],
+            ),
+        }
+    }
+
+    /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
+    ///
+    /// 151 operations.
+    #[inline]
+    fn extended_system(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::ExtendedSystem<2, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [x0, y0]: [T; 2] = node.q.into();
+        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let x_mid = x0 + (s1 * x_dot + x0_low);
+        let y_mid = y0 + (s1 * y_dot + y0_low);
+        let s2 = x_mid * x_mid;
+        let s3 = y_mid * y_mid;
+        let s4 = y_dot * y_dot;
+        let s5 = (s2 + s3).sqrt().recip();
+        let s6 = self.mu * s5;
+        let s7 = s5 * s5;
+        let s8 = s7 * s5;
+        let s9 = self.mu * h;
+        let s10 = s9 * real(0.5);
+        let s11 = s7 * s7 * s5;
+        let s12 = (s2 * s11 * real(3.0) - s8) * self.mu;
+        let s13 = h * h;
+        let s14 = s13 * real(0.25);
+        let s15 = -(self.mu * s13 * real(0.75) * x_mid * y_mid * s11);
+        let s16 = (s3 * s11 * real(3.0) - s8) * self.mu;
+        let s17 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+            - (x_dot * x_mid * s8 + y_dot * y_mid * s8) * real(0.5) * self.mu * h;
+        let s18 = self.mu * real(0.5);
+        let s19 = s18 * x_mid * s8;
+        let s20 = self.mu * real(0.75);
+        let s21 = x_dot * s12 * real(0.25);
+        let s22 = (s20 * y_dot * x_mid * y_mid * s11 + s21) * h;
+        let s23 = s18 * y_mid * s8;
+        let s24 = (s20 * x_dot * x_mid * y_mid * s11 + y_dot * s16 * real(0.25)) * h;
+        let s25 = x_dot * x_dot * real(0.5) + s4 * real(0.5) + energy0.abs()
+            + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
+        ::vi_core::ExtendedSystem {
+            momentum: ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([
+                    x_dot - p0_x + (s10 * x_mid * s8 - p0_x_low),
+                    y_dot - p0_y + (s10 * y_mid * s8 - p0_y_low),
+                ]),
+                magnitude: ::vi_core::SVector::from([
+                    x_dot.abs() + p0_x.abs() + (s9 * x_mid * s8).abs() * real(0.5),
+                    y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5),
+                ]),
+                jacobian: ::vi_core::SMatrix::from_row_slice(
+                    &[real(1.0) - s14 * s12, s15, s15, real(1.0) - s14 * s16],
+                ),
+            },
+            residual_dh: ::vi_core::SVector::from([s19 - s22, s23 - s24]),
+            energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s6)
+                + (p0_x - x_dot * real(0.5)) * x_dot + s17,
+            energy_magnitude: s25 + s6.abs()
+                + (s9 * x_dot * x_mid * s8).abs() * real(0.5)
+                + (s9 * y_dot * y_mid * s8).abs() * real(0.5),
+            energy_dv: ::vi_core::SVector::from([s19 + s22, s23 + s24]),
+            energy_dh: s4 * s16 * real(0.25)
+                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s11 + s21) * x_dot,
+        }
+    }
+
+    /// `p1 − p0_x = h*L_x`
+    ///
+    /// `p1 − p0_y = h*L_y`
+    ///
+    /// `E1 − E0 = 0`
+    ///
+    /// 21 operations.
+    #[inline]
+    fn increment(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Increment<2, T> {
+        let [x0, y0]: [T; 2] = node.q.into();
+        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let x_mid = x0 + (s1 * x_dot + x0_low);
+        let y_mid = y0 + (s1 * y_dot + y0_low);
+        let s2 = (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
+        let s3 = s2 * s2 * s2;
+        let s4 = self.mu * h;
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([-(s4 * x_mid * s3), -(s4 * y_mid * s3)]),
+            energy: real(0.0),
+        }
+    }
+}
+
+impl ::vi_core::check::Checked<2> for Kepler<f64> {
+    type In<T: ::vi_core::Real> = Kepler<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
+        Kepler::from_f64(self)
+    }
+}
+
+/// Checks of [`Kepler`](super::Kepler) at the place that it names.
+#[cfg(test)]
+#[allow(clippy::all, clippy::pedantic)]
+mod kepler_checks {
+    fn place() -> ::vi_core::check::Place<2> {
+        ::vi_core::check::Place {
+            t: 0.0,
+            q: [0.6, 0.1].into(),
+            v: [-0.2, 1.4].into(),
+            h: 0.02,
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn derivatives() {
+        let checked = ::vi_core::check::derivatives(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn slots() {
+        let checked = ::vi_core::check::slots(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn steps() {
+        let checked = ::vi_core::check::steps(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn order() {
+        let checked = ::vi_core::check::order(&super::Kepler::default(), &place(), 2);
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn symplecticity() {
+        let checked = ::vi_core::check::symplecticity(
+            &super::Kepler::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn reversibility() {
+        let checked = ::vi_core::check::reversibility(
+            &super::Kepler::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy() {
+        let checked = ::vi_core::check::energy(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn step_law() {
+        let checked = ::vi_core::check::step_law(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+}

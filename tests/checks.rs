@@ -1,0 +1,59 @@
+//! The checks, called by hand on every system with parameters away from 1: what they measure.
+
+mod support;
+
+use support::scenes::{Scene, each_system};
+use vi_core::check::{self, Checked, Place, Report};
+
+/// The reports of all checks that apply, in the order of the table of `vi_core::check`.
+fn reports<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Vec<Report> {
+    let results = [
+        Some(check::derivatives(system, place)),
+        Some(check::slots(system, place)),
+        Some(check::steps(system, place)),
+        Some(check::order(system, place, 2)),
+        S::CYCLIC.contains(&true).then(|| check::momenta(system, place)),
+        (!S::FORCED).then(|| check::symplecticity(system, place)),
+        Some(check::reversibility(system, place)),
+        Some(check::energy(system, place)),
+        (!S::FORCED).then(|| check::step_law(system, place)),
+    ];
+    results.into_iter().flatten().map(|result| result.unwrap_or_else(|failure| panic!("{failure}"))).collect()
+}
+
+/// What each check may measure here: twice its largest number, rounded up. The checks themselves allow more, for systems
+/// that are less tame.
+fn allowed(check: &str) -> f64 {
+    match check {
+        // Measured: 1.4e-15.
+        "derivatives" => 3e-15,
+        // Measured: 4.2e-16.
+        "slots" => 9e-16,
+        // Measured: 4.4e-16.
+        "steps" => 1e-15,
+        // Slopes. Measured: 2.6e-3 in both.
+        "order" | "step law" => 6e-3,
+        // Measured: 4.6e-13.
+        "symplecticity" => 1e-12,
+        // Measured: 2.3e-16.
+        "reversibility" => 5e-16,
+        // Measured: 1.3e-15.
+        "energy" => 4e-15,
+        // Bit for bit, momenta of cyclic coordinates.
+        _ => 0.0,
+    }
+}
+
+#[allow(clippy::needless_pass_by_value, reason = "as the other tests of each scene")]
+fn pass<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
+    let place = Place { t: 0.2, q: scene.q.into(), v: scene.v.into(), h: scene.h };
+    for report in reports(&scene.system, &place) {
+        println!("{report}");
+        assert!(report.worst <= allowed(report.check), "{report}");
+        assert!(report.compared > 0, "{report}");
+    }
+}
+
+mod at_the_places_of_the_scenes {
+    super::each_system!(super::pass);
+}

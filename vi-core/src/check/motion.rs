@@ -1,0 +1,105 @@
+//! Accurate motion, by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer): Hairer, Nørsett, Wanner,
+//! Solving Ordinary Differential Equations I, section II.9.
+//!
+//! In: a system, of which nothing is used but its acceleration, and a state. Out: the state at another time.
+
+use crate::error::Residuals;
+use crate::{Lagrangian, StepError};
+use nalgebra::SVector;
+
+/// Rows of the extrapolation tableau.
+const ROWS: u32 = 7;
+/// Substeps of the rows; the last entry of the tableau is of order 14.
+const SUBSTEPS: [u32; ROWS as usize] = [2, 4, 6, 8, 10, 12, 14];
+/// Difference of the last two columns up to which a step is accepted, relative to the state; the last column is better by
+/// far. At the very floor of rounding no step would pass for sure.
+const TOLERANCE: f64 = 1e-14;
+/// Parts of the way below which a step is given up.
+const SHORTEST: f64 = 1e-7;
+
+/// Where a motion is: time, coordinates, velocities.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<const N: usize> {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: SVector<f64, N>,
+    /// Velocities.
+    pub v: SVector<f64, N>,
+}
+
+/// Change of coordinates and velocities.
+type Change<const N: usize> = (SVector<f64, N>, SVector<f64, N>);
+
+impl<const N: usize> Motion<N> {
+    /// The same motion at the time `end`, later or earlier.
+    ///
+    /// # Errors
+    /// Those of the acceleration; [`StepError::NotConverged`] where the motion cannot be followed.
+    pub fn at(mut self, system: &impl Lagrangian<N>, end: f64) -> Result<Self, StepError> {
+        let way = end - self.t;
+        let mut h = way;
+        let mut arrived = way == 0.0;
+        while !arrived {
+            let last = (end - self.t).abs() <= h.abs();
+            let step = if last { end - self.t } else { h };
+            let scale = self.q.amax().max(self.v.amax()).max(f64::MIN_POSITIVE);
+            // A trial step that is too long may end anywhere, even where there is no acceleration.
+            let change = match self.extrapolated(system, step) {
+                Ok((change, error)) if error <= TOLERANCE * scale => change,
+                _ if h.abs() > SHORTEST * way.abs() => {
+                    h = step / 2.0;
+                    continue;
+                }
+                Ok((_, residual)) => {
+                    let residuals = Residuals::new();
+                    return Err(StepError::NotConverged { t: self.t, h, iterations: ROWS, residual, residuals });
+                }
+                Err(error) => return Err(error),
+            };
+            self = Self { t: if last { end } else { self.t + step }, q: self.q + change.0, v: self.v + change.1 };
+            arrived = last;
+            h *= 1.25;
+        }
+        Ok(self)
+    }
+
+    /// The change over one step, and the difference of the last two columns.
+    fn extrapolated(&self, system: &impl Lagrangian<N>, h: f64) -> Result<(Change<N>, f64), StepError> {
+        let mut row: Vec<Change<N>> = Vec::new();
+        let mut error = f64::NAN;
+        for (j, n) in SUBSTEPS.into_iter().enumerate() {
+            let mut entry = self.modified_midpoint(system, h, n)?;
+            for (above, before) in row.iter_mut().zip(SUBSTEPS[..j].iter().rev()) {
+                // Aitken and Neville, in h²: the entry beside and the one above it cancel one more power.
+                let ratio = f64::from(n) / f64::from(*before);
+                let gain = 1.0 / (ratio * ratio - 1.0);
+                let better = (entry.0 + (entry.0 - above.0) * gain, entry.1 + (entry.1 - above.1) * gain);
+                error = (better.0 - entry.0).amax().max((better.1 - entry.1).amax());
+                *above = entry;
+                entry = better;
+            }
+            row.push(entry);
+        }
+        let best = row.pop().unwrap_or((self.q * f64::NAN, self.v * f64::NAN));
+        let finite = best.0.iter().chain(best.1.iter()).all(|entry| entry.is_finite());
+        Ok((best, if finite { error } else { f64::NAN }))
+    }
+
+    /// Change over `h` by the modified midpoint rule with `n` substeps, without the starting value and its digits.
+    fn modified_midpoint(&self, system: &impl Lagrangian<N>, h: f64, n: u32) -> Result<Change<N>, StepError> {
+        let part = h / f64::from(n);
+        let rate = |index: u32, (y, w): &Change<N>| {
+            let (q, v) = (self.q + y, self.v + w);
+            system.acceleration(self.t + part * f64::from(index), &q, &v).map(|a| (v, a))
+        };
+        let mut before = (SVector::zeros(), SVector::zeros());
+        let (v, a) = rate(0, &before)?;
+        let mut now = (v * part, a * part);
+        for index in 1..n {
+            let (v, a) = rate(index, &now)?;
+            (before, now) = (now, (before.0 + v * (2.0 * part), before.1 + a * (2.0 * part)));
+        }
+        Ok(now)
+    }
+}

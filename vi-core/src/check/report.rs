@@ -1,0 +1,104 @@
+//! What a check found.
+
+use crate::StepError;
+use core::fmt;
+
+/// A check that passed, with its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// The system.
+    pub system: &'static str,
+    /// The check.
+    pub check: &'static str,
+    /// Numbers other than zero that were compared; of a slope, the points that it was fitted through.
+    pub compared: usize,
+    /// Where the difference was worst.
+    pub what: String,
+    /// The worst difference, relative to the numbers that met there; of a slope, what it falls short by.
+    pub worst: f64,
+    /// What would have been allowed.
+    pub tolerance: f64,
+}
+
+/// Why a check did not pass.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum CheckFailure {
+    /// Two numbers that should agree do not.
+    Differs {
+        /// The system.
+        system: &'static str,
+        /// The check.
+        check: &'static str,
+        /// Which number.
+        what: String,
+        /// As the system has it.
+        found: f64,
+        /// As the check has it.
+        wanted: f64,
+        /// Their difference, relative to the numbers that met there.
+        difference: f64,
+        /// What would have been allowed.
+        tolerance: f64,
+    },
+    /// Nothing was compared, or only zeros: this proves nothing.
+    Vacuous {
+        /// The system.
+        system: &'static str,
+        /// The check.
+        check: &'static str,
+        /// What was missing, and what to do.
+        why: String,
+    },
+    /// The system has not the property that the check is about.
+    NotApplicable {
+        /// The system.
+        system: &'static str,
+        /// The check.
+        check: &'static str,
+        /// What stands against it.
+        why: &'static str,
+    },
+    /// A step of the check was not taken.
+    Step {
+        /// The system.
+        system: &'static str,
+        /// The check.
+        check: &'static str,
+        /// Why.
+        error: StepError,
+    },
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { system, check, compared, what, worst, tolerance } = self;
+        write!(
+            f,
+            "{system}, {check}: {compared} numbers compared, worst difference {worst:.1e} in {what}, allowed {tolerance:.1e}"
+        )
+    }
+}
+
+impl fmt::Display for CheckFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Differs { system, check, what, found, wanted, difference, tolerance } => write!(
+                f,
+                "{system}, {check}: {what} is {found:e} instead of {wanted:e}, off by {difference:.1e} where {tolerance:.1e} is allowed"
+            ),
+            Self::Vacuous { system, check, why } => write!(f, "{system}, {check}: proves nothing, {why}"),
+            Self::NotApplicable { system, check, why } => write!(f, "{system}, {check}: does not apply, {why}"),
+            Self::Step { system, check, error } => write!(f, "{system}, {check}: {error}"),
+        }
+    }
+}
+
+impl core::error::Error for CheckFailure {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Step { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Each check passes for a right system, and each can fail: for a system spoiled in one function, as a wrong generator
+//! would print it, for a place that proves nothing, and for a system that it is not about.
+
+mod spoiled;
+
+use spoiled::{Fault, Spoiled};
+use vi_core::check::{self, CheckFailure, Checked, Place, Report};
+use vi_core::lagrangian;
+
+lagrangian! {
+    /// Unforced, with a cyclic coordinate.
+    struct SphericalPendulum {
+        param m = 1.2, l = 0.9, g = 9.81;
+        coord θ, φ;
+        L = m * l^2 * (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + m * g * l * cos(θ);
+        discretize midpoint;
+        check { θ = 1, φ = 0.3, dot(θ) = 0.2, dot(φ) = 1.5; h = 0.02; }
+    }
+}
+
+lagrangian! {
+    /// Forced, and driven in time.
+    struct Duffing {
+        param alpha = 1.2, beta = 0.8, c = 0.08, amplitude = 0.25, omega = 1.3;
+        coord x;
+        L = dot(x)^2 / 2 - alpha * x^2 / 2 - beta * x^4 / 4;
+        force x = -c * dot(x) + amplitude * cos(omega * t);
+        discretize midpoint;
+        check { x = 1.1, dot(x) = 0.2, t = 0.2; h = 0.05; }
+    }
+}
+
+lagrangian! {
+    /// A chain, by an explicit rule; only one mass is moved, and one pushed.
+    struct FPUTChain {
+        const N = 4;
+        param alpha = 0.25, c = 0.1;
+        coord q[N];
+        let stretch[i in 0..N - 1] = q[i + 1] - q[i];
+        let potential = sum(i in 0..N - 1, stretch[i]^2 / 2 + alpha * stretch[i]^3 / 3) + q[0]^2 / 2 + q[N - 1]^2 / 2;
+        L = sum(i in 0..N, dot(q[i])^2) / 2 - potential;
+        force q[0] = -c * dot(q[0]);
+        discretize trapezoidal;
+        check { q[i in 0..N] = sin(pi * (i + 1) / (N + 1)); dot(q[N - 1]) = 0.5; h = 0.05; }
+    }
+}
+
+lagrangian! {
+    /// The midpoint rule, written out: it is recognised.
+    struct WrittenMidpoint {
+        coord x;
+        L = dot(x)^2 / 2 - x^4 / 4;
+        discretize { Ld = h * L((t0 + t1)/2, (q0 + q1)/2, (q1 - q0)/h); }
+        check { x = 1; h = 0.02; }
+    }
+}
+
+lagrangian! {
+    /// A rule of order one, which is not symmetric: derivatives, slots, steps, order 1 and symplecticity are checked.
+    struct SymplecticEuler {
+        coord x;
+        L = dot(x)^2 / 2 - x^4 / 4;
+        discretize { Ld = h * L(t0, q0, (q1 - q0)/h); }
+        check { x = 1; h = 0.05; }
+    }
+}
+
+const PENDULUM: Place<2> = Place {
+    t: 0.2,
+    q: vi_core::SVector::<f64, 2>::new(1.0, 0.3),
+    v: vi_core::SVector::<f64, 2>::new(0.2, 1.5),
+    h: 0.02,
+};
+const DUFFING: Place<1> =
+    Place { t: 0.2, q: vi_core::SVector::<f64, 1>::new(1.1), v: vi_core::SVector::<f64, 1>::new(0.2), h: 0.05 };
+
+/// A check, as it is called by hand.
+type Check<S, const N: usize> = fn(&S, &Place<N>) -> Result<Report, CheckFailure>;
+
+fn second_order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
+    check::order(system, place, 2)
+}
+
+/// The check passes for the right system, and fails for the spoiled one by numbers of which the failure speaks.
+fn trips<const N: usize, S: Checked<N>>(system: S, place: &Place<N>, fault: Fault, check: Check<Spoiled<S>, N>) {
+    let right = check(&Spoiled { system: system.clone(), fault: Fault::None }, place);
+    let report = right.unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(report.compared > 0 && report.worst <= report.tolerance, "{report}");
+    let failure = check(&Spoiled { system, fault }, place).expect_err("a fault that nothing sees");
+    println!("{fault:?}: {failure}");
+    assert!(matches!(failure, CheckFailure::Differs { .. }), "{fault:?}: {failure}");
+    let said = failure.to_string();
+    assert!(said.contains(report.check) && said.contains("instead of"), "{said}");
+}
+
+#[test]
+fn wrong_derivatives_are_seen() {
+    let faults = [
+        Fault::Momentum,
+        Fault::Energy,
+        Fault::Acceleration,
+        Fault::StepDensity,
+        Fault::Magnitude,
+        Fault::Jacobian,
+        Fault::ResidualDh,
+        Fault::EnergyDh,
+    ];
+    for fault in faults {
+        trips(SphericalPendulum::default(), &PENDULUM, fault, check::derivatives);
+        trips(Duffing::default(), &DUFFING, fault, check::derivatives);
+    }
+}
+
+#[test]
+fn wrong_slots_are_seen() {
+    for fault in [Fault::Ld, Fault::D1, Fault::D2, Fault::D3, Fault::D4] {
+        trips(SphericalPendulum::default(), &PENDULUM, fault, check::slots);
+        trips(Duffing::default(), &DUFFING, fault, check::slots);
+    }
+    for fault in [Fault::FdMinus, Fault::FdPlus, Fault::GdPlus] {
+        trips(Duffing::default(), &DUFFING, fault, check::slots);
+    }
+}
+
+#[test]
+fn wrong_steps_are_seen() {
+    for fault in [Fault::Damping, Fault::EnergyResidual, Fault::MomentumGain, Fault::DirectedGain, Fault::EnergyGain] {
+        trips(SphericalPendulum::default(), &PENDULUM, fault, check::steps);
+        trips(Duffing::default(), &DUFFING, fault, check::steps);
+    }
+    trips(Duffing::default(), &DUFFING, Fault::Residual, check::steps);
+}
+
+#[test]
+fn a_wrong_order_is_seen() {
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::Damping, second_order);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::Acceleration, second_order);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::DirectedGain, second_order);
+    trips(Duffing::default(), &DUFFING, Fault::Residual, second_order);
+    trips(Duffing::default(), &DUFFING, Fault::Acceleration, second_order);
+}
+
+#[test]
+fn what_is_not_kept_is_seen() {
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::MomentumGain, check::momenta);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::Damping, check::symplecticity);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::DirectedGain, check::reversibility);
+    trips(Duffing::default(), &DUFFING, Fault::Residual, check::reversibility);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::Energy, check::energy);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::EnergyGain, check::energy);
+    trips(Duffing::default(), &DUFFING, Fault::Energy, check::energy);
+    trips(Duffing::default(), &DUFFING, Fault::GdPlus, check::energy);
+    trips(SphericalPendulum::default(), &PENDULUM, Fault::StepDensity, check::step_law);
+}
+
+/// A failure that says that nothing was proved, or that nothing was to be proved.
+fn refused(result: Result<Report, CheckFailure>, why: &str) {
+    let failure = result.expect_err("a check that passes without proof");
+    println!("{failure}");
+    assert!(matches!(failure, CheckFailure::Vacuous { .. } | CheckFailure::NotApplicable { .. }), "{failure}");
+    assert!(failure.to_string().contains(why), "{failure}");
+}
+
+lagrangian! {
+    /// No force at all: steps of any rule are exact.
+    struct FreeParticle {
+        param m = 2;
+        coord x;
+        L = m * dot(x)^2 / 2;
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn what_proves_nothing_does_not_pass() {
+    let (pendulum, duffing) = (SphericalPendulum::default(), Duffing::default());
+    let bottom = Place { t: 0.0, q: [0.0, 0.0].into(), v: [0.0, 0.0].into(), h: 0.02 };
+    let still = "nothing moves";
+    let everywhere = [check::derivatives, check::slots, check::steps, check::symplecticity, check::reversibility];
+    let free = Place { t: 0.0, q: [0.5].into(), v: [1.0].into(), h: 0.1 };
+    let particle = FreeParticle::default();
+    let rest = Place { v: [0.0].into(), ..free };
+    for check in everywhere {
+        refused(check(&particle, &rest), still);
+    }
+    refused(check::order(&particle, &free, 2), "only 0 of the errors stand above rounding");
+    refused(check::order(&duffing, &Place { h: 1e-6, ..DUFFING }, 2), "choose a larger h");
+    refused(check::step_law(&particle, &free), "the step density is zero");
+    refused(check::momenta(&particle, &rest), "`x` stands still");
+    refused(check::momenta(&pendulum, &Place { v: [0.2, 0.0].into(), ..PENDULUM }), "choose a velocity `dot(φ)`");
+    refused(check::momenta(&duffing, &DUFFING), "no coordinate is cyclic");
+    refused(check::symplecticity(&duffing, &DUFFING), "a force does not keep");
+    refused(check::step_law(&duffing, &DUFFING), "systems without a force");
+    // The lowest point has no azimuth: its mass matrix is singular, and that is said.
+    let failure = check::derivatives(&pendulum, &bottom).expect_err("a singular mass matrix");
+    assert!(matches!(failure, CheckFailure::Step { .. }), "{failure}");
+    assert!(std::error::Error::source(&failure).is_some());
+}
+
+#[test]
+fn a_step_that_does_not_exist_is_named() {
+    let failure = check::energy(&FreeParticle::default(), &Place { t: 0.0, q: [0.5].into(), v: [1.0].into(), h: 0.1 });
+    let failure = failure.expect_err("a free particle has steps of every length");
+    assert!(failure.to_string().starts_with("FreeParticle, energy: the step length is not determined"), "{failure}");
+}

@@ -1,0 +1,207 @@
+//! A right system with one function spoiled, as a wrong generator would print it: in every kind of number.
+
+use vi_core::check::Checked;
+use vi_core::{
+    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation, Node, Parameters, Real,
+    SVector, StepError, Stepping,
+};
+
+/// The damping of [`Fault::Damping`].
+const DAMPING: f64 = 0.01;
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// Nothing.
+    None,
+    /// The momentum of the first coordinate has the wrong sign.
+    Momentum,
+    /// The energy is v·p + L.
+    Energy,
+    /// The acceleration is a part in a thousand too large.
+    Acceleration,
+    /// A term of the step density is missing.
+    StepDensity,
+    /// The discrete Lagrangian is not the one of the slots.
+    Ld,
+    /// D1 has the wrong sign.
+    D1,
+    /// D2 has the wrong sign.
+    D2,
+    /// D3 lacks a term.
+    D3,
+    /// D4 is D2.
+    D4,
+    /// The discrete force on δq0 is missing.
+    FdMinus,
+    /// The discrete force on δq1 is double.
+    FdPlus,
+    /// The discrete power on δt1 has the wrong sign.
+    GdPlus,
+    /// The force is missing in the residual.
+    Residual,
+    /// A damping that nobody declared stands in the residual, in its Jacobian and in the gain.
+    Damping,
+    /// The magnitudes are too small.
+    Magnitude,
+    /// The last entry of the Jacobian lacks a term of order h².
+    Jacobian,
+    /// ∂r/∂h has the wrong sign.
+    ResidualDh,
+    /// The energy residual lacks the energy of the node.
+    EnergyResidual,
+    /// The derivative of the energy row by h has the wrong sign.
+    EnergyDh,
+    /// The last momentum gains a little.
+    MomentumGain,
+    /// The first momentum gains what depends on the direction of time.
+    DirectedGain,
+    /// The energy gains.
+    EnergyGain,
+}
+
+/// A system with a fault.
+#[derive(Clone, Debug)]
+pub(crate) struct Spoiled<S> {
+    pub(crate) system: S,
+    pub(crate) fault: Fault,
+}
+
+impl<S> Spoiled<S> {
+    /// What is right, or what the fault makes of it.
+    fn unless<P>(&self, fault: Fault, right: P, wrong: impl FnOnce(P) -> P) -> P {
+        if self.fault == fault { wrong(right) } else { right }
+    }
+}
+
+impl<S: Parameters> Parameters for Spoiled<S> {
+    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut f64> {
+        self.system.parameter_mut(name)
+    }
+}
+
+impl<const N: usize, S: Checked<N>> Checked<N> for Spoiled<S> {
+    type In<T: Real> = Spoiled<S::In<T>>;
+    fn convert<T: Real>(&self) -> Self::In<T> {
+        Spoiled { system: self.system.convert(), fault: self.fault }
+    }
+}
+
+impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<S> {
+    const NAME: &'static str = S::NAME;
+    const COORDINATES: [&'static str; N] = S::COORDINATES;
+    const AUTONOMOUS: bool = S::AUTONOMOUS;
+    const FORCED: bool = S::FORCED;
+    const CYCLIC: [bool; N] = S::CYCLIC;
+
+    fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+        self.system.lagrangian(t, q, v)
+    }
+    fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+        let lagrangian = self.lagrangian(t, q, v);
+        self.unless(Fault::Energy, self.system.energy(t, q, v), |energy| energy + lagrangian + lagrangian)
+    }
+    fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.unless(Fault::Momentum, self.system.momentum(t, q, v), |p| {
+            SVector::from_fn(|i, _| if i == 0 { -p[i] } else { p[i] })
+        })
+    }
+    fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+        self.system.force(t, q, v)
+    }
+    fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
+        let right = self.system.acceleration(t, q, v)?;
+        Ok(self.unless(Fault::Acceleration, right, |a| a * T::real(1.001)))
+    }
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+        let right = self.system.step_density(t, q, v)?;
+        Ok(self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]))
+    }
+}
+
+impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N, T> for Spoiled<S> {
+    fn ld(&self, interval: &Interval<N, T>) -> T {
+        self.unless(Fault::Ld, self.system.ld(interval), |ld| ld + ld)
+    }
+    fn d1_ld(&self, interval: &Interval<N, T>) -> T {
+        self.unless(Fault::D1, self.system.d1_ld(interval), |d1| -d1)
+    }
+    fn d2_ld(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        self.unless(Fault::D2, self.system.d2_ld(interval), |d2| -d2)
+    }
+    fn d3_ld(&self, interval: &Interval<N, T>) -> T {
+        self.unless(Fault::D3, self.system.d3_ld(interval), |d3| d3 + (interval.t1 - interval.t0))
+    }
+    fn d4_ld(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        self.unless(Fault::D4, self.system.d4_ld(interval), |_| self.system.d2_ld(interval))
+    }
+    fn fd_minus(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        self.unless(Fault::FdMinus, self.system.fd_minus(interval), |_| SVector::zeros())
+    }
+    fn fd_plus(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+        self.unless(Fault::FdPlus, self.system.fd_plus(interval), |force| force + force)
+    }
+    fn gd_minus(&self, interval: &Interval<N, T>) -> T {
+        self.system.gd_minus(interval)
+    }
+    fn gd_plus(&self, interval: &Interval<N, T>) -> T {
+        self.unless(Fault::GdPlus, self.system.gd_plus(interval), |power| -power)
+    }
+}
+
+impl<S> Spoiled<S> {
+    fn spoil_momentum<const N: usize, T: Real>(
+        &self,
+        right: MomentumEquation<N, T>,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> MomentumEquation<N, T>
+    where
+        S: Stepping<N, T>,
+    {
+        let mut wrong = right;
+        let half = h * T::real(0.5);
+        match self.fault {
+            Fault::Residual => wrong.residual += self.system.force(node.t + half, &(node.q + v * half), v) * half,
+            Fault::Damping => {
+                let damping = T::real(DAMPING) * half;
+                wrong.residual += v * damping;
+                (0..N).for_each(|i| wrong.jacobian[(i, i)] += damping);
+            }
+            Fault::Magnitude => wrong.magnitude *= T::real(1e-3),
+            Fault::Jacobian => wrong.jacobian[(N - 1, N - 1)] += T::real(1e-3) * h * h,
+            _ => {}
+        }
+        wrong
+    }
+}
+
+impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
+    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
+        self.spoil_momentum(self.system.momentum_equation(node, h, v), node, h, v)
+    }
+    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
+        let mut found = self.system.extended_system(node, h, v);
+        found.momentum = self.spoil_momentum(found.momentum, node, h, v);
+        match self.fault {
+            Fault::ResidualDh => found.residual_dh = -found.residual_dh,
+            Fault::EnergyResidual => found.energy_residual += node.energy,
+            Fault::EnergyDh => found.energy_dh = -found.energy_dh,
+            _ => {}
+        }
+        found
+    }
+    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
+        let mut gain = self.system.increment(node, h, v);
+        match self.fault {
+            Fault::MomentumGain => gain.momentum[N - 1] += T::real(1e-6) * h,
+            Fault::Damping => gain.momentum -= v * (T::real(DAMPING) * h),
+            Fault::DirectedGain => gain.momentum[0] += h * h,
+            Fault::EnergyGain => gain.energy += T::real(1e-6) * h,
+            _ => {}
+        }
+        gain
+    }
+}

@@ -1,0 +1,118 @@
+//! The checks of a system: its conversion to other numbers, and one test for each check that applies.
+//!
+//! Which apply is known here: whether there is a force, which coordinates are cyclic, which rule it is. A rule that is
+//! none of the named ones is expected to be of order 1, and nothing else.
+
+use super::Source;
+use super::formula::number;
+use crate::model::Place;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// The implementation of `Checked`, and the tests of the clause `check`.
+pub(super) fn items(source: &Source) -> TokenStream {
+    let (name, dimension) = (&source.model.name, source.dimension());
+    let tests = source.model.place.as_ref().map(|place| tests(source, place));
+    quote! {
+        impl ::vi_core::check::Checked<#dimension> for #name<f64> {
+            type In<T: ::vi_core::Real> = #name<T>;
+
+            fn convert<T: ::vi_core::Real>(&self) -> #name<T> {
+                #name::from_f64(self)
+            }
+        }
+
+        #tests
+    }
+}
+
+/// ```text
+/// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … }
+/// ```
+fn tests(source: &Source, place: &Place) -> TokenStream {
+    let (name, dimension) = (&source.model.name, source.dimension());
+    let module = format_ident!("{}_checks", snake_case(name));
+    let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
+    let (t, h) = (number(place.t), number(place.h));
+    let (q, v) = (place.q.iter().map(|entry| number(*entry)), place.v.iter().map(|entry| number(*entry)));
+    let tests = checks(source).into_iter().map(|(check, order)| {
+        let check = format_ident!("{check}");
+        quote! {
+            #[::core::prelude::v1::test]
+            fn #check() {
+                let checked = ::vi_core::check::#check(&super::#name::default(), &place() #order);
+                if let ::core::result::Result::Err(failure) = checked {
+                    ::core::panic!("{failure}");
+                }
+            }
+        }
+    });
+    quote! {
+        #[doc = #documentation]
+        #[cfg(test)]
+        #[allow(clippy::all, clippy::pedantic)]
+        mod #module {
+            fn place() -> ::vi_core::check::Place<#dimension> {
+                ::vi_core::check::Place { t: #t, q: [#(#q),*].into(), v: [#(#v),*].into(), h: #h }
+            }
+
+            #(#tests)*
+        }
+    }
+}
+
+/// The checks that apply, with the further argument that the order takes.
+fn checks(source: &Source) -> Vec<(&'static str, TokenStream)> {
+    let (forced, rule) = (source.model.forced, source.system.rule);
+    let (midpoint, symmetric) = (rule == Some("midpoint"), rule.is_some());
+    let order = if symmetric { quote!(, 2) } else { quote!(, 1) };
+    let each = [
+        ("derivatives", true, TokenStream::new()),
+        ("slots", true, TokenStream::new()),
+        ("steps", true, TokenStream::new()),
+        ("order", true, order),
+        ("momenta", source.system.continuous.cyclic.contains(&true), TokenStream::new()),
+        ("symplecticity", !forced, TokenStream::new()),
+        ("reversibility", symmetric, TokenStream::new()),
+        ("energy", midpoint, TokenStream::new()),
+        ("step_law", midpoint && !forced, TokenStream::new()),
+    ];
+    each.into_iter().filter(|(_, applies, _)| *applies).map(|(check, _, order)| (check, order)).collect()
+}
+
+/// `DoubleWell` as `double_well`, `FPUTChain` as `fput_chain`.
+fn snake_case(name: &Ident) -> String {
+    let letters: Vec<char> = name.to_string().trim_start_matches("r#").chars().collect();
+    let mut words = String::new();
+    for (index, letter) in letters.iter().enumerate() {
+        let before = index.checked_sub(1).and_then(|before| letters.get(before));
+        let ends_word = before.is_some_and(|before| before.is_lowercase() || before.is_numeric());
+        let begins_word = before.is_some_and(|before| before.is_uppercase())
+            && letters.get(index + 1).is_some_and(|after| after.is_lowercase());
+        if letter.is_uppercase() && (ends_word || begins_word) {
+            words.push('_');
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_words() {
+        let cases = [
+            ("DoubleWell", "double_well"),
+            ("FPUTChain", "fput_chain"),
+            ("Kepler", "kepler"),
+            ("Pendulum2D", "pendulum2_d"),
+            ("already_snake", "already_snake"),
+            ("ΩRing", "ω_ring"),
+        ];
+        for (name, wanted) in cases {
+            assert_eq!(snake_case(&format_ident!("{name}")), wanted);
+        }
+    }
+}

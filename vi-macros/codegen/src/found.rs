@@ -1,0 +1,164 @@
+//! What the generator found out about a system.
+//!
+//! In: a [`Model`], its [`DiscreteSystem`] and its [`Program`]. Out: [`Findings`], each read off the operations that are
+//! emitted: what they take as input, which of them are the constant 0, which are one and the same. With
+//! A = ∂residual/∂v, the Jacobian of the momentum row:
+//!
+//! ```text
+//! linear           A takes no velocity: one solve, exact but for rounding, gives the step
+//! constant for h   A takes parameters and h only
+//! explicit         A takes parameters only: v is given by one product with the inverse of a constant matrix
+//! separable        p = L_v takes velocities and parameters only: L = T(v) + U(t, q)
+//! ```
+//!
+//! Nothing here changes what is emitted.
+
+mod pattern;
+
+pub use pattern::Pattern;
+
+use crate::discrete::DiscreteSystem;
+use crate::model::Model;
+use crate::program::{Function, Operation, OperationId, Program};
+use crate::symbol::{Symbol, Variable};
+use std::collections::BTreeSet;
+
+/// What is special about a system.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a finding of its own")]
+pub struct Findings {
+    /// Neither L nor f depends on the time.
+    pub autonomous: bool,
+    /// A force acts.
+    pub forced: bool,
+    /// Indices of the coordinates that are cyclic: absent from L, and without a force.
+    pub cyclic: Vec<usize>,
+    /// L = T(v) + U(t, q).
+    pub separable: bool,
+    /// The mass matrix L_vv depends on parameters only.
+    pub constant_mass: bool,
+    /// On what the Jacobian A depends.
+    pub jacobian: Dependence,
+    /// Where A has entries other than zero.
+    pub pattern: Pattern,
+    /// A is its own transpose.
+    pub symmetric: bool,
+    /// Operations of each function, in the order in which they are emitted.
+    pub operations: Vec<(&'static str, usize)>,
+}
+
+/// On what the Jacobian A depends, from little to much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Dependence {
+    /// On parameters only: the step is explicit.
+    Parameters,
+    /// On parameters and the step h.
+    Step,
+    /// On the node and h too, yet not on the unknown v: the momentum row is linear.
+    Node,
+    /// On the unknown v: the momentum row is nonlinear.
+    Unknown,
+}
+
+/// Finds out about a system.
+#[must_use]
+pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
+    let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
+    let rows = |name: &str| program.function(name).map(|function| (function, matrix(function, model.dimension())));
+    let (equation, momentum) = (rows("momentum_equation"), program.function("momentum"));
+    let velocities =
+        |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_) | Symbol::Continuous(Variable::Velocity(_)));
+    let parameters = |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_));
+    let takes = |function: &Function, rows: &[Vec<OperationId>], allowed: &dyn Fn(&Symbol) -> bool| {
+        inputs(function, rows).iter().all(allowed)
+    };
+    Findings {
+        autonomous: system.continuous.autonomous,
+        forced: model.forced,
+        cyclic: cyclic.collect(),
+        separable: momentum.is_some_and(|function| takes(function, &function.results, &velocities)),
+        constant_mass: rows("acceleration").is_some_and(|(function, rows)| takes(function, rows, &parameters)),
+        jacobian: equation.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
+        pattern: equation.map_or(Pattern::Dense, |(function, rows)| {
+            let zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
+            let entries: Vec<Vec<bool>> = rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect();
+            pattern::pattern(&entries)
+        }),
+        symmetric: equation.is_some_and(|(_, rows)| symmetric(rows)),
+        operations: program.functions().map(|function| (function.name, function.operation_count())).collect(),
+    }
+}
+
+/// The rows of the matrix among the results of a function: A stands last, M first.
+fn matrix(function: &Function, dimension: usize) -> &[Vec<OperationId>] {
+    let results = &function.results;
+    let first = if function.name == "acceleration" { 0 } else { results.len().saturating_sub(dimension) };
+    results.get(first..first + dimension).unwrap_or_default()
+}
+
+/// What these results take as input.
+fn inputs(function: &Function, rows: &[Vec<OperationId>]) -> BTreeSet<Symbol> {
+    let needed = function.operations.needed(rows).into_iter();
+    needed
+        .filter_map(|id| match function.operations.get(id) {
+            Operation::Input(symbol) => Some(symbol.clone()),
+            _ => None,
+        })
+        .collect()
+}
+
+fn dependence(function: &Function, rows: &[Vec<OperationId>]) -> Dependence {
+    let of = |symbol: Symbol| match symbol {
+        Symbol::Parameter(_) => Dependence::Parameters,
+        Symbol::Step => Dependence::Step,
+        Symbol::StepVelocity(_) => Dependence::Unknown,
+        _ => Dependence::Node,
+    };
+    inputs(function, rows).into_iter().map(of).max().unwrap_or(Dependence::Parameters)
+}
+
+fn symmetric(rows: &[Vec<OperationId>]) -> bool {
+    let entry = |i: usize, j: usize| rows.get(i).and_then(|row| row.get(j));
+    (0..rows.len()).all(|i| (0..i).all(|j| entry(i, j) == entry(j, i)))
+}
+
+impl Findings {
+    /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
+    #[must_use]
+    pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
+        let list = |indices: &[usize]| indices.iter().map(|index| name(*index)).collect::<Vec<_>>().join(", ");
+        let mut lines = vec![
+            match (self.autonomous, self.forced) {
+                (true, false) => "Autonomous and without a force: the energy is conserved",
+                (true, true) => "Autonomous; a force acts",
+                (false, false) => "Not autonomous: `L` depends on the time `t`; no force acts",
+                (false, true) => "Not autonomous: `L` or `f` depends on the time `t`; a force acts",
+            }
+            .to_owned(),
+        ];
+        if !self.cyclic.is_empty() {
+            let momenta = if self.cyclic.len() == 1 { "its momentum is" } else { "their momenta are" };
+            lines.push(format!("Cyclic: {}; {momenta} conserved", list(&self.cyclic)));
+        }
+        lines.push(match (self.separable, self.constant_mass) {
+            (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),
+            (true, false) => "`L = T(v) + U(t, q)`; the mass matrix depends on the velocity".to_owned(),
+            (false, true) => "The mass matrix is constant".to_owned(),
+            (false, false) => "The mass matrix depends on the state".to_owned(),
+        });
+        lines.push(format!(
+            "The step's equation in `v` is {}",
+            match self.jacobian {
+                Dependence::Parameters => "explicit: its Jacobian `A` depends on parameters only",
+                Dependence::Step => "linear: its Jacobian `A` depends on parameters and `h` only",
+                Dependence::Node => "linear: its Jacobian `A` does not depend on `v`",
+                Dependence::Unknown => "nonlinear: its Jacobian `A` depends on `v`",
+            }
+        ));
+        if self.pattern != Pattern::Scalar {
+            let symmetry = if self.symmetric { "symmetric" } else { "not symmetric" };
+            lines.push(format!("`A` is {}, {symmetry}", self.pattern.text(&list)));
+        }
+        lines
+    }
+}

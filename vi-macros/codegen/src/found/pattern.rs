@@ -1,0 +1,106 @@
+//! The zero pattern of a matrix.
+//!
+//! In: which entries are other than zero. Out: the narrowest [`Pattern`] that holds them, with (i, j) and (j, i) taken
+//! together, as an elimination needs both.
+
+use std::collections::BTreeSet;
+
+/// Where a square matrix has entries other than zero.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Pattern {
+    /// One row.
+    Scalar,
+    /// On the diagonal only.
+    Diagonal,
+    /// In blocks that do not touch each other: the indices of each.
+    Blocks(Vec<Vec<usize>>),
+    /// On the diagonal and beside it, of three rows or more.
+    Tridiagonal,
+    /// Up to so many places from the diagonal, which leaves at least half of each row out of the band.
+    Banded(usize),
+    /// Everywhere, or nearly.
+    Dense,
+}
+
+impl Pattern {
+    /// The pattern in words; `list` names some coordinates.
+    pub(super) fn text(&self, list: &dyn Fn(&[usize]) -> String) -> String {
+        match self {
+            Self::Scalar => "a number".to_owned(),
+            Self::Diagonal => "diagonal".to_owned(),
+            Self::Blocks(blocks) => {
+                let blocks: Vec<String> = blocks.iter().map(|block| format!("({})", list(block))).collect();
+                format!("block-diagonal: {}", blocks.join(", "))
+            }
+            Self::Tridiagonal => "tridiagonal".to_owned(),
+            Self::Banded(width) => format!("banded, with {width} diagonals on each side"),
+            Self::Dense => "dense".to_owned(),
+        }
+    }
+}
+
+/// The pattern of a square matrix, given row by row which entries are other than zero.
+pub(super) fn pattern(rows: &[Vec<bool>]) -> Pattern {
+    let size = rows.len();
+    let filled = |i: usize, j: usize| rows.get(i).and_then(|row| row.get(j)).copied().unwrap_or(false);
+    let touching = |i: usize, j: usize| filled(i, j) || filled(j, i);
+    let pairs = (0..size).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let width = pairs.filter(|(i, j)| touching(*i, *j)).map(|(i, j)| i - j).max().unwrap_or(0);
+    let blocks = blocks(size, &touching);
+    match (size, width, blocks.len()) {
+        (0 | 1, ..) => Pattern::Scalar,
+        (_, 0, _) => Pattern::Diagonal,
+        (.., 2..) => Pattern::Blocks(blocks),
+        (3.., 1, _) => Pattern::Tridiagonal,
+        _ if 2 * (2 * width + 1) <= size => Pattern::Banded(width),
+        _ => Pattern::Dense,
+    }
+}
+
+/// The indices that touch each other, directly or through others; each group ascends, and so do their first members.
+fn blocks(size: usize, touching: &dyn Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let mut left: BTreeSet<usize> = (0..size).collect();
+    let mut blocks = Vec::new();
+    while let Some(first) = left.pop_first() {
+        let mut block = BTreeSet::from([first]);
+        let mut open = vec![first];
+        while let Some(index) = open.pop() {
+            let found: Vec<usize> = left.iter().copied().filter(|other| touching(index, *other)).collect();
+            for other in &found {
+                left.remove(other);
+            }
+            block.extend(&found);
+            open.extend(found);
+        }
+        blocks.push(block.into_iter().collect());
+    }
+    blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(rows: &[&str]) -> Pattern {
+        let rows: Vec<Vec<bool>> = rows.iter().map(|row| row.chars().map(|entry| entry != '.').collect()).collect();
+        pattern(&rows)
+    }
+
+    #[test]
+    fn patterns_by_hand() {
+        assert_eq!(of(&["x"]), Pattern::Scalar);
+        assert_eq!(of(&["x.", ".x"]), Pattern::Diagonal);
+        assert_eq!(of(&["xx", ".x"]), Pattern::Dense);
+        assert_eq!(of(&["xx.", "xxx", ".xx"]), Pattern::Tridiagonal);
+        assert_eq!(of(&["x.x", ".x.", "x.x"]), Pattern::Blocks(vec![vec![0, 2], vec![1]]));
+        assert_eq!(of(&["xx..", "xx..", "..xx", "..xx"]), Pattern::Blocks(vec![vec![0, 1], vec![2, 3]]));
+        assert_eq!(of(&["xxx", "xxx", "xxx"]), Pattern::Dense);
+        let band = |size: usize, width: usize| {
+            let rows: Vec<Vec<bool>> =
+                (0..size).map(|i: usize| (0..size).map(|j| i.abs_diff(j) <= width).collect()).collect();
+            pattern(&rows)
+        };
+        assert_eq!(band(10, 2), Pattern::Banded(2));
+        assert_eq!(band(9, 2), Pattern::Dense);
+    }
+}

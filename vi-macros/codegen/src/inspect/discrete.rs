@@ -1,0 +1,83 @@
+//! The discrete system: L_d and its slots in fields at the points of the rule, and the equations of a step.
+//!
+//! In: a derived system. Out: sections of an explanation. `L_v_x` is the derivative ∂L/∂v_x at the point of the rule.
+
+use super::explanation::{Line, Section};
+use super::name;
+use crate::Derived;
+use crate::discrete::Point;
+use crate::symbol::{Symbol, Variable};
+
+/// Points, slots, equations of a step.
+pub(super) fn sections(derived: &Derived) -> Vec<Section> {
+    let slots = &derived.system.slots;
+    let points = slots.points.iter().enumerate().flat_map(|(index, point)| at(derived, index, point)).collect();
+    vec![
+        Section { title: "Where L and f are evaluated", lines: points },
+        Section { title: "Discrete Lagrangian and its slot derivatives", lines: derivatives(derived) },
+        forces(derived),
+        Section { title: "Equations of a step in v and h: residual and its derivatives", lines: residual(derived) },
+        Section { title: "Energy row, combined with the residual, and its derivatives over h", lines: energy(derived) },
+        Section { title: "What a step adds to momentum and energy", lines: increments(derived) },
+    ]
+}
+
+/// The arguments of L and f at a point of the rule.
+fn at(derived: &Derived, index: usize, point: &Point) -> Vec<Line> {
+    let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
+    let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
+    let arguments = [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities);
+    arguments
+        .map(|(variable, argument)| {
+            let symbol = Symbol::AtPoint(index, variable);
+            let text = derived.system.spell(&derived.model, &symbol);
+            Line::equation(derived, (&text, &name::latex(derived, &symbol)), argument)
+        })
+        .collect()
+}
+
+fn derivatives(derived: &Derived) -> Vec<Line> {
+    let of = &derived.system.slots;
+    let mut lines =
+        vec![Line::equation(derived, ("L_d", "L_d"), of.ld), Line::equation(derived, ("D1 L_d", "D_1 L_d"), of.d1_ld)];
+    lines.extend(Line::equations(derived, ("(D2 L_d)", "(D_2 L_d)"), &of.d2_ld));
+    lines.push(Line::equation(derived, ("D3 L_d", "D_3 L_d"), of.d3_ld));
+    lines.extend(Line::equations(derived, ("(D4 L_d)", "(D_4 L_d)"), &of.d4_ld));
+    lines
+}
+
+fn forces(derived: &Derived) -> Section {
+    let of = &derived.system.slots;
+    let title = "Discrete forces and powers";
+    if !derived.model.forced {
+        return Section { title, lines: vec![Line::words("None: no force acts")] };
+    }
+    let mut lines = Line::equations(derived, ("(f_d⁻)", "(f_d^-)"), &of.fd_minus);
+    lines.extend(Line::equations(derived, ("(f_d⁺)", "(f_d^+)"), &of.fd_plus));
+    lines.push(Line::equation(derived, ("g_d⁻", "g_d^-"), of.gd_minus));
+    lines.push(Line::equation(derived, ("g_d⁺", "g_d^+"), of.gd_plus));
+    Section { title, lines }
+}
+
+fn residual(derived: &Derived) -> Vec<Line> {
+    let of = &derived.system.equations;
+    let mut lines = Line::equations(derived, ("r", "r"), &of.residual);
+    lines.extend(Line::matrix(derived, ("A", "A"), &of.residual_dv));
+    lines.extend(Line::equations(derived, ("(∂r/∂h)", "(\\partial r/\\partial h)"), &of.residual_dh));
+    lines
+}
+
+fn energy(derived: &Derived) -> Vec<Line> {
+    let of = &derived.system.equations;
+    let mut lines = vec![Line::equation(derived, ("c", "c"), of.energy_residual)];
+    lines.extend(Line::equations(derived, ("(c_v)", "(c_v)"), &of.energy_dv));
+    lines.push(Line::equation(derived, ("c_h", "c_{h}"), of.energy_dh));
+    lines
+}
+
+fn increments(derived: &Derived) -> Vec<Line> {
+    let of = &derived.system.equations;
+    let mut lines = Line::equations(derived, ("(p1 − p0)", "(p_1 - p_0)"), &of.momentum_increment);
+    lines.push(Line::equation(derived, ("E1 − E0", "E_1 - E_0"), of.energy_increment));
+    lines
+}

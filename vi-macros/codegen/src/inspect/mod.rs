@@ -1,0 +1,77 @@
+//! Every stage of the compiler as text, for people who want to see what becomes of a system.
+//!
+//! In: the tokens of a `lagrangian!`. Out: the product of one [`Stage`] as text, or the whole mathematics of the system as
+//! an [`Explanation`], in plain text or as a LaTeX document. [`source`] finds the declarations in a file, and [`report`]
+//! shows what is wrong with one at its place. Nothing here is part of the macro.
+//!
+//! | file | what it shows |
+//! |---|---|
+//! | `syntax` | the clauses as they were parsed |
+//! | `model`, `discrete`, `findings` | chapters of the explanation |
+//! | `explanation` | chapters as text and as LaTeX |
+//! | `latex`, `name` | an expression, a symbol in LaTeX |
+//! | `program` | the functions, operation by operation |
+
+mod discrete;
+mod explanation;
+mod findings;
+pub mod latex;
+mod model;
+mod name;
+mod program;
+pub mod report;
+pub mod source;
+mod syntax;
+
+pub use explanation::{Explanation, Line, Section};
+
+use crate::syntax::{System, parse};
+use crate::{Derived, derive, items, pretty};
+use proc_macro2::TokenStream;
+use syn::Result;
+
+/// A stage of the compiler, by its product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The clauses as parsed.
+    Syntax,
+    /// L and f with all names resolved.
+    Model,
+    /// L_d, its slot derivatives, the equations of a step.
+    Discrete,
+    /// The functions as operations.
+    Program,
+    /// The items that the macro emits.
+    Rust,
+}
+
+/// The product of a stage as text.
+///
+/// # Errors
+/// What is wrong with the system, as far as the stages up to this one find it.
+pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
+    let system = parse::system(tokens)?;
+    match stage {
+        Stage::Syntax => Ok(syntax::text(&system)),
+        Stage::Model => Ok(explanation(system, &[model::sections])?.text()),
+        Stage::Discrete => Ok(explanation(system, &[discrete::sections])?.text()),
+        Stage::Program => Ok(program::text(&derive(system)?)),
+        Stage::Rust => pretty::text(items(&derive(system)?)),
+    }
+}
+
+/// The mathematics of a system: L and f, the discrete system, what was found out, and what it costs.
+///
+/// # Errors
+/// What is wrong with the system.
+pub fn explain(tokens: TokenStream) -> Result<Explanation> {
+    explanation(parse::system(tokens)?, &[model::sections, discrete::sections, findings::sections])
+}
+
+type Chapter = fn(&Derived) -> Vec<Section>;
+
+fn explanation(system: System, chapters: &[Chapter]) -> Result<Explanation> {
+    let derived = derive(system)?;
+    let sections = chapters.iter().flat_map(|chapter| chapter(&derived)).collect();
+    Ok(Explanation { title: derived.model.name.to_string(), sections })
+}

@@ -1,0 +1,39 @@
+//! The continuous system: what it is made of, and L and f with all names resolved.
+//!
+//! In: a derived system. Out: sections of an explanation.
+
+use super::explanation::{Line, Section};
+use super::name;
+use crate::Derived;
+use crate::model::Coordinate;
+
+/// Names, L and f.
+pub(super) fn sections(derived: &Derived) -> Vec<Section> {
+    let model = &derived.model;
+    let coordinates: Vec<String> = model.coordinates.iter().map(Coordinate::text).collect();
+    let in_latex: Vec<String> = model.coordinates.iter().map(|of| name::coordinate(of).text()).collect();
+    let mut lines = vec![Line::Words {
+        text: format!("coordinates {}", coordinates.join(", ")),
+        latex: format!("Coordinates `{}`", in_latex.join(", ")),
+    }];
+    for (index, parameter) in model.parameters.iter().enumerate() {
+        let symbol = name::latex(derived, &crate::symbol::Symbol::Parameter(index));
+        lines.push(Line::Words {
+            text: format!("parameter {} = {}", parameter.name, parameter.default),
+            latex: format!("Parameter `{symbol}`, by default `{}`", parameter.default),
+        });
+    }
+    lines.push(Line::words(format!("rule {}", model.rule_name)));
+    let of = &derived.system.continuous;
+    let mut functions = vec![Line::equation(derived, ("L", "L"), of.lagrangian)];
+    if model.forced {
+        functions.extend(Line::equations(derived, ("f", "f"), &of.force));
+    }
+    functions.extend(Line::equations(derived, ("p", "p"), &of.momentum));
+    functions.push(Line::equation(derived, ("E", "E"), of.energy));
+    functions.push(Line::equation(derived, ("D", "D"), of.step_density));
+    vec![
+        Section { title: "System", lines },
+        Section { title: "Lagrangian L, force f, momentum p, energy E, step density D", lines: functions },
+    ]
+}

@@ -1,0 +1,52 @@
+//! The functions of a system, operation by operation.
+//!
+//! In: a derived system. Out: per function its operations in order, `%3 = %1 * x_mid`, and its results. Inputs and numbers
+//! stand where they are used; an operation that is an argument of the rule says so.
+
+use crate::Derived;
+use crate::program::{Function, Operation, OperationId};
+use std::collections::BTreeMap;
+
+/// All functions.
+pub(super) fn text(derived: &Derived) -> String {
+    derived.program.functions().map(|of| function(derived, of)).collect::<Vec<_>>().join("\n")
+}
+
+fn function(derived: &Derived, of: &Function) -> String {
+    let spell = |symbol| derived.system.spell(&derived.model, symbol);
+    let count = of.operation_count();
+    let mut text = format!("{}: {count} operation{}\n", of.name, if count == 1 { "" } else { "s" });
+    let mut worked = 0;
+    let mut names: BTreeMap<OperationId, String> = BTreeMap::new();
+    for id in of.operations.needed(&of.results) {
+        let operand = |id: &OperationId| names.get(id).cloned().unwrap_or_default();
+        let operation = of.operations.get(id);
+        let formula = match operation {
+            Operation::Constant(bits) => f64::from_bits(*bits).to_string(),
+            Operation::Input(symbol) => spell(symbol),
+            Operation::Negate(a) => format!("-{}", operand(a)),
+            Operation::Add(a, b) => format!("{} + {}", operand(a), operand(b)),
+            Operation::Subtract(a, b) => format!("{} - {}", operand(a), operand(b)),
+            Operation::Multiply(a, b) => format!("{} * {}", operand(a), operand(b)),
+            Operation::Divide(a, b) => format!("{} / {}", operand(a), operand(b)),
+            Operation::SquareRoot(a) => format!("sqrt({})", operand(a)),
+            Operation::Reciprocal(a) => format!("1 / {}", operand(a)),
+            Operation::Call(called, a) => format!("{}({})", called.name(), operand(a)),
+            Operation::Call2(called, a, b) => format!("{}({}, {})", called.name(), operand(a), operand(b)),
+        };
+        if operation.is_work() {
+            worked += 1;
+            let name = format!("%{worked}");
+            let note = of.operations.name(id).map(|symbol| format!("    # {}", spell(symbol))).unwrap_or_default();
+            text.extend(["    ", &name, " = ", &formula, &note, "\n"]);
+            names.insert(id, name);
+        } else {
+            names.insert(id, formula);
+        }
+    }
+    for group in &of.results {
+        let entries: Vec<String> = group.iter().map(|id| names.get(id).cloned().unwrap_or_default()).collect();
+        text.extend(["    result ", &entries.join(", "), "\n"]);
+    }
+    text
+}

@@ -1,0 +1,103 @@
+//! The clauses as they were parsed, in the language itself.
+//!
+//! In: a [`System`] as written. Out: its clauses by kind, numbers exact, and the parentheses that are needed.
+
+use crate::syntax::{Definition, Discretization, Expression, Indices, Kind, Operator, Range, System};
+
+/// The clauses of a system.
+pub(super) fn text(system: &System) -> String {
+    let mut lines = Vec::new();
+    lines.extend(system.constants.iter().map(|of| format!("const {}", definition(of))));
+    lines.extend(system.parameters.iter().map(|of| format!("param {}", definition(of))));
+    for coordinate in &system.coordinates {
+        let length = coordinate.length.as_ref().map(|length| format!("[{}]", expression(length)));
+        lines.push(format!("coord {}{};", coordinate.name, length.unwrap_or_default()));
+    }
+    lines.extend(system.lets.iter().map(|of| format!("let {}", definition(of))));
+    lines.extend(system.lagrangians.iter().map(definition));
+    lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
+    lines.extend(system.dissipations.iter().map(definition));
+    for discretization in &system.discretizations {
+        match discretization {
+            Discretization::Named(name) => lines.push(format!("discretize {name};")),
+            Discretization::Written(rule) => {
+                lines.push("discretize {".to_owned());
+                lines.extend(rule.lines.iter().map(|line| format!("    {}", definition(line))));
+                lines.push("}".to_owned());
+            }
+        }
+    }
+    format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
+}
+
+fn definition(of: &Definition) -> String {
+    let indices = match &of.indices {
+        None => String::new(),
+        Some(Indices::Range(indices)) => format!("[{}]", range(indices)),
+        Some(Indices::One(index)) => format!("[{}]", expression(index)),
+    };
+    format!("{}{indices} = {};", of.name, expression(&of.value))
+}
+
+fn range(of: &Range) -> String {
+    format!("{} in {}..{}", of.index, expression(&of.from), expression(&of.to))
+}
+
+/// How strongly an expression holds together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Negative,
+    Power,
+    Atom,
+}
+
+fn expression(of: &Expression) -> String {
+    within(of, Binding::Sum)
+}
+
+/// The expression, in parentheses if it binds less strongly. The parser bounds the depth.
+fn within(of: &Expression, least: Binding) -> String {
+    let (binding, text) = written(of);
+    if binding < least { format!("({text})") } else { text }
+}
+
+fn written(of: &Expression) -> (Binding, String) {
+    match &of.kind {
+        Kind::Number(value) if value.is_integer() => (Binding::Atom, value.to_string()),
+        // As a quotient it would be read again.
+        Kind::Number(value) => (Binding::Product, format!("{} / {}", value.numer(), value.denom())),
+        Kind::Name(name) => (Binding::Atom, name.to_string()),
+        Kind::Entry(name, index) => (Binding::Atom, format!("{name}[{}]", expression(index))),
+        Kind::Call(name, arguments) => {
+            let arguments: Vec<String> = arguments.iter().map(expression).collect();
+            (Binding::Atom, format!("{name}({})", arguments.join(", ")))
+        }
+        Kind::Sum(indices, summand) => (Binding::Atom, format!("sum({}, {})", range(indices), expression(summand))),
+        Kind::Negative(operand) => (Binding::Negative, format!("-{}", within(operand, Binding::Negative))),
+        Kind::Power(base, exponent) => {
+            (Binding::Power, format!("{}^{}", within(base, Binding::Atom), within(exponent, Binding::Negative)))
+        }
+        Kind::Chain(first, rest) => chain(first, rest),
+    }
+}
+
+fn chain(first: &Expression, rest: &[(Operator, Expression)]) -> (Binding, String) {
+    let product = rest.iter().any(|(operator, _)| matches!(operator, Operator::Times | Operator::Over));
+    // An operand that is itself a chain of this precedence was written in parentheses.
+    let (binding, operand) =
+        if product { (Binding::Product, Binding::Negative) } else { (Binding::Sum, Binding::Product) };
+    let mut text = within(first, operand);
+    for (operator, next) in rest {
+        let symbol = match operator {
+            Operator::Plus => " + ",
+            Operator::Minus => " - ",
+            Operator::Times => " * ",
+            Operator::Over => " / ",
+        };
+        text.push_str(symbol);
+        text.push_str(&within(next, operand));
+    }
+    (binding, text)
+}

@@ -1,0 +1,173 @@
+//! No input makes the compiler panic or hang: right systems, mutated token by token, and streams of tokens that never
+//! were a system. What is accepted is Rust.
+//!
+//! The inputs are drawn from a fixed sequence, 4000 of them. `VI_INPUTS=1000000 cargo test --release -p vi-codegen
+//! --test arbitrary -- --nocapture` draws more, and names the slowest.
+
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+const INPUTS: u64 = 4000;
+
+/// Right systems, which together use every clause and every form of expression.
+const SYSTEMS: [&str; 8] = [
+    "struct A { param m = 1, k = 2.5e-1; coord x; let v = dot(x); L = m * v^2 / 2 - k * x^2; force x = -0.1 * v; discretize midpoint; }",
+    "pub struct B { const N = 3; param a = N / 2; coord q[N], y; let e[i in 1..N] = q[i] - q[i - 1]; L = sum(i in 0..N, dot(q[i])^2) + dot(y)^2 - a * sum(i in 1..N, e[i]^2 * cos(y)); force q[i in 0..2] = sin(t * i); discretize trapezoidal; }",
+    "/// Doc.\n struct C { coord θ, φ; L = (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + cos(θ); dissipation = dot(θ)^2 + dot(θ)^4; discretize midpoint; }",
+    "struct D { const g = sqrt(2) ^ -3, h = pi / 7; param c = ln(g); coord x; L = exp(x) * dot(x)^2 - c * atan2(x, h) * hypot(x, 1) / tanh(t); discretize midpoint; }",
+    "struct E { coord x, y; L = dot(x) * dot(y) - pow(x, y) + abs(x - y); force y = sign(x) * t; discretize { Ld = h * L((t0 + t1)/2, (q0 + q1)/2, (q1 - q0)/h); fd_minus = h * f(t0, q0, q1); fd_plus = 0 * q0; gd_minus = -h^2 * q0 * q1; gd_plus = t1; } }",
+    "struct F { param k = 1; coord q[2]; L = dot(q[0])^2 / (1 + q[1]^2)^2 + dot(q[1])^2 / sqrt(1 - k * q[0]) - asin(q[0]) * acos(q[1]); discretize midpoint; }",
+    "struct G { coord x; L = -(1 - dot(x)^2)^(1/2) - cosh(x) + sinh(x)^3 / (1 + tan(x))^4; force x = 1 / (2 + cos(t)); discretize trapezoidal; }",
+    "struct H { const M = 4; coord u[M]; let a[i in 0..M] = sum(j in 0..i + 1, dot(u[j]) * cos(u[j])); L = sum(i in 0..M, a[i]^2 + dot(u[i])^2); discretize midpoint; }",
+];
+
+/// Tokens that are put in: all words of the language, and some that are none.
+const WORDS: &str = "struct const param coord let L force dissipation discretize midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
+    gd_plus f h t t0 t1 q0 q1 q x y θ i in dot sum pi sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign \
+    hypot pow self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
+    1000 65536 4294967296 18446744073709551616 99999999999999999999999999999999999999999999999999 0.1234567890123456789012345678901234567890 \
+    \"text\" 'c' b\"b\" true";
+
+/// The next number of a fixed sequence that looks random: a linear congruence (Knuth, MMIX).
+struct Sequence(u64);
+
+impl Sequence {
+    /// A number below `end`.
+    fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let end = u64::try_from(end.max(1)).expect("64 bits");
+        usize::try_from((self.0 >> 33) % end).expect("below the end")
+    }
+
+    fn pick<'a, T>(&mut self, from: &'a [T]) -> &'a T {
+        &from[self.below(from.len())]
+    }
+}
+
+/// The tokens of a text, without their place in it, so that the places of all texts may be forgotten.
+fn tokens(text: &str) -> Vec<TokenTree> {
+    text.parse::<TokenStream>().expect("tokens").into_iter().map(placeless).collect()
+}
+
+fn placeless(mut token: TokenTree) -> TokenTree {
+    if let TokenTree::Group(group) = &token {
+        token = TokenTree::Group(Group::new(group.delimiter(), group.stream().into_iter().map(placeless).collect()));
+    }
+    token.set_span(Span::call_site());
+    token
+}
+
+/// Changes the tokens somewhere: at this level, or inside one of its groups.
+fn mutate(tokens: &mut Vec<TokenTree>, words: &[TokenTree], draw: &mut Sequence) {
+    let groups: Vec<usize> = (0..tokens.len()).filter(|i| matches!(tokens[*i], TokenTree::Group(_))).collect();
+    if !groups.is_empty() && draw.below(8) > 0 {
+        let place = *draw.pick(&groups);
+        if let TokenTree::Group(group) = &tokens[place] {
+            let mut inner: Vec<TokenTree> = group.stream().into_iter().collect();
+            mutate(&mut inner, words, draw);
+            tokens[place] = TokenTree::Group(Group::new(group.delimiter(), inner.into_iter().collect()));
+        }
+        return;
+    }
+    let place = draw.below(tokens.len() + 1);
+    let Some(token) = tokens.get(place).cloned() else {
+        tokens.push(draw.pick(words).clone());
+        return;
+    };
+    match draw.below(12) {
+        0 => drop(tokens.remove(place)),
+        1 => tokens.insert(place, token),
+        2 => {
+            let other = draw.below(tokens.len());
+            tokens.swap(place, other);
+        }
+        3 => tokens[place] = draw.pick(words).clone(),
+        // The grammar stays: a name for a name, a number for a number, an operator for an operator.
+        4..=8 => {
+            let alike: Vec<&TokenTree> =
+                words.iter().filter(|word| std::mem::discriminant(*word) == std::mem::discriminant(&token)).collect();
+            if let Some(word) = alike.get(draw.below(alike.len())) {
+                tokens[place] = (*word).clone();
+            }
+        }
+        9 => tokens.insert(place, draw.pick(words).clone()),
+        10 => {
+            // A run of tokens again, elsewhere.
+            let run: Vec<TokenTree> = tokens[place..tokens.len().min(place + 1 + draw.below(12))].to_vec();
+            let target = draw.below(tokens.len());
+            tokens.splice(target..target, run);
+        }
+        _ => tokens[place] = nested(token, draw),
+    }
+}
+
+/// The token inside 1 to 200 pairs of delimiters, mostly few.
+fn nested(mut token: TokenTree, draw: &mut Sequence) -> TokenTree {
+    let depth = if draw.below(10) == 0 { draw.below(200) } else { 1 + draw.below(4) };
+    let delimiter = *draw.pick(&[Delimiter::Parenthesis, Delimiter::Parenthesis, Delimiter::Bracket, Delimiter::Brace]);
+    for _ in 0..depth {
+        token = TokenTree::Group(Group::new(delimiter, token.into()));
+    }
+    token
+}
+
+/// Tokens that never were a system, in the body of one or bare.
+fn unrelated(words: &[TokenTree], draw: &mut Sequence) -> Vec<TokenTree> {
+    let mut some = |length: usize| -> Vec<TokenTree> {
+        (0..length)
+            .map(|_| {
+                let word = draw.pick(words).clone();
+                if draw.below(5) == 0 { nested(word, draw) } else { word }
+            })
+            .collect()
+    };
+    let inner = some(40);
+    if draw.below(4) == 0 {
+        return inner;
+    }
+    let mut system = tokens("struct S");
+    system.push(TokenTree::Group(Group::new(Delimiter::Brace, inner.into_iter().collect())));
+    system
+}
+
+#[test]
+fn no_input_makes_the_compiler_panic() {
+    let inputs = std::env::var("VI_INPUTS").map_or(INPUTS, |count| count.parse().expect("VI_INPUTS is a count"));
+    let systems: Vec<Vec<TokenTree>> = SYSTEMS.iter().map(|text| tokens(text)).collect();
+    let words = tokens(WORDS);
+    let mut draw = Sequence(1);
+    let (mut accepted, mut over_a_second, mut slowest) = (0, 0, (Duration::ZERO, String::new()));
+    for input in 0..inputs {
+        let drawn = if draw.below(20) == 0 {
+            unrelated(&words, &mut draw)
+        } else {
+            let mut drawn = draw.pick(&systems).clone();
+            (0..=draw.below(3)).for_each(|_| mutate(&mut drawn, &words, &mut draw));
+            drawn
+        };
+        let stream: TokenStream = drawn.into_iter().collect();
+        let start = Instant::now();
+        let expanded = catch_unwind(AssertUnwindSafe(|| vi_codegen::expand(stream.clone())));
+        let spent = start.elapsed();
+        let expanded = expanded.unwrap_or_else(|_| panic!("input {input} makes it panic: {stream}"));
+        over_a_second += u64::from(spent > Duration::from_secs(1));
+        if spent > slowest.0 {
+            slowest = (spent, stream.to_string());
+        }
+        let broken = expanded.to_string().contains("compile_error");
+        accepted += u64::from(!broken);
+        if !broken {
+            assert!(syn::parse2::<syn::File>(expanded).is_ok(), "input {input} becomes no Rust: {stream}");
+        }
+        if input % 1000 == 999 {
+            proc_macro2::extra::invalidate_current_thread_spans();
+        }
+    }
+    println!(
+        "{inputs} inputs, {accepted} accepted, {over_a_second} over a second; the slowest: {:?}\n{}",
+        slowest.0, slowest.1
+    );
+    // Measured: 4.6 of 100.
+    assert!(accepted * 50 > inputs, "{accepted} of {inputs} accepted: nothing much was tried");
+}

@@ -1,0 +1,292 @@
+//! Stages as text, findings, LaTeX, declarations in files, and mistakes at their places.
+
+use proc_macro2::TokenStream;
+use vi_codegen::found::{Dependence, Findings, Pattern};
+use vi_codegen::inspect::{Stage, explain, latex, report, source, stage};
+use vi_codegen::{derive, syntax::parse};
+use vi_expr::{Expr, Function, Pool, Rational};
+
+fn tokens(body: &str) -> TokenStream {
+    format!("pub struct System {{ {body} }}").parse().expect("tokens of Rust")
+}
+
+fn findings(body: &str) -> Findings {
+    derive(parse::system(tokens(body)).expect("a system")).unwrap_or_else(|error| panic!("{body}: {error}")).findings
+}
+
+fn words(body: &str) -> Vec<String> {
+    findings(body).lines(&|index| format!("q{index}"))
+}
+
+#[test]
+fn an_oscillator_is_linear() {
+    let found = findings("param k = 1; coord x; L = dot(x)^2/2 - k*x^2/2; force x = -dot(x); discretize midpoint;");
+    assert!(found.autonomous && found.forced && found.separable && found.constant_mass && found.symmetric);
+    assert_eq!((found.jacobian, found.pattern, found.cyclic), (Dependence::Step, Pattern::Scalar, vec![]));
+}
+
+#[test]
+fn what_the_jacobian_depends_on() {
+    let of = |body: &str| findings(body).jacobian;
+    // A = L_vv + …: by hand, 1; 1 + h²/4; 1 + (h²/4) cos of the time; of x_mid, which takes v.
+    assert_eq!(of("coord x; L = dot(x)^2/2; discretize midpoint;"), Dependence::Parameters);
+    assert_eq!(of("coord x; L = dot(x)^2/2 - x^2/2; discretize midpoint;"), Dependence::Step);
+    assert_eq!(of("coord x; L = dot(x)^2/2 - cos(t)*x^2/2; discretize midpoint;"), Dependence::Node);
+    assert_eq!(of("coord x; L = dot(x)^2/2 - x^4/4; discretize midpoint;"), Dependence::Unknown);
+    // Störmer–Verlet is explicit whatever the potential; with friction it is linear; not with a mass that depends on x.
+    assert_eq!(of("coord x; L = dot(x)^2/2 - x^4/4; discretize trapezoidal;"), Dependence::Parameters);
+    assert_eq!(of("coord x; L = dot(x)^2/2 - x^4/4; force x = -dot(x); discretize trapezoidal;"), Dependence::Step);
+    assert_eq!(of("coord x; L = (1 + x^2)*dot(x)^2/2; discretize trapezoidal;"), Dependence::Unknown);
+}
+
+#[test]
+fn patterns_of_systems() {
+    let of = |body: &str| (findings(body).pattern, findings(body).symmetric);
+    let chain = "const N = 6; coord q[N]; let e[i in 0..N - 1] = q[i + 1] - q[i];
+        L = sum(i in 0..N, dot(q[i])^2)/2 - sum(i in 0..N - 1, e[i]^2/2 + e[i]^4/4);";
+    assert_eq!(of(&format!("{chain} discretize midpoint;")), (Pattern::Tridiagonal, true));
+    assert_eq!(of(&format!("{chain} discretize trapezoidal;")), (Pattern::Diagonal, true));
+    let next = "const N = 12; coord q[N];
+        L = sum(i in 0..N, dot(q[i])^2)/2 - sum(i in 0..N - 2, q[i]*q[i + 1]*q[i + 2]); discretize midpoint;";
+    assert_eq!(of(next), (Pattern::Banded(2), true));
+    let pairs = "coord x, y, z; L = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - x*z^2 - y^4; discretize midpoint;";
+    assert_eq!(of(pairs), (Pattern::Blocks(vec![vec![0, 2], vec![1]]), true));
+    // A magnetic field: A = 1 ± (h/2) b beside the diagonal.
+    let turning = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2 + x*dot(y); discretize midpoint;";
+    assert_eq!(of(turning), (Pattern::Dense, false));
+    // A force in one row only.
+    let one = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2; force x = -x*y; discretize midpoint;";
+    assert_eq!(of(one), (Pattern::Dense, false));
+}
+
+#[test]
+fn findings_in_words() {
+    let free = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2 - t*y; discretize midpoint;";
+    let wanted = [
+        "Not autonomous: `L` depends on the time `t`; no force acts",
+        "Cyclic: q0; its momentum is conserved",
+        "`L = T(v) + U(t, q)` with a constant mass matrix",
+        "The step's equation in `v` is explicit: its Jacobian `A` depends on parameters only",
+        "`A` is diagonal, symmetric",
+    ];
+    assert_eq!(words(free), wanted);
+    let relativistic = words("coord x; L = -sqrt(1 - dot(x)^2) - x^2; force x = sin(t); discretize midpoint;");
+    assert_eq!(relativistic[0], "Not autonomous: `L` or `f` depends on the time `t`; a force acts");
+    assert_eq!(relativistic[1], "`L = T(v) + U(t, q)`; the mass matrix depends on the velocity");
+}
+
+const OSCILLATOR: &str = "param m = 1, k = 4.25; coord x; let v = dot(x);
+    L = (m*v^2 - k*x^2)/2; force x = -v; discretize midpoint;";
+
+#[test]
+fn the_syntax_is_what_was_written() {
+    let text = stage(tokens(OSCILLATOR), Stage::Syntax).expect("right");
+    let wanted = "struct System {
+    param m = 1;
+    param k = 17 / 4;
+    coord x;
+    let v = dot(x);
+    L = (m * v^2 - k * x^2) / 2;
+    force x = -v;
+    discretize midpoint;
+}
+";
+    assert_eq!(text, wanted);
+    // What is shown is read as the same again.
+    for body in [
+        OSCILLATOR,
+        "const N = 3; coord q[N]; let e[i in 0..N] = q[i]^-(1/2)^2; L = -(-dot(q[0]))^2 - 2*(-3)*sum(i in 0..N, (dot(q[i]) - (1 - 2))^2/(2*3)/4);
+         dissipation = hypot(dot(q[0]), dot(q[1])); force q[1] = e[0] - (e[1] - e[2]);
+         discretize { Ld = h*L(t0, q0, (q1 - q0)/h); }",
+    ] {
+        let text = stage(tokens(body), Stage::Syntax).expect("right");
+        let again: TokenStream = text.parse().expect("tokens");
+        assert_eq!(stage(again, Stage::Syntax).expect("right"), text);
+        let model = |tokens| stage(tokens, Stage::Model).unwrap_or_else(|error| error.to_string());
+        assert_eq!(model(text.parse().expect("tokens")), model(tokens(body)));
+    }
+}
+
+#[test]
+fn the_stages_show_their_products() {
+    let text = |stage: Stage| vi_codegen::inspect::stage(tokens(OSCILLATOR), stage).expect("right");
+    let holds = |of: Stage, lines: &[&str]| {
+        let shown = text(of);
+        for line in lines {
+            assert!(shown.lines().any(|shown| shown.trim() == *line), "{of:?} lacks `{line}`:\n{shown}");
+        }
+    };
+    // By hand, from the midpoint rule.
+    holds(Stage::Model, &["parameter k = 4.25", "f_x = -dot(x)", "p_x = m*dot(x)"]);
+    holds(
+        Stage::Discrete,
+        &[
+            "x_mid = x0/2 + x1/2",
+            "L_d = h*L",
+            "D1 L_d = L_v_x*v_x - L",
+            "(D2 L_d)_x = h*L_x/2 - L_v_x",
+            "(f_d⁻)_x = h*f_x/2",
+            "g_d⁺ = -h*f_x*v_x/2",
+            "A_x,x = m + h/2 + k*h^2/4",
+            "E1 − E0 = h*f_x*v_x",
+        ],
+    );
+    holds(Stage::Program, &["momentum: 1 operation", "%1 = m * dot(x)", "result %1"]);
+    holds(Stage::Rust, &["impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for System<T> {"]);
+    assert!(text(Stage::Rust).contains("\n    }\n\n    /// `v·L_v − L = "), "items stand apart");
+}
+
+#[test]
+fn points_are_told_apart() {
+    let system = tokens("coord q[2]; L = (dot(q[0])^2 + dot(q[1])^2)/2 - q[0]^2*q[1]^2; discretize trapezoidal;");
+    let text = stage(system.clone(), Stage::Discrete).expect("right");
+    for line in ["q[1]_at2 = q[1]_1", "(D2 L_d)_q[0] = h*L_q[0]_at1/2 - L_v_q[0]_at1/2 - L_v_q[0]_at2/2"] {
+        assert!(text.lines().any(|shown| shown.trim() == line), "{line}\n{text}");
+    }
+    let latex = explain(system).expect("right").latex();
+    assert!(latex.contains("q_{1,(2)} &= q_{1,1}"), "{latex}");
+    assert!(latex.contains("\\frac{h {L^{(1)}}_{q_{0}}}{2}"), "{latex}");
+}
+
+#[test]
+fn an_explanation_is_a_document() {
+    let body = "param μ = 1, k_spring = 2; coord θ1, θ2; L = (dot(θ1)^2 + dot(θ2)^2)/2 - μ*cos(θ1) - k_spring*θ2^2;
+        force θ1 = -dot(θ1); discretize midpoint;";
+    let explanation = explain(tokens(body)).expect("right");
+    assert!(explanation.text().contains("\n    (f_d⁺)_θ1 = h*f_θ1/2\n"), "{}", explanation.text());
+    let latex = explanation.latex();
+    for part in [
+        "\\begin{document}",
+        "\\frac{\\dot{\\theta}_{1}^{2}}{2}",
+        "\\mu \\cos\\left(\\theta_{1}\\right)",
+        "k_{\\mathrm{spring}} \\theta_{2}^{2}",
+        "\\bar{\\theta}_{1} &= \\frac{\\theta_{1,0}}{2} + \\frac{\\theta_{1,1}}{2}",
+        "(f_d^+)_{\\theta_{1}} &= \\frac{h f_{\\theta_{1}}}{2}",
+        "\\item step\\_density: ",
+        "$A$ is ",
+        "\\end{document}",
+    ] {
+        assert!(latex.contains(part), "{part} is missing in\n{latex}");
+    }
+    balanced(&latex);
+    assert!(latex.is_ascii(), "only what every engine of LaTeX reads");
+}
+
+/// Braces, `\left` and `\right`, environments and dollars come in pairs.
+fn balanced(latex: &str) {
+    let count = |part: &str| latex.matches(part).count();
+    let mut depth = 0_i32;
+    for (letter, before) in latex.chars().zip(core::iter::once(' ').chain(latex.chars())) {
+        match (letter, before) {
+            (_, '\\') => {}
+            ('{', _) => depth += 1,
+            ('}', _) => depth -= 1,
+            _ => {}
+        }
+        assert!(depth >= 0);
+    }
+    assert_eq!((depth, count("\\left"), count("\\begin")), (0, count("\\right"), count("\\end")));
+    assert_eq!(count("$") % 2, 0);
+}
+
+#[test]
+fn expressions_in_latex() {
+    let mut pool = Pool::new();
+    let symbols = ["x", "y", "h"].map(|name| pool.symbol(name));
+    let [x, y, h] = symbols;
+    let half = Rational::new(1.into(), 2.into());
+    let (sum, difference) = (pool.add(x, y), pool.sub(x, y));
+    let (square, root) = (pool.mul(sum, sum), pool.power(sum, &half));
+    let three_halves = Rational::new((-3).into(), 2.into());
+    let two = pool.integer(2);
+    let sine = pool.call(Function::Sin, &[sum]);
+    let nested = pool.call(Function::Sin, &[sine]);
+    let cases: Vec<(Expr, &str)> = vec![
+        (pool.number(half.clone()), "\\frac{1}{2}"),
+        (pool.number(-half.clone()), "-\\frac{1}{2}"),
+        (pool.pi(), "\\pi"),
+        (difference, "x - y"),
+        (pool.neg(sum), "-x - y"),
+        (pool.mul(h, sum), "h \\left(x + y\\right)"),
+        (pool.div(sum, h), "\\frac{x + y}{h}"),
+        (pool.div(h, sum), "\\frac{h}{x + y}"),
+        (square, "\\left(x + y\\right)^{2}"),
+        (root, "\\sqrt{x + y}"),
+        (pool.power(sum, &three_halves), "\\frac{1}{\\left(x + y\\right)^{3/2}}"),
+        (pool.power(x, &Rational::new(1.into(), 3.into())), "\\sqrt[3]{x}"),
+        (pool.power(two, &half), "\\sqrt{2}"),
+        (sine, "\\sin\\left(x + y\\right)"),
+        (pool.mul(sine, sine), "\\sin^{2}\\left(x + y\\right)"),
+        (nested, "\\sin\\left(\\sin\\left(x + y\\right)\\right)"),
+        (pool.call(Function::Abs, &[difference]), "\\left|x - y\\right|"),
+        (pool.call(Function::Atan2, &[y, x]), "\\operatorname{atan2}\\left(y, x\\right)"),
+        (pool.call(Function::Pow, &[sum, y]), "\\left(x + y\\right)^{y}"),
+        (pool.call(Function::Exp, &[x]), "\\exp\\left(x\\right)"),
+    ];
+    for (expr, wanted) in cases {
+        let latex = latex::expression(&pool, expr, &|symbol: &&str| (*symbol).to_owned());
+        assert_eq!(latex, wanted);
+        balanced(&latex);
+    }
+    let product = pool.mul(x, y);
+    let third = pool.scale(product, &Rational::new((-2).into(), 3.into()));
+    let mixed = pool.add(third, square);
+    let name = |symbol: &&str| (*symbol).to_owned();
+    assert_eq!(latex::expression(&pool, mixed, &name), "\\left(x + y\\right)^{2} - \\frac{2 x y}{3}");
+    // Shared ones are longer than any page: no text of an exponential length is made.
+    let mut deep = x;
+    for _ in 0..60 {
+        let sine = pool.call(Function::Sin, &[deep]);
+        let product = pool.mul(sine, deep);
+        deep = pool.add(product, y);
+    }
+    assert_eq!(latex::expression(&pool, deep, &name), "\\ldots");
+}
+
+#[test]
+fn declarations_are_found_wherever_they_stand() {
+    let text = "
+use vi_core::lagrangian;
+lagrangian! { struct A { coord x; L = dot(x)^2; discretize midpoint; } }
+mod inner {
+    mod deeper { vi_core::lagrangian! { struct B { coord x; L = dot(x)^2; discretize midpoint; } } }
+    fn body() {
+        lagrangian! { struct C { coord x; L = dot(x)^2; discretize midpoint; } }
+        println!(\"{}\", 1);
+    }
+}
+";
+    let found = source::declarations(text).expect("Rust");
+    let names = found.into_iter().map(|tokens| parse::system(tokens).expect("a system").name.to_string());
+    assert_eq!(names.collect::<Vec<_>>(), ["A", "B", "C"]);
+    assert!(source::declarations("fn (").is_err());
+}
+
+#[test]
+fn mistakes_are_shown_at_their_places() {
+    let text = "// θ before the declaration\nlagrangian! {\n    struct A {\n\tparam mass = 1; coord θ; L = mass * dot(θ)^2 + θ * mas;\n\tforce y = 1;\n        discretize midpoint;\n    }\n}\n";
+    let tokens = source::declarations(text).expect("Rust").remove(0);
+    let error = stage(tokens, Stage::Rust).expect_err("wrong");
+    let wanted = "error: unknown name `mas`
+ --> a.rs:4:53
+  |
+4 | \tparam mass = 1; coord θ; L = mass * dot(θ)^2 + θ * mas;
+  | \t                                                   ^^^
+  = help: did you mean `mass`?
+
+error: a force on `y`, which is not a coordinate
+ --> a.rs:5:8
+  |
+5 | \tforce y = 1;
+  | \t      ^
+";
+    let shown = report::report("a.rs", text, &error);
+    assert!(shown.starts_with(wanted), "{shown}");
+}
+
+#[test]
+fn the_same_system_gives_the_same_text() {
+    for of in [Stage::Syntax, Stage::Model, Stage::Discrete, Stage::Program, Stage::Rust] {
+        assert_eq!(stage(tokens(OSCILLATOR), of).expect("right"), stage(tokens(OSCILLATOR), of).expect("right"));
+    }
+}

@@ -1,0 +1,79 @@
+//! The expansion as a file, where the variable `VI_EXPAND_DIR` asks for it.
+//!
+//! In: the tokens of a `lagrangian!`. Out: its expansion, and a line that makes cargo build again when the variable
+//! changes. A system with mistakes is not written; a file that cannot be written is a compile error with the reason.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use std::env;
+use std::path::Path;
+
+/// Expands a system, and writes the expansion where it is wanted.
+pub(crate) fn expand(tokens: TokenStream) -> TokenStream {
+    let folder = env::var_os("VI_EXPAND_DIR").filter(|folder| !folder.is_empty());
+    expand_into(tokens, folder.as_ref().map(Path::new))
+}
+
+fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
+    let expansion = vi_codegen::expand(tokens.clone());
+    let written = folder.map_or(Ok(()), |folder| write(tokens, folder));
+    let error = written.err().map(|reason| quote!(::core::compile_error! { #reason }));
+    quote! {
+        #expansion
+        #error
+        const _: ::core::option::Option<&str> = ::core::option_env!("VI_EXPAND_DIR");
+    }
+}
+
+fn write(tokens: TokenStream, folder: &Path) -> Result<(), String> {
+    // Mistakes are reported by the expansion itself.
+    let Ok(derived) = vi_codegen::syntax::parse::system(tokens).and_then(vi_codegen::derive) else { return Ok(()) };
+    let name = derived.model.name.to_string();
+    let text = vi_codegen::pretty::text(vi_codegen::items(&derived)).map_err(|error| error.to_string())?;
+    match vi_codegen::pretty::write(folder, &name, &text) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(format!(
+            "cannot write the expansion of `{name}` into `{}`: {error}\n\
+             help: set `VI_EXPAND_DIR` to a folder that can be written, or unset it",
+            folder.display()
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    const SYSTEM: &str = "struct FreeParticle { coord x; L = dot(x)^2 / 2; discretize midpoint; }";
+
+    fn expansion(text: &str, folder: Option<&Path>) -> String {
+        expand_into(text.parse().expect("tokens of Rust"), folder).to_string()
+    }
+
+    #[test]
+    fn a_file_is_written_where_it_is_asked_for() {
+        let folder = env::temp_dir().join(format!("vi-expand-{}", std::process::id()));
+        let inner = folder.join("of").join("its own");
+        assert_eq!(expansion(SYSTEM, None), expansion(SYSTEM, Some(&inner)), "the expansion itself is the same");
+        let written = fs::read_to_string(inner.join("free_particle.rs")).expect("the file");
+        assert!(written.contains("impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for FreeParticle<T> {"));
+        // A system with mistakes says so, and is not written.
+        assert!(expansion("struct Wrong { coord x; }", Some(&inner)).contains("compile_error"));
+        assert_eq!(fs::read_dir(&inner).expect("the folder").count(), 1);
+        // A file stands where the folder should be.
+        let blocked = inner.join("free_particle.rs");
+        let error = expansion(SYSTEM, Some(&blocked));
+        assert!(error.contains("cannot write the expansion of `FreeParticle` into `"), "{error}");
+        fs::remove_dir_all(&folder).expect("the folder can be removed");
+    }
+
+    #[test]
+    fn cargo_builds_again_when_the_variable_changes() {
+        let line = quote!(
+            const _: ::core::option::Option<&str> = ::core::option_env!("VI_EXPAND_DIR");
+        )
+        .to_string();
+        assert!(expansion(SYSTEM, None).ends_with(&line));
+    }
+}

@@ -1,0 +1,16 @@
+use vi_core::lagrangian;
+
+lagrangian! {
+    pub struct Broken {
+        param m = 1.0;
+        coord x, y;
+        L = m * (dot(x)^2 + dot(y)^2) / 2;
+        force z = -dot(x);
+        discretize midpoint;
+    }
+}
+
+fn main() {
+    let broken = Broken { m: 2.0, ..Broken::default() };
+    println!("{}", broken.m);
+}

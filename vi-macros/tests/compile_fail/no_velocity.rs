@@ -1,0 +1,15 @@
+use vi_core::lagrangian;
+
+lagrangian! {
+    pub struct Broken {
+        param m = 1.0;
+        coord x;
+        L = -m * x^2;
+        discretize midpoint;
+    }
+}
+
+fn main() {
+    let broken = Broken { m: 2.0, ..Broken::default() };
+    println!("{}", broken.m);
+}
