@@ -180,6 +180,59 @@ fn every_scene_runs() {
 }
 
 #[test]
+fn the_map_of_a_system_is_a_page_with_its_files() {
+    let out = temporary("stability");
+    let (status, output, errors) = lab(&[
+        "stability",
+        "double-well",
+        "--columns",
+        "20",
+        "--x",
+        "q=-1.5:1.5",
+        "--y",
+        "v_q=-1:1",
+        "--out",
+        path(&out),
+    ]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert_eq!(output.trim(), out.join("index.html").display().to_string());
+    for name in ["index.html", "energy.svg", "energy.csv", "fixed.svg", "fixed.csv"] {
+        assert!(fs::metadata(out.join(name)).is_ok_and(|file| file.len() > 500), "{name}");
+    }
+    let csv = fs::read_to_string(out.join("energy.csv")).expect("the cells");
+    assert!(csv.contains("# 0: runs to the end\n# 2: no forward step\n") && csv.contains("# curve, D = 0: ("), "{csv}");
+    let cells: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!((cells.len(), cells[0].split(',').count()), (12, 21));
+    // Rest at the bottom of the right well runs, a run across the barrier ends.
+    let cell =
+        |row: usize, column: usize| cells[row + 1].split(',').nth(column + 1).and_then(|cell| cell.parse::<u8>().ok());
+    assert_eq!(cell(5, 14), Some(0));
+    assert!(cell(10, 14).is_some_and(|class| class > 0));
+    fs::remove_dir_all(out).expect("the folder can be removed");
+}
+
+#[test]
+fn wrong_axes_are_status_2() {
+    let cases: [(&[&str], &str); 5] = [
+        (&["stability", "double-wel"], "there is no system `double-wel`; did you mean `double-well`?"),
+        (&["stability", "kepler", "--x", "z=0:1"], "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h"),
+        (&["stability", "kepler", "--x", "x=1"], "an axis is given as NAME=LOW:HIGH, with LOW below HIGH, not `x=1`"),
+        (&["stability", "kepler", "--x", "h=1:2"], "both axes vary `h`; give two different ones with --x and --y"),
+        (&["stability", "--columns", "5"], "invalid value '5' for '--columns <N>': 5 is not in 10..=596"),
+    ];
+    for (arguments, message) in cases {
+        let (status, output, errors) = lab(arguments);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{arguments:?}");
+        assert_eq!(errors, format!("error: {message}\n"), "{arguments:?}");
+    }
+    let missing = temporary("stability-file");
+    fs::write(&missing, "a file").expect("a file");
+    let (status, _, errors) = lab(&["stability", "double-well", "--columns", "10", "--out", path(&missing)]);
+    assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
+    fs::remove_file(missing).expect("the file can be removed");
+}
+
+#[test]
 fn a_file_is_expanded_stage_by_stage() {
     let kepler = concat!(env!("CARGO_MANIFEST_DIR"), "/src/systems/kepler.rs");
     for (stage, line) in [

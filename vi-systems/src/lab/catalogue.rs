@@ -5,14 +5,14 @@
 use super::failure::Failure;
 use super::simulation::{self, Plan, Simulation};
 use super::table::Table;
-use vi_core::{Parameters, StepError, Stepping};
+use vi_core::{Parameters, SVector, StepError, Stepping};
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };
 
 /// A system with its parameters, its number of degrees of freedom erased.
-pub(crate) trait System {
+pub(crate) trait System: Send + Sync {
     /// Name of the type.
     fn name(&self) -> &'static str;
     /// Names of the coordinates.
@@ -21,6 +21,10 @@ pub(crate) trait System {
     fn parameters(&self) -> Vec<(&'static str, f64)>;
     /// Sets a parameter; false where there is none of this name.
     fn set(&mut self, name: &str, value: f64) -> bool;
+    /// A system of the same type with the same parameters.
+    fn copy(&self) -> Box<dyn System>;
+    /// Step density D at t = 0; none where it has no value.
+    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
     /// Starts a run.
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
 }
@@ -44,7 +48,7 @@ struct Registered<S, const N: usize>(S);
 
 impl<S, const N: usize> System for Registered<S, N>
 where
-    S: Stepping<N> + Parameters + Clone + 'static,
+    S: Stepping<N> + Parameters + Clone + Send + Sync + 'static,
 {
     fn name(&self) -> &'static str {
         S::NAME
@@ -63,6 +67,16 @@ where
         self.0.parameter_mut(name).map(|parameter| *parameter = value).is_some()
     }
 
+    fn copy(&self) -> Box<dyn System> {
+        Box::new(Self(self.0.clone()))
+    }
+
+    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
+        let sized = q.len() == N && v.len() == N;
+        let density = || self.0.step_density(0.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v)).ok();
+        sized.then(density).flatten().filter(|density| density.is_finite())
+    }
+
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
         simulation::begin(self.0.clone(), plan)
     }
@@ -70,7 +84,7 @@ where
 
 fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
 where
-    S: Stepping<N> + Parameters + Default + Clone + 'static,
+    S: Stepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {
     Entry { system: Box::new(Registered::<S, N>(S::default())), about, q: q.to_vec(), v: v.to_vec(), h }
 }

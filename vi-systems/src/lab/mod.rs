@@ -9,9 +9,10 @@
 //! | [`simulation`] | one run of any system, as rows |
 //! | [`run`] | `vi-lab run`: rows as CSV or NPY |
 //! | [`paper`] | `vi-lab paper`: figures, tables and the page |
+//! | [`stability`] | `vi-lab stability`: where methods fail, as maps |
 //! | [`expand`], [`explain`] | what a system becomes, stage by stage; its mathematics |
 //! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
-//! | [`progress`], [`machine`], [`failure`] | bars, versions, errors |
+//! | [`numbers`], [`progress`], [`machine`], [`failure`] | numbers in prose, bars, versions, errors |
 
 mod catalogue;
 mod chart;
@@ -19,11 +20,13 @@ mod expand;
 mod explain;
 mod failure;
 mod machine;
+mod numbers;
 mod paper;
 mod progress;
 mod report;
 mod run;
 mod simulation;
+mod stability;
 mod start;
 mod table;
 
@@ -54,6 +57,8 @@ enum Action {
     },
     /// Simulate one system, and write its states
     Run(run::Arguments),
+    /// Chart where methods fail: the whole page, or the map of one system
+    Stability(stability::Arguments),
     /// Show what the systems in a file become, stage by stage
     Expand(expand::Arguments),
     /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
@@ -97,6 +102,7 @@ fn act(action: Action) -> Result<(), Failure> {
             print(&summary)
         }
         Action::Run(arguments) => run::run(&arguments),
+        Action::Stability(arguments) => print(&stability::write(&arguments)?),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),
         Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
         Action::List => print(&catalogue::table().text()),

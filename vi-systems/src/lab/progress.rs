@@ -49,6 +49,12 @@ impl Progress {
         }
     }
 
+    /// Moves the bar by many.
+    pub(crate) fn advance_by(&mut self, count: u64) {
+        self.bar.inc(count);
+        self.show();
+    }
+
     fn show(&mut self) {
         if !self.visible && self.started.elapsed() > Duration::from_secs(1) {
             self.visible = true;

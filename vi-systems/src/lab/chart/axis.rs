@@ -50,6 +50,15 @@ impl Axis {
         Self { range: Some((low, high)), ..self }
     }
 
+    /// The value at a part of the given range, from 0 at its beginning to 1 at its end; of 0 to 1 where none is given.
+    pub(crate) fn at(&self, part: f64) -> f64 {
+        let (low, high) = self.range.unwrap_or((0.0, 1.0));
+        match self.scale {
+            Scale::Linear => low + part * (high - low),
+            Scale::Log10 => low * (high / low).powf(part),
+        }
+    }
+
     /// The coordinate in which `value` is drawn; none where it has no place.
     pub(super) fn coordinate(&self, value: f64) -> Option<f64> {
         let coordinate = match self.scale {

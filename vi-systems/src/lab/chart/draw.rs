@@ -13,7 +13,7 @@ use kuva::prelude::{
 use std::sync::Arc;
 
 /// Margins of the plot area in pixels: left, right (where the legend stands), top, bottom.
-const MARGINS: (f64, f64, f64, f64) = (88.0, 216.0, 44.0, 60.0);
+pub(super) const MARGINS: (f64, f64, f64, f64) = (88.0, 216.0, 44.0, 60.0);
 /// Size of the plot area in pixels.
 const AREA: (f64, f64) = (596.0, 330.0);
 
@@ -27,12 +27,17 @@ struct Drawn<'a> {
 impl Chart {
     /// The chart as an SVG figure, and the points that it shows as a CSV table.
     pub(crate) fn figure(&self) -> Figure {
+        self.figure_over(None)
+    }
+
+    /// The same over a map, whose entries come first in the legend and whose cells leave no room for a grid.
+    pub(super) fn figure_over(&self, map: Option<Vec<LegendEntry>>) -> Figure {
         let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
         let x = self.x.ruler(placed.iter().flat_map(|drawn| drawn.coordinates.iter().map(|point| point.0)));
         let y = self.y.ruler(placed.iter().flat_map(|drawn| drawn.coordinates.iter().map(|point| point.1)));
         let area = self.area(&x, &y);
         let drawn: Vec<Drawn<'_>> = placed.into_iter().map(|drawn| thinned(&drawn, &x, &y, area)).collect();
-        Figure { name: self.name, svg: self.svg(&drawn, &x, &y, area), csv: self.csv(&drawn) }
+        Figure { name: self.name, svg: self.svg(&drawn, (&x, &y), area, map), csv: self.csv(&drawn) }
     }
 
     /// The points that have a place on the axes.
@@ -41,6 +46,11 @@ impl Chart {
         let (coordinates, values) =
             series.points.iter().filter_map(|point| Some((both(point)?, *point))).collect::<(Vec<_>, Vec<_>)>();
         Drawn { series, coordinates, values }
+    }
+
+    /// Size of the plot area where both axes have ranges.
+    pub(super) fn fixed_area(&self) -> (f64, f64) {
+        self.area(&self.x.ruler(core::iter::empty()), &self.y.ruler(core::iter::empty()))
     }
 
     /// Size of the plot area: of equal aspect, as large as the usual width and 1.5 times the usual height allow.
@@ -53,7 +63,16 @@ impl Chart {
         (scale * width, scale * height)
     }
 
-    fn svg(&self, drawn: &[Drawn<'_>], x: &Ruler, y: &Ruler, area: (f64, f64)) -> String {
+    fn svg(
+        &self,
+        drawn: &[Drawn<'_>],
+        (x, y): (&Ruler, &Ruler),
+        area: (f64, f64),
+        map: Option<Vec<LegendEntry>>,
+    ) -> String {
+        let grid = map.is_none();
+        let series = drawn.iter().filter_map(|drawn| legend_entry(drawn.series));
+        let legend = map.into_iter().flatten().chain(series).collect();
         let (label_x, label_y) = (x.clone(), y.clone());
         let layout = Layout::new(x.range, y.range)
             .with_width(area.0 + MARGINS.0 + MARGINS.1)
@@ -76,10 +95,18 @@ impl Chart {
             .with_tick_size(12)
             .with_body_size(12)
             .with_legend_position(LegendPosition::OutsideRightTop)
-            .with_legend_entries(drawn.iter().filter_map(|drawn| legend_entry(drawn.series)).collect())
+            .with_legend_entries(legend)
+            .with_show_grid(grid)
             .with_legend_box(false);
-        let plots = drawn.iter().flat_map(plots).collect();
-        SvgBackend::new().render_scene(&render_multiple(plots, layout))
+        let mut plots: Vec<Plot> = drawn.iter().flat_map(plots).collect();
+        if plots.is_empty() {
+            // The library draws no axes around nothing.
+            let ends = [(x.range.0, y.range.0), (x.range.1, y.range.1)];
+            plots.push(Plot::Line(LinePlot::new().with_data(ends).with_color("none").with_stroke_width(0.0)));
+        }
+        let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
+        // Names of clipping areas are the page's: two figures of different size must not share one.
+        svg.replace("kuva-clip-", &format!("{}-clip-", self.name))
     }
 
     fn csv(&self, drawn: &[Drawn<'_>]) -> String {

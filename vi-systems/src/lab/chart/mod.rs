@@ -7,10 +7,12 @@
 
 mod axis;
 mod draw;
+mod map;
 mod palette;
 mod thin;
 
 pub(crate) use axis::{Axis, superscript};
+pub(crate) use map::{Class, Map, boundary, middles};
 pub(crate) use palette::Look;
 use thin::Thinning;
 
@@ -64,6 +66,11 @@ impl Series {
     /// Separate points.
     pub(crate) fn scatter(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
         Self { label: Some(label.into()), look, thinning: Thinning::Cells, points }
+    }
+
+    /// A curve in the plane.
+    pub(crate) fn curve(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
+        Self { label: Some(label.into()), look, thinning: Thinning::Curve, points }
     }
 
     /// A curve of the background, without an entry in the legend.

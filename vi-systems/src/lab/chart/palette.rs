@@ -35,6 +35,8 @@ impl Look {
     pub(crate) const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
     /// The exact solution, or a law.
     pub(crate) const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
+    /// Below [`Look::EXACT`] where the ground is coloured.
+    pub(crate) const HALO: Self = Self { colour: "#FFFFFF", width: 4.0, stroke: Stroke::Solid, marker: None };
     /// What a published number says.
     pub(crate) const PUBLISHED: Self = Self { colour: "#777777", width: 1.4, stroke: Stroke::Dotted, marker: None };
     /// Level sets and the like.

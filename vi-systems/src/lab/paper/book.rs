@@ -1,12 +1,11 @@
-//! The page and its files as they grow, and the list of claims.
+//! The page as it grows, and the list of claims.
 
 use super::super::chart::Chart;
 use super::super::failure::Failure;
 use super::super::machine::Machine;
-use super::super::report::Page;
+use super::super::report::{Page, Report};
 use super::super::table::Table;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What became of a claim of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,54 +47,48 @@ impl Verdict {
     }
 }
 
-/// The page under construction, and the folder of its files.
+/// The page under construction, with the list of claims.
 #[derive(Debug)]
 pub(super) struct Book {
-    folder: PathBuf,
-    page: Page,
+    report: Report,
     claims: Table,
 }
 
 impl Book {
     /// An empty page in a folder, which is made if need be.
     pub(super) fn new(folder: &Path) -> Result<Self, Failure> {
-        fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
         let page = Page::new(
             "Energy-preserving variational integrators: the paper’s study, run again",
             "After H. Sharma, M. Patil, C. Woolsey, <i>Energy-preserving Variational Integrators for Forced Lagrangian \
              Systems</i>, section 5",
         );
         let claims = Table::new("claims", ["the paper", "its number", "ours", "verdict"]);
-        Ok(Self { folder: folder.to_owned(), page, claims })
+        Ok(Self { report: Report::new(folder, page)?, claims })
     }
 
     /// Starts a section.
     pub(super) fn section(&mut self, heading: &str) {
-        self.page.section(heading);
+        self.report.section(heading);
     }
 
     /// A paragraph of HTML.
     pub(super) fn prose(&mut self, html: &str) {
-        self.page.prose(html);
+        self.report.prose(html);
     }
 
     /// A formula of `MathML` elements.
     pub(super) fn formula(&mut self, mathml: &str) {
-        self.page.formula(mathml);
+        self.report.formula(mathml);
     }
 
-    /// A figure with its caption; its files are written at once.
+    /// A figure with its caption.
     pub(super) fn figure(&mut self, chart: &Chart, caption: &str) -> Result<(), Failure> {
-        let figure = chart.figure();
-        self.page.figure(&figure, caption);
-        self.write(&format!("{}.svg", figure.name), &figure.svg)?;
-        self.write(&format!("{}.csv", figure.name), &figure.csv)
+        self.report.figure(&chart.figure(), caption)
     }
 
-    /// A table with its caption; its file is written at once.
+    /// A table with its caption.
     pub(super) fn table(&mut self, table: &Table, caption: &str) -> Result<(), Failure> {
-        self.page.table(table, caption);
-        self.write(&format!("{}.csv", table.name), &table.csv())
+        self.report.table(table, caption)
     }
 
     /// A claim of the paper, its number, ours, and what became of it.
@@ -106,17 +99,11 @@ impl Book {
     /// Ends the page with the claims and writes it; returns the claims as text, and where the page is.
     pub(super) fn finish(mut self, machine: &Machine) -> Result<String, Failure> {
         self.section("The paper’s claims, one by one");
-        let claims = self.claims.clone();
-        self.table(
-            &claims,
+        self.report.table(
+            &self.claims,
             "Each claim of section 5, the paper’s number where it gives one, and what this run found.",
         )?;
-        self.write("index.html", &self.page.html(machine))?;
-        Ok(format!("{}\n{}", claims.text(), self.folder.join("index.html").display()))
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
-        let path = self.folder.join(name);
-        fs::write(&path, text).map_err(|error| Failure::file(&path, error))
+        let page = self.report.finish(machine)?;
+        Ok(format!("{}\n{}", self.claims.text(), page.display()))
     }
 }

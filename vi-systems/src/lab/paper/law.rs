@@ -1,11 +1,11 @@
 //! The step law: how constant `h D^{1/3}` and `h √D` are.
 
 use super::super::failure::Failure;
+use super::super::numbers::{extremes, order, scientific};
 use super::super::report::math::{id, num, op, row, sqrt, sub, sub_sup};
 use super::super::start::second_point;
 use super::super::table::Table;
 use super::book::{Book, Verdict};
-use super::numbers::{extremes, order, scientific};
 use super::unexpected;
 use vi_core::{EnergyPreserving, SVector, StepError, Stepping};
 use vi_systems::{DampedOscillator, DoubleWell};

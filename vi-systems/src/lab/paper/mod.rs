@@ -11,8 +11,7 @@ mod conservative;
 mod errata;
 mod forced;
 mod law;
-mod numbers;
-mod raw;
+pub(super) mod raw;
 
 use super::failure::Failure;
 use super::machine::Machine;

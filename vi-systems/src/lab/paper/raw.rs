@@ -1,51 +1,94 @@
 //! The paper's equations solved as they are written, for comparison.
 //!
-//! In: a node. Out: the next node. Newton's method on the momentum and the energy equation in the unknowns `(q1, t1)`,
-//! neither row combined nor scaled, until the residual no longer decreases; then `p1 = D4 L_d + f_d⁺` and
-//! `E1 = −D3 L_d − g_d⁺` from the nodes. The guess is the best there is, the solution in `(v, h)` from the same node, and
+//! In: a node. Out: the next node. Newton's method on the momentum and the energy equation in the unknowns `(q1, t1)`, or
+//! in `(v, h)` for systems free of t, neither row combined nor scaled, until the residual no longer decreases; then
+//! `p1 = D4 L_d + f_d⁺` and `E1 = −D3 L_d − g_d⁺` of that interval. The guess is the best there is, the solution in `(v, h)` from the same node, and
 //! the Jacobian is exact: what is left is the cancellation in `(q1 − q0)/(t1 − t0)`, which `(v, h)` do not have.
 
 use vi_core::{EnergyPreserving, ExtendedSystem, Interval, Node, SVector, State, Stepping};
 
+/// What the equations are solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unknowns {
+    /// `(q1, t1)`, as the paper does.
+    Points,
+    /// `(v, h)`, for the midpoint rule and systems free of t.
+    Velocity,
+}
+
 /// A node with the discrete energy recomputed from it, and the interval that led to it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RawNode {
+pub(crate) struct RawNode {
     /// Time, coordinate, momentum.
-    pub(super) state: State<1>,
+    pub(crate) state: State<1>,
     /// Discrete energy.
-    pub(super) energy: f64,
+    pub(crate) energy: f64,
     h: f64,
     v: f64,
 }
 
 impl RawNode {
     /// The node that an integrator starts from.
-    pub(super) fn first<S: Stepping<1>>(integrator: &EnergyPreserving<S, 1>) -> Self {
+    pub(crate) fn first<S: Stepping<1>>(integrator: &EnergyPreserving<S, 1>) -> Self {
         Self { state: integrator.state(), energy: integrator.energy(), h: integrator.h(), v: integrator.v().x }
     }
 
     /// The next node; none where there is no step, or the iteration leaves the numbers.
-    pub(super) fn next<S: Stepping<1>>(&self, system: &S) -> Option<Self> {
+    pub(crate) fn next<S: Stepping<1>>(&self, system: &S, unknowns: Unknowns) -> Option<Self> {
         let guess =
             EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v]).ok()?.step().ok()?;
-        self.polished(system, (guess.t, guess.q.x))
+        match unknowns {
+            Unknowns::Points => self.polished(system, (guess.t, guess.q.x)),
+            Unknowns::Velocity => self.polished_velocity(system, (guess.midpoint.2.x, guess.h)),
+        }
+    }
+
+    /// The next node, from the guess `(v, h)`.
+    fn polished_velocity<S: Stepping<1>>(&self, system: &S, guess: (f64, f64)) -> Option<Self> {
+        let (v, h) = descend(guess, |trial| {
+            let [r, e] = self.velocity_residuals(system, trial);
+            ([r, e], self.velocity_newton(system, trial, [r, e]))
+        });
+        let (middle, velocity) = (self.state.q + SVector::from([v * h / 2.0]), SVector::from([v]));
+        let gain = system.increment(&Node::new(self.state, self.energy), h, &velocity);
+        let t = self.state.t + h / 2.0;
+        let p = system.momentum(t, &middle, &velocity) + gain.momentum / 2.0;
+        let energy = system.energy(t, &middle, &velocity) + gain.energy / 2.0;
+        let state = State { t: self.state.t + h, q: self.state.q + velocity * h, p };
+        energy.is_finite().then_some(Self { state, energy, h, v })
+    }
+
+    /// `−D2 L_d − f_d⁻ − p0` and `D1 L_d + g_d⁻ − E0` in `(v, h)`; `−(h/2) f·v` is half of what the energy loses.
+    fn velocity_residuals<S: Stepping<1>>(&self, system: &S, (v, h): (f64, f64)) -> [f64; 2] {
+        let (node, velocity) = (Node::new(self.state, self.energy), SVector::from([v]));
+        let middle = self.state.q + velocity * (h / 2.0);
+        let lost = -system.increment(&node, h, &velocity).energy / 2.0;
+        let energy = system.energy(self.state.t + h / 2.0, &middle, &velocity);
+        [system.momentum_equation(&node, h, &velocity).residual.x, energy + lost - self.energy]
+    }
+
+    /// The correction of `(v, h)`.
+    fn velocity_newton<S: Stepping<1>>(&self, system: &S, (v, h): (f64, f64), [r, e]: [f64; 2]) -> Option<(f64, f64)> {
+        let [[r_v, r_h], [e_v, e_h]] = self.rows(system, v, h);
+        let determinant = r_h * e_v - r_v * e_h;
+        let correction = ((e_h * r - r_h * e) / determinant, (r_v * e - e_v * r) / determinant);
+        (correction.0.is_finite() && correction.1.is_finite()).then_some(correction)
+    }
+
+    /// Derivatives of both rows, un-combined, by v and h.
+    fn rows<S: Stepping<1>>(&self, system: &S, v: f64, h: f64) -> [[f64; 2]; 2] {
+        let ExtendedSystem { momentum, residual_dh, energy_dv, energy_dh, .. } =
+            system.extended_system(&Node::new(self.state, self.energy), h, &SVector::from([v]));
+        let (r_v, r_h) = (momentum.jacobian.x, residual_dh.x);
+        [[r_v, r_h], [h * energy_dv.x + v * r_v, h * energy_dh + v * r_h]]
     }
 
     /// The next node, from the guess `(t1, q1)`.
     fn polished<S: Stepping<1>>(&self, system: &S, guess: (f64, f64)) -> Option<Self> {
-        let (mut end, mut least) = (guess, f64::INFINITY);
-        let mut trial = guess;
-        for _ in 0..20 {
+        let end = descend(guess, |trial| {
             let [r, e] = self.residuals(system, trial);
-            let size = r.hypot(e);
-            // An iteration that no longer decreases the residual has reached its floor.
-            if size.is_nan() || size >= least {
-                break;
-            }
-            (end, least) = (trial, size);
-            let (dt, dq) = self.newton(system, trial, [r, e])?;
-            trial = (trial.0 + dt, trial.1 + dq);
-        }
+            ([r, e], self.newton(system, trial, [r, e]))
+        });
         let interval = self.interval(end);
         let p = system.d4_ld(&interval) + system.fd_plus(&interval);
         let energy = -system.d3_ld(&interval) - system.gd_plus(&interval);
@@ -68,18 +111,33 @@ impl RawNode {
     /// The correction of `(t1, q1)`.
     fn newton<S: Stepping<1>>(&self, system: &S, (t1, q1): (f64, f64), [r, e]: [f64; 2]) -> Option<(f64, f64)> {
         let h = t1 - self.state.t;
-        let v = SVector::from([(q1 - self.state.q.x) / h]);
-        let ExtendedSystem { momentum, residual_dh, energy_dv, energy_dh, .. } =
-            system.extended_system(&Node::new(self.state, self.energy), h, &v);
-        // Rows of the system in (v, h), un-combined; then by the chain rule ∂v/∂q1 = 1/h, ∂v/∂t1 = −v/h, ∂h/∂t1 = 1.
-        let (r_v, r_h) = (momentum.jacobian.x, residual_dh.x);
-        let (e_v, e_h) = (h * energy_dv.x + v.x * r_v, h * energy_dh + v.x * r_h);
-        let (r_q, r_t) = (r_v / h, r_h - r_v * v.x / h);
-        let (e_q, e_t) = (e_v / h, e_h - e_v * v.x / h);
+        let v = (q1 - self.state.q.x) / h;
+        // By the chain rule ∂v/∂q1 = 1/h, ∂v/∂t1 = −v/h, ∂h/∂t1 = 1.
+        let [[r_v, r_h], [e_v, e_h]] = self.rows(system, v, h);
+        let (r_q, r_t) = (r_v / h, r_h - r_v * v / h);
+        let (e_q, e_t) = (e_v / h, e_h - e_v * v / h);
         let determinant = r_t * e_q - r_q * e_t;
         let correction = ((r_q * e - e_q * r) / determinant, (e_t * r - r_t * e) / determinant);
         (correction.0.is_finite() && correction.1.is_finite()).then_some(correction)
     }
+}
+
+/// Follows Newton's corrections from `guess` while the residual decreases.
+fn descend(guess: (f64, f64), equations: impl Fn((f64, f64)) -> ([f64; 2], Option<(f64, f64)>)) -> (f64, f64) {
+    let (mut end, mut least) = (guess, f64::INFINITY);
+    let mut trial = guess;
+    for _ in 0..20 {
+        let ([r, e], correction) = equations(trial);
+        let size = r.hypot(e);
+        // An iteration that no longer decreases the residual has reached its floor.
+        if size.is_nan() || size >= least {
+            break;
+        }
+        (end, least) = (trial, size);
+        let Some((first, second)) = correction else { break };
+        trial = (trial.0 + first, trial.1 + second);
+    }
+    end
 }
 
 #[cfg(test)]
@@ -99,6 +157,11 @@ mod tests {
             let found = before.polished(&system, guess).expect("a solution");
             // Measured 2.0e-15 and 8.9e-16: the floor of the raw equations at this step.
             assert!((found.state.t - step.t).abs() < 4e-15, "{}", found.state.t - step.t);
+            assert!((found.energy - step.energy).abs() < 2e-15, "{}", found.energy - step.energy);
+            let guess = (step.midpoint.2.x * 1.0001, step.h * 0.9999);
+            let found = before.polished_velocity(&system, guess).expect("a solution");
+            assert!((found.state.t - step.t).abs() < 4e-15, "{}", found.state.t - step.t);
+            assert!((found.state.p - step.p).amax() < 4e-15, "{}", found.state.p - step.p);
             assert!((found.energy - step.energy).abs() < 2e-15, "{}", found.energy - step.energy);
         }
     }

@@ -3,7 +3,10 @@
 //! In: sections in order. Out: a page that names nothing outside itself: figures inline as SVG, formulas as MathML,
 //! the style in its head. Prose is HTML, as written in the source; everything computed is escaped.
 
+mod folder;
 pub(crate) mod math;
+
+pub(crate) use folder::Report;
 
 use super::chart::Figure;
 use super::machine::Machine;

@@ -2,9 +2,9 @@
 
 use super::super::super::chart::{Axis, Chart, Look, Series};
 use super::super::super::failure::Failure;
+use super::super::super::numbers::{median, order, scientific};
 use super::super::super::table::Table;
 use super::super::book::{Book, Verdict};
-use super::super::numbers::{median, order, scientific};
 use super::super::unexpected;
 use super::CASES;
 use super::runs::Case;

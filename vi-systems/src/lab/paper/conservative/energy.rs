@@ -2,9 +2,9 @@
 
 use super::super::super::chart::{Axis, Chart, Look, Series};
 use super::super::super::failure::Failure;
+use super::super::super::numbers::scientific;
 use super::super::super::table::Table;
 use super::super::book::{Book, Verdict};
-use super::super::numbers::scientific;
 use super::runs::{Run, Track};
 
 /// What the paper reports for the energy-preserving integrator.

@@ -2,11 +2,11 @@
 
 use super::super::super::chart::{Axis, Chart, Look, Series};
 use super::super::super::failure::Failure;
+use super::super::super::numbers::{extremes, order, scientific};
 use super::super::super::start::motion;
 use super::super::super::table::Table;
 use super::super::book::{Book, Verdict};
-use super::super::numbers::{extremes, order, scientific};
-use super::super::raw::RawNode;
+use super::super::raw::{RawNode, Unknowns};
 use super::super::{Study, unexpected};
 use super::runs::Case;
 use vi_core::{FixedStep, Lagrangian, SVector, StepError};
@@ -71,7 +71,7 @@ impl Rung {
             if adaptive.is_none() && step.t >= COMPARED {
                 adaptive = Some(error(case.q0, step.t, step.q.x)?);
             }
-            raw = raw.and_then(|node| node.next(&system));
+            raw = raw.and_then(|node| node.next(&system, Unknowns::Points));
             rung.raw = raw.map_or(f64::NAN, |node| rung.raw.max((node.energy - e1).abs()));
         }
         let fixed = FixedStep::new(system, state, case.h0)?.take(length).find(|state| match state {

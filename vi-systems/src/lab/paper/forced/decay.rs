@@ -2,8 +2,8 @@
 
 use super::super::super::chart::{Axis, Chart, Look, Series};
 use super::super::super::failure::Failure;
+use super::super::super::numbers::scientific;
 use super::super::book::{Book, Verdict};
-use super::super::numbers::scientific;
 use super::super::unexpected;
 use super::oscillator::{OMEGA, Run, Sample, energy_preserving, exact, exact_energy, fixed};
 

@@ -2,10 +2,10 @@
 
 use super::super::super::chart::{Axis, Chart, Look, Series};
 use super::super::super::failure::Failure;
+use super::super::super::numbers::scientific;
 use super::super::super::report::math::{id, num, op, row, sub, sup};
 use super::super::super::table::Table;
 use super::super::book::{Book, Verdict};
-use super::super::numbers::scientific;
 use super::super::unexpected;
 use super::oscillator::{OMEGA, Run, energy_preserving};
 use super::{DAMPING, H0};

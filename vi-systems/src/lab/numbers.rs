@@ -1,9 +1,9 @@
-//! Numbers as the page writes them, and the few statistics that it needs.
+//! Numbers as a page writes them, and the few statistics that it needs.
 
-use super::super::chart::superscript;
+use super::chart::superscript;
 
 /// A number in three digits, with a power of ten where that is shorter: `7.19·10⁻⁹`.
-pub(super) fn scientific(value: f64) -> String {
+pub(crate) fn scientific(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
@@ -19,19 +19,19 @@ pub(super) fn scientific(value: f64) -> String {
 }
 
 /// The middle one of some numbers; none of none.
-pub(super) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied()
 }
 
 /// Smallest and largest of some numbers.
-pub(super) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// Slope of the straight line through `(log x, log y)` by least squares: the order of a power law.
-pub(super) fn order(points: &[(f64, f64)]) -> f64 {
+pub(crate) fn order(points: &[(f64, f64)]) -> f64 {
     let (mut n, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (x, y) in points.iter().map(|(x, y)| (x.ln(), y.ln())) {
         n += 1.0;

@@ -1,0 +1,82 @@
+//! Systems that only the charts need: the trapezoidal rule beside the midpoint rule, each at its plainest.
+
+use vi_core::lagrangian;
+
+lagrangian! {
+    /// Oscillator of frequency 1 and damping ratio c/2, stepped as central differences.
+    pub(super) struct TrapezoidalOscillator {
+        /// Damping: the force −c v.
+        param c = 0.0;
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2;
+        force x = -c * dot(x);
+        discretize trapezoidal;
+    }
+}
+
+lagrangian! {
+    /// Oscillator of frequency 1 with forces of second and third order, `V = x²/2 + x³/3 + x⁴/4`: a single well.
+    pub(super) struct Bent {
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2 - x^3 / 3 - x^4 / 4;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// The same by the trapezoidal rule: Verlet's method.
+    pub(super) struct TrapezoidalBent {
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2 - x^3 / 3 - x^4 / 4;
+        discretize trapezoidal;
+    }
+}
+
+lagrangian! {
+    /// Mass 1 on a spring of length 1 and stiffness k, under gravity 1: its stretch, and its angle from the lowest
+    /// point.
+    pub(super) struct SpringPendulum {
+        /// Stiffness.
+        param k = 100.0;
+        coord s, θ;
+        L = (dot(s)^2 + (1 + s)^2 * dot(θ)^2) / 2 - k * s^2 / 2 + (1 + s) * cos(θ);
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// The same by the trapezoidal rule.
+    pub(super) struct TrapezoidalSpringPendulum {
+        /// Stiffness.
+        param k = 100.0;
+        coord s, θ;
+        L = (dot(s)^2 + (1 + s)^2 * dot(θ)^2) / 2 - k * s^2 / 2 + (1 + s) * cos(θ);
+        discretize trapezoidal;
+    }
+}
+
+lagrangian! {
+    /// Eight masses between walls on springs with the force r + r³: the β-chain of Fermi, Pasta, Ulam and Tsingou.
+    pub(super) struct Chain {
+        const N = 8;
+        coord q[N];
+        let r[i in 1..N] = q[i] - q[i - 1];
+        let squares = q[0]^2 + sum(i in 1..N, r[i]^2) + q[N - 1]^2;
+        let fourths = q[0]^4 + sum(i in 1..N, r[i]^4) + q[N - 1]^4;
+        L = sum(i in 0..N, dot(q[i])^2) / 2 - squares / 2 - fourths / 4;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// The same by the trapezoidal rule.
+    pub(super) struct TrapezoidalChain {
+        const N = 8;
+        coord q[N];
+        let r[i in 1..N] = q[i] - q[i - 1];
+        let squares = q[0]^2 + sum(i in 1..N, r[i]^2) + q[N - 1]^2;
+        let fourths = q[0]^4 + sum(i in 1..N, r[i]^4) + q[N - 1]^4;
+        L = sum(i in 0..N, dot(q[i])^2) / 2 - squares / 2 - fourths / 4;
+        discretize trapezoidal;
+    }
+}
