@@ -450,7 +450,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
     ///
-    /// 126 operations.
+    /// 150 operations.
     #[inline]
     fn momentum_equation(
         &self,
@@ -477,37 +477,47 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let (sin9, cos9) = θ1_mid.sin_cos();
         let (sin10, cos10) = θ2_mid.sin_cos();
         let s11 = self.m2 * self.l2;
-        let s12 = s11 * θ1_dot * θ2_dot;
-        let s13 = self.g * s1;
-        let s14 = self.l1 * θ1_dot;
-        let s15 = s14 * θ2_dot;
-        let s16 = (s8 * θ2_dot * sin6).abs();
-        let s17 = h.abs() * real(0.5);
-        let s18 = p0_θ1.abs() + (self.m1.abs() + self.m2.abs()) * (s4 * θ1_dot).abs()
-            + (s7 * θ2_dot * cos6).abs();
-        let s19 = h * h * real(0.25);
-        let s20 = s7 * cos6;
-        let s21 = (θ1_dot + θ2_dot) * real(0.5) * sin6 * self.l2 * self.l1 * self.m2;
-        let s22 = s7 * h * real(0.25) * θ1_dot * θ2_dot * cos6;
+        let s12 = s7 * θ2_dot;
+        let s13 = s11 * θ1_dot * θ2_dot;
+        let s14 = self.g * s1;
+        let s15 = self.l1 * θ1_dot;
+        let s16 = s15 * θ2_dot;
+        let s17 = (s8 * θ2_dot * sin6).abs();
+        let s18 = s12 * sin6;
+        let s19 = (s14 * cos9 + s13 * cos6) * self.l1;
+        let s20 = s7 * h;
+        let s21 = s20 * real(0.5) * θ1_dot * θ2_dot * cos6;
+        let s22 = h.abs() * real(0.5);
+        let s23 = p0_θ1.abs() + (self.m1.abs() + self.m2.abs()) * (s4 * θ1_dot).abs()
+            + (s12 * cos6).abs();
+        let s24 = s23 + s22 * (s17 + (self.l1 * self.g * s1 * sin9).abs())
+            + (θ1_mid * (s18 - s3 * s19)).abs();
+        let s25 = s8 * sin6;
+        let s26 = (s16 * cos6 + self.g * cos10) * self.l2 * self.m2;
+        let s27 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * cos6).abs()
+            + s22 * (s17 + (s11 * self.g * sin10).abs());
+        let s28 = h * h * real(0.25);
+        let s29 = s7 * cos6;
+        let s30 = (θ1_dot + θ2_dot) * real(0.5) * sin6 * self.l2 * self.l1 * self.m2;
+        let s31 = s20 * real(0.25) * θ1_dot * θ2_dot * cos6;
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
                 (self.l1 * s1 * θ1_dot + s11 * θ2_dot * cos6) * self.l1 - p0_θ1
-                    - (p0_θ1_low - s3 * ((s12 * sin6 + s13 * sin9) * self.l1)),
-                (self.l2 * θ2_dot + s14 * cos6) * self.l2 * self.m2 - p0_θ2
+                    - (p0_θ1_low - s3 * ((s13 * sin6 + s14 * sin9) * self.l1)),
+                (self.l2 * θ2_dot + s15 * cos6) * self.l2 * self.m2 - p0_θ2
                     - (p0_θ2_low
-                        + s3 * ((s15 * sin6 - self.g * sin10) * self.l2 * self.m2)),
+                        + s3 * ((s16 * sin6 - self.g * sin10) * self.l2 * self.m2)),
             ]),
             magnitude: ::vi_core::SVector::from([
-                s18 + s17 * (s16 + (self.l1 * self.g * s1 * sin9).abs()),
-                p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * cos6).abs()
-                    + s17 * (s16 + (s11 * self.g * sin10).abs()),
+                s24 + (θ2_mid * (s18 - s21)).abs(),
+                s27 + (θ1_mid * (s25 + s21)).abs() + (θ2_mid * (s25 + s3 * s26)).abs(),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    s1 * s4 + s19 * ((s13 * cos9 + s12 * cos6) * self.l1),
-                    s20 + (s21 - s22) * h,
-                    s20 - (s21 + s22) * h,
-                    s2 + s19 * ((s15 * cos6 + self.g * cos10) * self.l2 * self.m2),
+                    s1 * s4 + s28 * s19,
+                    s29 + (s30 - s31) * h,
+                    s29 - (s30 + s31) * h,
+                    s2 + s28 * s26,
                 ],
             ),
         }
@@ -515,7 +525,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
 
     /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
     ///
-    /// 229 operations.
+    /// 265 operations.
     #[inline]
     fn extended_system(
         &self,
@@ -551,69 +561,81 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let (sin16, cos16) = θ2_mid.sin_cos();
         let s17 = self.m2 * self.l2;
         let s18 = s17 * self.g;
-        let s19 = s17 * θ1_dot * θ2_dot;
-        let s20 = self.g * s1;
-        let s21 = s20 * sin14;
-        let s22 = (s19 * sin10 + s21) * self.l1;
-        let s23 = self.l1 * θ1_dot;
-        let s24 = s23 * θ2_dot;
-        let s25 = self.g * sin16;
-        let s26 = (s24 * sin10 - s25) * self.l2 * self.m2;
-        let s27 = s23 * cos10;
-        let s28 = self.m1.abs() + self.m2.abs();
-        let s29 = (s13 * sin10).abs();
-        let s30 = s29 + (s15 * s1 * sin14).abs();
-        let s31 = h.abs() * real(0.5);
-        let s32 = s29 + (s18 * sin16).abs();
-        let s33 = (s20 * cos14 + s19 * cos10) * self.l1;
-        let s34 = h * h * real(0.25);
-        let s35 = s11 * cos10;
-        let s36 = (θ1_dot + θ2_dot) * real(0.5) * sin10 * self.l2 * self.l1 * self.m2;
-        let s37 = s11 * h * real(0.25) * θ1_dot * θ2_dot * cos10;
-        let s38 = self.g * cos16;
-        let s39 = (s24 * cos10 + s38) * self.l2 * self.m2;
-        let s40 = s4 + s5 - energy0
+        let s19 = s11 * θ2_dot;
+        let s20 = s17 * θ1_dot * θ2_dot;
+        let s21 = self.g * s1;
+        let s22 = s21 * sin14;
+        let s23 = (s20 * sin10 + s22) * self.l1;
+        let s24 = self.l1 * θ1_dot;
+        let s25 = s24 * θ2_dot;
+        let s26 = self.g * sin16;
+        let s27 = (s25 * sin10 - s26) * self.l2 * self.m2;
+        let s28 = s24 * cos10;
+        let s29 = self.m1.abs() + self.m2.abs();
+        let s30 = (s13 * sin10).abs();
+        let s31 = s30 + (s15 * s1 * sin14).abs();
+        let s32 = s19 * sin10;
+        let s33 = (s21 * cos14 + s20 * cos10) * self.l1;
+        let s34 = s11 * h;
+        let s35 = s34 * real(0.5) * θ1_dot * θ2_dot * cos10;
+        let s36 = h.abs() * real(0.5);
+        let s37 = p0_θ1.abs() + s29 * (s6 * θ1_dot).abs() + (s19 * cos10).abs()
+            + s36 * s31 + (θ1_mid * (s32 - s3 * s33)).abs();
+        let s38 = s30 + (s18 * sin16).abs();
+        let s39 = s12 * sin10;
+        let s40 = self.g * cos16;
+        let s41 = (s25 * cos10 + s40) * self.l2 * self.m2;
+        let s42 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s12 * cos10).abs() + s36 * s38
+            + (θ1_mid * (s39 + s35)).abs();
+        let s43 = h * h * real(0.25);
+        let s44 = s11 * cos10;
+        let s45 = (θ1_dot + θ2_dot) * real(0.5) * sin10 * self.l2 * self.l1 * self.m2;
+        let s46 = s34 * real(0.25) * θ1_dot * θ2_dot * cos10;
+        let s47 = s4 + s5 - energy0
             - (self.l1 * real(0.5) * s7 + self.g * cos14) * s1 * self.l1
-            + (-((self.l2 * real(0.5) * θ2_dot + s27) * θ2_dot) - s38) * self.l2
+            + (-((self.l2 * real(0.5) * θ2_dot + s28) * θ2_dot) - s40) * self.l2
                 * self.m2;
-        let s41 = (s21 + s17 * s8 * sin10) * real(0.5) * self.l1;
-        let s42 = (s12 * s8 * cos10 - θ1_dot * s33) * real(0.25) * h;
-        let s43 = (s25 - self.l1 * s7 * sin10) * real(0.5) * self.l2 * self.m2;
-        let s44 = (s11 * s7 * θ2_dot * cos10 - θ2_dot * s39) * real(0.25) * h;
-        let s45 = energy0.abs() + s4.abs() + s5.abs() + (s2 * s8).abs() * real(0.5)
+        let s48 = (s22 + s17 * s8 * sin10) * real(0.5) * self.l1;
+        let s49 = s12 * s8 * cos10 - θ1_dot * s33;
+        let s50 = s49 * real(0.25) * h;
+        let s51 = (s26 - self.l1 * s7 * sin10) * real(0.5) * self.l2 * self.m2;
+        let s52 = s11 * s7 * θ2_dot * cos10 - θ2_dot * s41;
+        let s53 = s52 * real(0.25) * h;
+        let s54 = energy0.abs() + s4.abs() + s5.abs() + (s2 * s8).abs() * real(0.5)
             + (s13 * cos10).abs();
-        let s46 = s45 + (s18 * cos16).abs() + s30 * (h * θ1_dot).abs() * real(0.5)
-            + s32 * (h * θ2_dot).abs() * real(0.5);
+        let s55 = s54 + (s18 * cos16).abs() + s31 * (h * θ1_dot).abs() * real(0.5)
+            + s38 * (h * θ2_dot).abs() * real(0.5);
+        let s56 = s55 + (θ1_mid * (s23 + s49 * real(0.5) * h)).abs()
+            + (θ2_mid * (s27 - s52 * real(0.5) * h)).abs();
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
                     (self.l1 * s1 * θ1_dot + s17 * θ2_dot * cos10) * self.l1 - p0_θ1
-                        - (p0_θ1_low - s3 * s22),
-                    (self.l2 * θ2_dot + s27) * self.l2 * self.m2 - p0_θ2
-                        - (p0_θ2_low + s3 * s26),
+                        - (p0_θ1_low - s3 * s23),
+                    (self.l2 * θ2_dot + s28) * self.l2 * self.m2 - p0_θ2
+                        - (p0_θ2_low + s3 * s27),
                 ]),
                 magnitude: ::vi_core::SVector::from([
-                    p0_θ1.abs() + s28 * (s6 * θ1_dot).abs()
-                        + (s11 * θ2_dot * cos10).abs() + s31 * s30,
-                    p0_θ2.abs() + (s2 * θ2_dot).abs() + (s12 * cos10).abs() + s31 * s32,
+                    s37 + (θ2_mid * (s32 - s35)).abs(),
+                    s42 + (θ2_mid * (s39 + s3 * s41)).abs(),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
                     &[
-                        s1 * s6 + s34 * s33,
-                        s35 + (s36 - s37) * h,
-                        s35 - (s36 + s37) * h,
-                        s2 + s34 * s39,
+                        s1 * s6 + s43 * s33,
+                        s44 + (s45 - s46) * h,
+                        s44 - (s45 + s46) * h,
+                        s2 + s43 * s41,
                     ],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s41 - s42, s43 - s44]),
-            energy_residual: s40
+            residual_dh: ::vi_core::SVector::from([s48 - s50, s51 - s53]),
+            energy_residual: s47
                 + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                    + (θ2_dot * s26 - θ1_dot * s22) * real(0.5) * h),
-            energy_magnitude: s46 + (s6 * real(0.5) * s7 + (s15 * cos14).abs()) * s28,
-            energy_dv: ::vi_core::SVector::from([s41 + s42, s43 + s44]),
+                    + (θ2_dot * s27 - θ1_dot * s23) * real(0.5) * h),
+            energy_magnitude: s56 + (s6 * real(0.5) * s7 + (s15 * cos14).abs()) * s29,
+            energy_dv: ::vi_core::SVector::from([s48 + s50, s51 + s53]),
             energy_dh: s11 * real(0.5) * s7 * s8 * cos10 - s7 * s33 * real(0.25)
-                - s8 * s39 * real(0.25),
+                - s8 * s41 * real(0.25),
         }
     }
 

@@ -344,7 +344,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     ///
     /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
     ///
-    /// 64 operations.
+    /// 90 operations.
     #[inline]
     fn momentum_equation(
         &self,
@@ -367,26 +367,34 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s5 = s4 * s4;
         let s6 = s5 * s4;
         let s7 = self.mu * h;
-        let s8 = s7 * real(0.5);
-        let s9 = s5 * s5 * s4;
-        let s10 = h * h;
-        let s11 = s10 * real(0.25);
-        let s12 = -(self.mu * s10 * real(0.75) * x_mid * y_mid * s9);
+        let s8 = s7 * x_mid;
+        let s9 = s7 * real(0.5);
+        let s10 = s5 * s5 * s4;
+        let s11 = s6 * real(0.5);
+        let s12 = s2 * s10;
+        let s13 = x_dot.abs() + p0_x.abs() + (s8 * s6).abs() * real(0.5)
+            + (x_mid * ((s11 - s12 * real(1.5)) * self.mu * h)).abs();
+        let s14 = s3 * s10;
+        let s15 = y_dot.abs() + p0_y.abs() + (s7 * y_mid * s6).abs() * real(0.5)
+            + (s7 * s2 * y_mid * s10).abs() * real(1.5);
+        let s16 = h * h;
+        let s17 = s16 * real(0.25);
+        let s18 = -(self.mu * s16 * real(0.75) * x_mid * y_mid * s10);
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s8 * x_mid * s6 - p0_x_low),
-                y_dot - p0_y + (s8 * y_mid * s6 - p0_y_low),
+                x_dot - p0_x + (s9 * x_mid * s6 - p0_x_low),
+                y_dot - p0_y + (s9 * y_mid * s6 - p0_y_low),
             ]),
             magnitude: ::vi_core::SVector::from([
-                x_dot.abs() + p0_x.abs() + (s7 * x_mid * s6).abs() * real(0.5),
-                y_dot.abs() + p0_y.abs() + (s7 * y_mid * s6).abs() * real(0.5),
+                s13 + (s8 * s3 * s10).abs() * real(1.5),
+                s15 + (y_mid * ((s11 - s14 * real(1.5)) * self.mu * h)).abs(),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    real(1.0) - s11 * ((s2 * s9 * real(3.0) - s6) * self.mu),
-                    s12,
-                    s12,
-                    real(1.0) - s11 * ((s3 * s9 * real(3.0) - s6) * self.mu),
+                    real(1.0) - s17 * ((s12 * real(3.0) - s6) * self.mu),
+                    s18,
+                    s18,
+                    real(1.0) - s17 * ((s14 * real(3.0) - s6) * self.mu),
                 ],
             ),
         }
@@ -394,7 +402,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
 
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
     ///
-    /// 151 operations.
+    /// 206 operations.
     #[inline]
     fn extended_system(
         &self,
@@ -421,47 +429,63 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s7 = s5 * s5;
         let s8 = s7 * s5;
         let s9 = self.mu * h;
-        let s10 = s9 * real(0.5);
-        let s11 = s7 * s7 * s5;
-        let s12 = (s2 * s11 * real(3.0) - s8) * self.mu;
-        let s13 = h * h;
-        let s14 = s13 * real(0.25);
-        let s15 = -(self.mu * s13 * real(0.75) * x_mid * y_mid * s11);
-        let s16 = (s3 * s11 * real(3.0) - s8) * self.mu;
-        let s17 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - (x_dot * x_mid * s8 + y_dot * y_mid * s8) * real(0.5) * self.mu * h;
-        let s18 = self.mu * real(0.5);
-        let s19 = s18 * x_mid * s8;
-        let s20 = self.mu * real(0.75);
-        let s21 = x_dot * s12 * real(0.25);
-        let s22 = (s20 * y_dot * x_mid * y_mid * s11 + s21) * h;
-        let s23 = s18 * y_mid * s8;
-        let s24 = (s20 * x_dot * x_mid * y_mid * s11 + y_dot * s16 * real(0.25)) * h;
-        let s25 = x_dot * x_dot * real(0.5) + s4 * real(0.5) + energy0.abs()
+        let s10 = s9 * x_mid;
+        let s11 = s9 * real(0.5);
+        let s12 = s7 * s7 * s5;
+        let s13 = s8 * real(0.5);
+        let s14 = s2 * s12;
+        let s15 = s14 * real(1.5);
+        let s16 = x_dot.abs() + p0_x.abs() + (s10 * s8).abs() * real(0.5)
+            + (x_mid * ((s13 - s15) * self.mu * h)).abs();
+        let s17 = s3 * s12;
+        let s18 = s17 * real(1.5);
+        let s19 = y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5)
+            + (s9 * s2 * y_mid * s12).abs() * real(1.5);
+        let s20 = (s14 * real(3.0) - s8) * self.mu;
+        let s21 = h * h;
+        let s22 = s21 * real(0.25);
+        let s23 = -(self.mu * s21 * real(0.75) * x_mid * y_mid * s12);
+        let s24 = (s17 * real(3.0) - s8) * self.mu;
+        let s25 = x_dot * x_mid;
+        let s26 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+            - (s25 * s8 + y_dot * y_mid * s8) * real(0.5) * self.mu * h;
+        let s27 = self.mu * real(0.5);
+        let s28 = s27 * x_mid * s8;
+        let s29 = self.mu * real(0.75);
+        let s30 = x_dot * s20 * real(0.25);
+        let s31 = (s29 * y_dot * x_mid * y_mid * s12 + s30) * h;
+        let s32 = s27 * y_mid * s8;
+        let s33 = (s29 * x_dot * x_mid * y_mid * s12 + y_dot * s24 * real(0.25)) * h;
+        let s34 = self.mu * x_mid * s8
+            + (y_dot * x_mid * y_mid * s12 * real(1.5) + (s15 - s13) * x_dot) * self.mu
+                * h;
+        let s35 = self.mu * y_mid * s8
+            + (s25 * y_mid * s12 * real(1.5) + (s18 - s13) * y_dot) * self.mu * h;
+        let s36 = x_dot * x_dot * real(0.5) + s4 * real(0.5) + energy0.abs()
             + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
+        let s37 = s36 + s6.abs() + (s9 * x_dot * x_mid * s8).abs() * real(0.5)
+            + (s9 * y_dot * y_mid * s8).abs() * real(0.5);
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    x_dot - p0_x + (s10 * x_mid * s8 - p0_x_low),
-                    y_dot - p0_y + (s10 * y_mid * s8 - p0_y_low),
+                    x_dot - p0_x + (s11 * x_mid * s8 - p0_x_low),
+                    y_dot - p0_y + (s11 * y_mid * s8 - p0_y_low),
                 ]),
                 magnitude: ::vi_core::SVector::from([
-                    x_dot.abs() + p0_x.abs() + (s9 * x_mid * s8).abs() * real(0.5),
-                    y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5),
+                    s16 + (s10 * s3 * s12).abs() * real(1.5),
+                    s19 + (y_mid * ((s13 - s18) * self.mu * h)).abs(),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[real(1.0) - s14 * s12, s15, s15, real(1.0) - s14 * s16],
+                    &[real(1.0) - s22 * s20, s23, s23, real(1.0) - s22 * s24],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s19 - s22, s23 - s24]),
+            residual_dh: ::vi_core::SVector::from([s28 - s31, s32 - s33]),
             energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s6)
-                + (p0_x - x_dot * real(0.5)) * x_dot + s17,
-            energy_magnitude: s25 + s6.abs()
-                + (s9 * x_dot * x_mid * s8).abs() * real(0.5)
-                + (s9 * y_dot * y_mid * s8).abs() * real(0.5),
-            energy_dv: ::vi_core::SVector::from([s19 + s22, s23 + s24]),
-            energy_dh: s4 * s16 * real(0.25)
-                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s11 + s21) * x_dot,
+                + (p0_x - x_dot * real(0.5)) * x_dot + s26,
+            energy_magnitude: s37 + (x_mid * s34).abs() + (y_mid * s35).abs(),
+            energy_dv: ::vi_core::SVector::from([s28 + s31, s32 + s33]),
+            energy_dh: s4 * s24 * real(0.25)
+                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s12 + s30) * x_dot,
         }
     }
 

@@ -1,4 +1,4 @@
-use vi_core::lagrangian;
+use vi_core::{FixedStep, State, lagrangian};
 
 lagrangian! {
     pub struct Broken {
@@ -12,4 +12,6 @@ lagrangian! {
 fn main() {
     let broken = Broken { m: 2.0, ..Broken::default() };
     println!("{}", broken.m);
+    let run = FixedStep::new(broken, State::at(&broken, 0.0, [1.0], [0.0]), 0.01);
+    println!("{:?}", run.map(|mut run| run.step()));
 }

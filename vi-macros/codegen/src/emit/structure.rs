@@ -2,9 +2,11 @@
 
 use super::Source;
 use super::formula::number;
-use crate::syntax::System;
-use proc_macro2::TokenStream;
+use crate::syntax::{Kind, System};
+use num_traits::ToPrimitive;
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
+use std::collections::BTreeMap;
 
 /// The struct, `Default`, `Parameters`, and the conversion to another kind of number.
 pub(super) fn items(source: &Source) -> TokenStream {
@@ -75,19 +77,79 @@ fn pause(attributes: &[syn::Attribute]) -> Option<TokenStream> {
     attributes.iter().any(|attribute| attribute.path().is_ident("doc")).then(|| quote!(#[doc = ""]))
 }
 
-/// What is emitted beside the errors of a broken system, so that the code that uses its struct still type-checks.
+/// What is emitted beside the errors of a broken system, so that the code that uses it still type-checks: its struct, and,
+/// where the number of coordinates can be told, the traits without a body.
 #[must_use]
 pub fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
-    let parameters: Vec<_> = system.parameters.iter().map(|parameter| &parameter.name).collect();
+    // A parameter that is declared twice is one of the errors, and one field.
+    let parameters: BTreeMap<String, &Ident> =
+        system.parameters.iter().map(|parameter| (parameter.name.to_string(), &parameter.name)).collect();
+    let parameters: Vec<&Ident> = parameters.into_values().collect();
     let (marker, marker_value) = marker(parameters.is_empty());
+    let traits = dimension(system).map(|dimension| stub_traits(name, &dimension));
     quote! {
+        #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(missing_docs, dead_code, non_snake_case)]
         #visibility struct #name<T = f64> { #(pub #parameters: T,)* #marker }
         impl ::core::default::Default for #name<f64> {
             fn default() -> Self {
                 Self { #(#parameters: 0.0,)* #marker_value }
             }
+        }
+        #traits
+    }
+}
+
+/// The number of coordinates, where every length is a plain number.
+fn dimension(system: &System) -> Option<Literal> {
+    let lengths = system.coordinates.iter().map(|coordinate| match &coordinate.length {
+        None => Some(1),
+        Some(length) => match &length.kind {
+            Kind::Number(number) => number.to_usize(),
+            _ => None,
+        },
+    });
+    lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
+}
+
+fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
+    let none = quote!({ ::core::unimplemented!() });
+    let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
+    let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
+    let from = quote!(&self, _: &::vi_core::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
+    let vector = quote!(::vi_core::SVector<T, #n>);
+    let or_error = |what: TokenStream| quote!(::core::result::Result<#what, ::vi_core::StepError>);
+    let (or_vector, or_number) = (or_error(vector.clone()), or_error(quote!(T)));
+    quote! {
+        impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
+            const NAME: &'static str = "";
+            const COORDINATES: [&'static str; #n] = [""; #n];
+            const AUTONOMOUS: bool = false;
+            const FORCED: bool = false;
+            const CYCLIC: [bool; #n] = [false; #n];
+            fn lagrangian(#at) -> T #none
+            fn energy(#at) -> T #none
+            fn momentum(#at) -> #vector #none
+            fn force(#at) -> #vector #none
+            fn acceleration(#at) -> #or_vector #none
+            fn step_density(#at) -> #or_number #none
+        }
+        impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#n, T> for #name<T> {
+            fn ld(#over) -> T #none
+            fn d1_ld(#over) -> T #none
+            fn d2_ld(#over) -> #vector #none
+            fn d3_ld(#over) -> T #none
+            fn d4_ld(#over) -> #vector #none
+            fn fd_minus(#over) -> #vector #none
+            fn fd_plus(#over) -> #vector #none
+            fn gd_minus(#over) -> T #none
+            fn gd_plus(#over) -> T #none
+        }
+        impl<T: ::vi_core::Real> ::vi_core::Stepping<#n, T> for #name<T> {
+            fn momentum_equation(#from) -> ::vi_core::MomentumEquation<#n, T> #none
+            fn extended_system(#from) -> ::vi_core::ExtendedSystem<#n, T> #none
+            fn increment(#from) -> ::vi_core::Increment<#n, T> #none
         }
     }
 }
