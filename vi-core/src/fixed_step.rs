@@ -227,7 +227,7 @@ where
 }
 
 /// A step must lead somewhere.
-fn check_step<T: Scalar>(h: T) -> Result<(), StepError> {
+pub(crate) fn check_step<T: Scalar>(h: T) -> Result<(), StepError> {
     let value = h.to_f64();
     if value.is_finite() && value != 0.0 {
         Ok(())

@@ -11,6 +11,7 @@
 //! | [`node`] | nodes as the steppers carry them |
 //! | [`linear`] | small dense linear systems |
 //! | [`fixed_step`] | the variational integrator with a given step |
+//! | [`composition`] | fixed steps of order 4, 6 and 8 |
 //! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`error`] | every way in which a step can fail, with its numbers |
@@ -20,6 +21,7 @@
 
 pub mod check;
 mod compensated;
+pub mod composition;
 pub mod condition;
 mod continuation;
 pub mod energy_preserving;
@@ -32,6 +34,7 @@ pub mod node;
 pub mod real;
 pub mod state;
 
+pub use composition::{Composition, Scheme};
 pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
