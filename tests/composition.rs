@@ -4,6 +4,7 @@ mod support;
 
 use support::exact::Motion;
 use support::reference::{file, number, steps, vector};
+use support::slope;
 use vi_core::{Composition, Scheme, State, StepError, Stepping};
 use vi_systems::{DampedOscillator, DoublePendulum, HardDuffing, Kepler, ParametricPendulum, Pendulum};
 
@@ -49,16 +50,10 @@ fn order<const N: usize, S: Stepping<N> + Copy>(system: S, scheme: Scheme, q: [f
         let last = run.take(count as usize).last().expect("a step").unwrap_or_else(|error| panic!("{error}"));
         (last.q - exact.q).amax()
     };
-    let points: Vec<(f64, f64)> = counts.iter().map(|count| (f64::from(*count).ln(), error(*count).ln())).collect();
-    let points: Vec<(f64, f64)> = points.into_iter().filter(|(_, error)| *error > 1e-12_f64.ln()).collect();
-    assert!(points.len() >= 3, "{}: too few points above rounding", scheme.name);
-    let count: f64 = points.iter().map(|_| 1.0).sum();
-    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
-    let slope = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>()
-        / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>();
-    println!("{} of {}: order {:.3}", scheme.name, S::NAME, -slope);
+    let points: Vec<(f64, f64)> = counts.iter().map(|count| (span / f64::from(*count), error(*count))).collect();
+    let slope = slope(&format!("{} of {}", scheme.name, S::NAME), &points, 1e-12);
     // Measured: off by 0.066 at most.
-    assert!((-slope - f64::from(scheme.order)).abs() <= 0.1, "{} of {}: order {}", scheme.name, S::NAME, -slope);
+    assert!((slope - f64::from(scheme.order)).abs() <= 0.1, "{} of {}: order {slope}", scheme.name, S::NAME);
 }
 
 #[test]

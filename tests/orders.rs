@@ -9,6 +9,7 @@ mod support;
 use support::exact::Motion;
 use support::reference::{file, number};
 use support::scenes::{Scene, each_system};
+use support::slope;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError, Stepping};
 use vi_systems::{DoublePendulum, HardDuffing, Kepler, Pendulum};
 
@@ -25,24 +26,6 @@ const ENERGY_PRESERVING_PLATEAU: f64 = 1e-8;
 fn difference<const N: usize>(system: &impl Lagrangian<N>, state: &State<N>, exact: &Motion<N>) -> f64 {
     let p = system.momentum(exact.t, &exact.q, &exact.v);
     (state.q - exact.q).amax().max((state.p - p).amax())
-}
-
-/// Slope of the line through (log h, log error), by least squares.
-fn slope(name: &str, points: &[(f64, f64)], plateau: f64) -> f64 {
-    let kept: Vec<(f64, f64)> =
-        points.iter().filter(|(_, error)| *error > plateau).map(|(h, error)| (h.ln(), error.ln())).collect();
-    assert!(kept.len() >= 3, "{name}: only {} points above the plateau: {points:?}", kept.len());
-    let mean = |one: fn(&(f64, f64)) -> f64| kept.iter().map(one).sum::<f64>() / kept.iter().map(|_| 1.0).sum::<f64>();
-    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
-    let products = |one: fn(f64, f64) -> f64| kept.iter().map(|(a, b)| one(a - x, b - y)).sum::<f64>();
-    let slope = products(|a, b| a * b) / products(|a, _| a * a);
-    println!(
-        "{name}: slope {slope:.4} over {} points, errors {:.1e} to {:.1e}",
-        kept.len(),
-        points[0].1,
-        points[points.len() - 1].1
-    );
-    slope
 }
 
 /// Slopes lie this close to 2. Measured: 4e-4 with fixed steps, 9.0e-3 with energy-preserving ones.

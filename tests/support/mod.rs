@@ -26,3 +26,21 @@ impl Sequence {
         low + (high - low) * self.next()
     }
 }
+
+/// Slope of the line through (log h, log error), by least squares, points at the rounding plateau dropped.
+pub(crate) fn slope(name: &str, points: &[(f64, f64)], plateau: f64) -> f64 {
+    let kept: Vec<(f64, f64)> =
+        points.iter().filter(|(_, error)| *error > plateau).map(|(h, error)| (h.ln(), error.ln())).collect();
+    assert!(kept.len() >= 3, "{name}: only {} points above the plateau: {points:?}", kept.len());
+    let mean = |one: fn(&(f64, f64)) -> f64| kept.iter().map(one).sum::<f64>() / kept.iter().map(|_| 1.0).sum::<f64>();
+    let (x, y) = (mean(|point| point.0), mean(|point| point.1));
+    let products = |one: fn(f64, f64) -> f64| kept.iter().map(|(a, b)| one(a - x, b - y)).sum::<f64>();
+    let slope = products(|a, b| a * b) / products(|a, _| a * a);
+    println!(
+        "{name}: slope {slope:.4} over {} points, errors {:.1e} to {:.1e}",
+        kept.len(),
+        points[0].1,
+        points[points.len() - 1].1
+    );
+    slope
+}
