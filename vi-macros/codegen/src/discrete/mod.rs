@@ -25,7 +25,7 @@ use crate::syntax::{Rule, parse};
 use vi_expr::{Expr, Pool, TooLarge};
 
 /// Distinct terms that the expressions of one system may have together, those of all stages.
-pub(crate) const NODES: usize = 150_000;
+pub(crate) const NODES: usize = 75_000;
 
 /// Whether a system is still within its size.
 pub(crate) fn bounded(pool: &Pool<Symbol>) -> Result<(), TooLarge> {
