@@ -13,7 +13,7 @@ use syn::Result;
 use vi_expr::{Expr, Function, Pool, Rational};
 
 /// Expressions that one definition may read, those of sums and arrays once for each value of the index.
-const READINGS: usize = 100_000;
+const READINGS: usize = 50_000;
 
 /// What is done with one value of an index.
 type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
