@@ -7,8 +7,8 @@
 ///
 /// * Autonomous and without a force: the energy is conserved
 /// * The mass matrix depends on the state
-/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`
-/// * `A` is dense, not symmetric
+/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step
+/// * `A` is dense, not symmetric; solved in closed form
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)]
 pub struct DoublePendulum<T = f64> {
@@ -446,18 +446,22 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
 
 #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
 impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
+    type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+    const CONSTANT_JACOBIAN: bool = false;
+    const SMOOTH: bool = true;
+
     /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
     ///
     /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
     ///
-    /// 150 operations.
+    /// 88 operations.
     #[inline]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::MomentumEquation<2, T> {
+    ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
         let [θ1_0, θ2_0]: [T; 2] = node.q.into();
         let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
         let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
@@ -465,59 +469,39 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let real = T::real;
         let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s3 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s3 * θ2_dot + θ2_0_low);
-        let s4 = self.l1 * self.l1;
-        let s5 = θ1_mid - θ2_mid;
-        let (sin6, cos6) = s5.sin_cos();
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let (sin9, cos9) = θ1_mid.sin_cos();
-        let (sin10, cos10) = θ2_mid.sin_cos();
-        let s11 = self.m2 * self.l2;
-        let s12 = s7 * θ2_dot;
-        let s13 = s11 * θ1_dot * θ2_dot;
-        let s14 = self.g * s1;
-        let s15 = self.l1 * θ1_dot;
-        let s16 = s15 * θ2_dot;
-        let s17 = (s8 * θ2_dot * sin6).abs();
-        let s18 = s12 * sin6;
-        let s19 = (s14 * cos9 + s13 * cos6) * self.l1;
-        let s20 = s7 * h;
-        let s21 = s20 * real(0.5) * θ1_dot * θ2_dot * cos6;
-        let s22 = h.abs() * real(0.5);
-        let s23 = p0_θ1.abs() + (self.m1.abs() + self.m2.abs()) * (s4 * θ1_dot).abs()
-            + (s12 * cos6).abs();
-        let s24 = s23 + s22 * (s17 + (self.l1 * self.g * s1 * sin9).abs())
-            + (θ1_mid * (s18 - s3 * s19)).abs();
-        let s25 = s8 * sin6;
-        let s26 = (s16 * cos6 + self.g * cos10) * self.l2 * self.m2;
-        let s27 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * cos6).abs()
-            + s22 * (s17 + (s11 * self.g * sin10).abs());
-        let s28 = h * h * real(0.25);
-        let s29 = s7 * cos6;
-        let s30 = (θ1_dot + θ2_dot) * real(0.5) * sin6 * self.l2 * self.l1 * self.m2;
-        let s31 = s20 * real(0.25) * θ1_dot * θ2_dot * cos6;
+        let s2 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
+        let s3 = θ1_mid - θ2_mid;
+        let (sin4, cos4) = s3.sin_cos();
+        let s5 = self.m2 * self.l1 * self.l2;
+        let (sin6, cos6) = θ1_mid.sin_cos();
+        let (sin7, cos7) = θ2_mid.sin_cos();
+        let s8 = self.m2 * self.l2;
+        let s9 = s8 * θ1_dot * θ2_dot;
+        let s10 = self.g * s1;
+        let s11 = self.l1 * θ1_dot;
+        let s12 = s11 * θ2_dot;
+        let s13 = h * h * real(0.25);
+        let s14 = s5 * cos4;
+        let s15 = (θ1_dot + θ2_dot) * real(0.5) * sin4 * self.l2 * self.l1 * self.m2;
+        let s16 = s5 * h * real(0.25) * θ1_dot * θ2_dot * cos4;
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
-                (self.l1 * s1 * θ1_dot + s11 * θ2_dot * cos6) * self.l1 - p0_θ1
-                    - (p0_θ1_low - s3 * ((s13 * sin6 + s14 * sin9) * self.l1)),
-                (self.l2 * θ2_dot + s15 * cos6) * self.l2 * self.m2 - p0_θ2
+                (self.l1 * s1 * θ1_dot + s8 * θ2_dot * cos4) * self.l1 - p0_θ1
+                    - (p0_θ1_low - s2 * ((s9 * sin4 + s10 * sin6) * self.l1)),
+                (self.l2 * θ2_dot + s11 * cos4) * self.l2 * self.m2 - p0_θ2
                     - (p0_θ2_low
-                        + s3 * ((s16 * sin6 - self.g * sin10) * self.l2 * self.m2)),
-            ]),
-            magnitude: ::vi_core::SVector::from([
-                s24 + (θ2_mid * (s18 - s21)).abs(),
-                s27 + (θ1_mid * (s25 + s21)).abs() + (θ2_mid * (s25 + s3 * s26)).abs(),
+                        + s2 * ((s12 * sin4 - self.g * sin7) * self.l2 * self.m2)),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    s1 * s4 + s28 * s19,
-                    s29 + (s30 - s31) * h,
-                    s29 - (s30 + s31) * h,
-                    s2 + s28 * s26,
+                    s1 * (self.l1 * self.l1)
+                        + s13 * ((s10 * cos6 + s9 * cos4) * self.l1),
+                    s14 + (s15 - s16) * h,
+                    s14 - (s15 + s16) * h,
+                    self.m2 * (self.l2 * self.l2)
+                        + s13 * ((s12 * cos4 + self.g * cos7) * self.l2 * self.m2),
                 ],
             ),
         }
@@ -525,14 +509,14 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
 
     /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
     ///
-    /// 265 operations.
+    /// 160 operations.
     #[inline]
     fn extended_system(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::ExtendedSystem<2, T> {
+    ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
         let [θ1_0, θ2_0]: [T; 2] = node.q.into();
@@ -542,100 +526,136 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let real = T::real;
         let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s3 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s3 * θ2_dot + θ2_0_low);
-        let s4 = θ1_dot * p0_θ1;
-        let s5 = θ2_dot * p0_θ2;
-        let s6 = self.l1 * self.l1;
-        let s7 = θ1_dot * θ1_dot;
-        let s8 = θ2_dot * θ2_dot;
-        let s9 = θ1_mid - θ2_mid;
-        let (sin10, cos10) = s9.sin_cos();
-        let s11 = self.m2 * self.l1 * self.l2;
-        let s12 = s11 * θ1_dot;
-        let s13 = s12 * θ2_dot;
-        let (sin14, cos14) = θ1_mid.sin_cos();
-        let s15 = self.l1 * self.g;
-        let (sin16, cos16) = θ2_mid.sin_cos();
-        let s17 = self.m2 * self.l2;
-        let s18 = s17 * self.g;
-        let s19 = s11 * θ2_dot;
-        let s20 = s17 * θ1_dot * θ2_dot;
-        let s21 = self.g * s1;
-        let s22 = s21 * sin14;
-        let s23 = (s20 * sin10 + s22) * self.l1;
-        let s24 = self.l1 * θ1_dot;
-        let s25 = s24 * θ2_dot;
-        let s26 = self.g * sin16;
-        let s27 = (s25 * sin10 - s26) * self.l2 * self.m2;
-        let s28 = s24 * cos10;
-        let s29 = self.m1.abs() + self.m2.abs();
-        let s30 = (s13 * sin10).abs();
-        let s31 = s30 + (s15 * s1 * sin14).abs();
-        let s32 = s19 * sin10;
-        let s33 = (s21 * cos14 + s20 * cos10) * self.l1;
-        let s34 = s11 * h;
-        let s35 = s34 * real(0.5) * θ1_dot * θ2_dot * cos10;
-        let s36 = h.abs() * real(0.5);
-        let s37 = p0_θ1.abs() + s29 * (s6 * θ1_dot).abs() + (s19 * cos10).abs()
-            + s36 * s31 + (θ1_mid * (s32 - s3 * s33)).abs();
-        let s38 = s30 + (s18 * sin16).abs();
-        let s39 = s12 * sin10;
-        let s40 = self.g * cos16;
-        let s41 = (s25 * cos10 + s40) * self.l2 * self.m2;
-        let s42 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s12 * cos10).abs() + s36 * s38
-            + (θ1_mid * (s39 + s35)).abs();
-        let s43 = h * h * real(0.25);
-        let s44 = s11 * cos10;
-        let s45 = (θ1_dot + θ2_dot) * real(0.5) * sin10 * self.l2 * self.l1 * self.m2;
-        let s46 = s34 * real(0.25) * θ1_dot * θ2_dot * cos10;
-        let s47 = s4 + s5 - energy0
-            - (self.l1 * real(0.5) * s7 + self.g * cos14) * s1 * self.l1
-            + (-((self.l2 * real(0.5) * θ2_dot + s28) * θ2_dot) - s40) * self.l2
-                * self.m2;
-        let s48 = (s22 + s17 * s8 * sin10) * real(0.5) * self.l1;
-        let s49 = s12 * s8 * cos10 - θ1_dot * s33;
-        let s50 = s49 * real(0.25) * h;
-        let s51 = (s26 - self.l1 * s7 * sin10) * real(0.5) * self.l2 * self.m2;
-        let s52 = s11 * s7 * θ2_dot * cos10 - θ2_dot * s41;
-        let s53 = s52 * real(0.25) * h;
-        let s54 = energy0.abs() + s4.abs() + s5.abs() + (s2 * s8).abs() * real(0.5)
-            + (s13 * cos10).abs();
-        let s55 = s54 + (s18 * cos16).abs() + s31 * (h * θ1_dot).abs() * real(0.5)
-            + s38 * (h * θ2_dot).abs() * real(0.5);
-        let s56 = s55 + (θ1_mid * (s23 + s49 * real(0.5) * h)).abs()
-            + (θ2_mid * (s27 - s52 * real(0.5) * h)).abs();
+        let s2 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
+        let s3 = θ1_dot * θ1_dot;
+        let s4 = θ2_dot * θ2_dot;
+        let s5 = θ1_mid - θ2_mid;
+        let (sin6, cos6) = s5.sin_cos();
+        let s7 = self.m2 * self.l1 * self.l2;
+        let (sin8, cos8) = θ1_mid.sin_cos();
+        let (sin9, cos9) = θ2_mid.sin_cos();
+        let s10 = self.m2 * self.l2;
+        let s11 = s10 * θ1_dot * θ2_dot;
+        let s12 = self.g * s1;
+        let s13 = s12 * sin8;
+        let s14 = (s11 * sin6 + s13) * self.l1;
+        let s15 = self.l1 * θ1_dot;
+        let s16 = s15 * θ2_dot;
+        let s17 = self.g * sin9;
+        let s18 = (s16 * sin6 - s17) * self.l2 * self.m2;
+        let s19 = s15 * cos6;
+        let s20 = self.g * cos9;
+        let s21 = θ1_dot * p0_θ1 + θ2_dot * p0_θ2 - energy0
+            - (self.l1 * real(0.5) * s3 + self.g * cos8) * s1 * self.l1;
+        let s22 = (s12 * cos8 + s11 * cos6) * self.l1;
+        let s23 = (s16 * cos6 + s20) * self.l2 * self.m2;
+        let s24 = h * h * real(0.25);
+        let s25 = s7 * cos6;
+        let s26 = (θ1_dot + θ2_dot) * real(0.5) * sin6 * self.l2 * self.l1 * self.m2;
+        let s27 = s7 * h * real(0.25) * θ1_dot * θ2_dot * cos6;
+        let s28 = (s13 + s10 * s4 * sin6) * real(0.5) * self.l1;
+        let s29 = (s7 * θ1_dot * s4 * cos6 - θ1_dot * s22) * real(0.25) * h;
+        let s30 = (s17 - self.l1 * s3 * sin6) * real(0.5) * self.l2 * self.m2;
+        let s31 = (s7 * s3 * θ2_dot * cos6 - θ2_dot * s23) * real(0.25) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    (self.l1 * s1 * θ1_dot + s17 * θ2_dot * cos10) * self.l1 - p0_θ1
-                        - (p0_θ1_low - s3 * s23),
-                    (self.l2 * θ2_dot + s28) * self.l2 * self.m2 - p0_θ2
-                        - (p0_θ2_low + s3 * s27),
-                ]),
-                magnitude: ::vi_core::SVector::from([
-                    s37 + (θ2_mid * (s32 - s35)).abs(),
-                    s42 + (θ2_mid * (s39 + s3 * s41)).abs(),
+                    (self.l1 * s1 * θ1_dot + s10 * θ2_dot * cos6) * self.l1 - p0_θ1
+                        - (p0_θ1_low - s2 * s14),
+                    (self.l2 * θ2_dot + s19) * self.l2 * self.m2 - p0_θ2
+                        - (p0_θ2_low + s2 * s18),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
                     &[
-                        s1 * s6 + s43 * s33,
-                        s44 + (s45 - s46) * h,
-                        s44 - (s45 + s46) * h,
-                        s2 + s43 * s41,
+                        s1 * (self.l1 * self.l1) + s24 * s22,
+                        s25 + (s26 - s27) * h,
+                        s25 - (s26 + s27) * h,
+                        self.m2 * (self.l2 * self.l2) + s24 * s23,
                     ],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s48 - s50, s51 - s53]),
-            energy_residual: s47
+            residual_dh: ::vi_core::SVector::from([s28 - s29, s30 - s31]),
+            energy_residual: s21
+                + (-((self.l2 * real(0.5) * θ2_dot + s19) * θ2_dot) - s20) * self.l2
+                    * self.m2
                 + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                    + (θ2_dot * s27 - θ1_dot * s23) * real(0.5) * h),
-            energy_magnitude: s56 + (s6 * real(0.5) * s7 + (s15 * cos14).abs()) * s29,
-            energy_dv: ::vi_core::SVector::from([s48 + s50, s51 + s53]),
-            energy_dh: s11 * real(0.5) * s7 * s8 * cos10 - s7 * s33 * real(0.25)
-                - s8 * s41 * real(0.25),
+                    + (θ2_dot * s18 - θ1_dot * s14) * real(0.5) * h),
+            energy_dv: ::vi_core::SVector::from([s28 + s29, s30 + s31]),
+            energy_dh: s7 * real(0.5) * s3 * s4 * cos6 - s3 * s22 * real(0.25)
+                - s4 * s23 * real(0.25),
+        }
+    }
+
+    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
+    ///
+    /// 164 operations.
+    #[cold]
+    fn magnitudes(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Magnitudes<2, T> {
+        let energy0 = node.energy;
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let s2 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = θ2_dot * θ2_dot;
+        let s5 = θ1_mid - θ2_mid;
+        let (sin6, cos6) = s5.sin_cos();
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = s8 * θ2_dot;
+        let (sin10, cos10) = θ1_mid.sin_cos();
+        let s11 = self.l1 * self.g;
+        let (sin12, cos12) = θ2_mid.sin_cos();
+        let s13 = self.m2 * self.l2;
+        let s14 = s13 * self.g;
+        let s15 = s7 * θ2_dot;
+        let s16 = self.m1.abs() + self.m2.abs();
+        let s17 = self.l1 * self.l1;
+        let s18 = (s9 * sin6).abs();
+        let s19 = s18 + (s11 * s1 * sin10).abs();
+        let s20 = s15 * sin6;
+        let s21 = self.g * s1;
+        let s22 = s13 * θ1_dot * θ2_dot;
+        let s23 = (s21 * cos10 + s22 * cos6) * self.l1;
+        let s24 = s7 * h * real(0.5) * θ1_dot * θ2_dot * cos6;
+        let s25 = h.abs() * real(0.5);
+        let s26 = p0_θ1.abs() + s16 * (s17 * θ1_dot).abs() + (s15 * cos6).abs()
+            + s25 * s19 + (θ1_mid * (s20 - s2 * s23)).abs();
+        let s27 = s18 + (s14 * sin12).abs();
+        let s28 = s8 * sin6;
+        let s29 = self.l1 * θ1_dot * θ2_dot;
+        let s30 = (s29 * cos6 + self.g * cos12) * self.l2 * self.m2;
+        let s31 = p0_θ2.abs() + (s3 * θ2_dot).abs() + (s8 * cos6).abs() + s25 * s27
+            + (θ1_mid * (s28 + s24)).abs();
+        let s32 = θ1_dot * θ1_dot;
+        let s33 = (s22 * sin6 + s21 * sin10) * self.l1
+            + (s8 * s4 * cos6 - θ1_dot * s23) * real(0.5) * h;
+        let s34 = (s29 * sin6 - self.g * sin12) * self.l2 * self.m2
+            - (s7 * s32 * θ2_dot * cos6 - θ2_dot * s30) * real(0.5) * h;
+        let s35 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
+            + (s3 * s4).abs() * real(0.5);
+        let s36 = s35 + (s9 * cos6).abs() + (s14 * cos12).abs()
+            + s19 * (h * θ1_dot).abs() * real(0.5);
+        let s37 = s36 + s27 * (h * θ2_dot).abs() * real(0.5) + (θ1_mid * s33).abs()
+            + (θ2_mid * s34).abs();
+        ::vi_core::Magnitudes {
+            residual: ::vi_core::SVector::from([
+                s26 + (θ2_mid * (s20 - s24)).abs(),
+                s31 + (θ2_mid * (s28 + s2 * s30)).abs(),
+            ]),
+            energy_residual: s37 + (s17 * real(0.5) * s32 + (s11 * cos10).abs()) * s16,
         }
     }
 

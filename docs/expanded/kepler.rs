@@ -8,8 +8,8 @@
 ///
 /// * Autonomous and without a force: the energy is conserved
 /// * `L = T(v) + U(t, q)` with a constant mass matrix
-/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`
-/// * `A` is dense, symmetric
+/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step
+/// * `A` is dense, symmetric; solved in closed form
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)]
 pub struct Kepler<T = f64> {
@@ -132,9 +132,9 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let s1 = (x * x + y * y).sqrt().recip();
         let s2 = s1 * s1 * s1;
-        let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
-            &[real(1.0), real(0.0), real(0.0), real(1.0)],
-        );
+        let mass: ::vi_core::linear::Banded<2, 1, T> = ::vi_core::linear::Banded {
+            rows: [[real(1.0)], [real(1.0)]],
+        };
         let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
             -(self.mu * x * s2),
             -(self.mu * y * s2),
@@ -340,18 +340,22 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
 
 #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
 impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
+    type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+    const CONSTANT_JACOBIAN: bool = false;
+    const SMOOTH: bool = true;
+
     /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
     ///
     /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
     ///
-    /// 90 operations.
+    /// 48 operations.
     #[inline]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::MomentumEquation<2, T> {
+    ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
         let [x0, y0]: [T; 2] = node.q.into();
         let [x0_low, y0_low]: [T; 2] = node.q_low.into();
         let [p0_x, p0_y]: [T; 2] = node.p.into();
@@ -366,35 +370,22 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s4 = (s2 + s3).sqrt().recip();
         let s5 = s4 * s4;
         let s6 = s5 * s4;
-        let s7 = self.mu * h;
-        let s8 = s7 * x_mid;
-        let s9 = s7 * real(0.5);
-        let s10 = s5 * s5 * s4;
-        let s11 = s6 * real(0.5);
-        let s12 = s2 * s10;
-        let s13 = x_dot.abs() + p0_x.abs() + (s8 * s6).abs() * real(0.5)
-            + (x_mid * ((s11 - s12 * real(1.5)) * self.mu * h)).abs();
-        let s14 = s3 * s10;
-        let s15 = y_dot.abs() + p0_y.abs() + (s7 * y_mid * s6).abs() * real(0.5)
-            + (s7 * s2 * y_mid * s10).abs() * real(1.5);
-        let s16 = h * h;
-        let s17 = s16 * real(0.25);
-        let s18 = -(self.mu * s16 * real(0.75) * x_mid * y_mid * s10);
+        let s7 = self.mu * h * real(0.5);
+        let s8 = s5 * s5 * s4;
+        let s9 = h * h;
+        let s10 = s9 * real(0.25);
+        let s11 = -(self.mu * s9 * real(0.75) * x_mid * y_mid * s8);
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s9 * x_mid * s6 - p0_x_low),
-                y_dot - p0_y + (s9 * y_mid * s6 - p0_y_low),
-            ]),
-            magnitude: ::vi_core::SVector::from([
-                s13 + (s8 * s3 * s10).abs() * real(1.5),
-                s15 + (y_mid * ((s11 - s14 * real(1.5)) * self.mu * h)).abs(),
+                x_dot - p0_x + (s7 * x_mid * s6 - p0_x_low),
+                y_dot - p0_y + (s7 * y_mid * s6 - p0_y_low),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    real(1.0) - s17 * ((s12 * real(3.0) - s6) * self.mu),
-                    s18,
-                    s18,
-                    real(1.0) - s17 * ((s14 * real(3.0) - s6) * self.mu),
+                    real(1.0) - s10 * ((s2 * s8 * real(3.0) - s6) * self.mu),
+                    s11,
+                    s11,
+                    real(1.0) - s10 * ((s3 * s8 * real(3.0) - s6) * self.mu),
                 ],
             ),
         }
@@ -402,14 +393,14 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
 
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
     ///
-    /// 206 operations.
+    /// 109 operations.
     #[inline]
     fn extended_system(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::ExtendedSystem<2, T> {
+    ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
         let [x0, y0]: [T; 2] = node.q.into();
@@ -423,69 +414,95 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let y_mid = y0 + (s1 * y_dot + y0_low);
         let s2 = x_mid * x_mid;
         let s3 = y_mid * y_mid;
-        let s4 = y_dot * y_dot;
-        let s5 = (s2 + s3).sqrt().recip();
-        let s6 = self.mu * s5;
-        let s7 = s5 * s5;
-        let s8 = s7 * s5;
-        let s9 = self.mu * h;
-        let s10 = s9 * x_mid;
-        let s11 = s9 * real(0.5);
-        let s12 = s7 * s7 * s5;
-        let s13 = s8 * real(0.5);
-        let s14 = s2 * s12;
-        let s15 = s14 * real(1.5);
-        let s16 = x_dot.abs() + p0_x.abs() + (s10 * s8).abs() * real(0.5)
-            + (x_mid * ((s13 - s15) * self.mu * h)).abs();
-        let s17 = s3 * s12;
-        let s18 = s17 * real(1.5);
-        let s19 = y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5)
-            + (s9 * s2 * y_mid * s12).abs() * real(1.5);
-        let s20 = (s14 * real(3.0) - s8) * self.mu;
-        let s21 = h * h;
-        let s22 = s21 * real(0.25);
-        let s23 = -(self.mu * s21 * real(0.75) * x_mid * y_mid * s12);
-        let s24 = (s17 * real(3.0) - s8) * self.mu;
-        let s25 = x_dot * x_mid;
-        let s26 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - (s25 * s8 + y_dot * y_mid * s8) * real(0.5) * self.mu * h;
-        let s27 = self.mu * real(0.5);
-        let s28 = s27 * x_mid * s8;
-        let s29 = self.mu * real(0.75);
-        let s30 = x_dot * s20 * real(0.25);
-        let s31 = (s29 * y_dot * x_mid * y_mid * s12 + s30) * h;
-        let s32 = s27 * y_mid * s8;
-        let s33 = (s29 * x_dot * x_mid * y_mid * s12 + y_dot * s24 * real(0.25)) * h;
-        let s34 = self.mu * x_mid * s8
-            + (y_dot * x_mid * y_mid * s12 * real(1.5) + (s15 - s13) * x_dot) * self.mu
-                * h;
-        let s35 = self.mu * y_mid * s8
-            + (s25 * y_mid * s12 * real(1.5) + (s18 - s13) * y_dot) * self.mu * h;
-        let s36 = x_dot * x_dot * real(0.5) + s4 * real(0.5) + energy0.abs()
-            + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
-        let s37 = s36 + s6.abs() + (s9 * x_dot * x_mid * s8).abs() * real(0.5)
-            + (s9 * y_dot * y_mid * s8).abs() * real(0.5);
+        let s4 = (s2 + s3).sqrt().recip();
+        let s5 = s4 * s4;
+        let s6 = s5 * s4;
+        let s7 = self.mu * h * real(0.5);
+        let s8 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+            - (x_dot * x_mid * s6 + y_dot * y_mid * s6) * real(0.5) * self.mu * h;
+        let s9 = s5 * s5 * s4;
+        let s10 = (s2 * s9 * real(3.0) - s6) * self.mu;
+        let s11 = h * h;
+        let s12 = s11 * real(0.25);
+        let s13 = -(self.mu * s11 * real(0.75) * x_mid * y_mid * s9);
+        let s14 = (s3 * s9 * real(3.0) - s6) * self.mu;
+        let s15 = self.mu * real(0.5);
+        let s16 = s15 * x_mid * s6;
+        let s17 = self.mu * real(0.75);
+        let s18 = x_dot * s10 * real(0.25);
+        let s19 = (s17 * y_dot * x_mid * y_mid * s9 + s18) * h;
+        let s20 = s15 * y_mid * s6;
+        let s21 = (s17 * x_dot * x_mid * y_mid * s9 + y_dot * s14 * real(0.25)) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    x_dot - p0_x + (s11 * x_mid * s8 - p0_x_low),
-                    y_dot - p0_y + (s11 * y_mid * s8 - p0_y_low),
-                ]),
-                magnitude: ::vi_core::SVector::from([
-                    s16 + (s10 * s3 * s12).abs() * real(1.5),
-                    s19 + (y_mid * ((s13 - s18) * self.mu * h)).abs(),
+                    x_dot - p0_x + (s7 * x_mid * s6 - p0_x_low),
+                    y_dot - p0_y + (s7 * y_mid * s6 - p0_y_low),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[real(1.0) - s22 * s20, s23, s23, real(1.0) - s22 * s24],
+                    &[real(1.0) - s12 * s10, s13, s13, real(1.0) - s12 * s14],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s28 - s31, s32 - s33]),
-            energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s6)
-                + (p0_x - x_dot * real(0.5)) * x_dot + s26,
-            energy_magnitude: s37 + (x_mid * s34).abs() + (y_mid * s35).abs(),
-            energy_dv: ::vi_core::SVector::from([s28 + s31, s32 + s33]),
-            energy_dh: s4 * s24 * real(0.25)
-                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s12 + s30) * x_dot,
+            residual_dh: ::vi_core::SVector::from([s16 - s19, s20 - s21]),
+            energy_residual: (p0_y - y_dot * real(0.5)) * y_dot
+                - (energy0 + self.mu * s4) + (p0_x - x_dot * real(0.5)) * x_dot + s8,
+            energy_dv: ::vi_core::SVector::from([s16 + s19, s20 + s21]),
+            energy_dh: y_dot * y_dot * s14 * real(0.25)
+                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s9 + s18) * x_dot,
+        }
+    }
+
+    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
+    ///
+    /// 119 operations.
+    #[cold]
+    fn magnitudes(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Magnitudes<2, T> {
+        let energy0 = node.energy;
+        let [x0, y0]: [T; 2] = node.q.into();
+        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let x_mid = x0 + (s1 * x_dot + x0_low);
+        let y_mid = y0 + (s1 * y_dot + y0_low);
+        let s2 = x_mid * x_mid;
+        let s3 = y_mid * y_mid;
+        let s4 = (s2 + s3).sqrt().recip();
+        let s5 = s4 * s4;
+        let s6 = s5 * s4;
+        let s7 = self.mu * h;
+        let s8 = s7 * x_mid;
+        let s9 = s5 * s5 * s4;
+        let s10 = s6 * real(0.5);
+        let s11 = s2 * s9 * real(1.5);
+        let s12 = x_dot.abs() + p0_x.abs() + (s8 * s6).abs() * real(0.5)
+            + (x_mid * ((s10 - s11) * self.mu * h)).abs();
+        let s13 = s3 * s9 * real(1.5);
+        let s14 = y_dot.abs() + p0_y.abs() + (s7 * y_mid * s6).abs() * real(0.5)
+            + (s7 * s2 * y_mid * s9).abs() * real(1.5);
+        let s15 = self.mu * x_mid * s6
+            + (y_dot * x_mid * y_mid * s9 * real(1.5) + (s11 - s10) * x_dot) * self.mu
+                * h;
+        let s16 = self.mu * y_mid * s6
+            + (x_dot * x_mid * y_mid * s9 * real(1.5) + (s13 - s10) * y_dot) * self.mu
+                * h;
+        let s17 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
+            + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
+        let s18 = s17 + (self.mu * s4).abs()
+            + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
+            + (s7 * y_dot * y_mid * s6).abs() * real(0.5);
+        ::vi_core::Magnitudes {
+            residual: ::vi_core::SVector::from([
+                s12 + (s8 * s3 * s9).abs() * real(1.5),
+                s14 + (y_mid * ((s10 - s13) * self.mu * h)).abs(),
+            ]),
+            energy_residual: s18 + (x_mid * s15).abs() + (y_mid * s16).abs(),
         }
     }
 

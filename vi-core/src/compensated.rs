@@ -1,7 +1,7 @@
 //! Sums that keep what rounding takes from them.
 //!
-//! In: a number as the unevaluated sum of `value` and `low`, and an increment. Out: the new sum in the same form,
-//! with `value` the nearest number to it: Knuth's two-sum, twice. No branch, so it serves every [`Real`].
+//! In: a number as the unevaluated sum of `value` and `low`, and an increment. Out: the new sum in the same form, by Knuth's
+//! two-sum. No branch, so it serves every [`Real`].
 
 use crate::Real;
 use nalgebra::SVector;
@@ -14,14 +14,14 @@ fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     (sum, (a - (sum - b_seen)) + (b - b_seen))
 }
 
-/// Adds `increment` to `value + low`.
+/// Adds `increment`, exact to ε² of the sum: for what grows by the same number again and again.
 #[inline]
 pub(crate) fn add<T: Real>(value: &mut T, low: &mut T, increment: T) {
     let (sum, lost) = two_sum(*value, increment);
     (*value, *low) = two_sum(sum, lost + *low);
 }
 
-/// Adds `increment` to `value + low`, entry by entry.
+/// Adds `increment`, entry by entry, exact to an ulp of each increment, which are themselves rounded: half the operations.
 #[inline]
 pub(crate) fn add_vector<T: Real, const N: usize>(
     value: &mut SVector<T, N>,
@@ -29,7 +29,7 @@ pub(crate) fn add_vector<T: Real, const N: usize>(
     increment: &SVector<T, N>,
 ) {
     for ((value, low), increment) in value.iter_mut().zip(low.iter_mut()).zip(increment.iter()) {
-        add(value, low, *increment);
+        (*value, *low) = two_sum(*value, *increment + *low);
     }
 }
 

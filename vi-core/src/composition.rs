@@ -14,10 +14,10 @@
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of Computation
 //! 66 (1997) 1089.
 
-use crate::continuation::{self, Pace};
-use crate::fixed_step::check_step;
-use crate::momentum::{self, Solution};
-use crate::{Node, Scalar, State, StepError, Stepping};
+use crate::fixed_step::{Branch, check_step};
+use crate::momentum;
+use crate::stride::{Inverse, Stride};
+use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
 /// A symmetric composition.
@@ -96,12 +96,19 @@ impl Scheme {
 
 /// Fixed steps of higher order; see the [module](self).
 #[derive(Clone, Debug)]
-pub struct Composition<S, const N: usize, T = f64> {
+pub struct Composition<S, const N: usize, T = f64>
+where
+    S: Stepping<N, T>,
+    T: Real,
+{
     system: S,
     scheme: Scheme,
     node: Node<N, T>,
-    h: T,
-    v: SVector<T, N>,
+    /// The substeps: each is foretold from itself in the whole steps before.
+    strides: Vec<Stride<N, T>>,
+    /// The strides after the whole step that is under way.
+    following: Vec<Stride<N, T>>,
+    inverses: Vec<Option<Inverse<S, N, T>>>,
     failure: Option<StepError>,
 }
 
@@ -119,7 +126,9 @@ where
         let node = Node::new(state, T::zero());
         node.check_finite(T::zero())?;
         let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p])?;
-        Ok(Self { system, scheme, node, h, v, failure: None })
+        let strides: Vec<_> = scheme.weights.iter().map(|weight| Stride::new(h * T::real(*weight), v)).collect();
+        let inverses = strides.iter().map(|stride| stride.inverse(&system, &node)).collect();
+        Ok(Self { system, scheme, node, following: strides.clone(), strides, inverses, failure: None })
     }
 
     /// Takes one whole step and returns the state reached.
@@ -145,19 +154,26 @@ where
     }
 
     fn advance(&mut self) -> Result<State<N, T>, StepError> {
-        let (mut node, mut v) = (self.node, self.v);
-        for weight in self.scheme.weights {
-            let h = self.h * T::real(*weight);
-            let solved = momentum::solve(&self.system, &node, h, v);
-            let explained = |failure: StepError| failure.explained(&self.system, &node, h, &v);
-            Solution { v, .. } = match solved {
-                Ok(solution) => solution,
-                Err(_) => continuation::solve(&self.system, &node, h, v, Pace::RESCUE).map_err(explained)?,
+        let (mut node, system) = (self.node, &self.system);
+        // Before the first whole step the velocities of the substeps are not known: each follows the one before.
+        let mut known: Option<SVector<T, N>> = None;
+        for ((stride, next), inverse) in self.strides.iter().zip(&mut self.following).zip(&self.inverses) {
+            let stride = match known {
+                Some(v) if stride.forecast.is_new() => Stride::new(stride.h, v),
+                _ => *stride,
             };
-            node = node.advanced(h, &v, &self.system.increment(&node, h, &v));
+            let taken = match stride.foretold(system, &node, inverse.as_ref()) {
+                Some(taken) => taken,
+                None => stride
+                    .sought(system, &node, Branch::Nearest)
+                    .map_err(|failure| failure.explained(system, &node, stride.h, &stride.forecast.newest()))?,
+            };
+            node = node.moved(stride.h, &taken.v, &system.increment(&node, stride.h, &taken.v).momentum);
             node.check_finite(self.node.t)?;
+            (*next, known) = (taken.next, Some(taken.v));
         }
-        (self.node, self.v) = (node, v);
+        self.node = node;
+        core::mem::swap(&mut self.strides, &mut self.following);
         Ok(self.state())
     }
 }

@@ -9,6 +9,7 @@
 //!
 //! grow as `1/h` in the unknowns `(v, h)`; in `(q1, t1)`, where `v = (q1 − q0)/h`, as `1/h²`; combined and scaled not at all.
 
+use crate::linear::Matrix;
 use crate::{ExtendedSystem, Scalar};
 use nalgebra::{DMatrix, SVector};
 
@@ -27,14 +28,14 @@ impl Condition {
     /// The condition numbers at `(v, h)` after a step of length `h_previous`. Allocates.
     #[must_use]
     pub fn of<const N: usize, T: Scalar>(
-        equations: &ExtendedSystem<N, T>,
+        equations: &ExtendedSystem<N, T, impl Matrix<N, T>>,
         h: T,
         v: &SVector<T, N>,
         h_previous: T,
     ) -> Self {
         let number = |value: T| value.to_f64();
         let (h, h_previous, v) = (number(h), number(h_previous), v.map(number));
-        let a = equations.momentum.jacobian.map(number);
+        let a = equations.momentum.jacobian.dense().map(number);
         let residual_dh = equations.residual_dh.map(number);
         let energy_dv = equations.energy_dv.map(number);
         let energy_dh = number(equations.energy_dh);

@@ -6,8 +6,9 @@
 //! determinant of the derivative keeps its sign, and beyond the turn it has the other one.
 
 use crate::error::Residuals;
+use crate::linear::{self, Matrix};
 use crate::momentum::{self, Failure, Solution};
-use crate::{Node, Scalar, StepError, Stepping, linear};
+use crate::{Node, Scalar, StepError, Stepping};
 use nalgebra::SVector;
 
 /// How the branch is followed: by which parts of h, and how close to the last root the next one must be.
@@ -24,11 +25,26 @@ pub(crate) struct Pace {
 
 impl Pace {
     /// To find a root where Newton's iteration from the guess found none: the branch is left where the iteration leaps.
-    pub(crate) const RESCUE: Self =
-        Self { largest_part: 1.0, least_part: 1.0 / 64.0, iterations: u32::MAX, signed: false };
+    const RESCUE: Self = Self { largest_part: 1.0, least_part: 1.0 / 64.0, iterations: u32::MAX, signed: false };
     /// To stay on the branch.
     pub(crate) const CLOSE: Self =
         Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 65536.0, iterations: 3, signed: true };
+}
+
+/// The root that Newton's iteration reaches from `guess`; where it fails, the root at `h` on the branch connected with
+/// h = 0, where v is near `start`.
+///
+/// # Errors
+/// As [`solve`].
+#[cold]
+pub(crate) fn nearest<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    guess: SVector<T, N>,
+    start: SVector<T, N>,
+) -> Result<Solution<N, T>, StepError> {
+    momentum::solve(system, node, h, guess).or_else(|_| solve(system, node, h, start, Pace::RESCUE))
 }
 
 /// The root at `h` on the branch connected with h = 0.
@@ -45,7 +61,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
 ) -> Result<Solution<N, T>, StepError> {
     let mut v = momentum::velocity(system, node, [guess, node.p])?;
     let sign = |h: T, v: &SVector<T, N>| {
-        if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian) } else { 1 }
+        if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian.dense()) } else { 1 }
     };
     let forward = sign(T::zero(), &v);
     let (mut reached, mut part, mut spent) = (0.0, pace.largest_part, 0);
@@ -64,14 +80,14 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
                 spent += solution.iterations;
             }
             Ok(_) if part <= pace.least_part => {
-                let residual = residual(system, node, h, v);
+                let residual = momentum::residual(system, node, h, &v);
                 let failure = Failure::Stalled { iterations: spent, residual };
                 return Err(failure.at(node.t.to_f64(), h.to_f64(), "derivative of the momentum equation", residuals));
             }
             Err(failure) if part <= pace.least_part => {
                 let failure = match failure {
                     // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
-                    Failure::Singular => match residual(system, node, h, v) {
+                    Failure::Singular => match momentum::residual(system, node, h, &v) {
                         residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
                         _ => Failure::NonFinite,
                     },
@@ -86,15 +102,4 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
         }
     }
     Ok(Solution { v, iterations: spent })
-}
-
-/// Residual at the whole step, in roundings.
-fn residual<const N: usize, T: Scalar, S: Stepping<N, T>>(
-    system: &S,
-    node: &Node<N, T>,
-    h: T,
-    v: SVector<T, N>,
-) -> f64 {
-    let equation = system.momentum_equation(node, h, &v);
-    momentum::worst(&equation.residual, &equation.magnitude)
 }

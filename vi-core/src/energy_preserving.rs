@@ -14,7 +14,8 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `starts` | the node and the interval that the first step follows |
-//! | `guess` | v by extrapolation, h by the step law `h D^(1/3) = constant` |
+//! | `foretold` | the root by one Newton step from v and h extrapolated over the last steps, where earlier steps taught that this will do |
+//! | `guess` | else: v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `newton` | the n + 1 equations to the rounding floor |
 //! | `bracket` | where that fails: the smallest h > 0 that solves them, or the proof that there is none |
 //! | `fallback` | what is done then: an error, or fixed steps until a step exists again |
@@ -25,6 +26,7 @@
 mod bracket;
 mod checkpoint;
 mod fallback;
+mod foretold;
 mod guess;
 mod newton;
 mod starts;
@@ -34,9 +36,9 @@ pub use fallback::{Fallback, Switches};
 
 use crate::condition::Condition;
 use crate::state::Method;
-use crate::{Node, Scalar, State, Step, StepError, Stepping};
+use crate::{Node, Real, Scalar, State, Step, StepError, Stepping};
 use nalgebra::SVector;
-use newton::{Failure, Root};
+use newton::{Failure, Root, Trial};
 
 /// A step may be longer or shorter than the last one by this factor at most.
 const RATIO: f64 = 3.0;
@@ -87,19 +89,31 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        match self.advance() {
-            Ok(step) => Ok(step),
-            Err(failure) => Err(self.fail(failure)),
+        if let Some((run, step)) = self.foretold() {
+            self.run = run;
+            return Ok(step);
         }
+        // The rare path gets copies, so that a loop over steps may keep the run in registers.
+        let (run, outcome) = sought(self.system, self.run);
+        self.run = run;
+        outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
 
-    /// Ends the run.
-    #[cold]
-    fn fail(&mut self, failure: StepError) -> StepError {
-        let Last { v, h, .. } = self.run.last;
-        let failure = failure.explained(&self.system, &self.run.node, h, &v);
-        self.failure = Some(failure);
-        failure
+    /// The run after a step that had not to be sought, and the step.
+    #[inline]
+    fn foretold(&self) -> Option<(Checkpoint<N, T>, Step<N, T>)> {
+        let Self { system, run, .. } = self;
+        let Checkpoint { node, last, forecasts, bounds, phase, .. } = run;
+        if phase.is_some() {
+            return None;
+        }
+        let root = forecasts.root(system, node, last)?;
+        if bounds.as_ref().is_some_and(|bounds| !bounds.admit(root.h)) || self.runs_away(root.h) {
+            return None;
+        }
+        let forecasts = forecasts.after(root.v, root.h);
+        let (run, step) = run.after(system, *node, &root, forecasts, Method::EnergyPreserving);
+        run.node.is_finite().then_some((run, step))
     }
 
     /// The state reached last.
@@ -149,7 +163,7 @@ where
         Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
     }
 
-    #[inline]
+    /// Takes one step, sought from the interval before.
     fn advance(&mut self) -> Result<Step<N, T>, StepError> {
         if let Some(phase) = self.run.phase {
             return self.advance_in_phase(phase);
@@ -161,22 +175,82 @@ where
         }
     }
 
-    /// Takes the step `root` from `start`.
-    #[inline]
+    /// Takes the step `root` from `start`, and learns from it.
     fn take(&mut self, start: Node<N, T>, root: Root<N, T>, method: Method<T>) -> Result<Step<N, T>, StepError> {
-        let Root { v, h, density, iterations, residual } = root;
-        let gain = self.system.increment(&start, h, &v);
+        let forecasts = match method {
+            // A length that was given foretells none.
+            Method::FixedStep => foretold::Forecasts::new(root.v, root.h),
+            _ => self.run.forecasts.learnt(&self.system, &start, &root),
+        };
+        let (run, step) = self.run.after(&self.system, start, &root, forecasts, method);
+        run.node.check_finite(start.t)?;
+        self.run = run;
+        Ok(step)
+    }
+
+    /// The forward step from `node`, within the bounds.
+    fn root(&self, node: &Node<N, T>) -> Result<Root<N, T>, StepError> {
+        let Self { system, run: Checkpoint { last, forecasts, .. }, .. } = self;
+        let ratio = T::real(RATIO);
+        let range = (last.h / ratio, last.h * ratio);
+        // At the smallest root D has the sign that it had: past a change of sign lies another root.
+        let forward = |root: &Root<N, T>| root.density.to_f64() * last.density.to_f64() > 0.0;
+        // A lesson starts from the last interval.
+        let lesson = Trial { v: last.v, h: last.h };
+        let lesson = forecasts.is_learning().then(|| newton::solve(system, node, lesson, range, |_| ()).ok());
+        let root = match lesson.flatten().filter(forward) {
+            Some(root) => root,
+            None => match newton::solve(system, node, guess::predict(system, node, last), range, |_| ()) {
+                Ok(root) if forward(&root) => root,
+                Err(Failure::Degenerate { h, density }) => {
+                    let (t, h, density) = (node.t.to_f64(), h.to_f64(), density.to_f64());
+                    return Err(StepError::DegenerateStep { t, h, density });
+                }
+                _ => bracket::smallest_root(system, node, last)?,
+            },
+        };
+        match &self.run.bounds {
+            Some(bounds) if !bounds.admit(root.h) => Err(bounds.refusal(node.t, root.h)),
+            _ => Ok(root),
+        }
+    }
+}
+
+/// The run after a step that has to be sought, and the step; after an error the run as it was.
+#[cold]
+#[inline(never)]
+fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: S,
+    run: Checkpoint<N, T>,
+) -> (Checkpoint<N, T>, Result<Step<N, T>, StepError>) {
+    let mut integrator = EnergyPreserving { system, run, failure: None };
+    let outcome = integrator.advance();
+    let Last { v, h, .. } = integrator.run.last;
+    let explained = |failure: StepError| failure.explained(&system, &integrator.run.node, h, &v);
+    (integrator.run, outcome.map_err(explained))
+}
+
+impl<const N: usize, T: Real> Checkpoint<N, T> {
+    /// The run after the step `root` from `start`, and the step.
+    #[inline]
+    fn after<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        start: Node<N, T>,
+        root: &Root<N, T>,
+        forecasts: foretold::Forecasts<N, T>,
+        method: Method<T>,
+    ) -> (Self, Step<N, T>) {
+        let Root { v, h, density, iterations, residual, .. } = *root;
+        let gain = system.increment(&start, h, &v);
         let node = start.advanced(h, &v, &gain);
-        node.check_finite(start.t)?;
         let (t_mid, q_mid) = start.midpoint(h, &v);
-        let last = &self.run.last;
+        let last = &self.last;
         // One over the time between the middles of the two intervals.
         let frequency = T::real(2.0) / (h + last.h);
         let slope = (v - last.v) * frequency;
         let density_next = density + (density - last.density) * (frequency * h);
-        self.run.last = Last { v, h, previous: last.h, density, slope };
-        self.run.node = node;
-        Ok(Step {
+        let step = Step {
             t: node.t,
             q: node.q,
             p: node.p,
@@ -188,28 +262,9 @@ where
             iterations,
             residual: T::real(residual),
             method,
-        })
-    }
-
-    /// The forward step from `node`, within the bounds.
-    #[inline]
-    fn root(&self, node: &Node<N, T>) -> Result<Root<N, T>, StepError> {
-        let Self { system, run: Checkpoint { last, .. }, .. } = self;
-        let start = guess::predict(system, node, last);
-        let ratio = T::real(RATIO);
-        let root = match newton::solve(system, node, start, (last.h / ratio, last.h * ratio), |_| ()) {
-            // At the smallest root D has the sign that it had: past a change of sign lies another root.
-            Ok(root) if root.density.to_f64() * last.density.to_f64() > 0.0 => root,
-            Err(Failure::Degenerate { h, density }) => {
-                let (t, h, density) = (node.t.to_f64(), h.to_f64(), density.to_f64());
-                return Err(StepError::DegenerateStep { t, h, density });
-            }
-            _ => bracket::smallest_root(system, node, last)?,
         };
-        match &self.run.bounds {
-            Some(bounds) if !bounds.admit(root.h) => Err(bounds.refusal(node.t, root.h)),
-            _ => Ok(root),
-        }
+        let last = Last { v, h, previous: last.h, density, slope };
+        (Self { node, last, forecasts, ..*self }, step)
     }
 }
 

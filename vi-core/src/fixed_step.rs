@@ -7,19 +7,27 @@
 //!  p1 = D4 L_d + f_d⁺       as p0 plus its gain; for the midpoint rule p1 = p0 + h (L_q + f)
 //! ```
 //!
-//! The guess of v is extrapolated over the last three steps; the iteration ends at the rounding floor, and sums are
-//! compensated. Where Newton's iteration fails from the guess, v is followed from the velocity that belongs to p by
-//! continuation in h. Beyond a certain h the equation has several roots: see [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! Where A does not change, v comes by one product with its inverse. Else v is foretold from the last steps and one Newton
+//! step follows, trusted by what earlier steps taught of its convergence (`forecast`); sums are compensated. Where that
+//! does not do, Newton's iteration goes on to the rounding floor, every residual measured; and where it fails, v is followed
+//! from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several roots: see
+//! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
-use crate::continuation::{self, Pace};
-use crate::momentum::{self, Solution};
-use crate::{Node, Scalar, State, StepError, Stepping};
+use crate::momentum;
+use crate::stride::{Inverse, Stride, Taken};
+use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
 /// The variational integrator with a given step; see the [module](self).
 #[derive(Clone, Debug)]
-pub struct FixedStep<S, const N: usize, T = f64> {
+pub struct FixedStep<S, const N: usize, T = f64>
+where
+    S: Stepping<N, T>,
+    T: Real,
+{
     system: S,
+    /// The inverse of A, where it is the same in every step.
+    inverse: Option<Inverse<S, N, T>>,
     run: Checkpoint<N, T>,
     failure: Option<StepError>,
 }
@@ -32,8 +40,8 @@ pub struct FixedStep<S, const N: usize, T = f64> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Branch {
-    /// The root that Newton's iteration reaches from the velocity extrapolated over the last three steps. It depends on
-    /// the steps before, and on nothing else.
+    /// The root that Newton's iteration reaches from the velocity extrapolated over the last steps. It depends on the steps
+    /// before, and on nothing else.
     #[default]
     Nearest,
     /// The root that is connected with h = 0, where it is the velocity that belongs to p: it depends on the state alone.
@@ -55,9 +63,7 @@ pub enum Branch {
 )]
 pub struct Checkpoint<const N: usize, T = f64> {
     node: Node<N, T>,
-    h: T,
-    /// Velocities of the last three intervals, the newest first; before there are three the oldest stands in.
-    velocities: [SVector<T, N>; 3],
+    stride: Stride<N, T>,
     steps: u64,
     iterations: u32,
     branch: Branch,
@@ -81,8 +87,9 @@ where
         // Most Lagrangians give the velocity in one iteration from rest; where the mass matrix vanishes there,
         // any other start will do.
         let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p]).map_err(explained)?;
-        let run = Checkpoint { node, h, velocities: [v; 3], steps: 0, iterations: 0, branch: Branch::Nearest };
-        Ok(Self { system, run, failure: None })
+        let stride = Stride::new(h, v);
+        let run = Checkpoint { node, stride, steps: 0, iterations: 0, branch: Branch::Nearest };
+        Ok(Self { system, inverse: stride.inverse(&system, &node), run, failure: None })
     }
 
     /// Which root to take where there are several; [`Branch::Nearest`] unless this is called.
@@ -92,8 +99,7 @@ where
         self
     }
 
-    /// Everything that the run carries: the node with its low parts, the step, the velocities that the next guess is made
-    /// of.
+    /// Everything that the run carries: the node with its low parts, the step, and what the next guess is made of.
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
         self.run
     }
@@ -104,14 +110,14 @@ where
     /// # Errors
     /// [`StepError::NonFinite`] and [`StepError::InvalidInput`] for a checkpoint that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
-        let Checkpoint { node, h, velocities, .. } = &checkpoint;
-        check_step(*h)?;
+        let Checkpoint { node, stride, .. } = &checkpoint;
+        check_step(stride.h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
-        if !velocities.iter().all(|v| v.iter().all(|entry| entry.is_finite())) {
+        if !stride.forecast.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None });
         }
-        Ok(Self { system, run: checkpoint, failure: None })
+        Ok(Self { system, inverse: stride.inverse(&system, node), run: checkpoint, failure: None })
     }
 
     /// Takes one step and returns the state reached.
@@ -124,18 +130,29 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        match self.advance() {
-            Ok(step) => Ok(step),
-            Err(failure) => Err(self.fail(failure)),
+        // Rare paths get copies, so that a loop over steps may keep the run in registers.
+        match self.foretold().map_or_else(|| sought(self.system, self.run), Ok) {
+            Ok(run) => {
+                self.run = run;
+                Ok(run.node.state())
+            }
+            Err(failure) => {
+                let failure = explained(failure, self.system, self.run);
+                self.failure = Some(failure);
+                Err(failure)
+            }
         }
     }
 
-    /// Ends the run.
-    #[cold]
-    fn fail(&mut self, failure: StepError) -> StepError {
-        let failure = failure.explained(&self.system, &self.run.node, self.run.h, &self.v());
-        self.failure = Some(failure);
-        failure
+    /// The run after a step that had not to be sought.
+    #[inline]
+    fn foretold(&self) -> Option<Checkpoint<N, T>> {
+        let Checkpoint { node, stride, branch, .. } = &self.run;
+        if *branch != Branch::Nearest {
+            return None;
+        }
+        let after = self.run.after(&self.system, stride.foretold(&self.system, node, self.inverse.as_ref())?);
+        after.node.is_finite().then_some(after)
     }
 
     /// The state reached last.
@@ -156,14 +173,13 @@ where
 
     /// The step, in units of time.
     pub fn h(&self) -> T {
-        self.run.h
+        self.run.stride.h
     }
 
     /// Velocity of the last interval, `(q1 − q0)/h` without its cancellation; before the first step the velocity that
     /// belongs to the momenta.
     pub fn v(&self) -> SVector<T, N> {
-        let [v, ..] = self.run.velocities;
-        v
+        self.run.stride.forecast.newest()
     }
 
     /// Newton iterations of the last step.
@@ -178,38 +194,44 @@ where
         let v = self.v();
         (self.run.steps > 0).then(|| {
             let mut start = self.run.node;
-            start.shift(-self.run.h, &v);
-            let start = start.leaving(&self.system, self.run.h, &v);
-            start.energy + self.system.increment(&start, self.run.h, &v).energy
+            start.shift(-self.run.stride.h, &v);
+            let start = start.leaving(&self.system, self.run.stride.h, &v);
+            start.energy + self.system.increment(&start, self.run.stride.h, &v).energy
         })
     }
+}
 
+impl<const N: usize, T: Real> Checkpoint<N, T> {
+    /// The run after a step.
     #[inline]
-    fn advance(&mut self) -> Result<State<N, T>, StepError> {
-        let [v1, v2, v3] = self.run.velocities;
-        let guess = (v1 - v2) * T::real(3.0) + v3;
-        let Self { system, run: Checkpoint { node, h, .. }, .. } = self;
-        let Solution { v, iterations } = match self.run.branch {
-            Branch::Nearest => match momentum::solve(system, node, *h, guess) {
-                Ok(solution) => solution,
-                Err(_) => continuation::solve(system, node, *h, v1, Pace::RESCUE)?,
-            },
-            Branch::Connected => continuation::solve(system, node, *h, v1, Pace::CLOSE)?,
-        };
-        let gain = self.system.increment(&self.run.node, self.run.h, &v);
-        let node = self.run.node.advanced(self.run.h, &v, &gain);
-        node.check_finite(self.run.node.t)?;
-        self.run.node = node;
-        // One step knows no slope: it repeats v, and the next guess is v itself.
-        self.run.velocities = match self.run.steps {
-            0 => [v; 3],
-            1 => [v, v1, v1 + v1 - v],
-            _ => [v, v1, v2],
-        };
-        self.run.steps += 1;
-        self.run.iterations = iterations;
-        Ok(node.state())
+    fn after<S: Stepping<N, T>>(&self, system: &S, Taken { v, next, iterations }: Taken<N, T>) -> Self {
+        let h = self.stride.h;
+        let gain = system.increment(&self.node, h, &v);
+        let node = self.node.moved(h, &v, &gain.momentum);
+        Self { node, stride: next, steps: self.steps + 1, iterations, ..*self }
     }
+}
+
+/// The run after a step that has to be sought.
+#[cold]
+#[inline(never)]
+fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: S,
+    run: Checkpoint<N, T>,
+) -> Result<Checkpoint<N, T>, StepError> {
+    let after = run.after(&system, run.stride.sought(&system, &run.node, run.branch)?);
+    after.node.check_finite(run.node.t)?;
+    Ok(after)
+}
+
+/// The error with the expression that is not finite.
+#[cold]
+fn explained<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    failure: StepError,
+    system: S,
+    run: Checkpoint<N, T>,
+) -> StepError {
+    failure.explained(&system, &run.node, run.stride.h, &run.stride.forecast.newest())
 }
 
 impl<S, const N: usize, T> Iterator for FixedStep<S, N, T>

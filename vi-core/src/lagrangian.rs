@@ -9,6 +9,7 @@
 //!  E1 = −D3 L_d − g_d⁺
 //! ```
 
+use crate::linear::Matrix;
 use crate::{Interval, Node, Real, StepError};
 use nalgebra::{SMatrix, SVector};
 
@@ -74,25 +75,35 @@ pub trait DiscreteLagrangian<const N: usize, T: Real = f64>: Lagrangian<N, T> {
 }
 
 /// The equations of one step from a node, in the unknowns `(v, h)`: `q1 = q0 + h v`, `t1 = t0 + h`.
-pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> {
+///
+/// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
+/// the numbers of the common path stay in registers.
+pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Copy {
+    /// The form of A, by its zero pattern.
+    type Jacobian: Matrix<N, T>;
+    /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
+    const CONSTANT_JACOBIAN: bool;
+    /// Whether L and f are made of functions without a kink or a jump, so that Newton's iteration is quadratic everywhere.
+    const SMOOTH: bool;
+
     /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the
     /// velocity that belongs to `p`.
-    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T>;
+    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, Self::Jacobian>;
     /// Momentum and energy equation at the trial `(v, h)`.
-    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T>;
+    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
+    /// What the rounding of their residuals is measured in.
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T>;
     /// What momentum and energy gain over the solved step.
     fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T>;
 }
 
 /// The momentum equation at a trial velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MomentumEquation<const N: usize, T = f64> {
+pub struct MomentumEquation<const N: usize, T = f64, J = SMatrix<T, N, N>> {
     /// `−D2 L_d − f_d⁻ − p0`.
     pub residual: SVector<T, N>,
-    /// Sum of the absolute values of the terms of each residual: rounding is measured in it.
-    pub magnitude: SVector<T, N>,
     /// `A`, the derivative of the residual by `v`: row i, column j is `∂r_i/∂v_j`.
-    pub jacobian: SMatrix<T, N, N>,
+    pub jacobian: J,
 }
 
 /// Momentum and energy equation at a trial `(v, h)`, rows combined and scaled so that the condition number does not
@@ -108,19 +119,27 @@ pub struct MomentumEquation<const N: usize, T = f64> {
 ///
 /// whose Schur complement of `A` is `−D/4` to leading order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExtendedSystem<const N: usize, T = f64> {
+pub struct ExtendedSystem<const N: usize, T = f64, J = SMatrix<T, N, N>> {
     /// The momentum row `r` and its block `A`.
-    pub momentum: MomentumEquation<N, T>,
+    pub momentum: MomentumEquation<N, T, J>,
     /// `∂r/∂h`.
     pub residual_dh: SVector<T, N>,
     /// `c = e − v·r`, unscaled.
     pub energy_residual: T,
-    /// Sum of the absolute values of the terms of `c`.
-    pub energy_magnitude: T,
     /// `(∂e/∂v − v·A)/h`.
     pub energy_dv: SVector<T, N>,
     /// `(∂e/∂h − v·∂r/∂h)/h`.
     pub energy_dh: T,
+}
+
+/// Sums of the absolute values of the terms of the residuals at a trial `(v, h)`, and of what the rounding of the node
+/// moves them by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Magnitudes<const N: usize, T = f64> {
+    /// Of each momentum residual.
+    pub residual: SVector<T, N>,
+    /// Of the combined energy residual c.
+    pub energy_residual: T,
 }
 
 /// What momentum and energy gain over one solved step.
@@ -230,14 +249,23 @@ impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N,
 }
 
 impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
+    type Jacobian = S::Jacobian;
+    const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
+    const SMOOTH: bool = S::SMOOTH;
+
     #[inline]
-    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
+    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, S::Jacobian> {
         S::momentum_equation(self, node, h, v)
     }
 
     #[inline]
-    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
+    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, S::Jacobian> {
         S::extended_system(self, node, h, v)
+    }
+
+    #[inline]
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T> {
+        S::magnitudes(self, node, h, v)
     }
 
     #[inline]

@@ -9,7 +9,7 @@
 //! | [`mod@lagrangian`] | what a system says of itself, continuous and discrete |
 //! | [`state`] | states, intervals, steps |
 //! | [`node`] | nodes as the steppers carry them |
-//! | [`linear`] | small dense linear systems |
+//! | [`linear`] | small linear systems, by their zero pattern |
 //! | [`fixed_step`] | the variational integrator with a given step |
 //! | [`composition`] | fixed steps of order 4, 6 and 8 |
 //! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
@@ -27,19 +27,21 @@ mod continuation;
 pub mod energy_preserving;
 pub mod error;
 pub mod fixed_step;
+mod forecast;
 pub mod lagrangian;
 pub mod linear;
 mod momentum;
 pub mod node;
 pub mod real;
 pub mod state;
+mod stride;
 
 pub use composition::{Composition, Scheme};
 pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, MomentumEquation, Parameters, Stepping,
+    DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, Magnitudes, MomentumEquation, Parameters, Stepping,
 };
 pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};

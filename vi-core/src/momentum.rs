@@ -5,8 +5,9 @@
 //! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
 
 use crate::error::Residuals;
-use crate::{MomentumEquation, Node, Scalar, StepError, Stepping, linear};
-use nalgebra::SVector;
+use crate::linear::{self, Matrix};
+use crate::{Magnitudes, MomentumEquation, Node, Scalar, StepError, Stepping};
+use nalgebra::{SMatrix, SVector};
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
 /// cancellation inside a term.
@@ -70,8 +71,47 @@ pub(crate) fn worst<T: Scalar, const N: usize>(residual: &SVector<T, N>, magnitu
     residual.iter().zip(magnitude.iter()).fold(0.0, |worst, (r, m)| worse(roundings(*r, *m), worst))
 }
 
+/// The momentum equation at a trial velocity, with what its rounding is measured in.
+#[derive(Clone, Copy, Debug)]
+struct Trial<const N: usize, T, J> {
+    equation: MomentumEquation<N, T, J>,
+    magnitude: SVector<T, N>,
+}
+
+impl<const N: usize, T: Scalar, J: Matrix<N, T>> Trial<N, T, J> {
+    fn at<S: Stepping<N, T, Jacobian = J>>(system: &S, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Self {
+        let Magnitudes { residual: magnitude, .. } = system.magnitudes(node, h, v);
+        Self { equation: system.momentum_equation(node, h, v), magnitude }
+    }
+
+    /// The largest residual, in roundings.
+    fn residual(&self) -> f64 {
+        worst(&self.equation.residual, &self.magnitude)
+    }
+
+    /// The Newton step that would follow from `residual`.
+    fn step(&self, residual: &SVector<T, N>) -> Option<SVector<T, N>> {
+        linear::solve(&self.equation.jacobian, residual).or_else(|| self.pivoted(residual))
+    }
+
+    /// The same with pivoting.
+    #[cold]
+    fn pivoted(&self, residual: &SVector<T, N>) -> Option<SVector<T, N>> {
+        linear::solve::<_, N, 1>(&self.equation.jacobian.dense() as &SMatrix<T, N, N>, residual)
+    }
+}
+
+/// The largest residual of the momentum equation at `(v, h)`, in roundings.
+pub(crate) fn residual<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> f64 {
+    Trial::at(system, node, h, v).residual()
+}
+
 /// The velocity that solves the momentum equation at `h`, from the guess `v`.
-#[inline]
 pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -90,10 +130,10 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
     mut v: SVector<T, N>,
     mut observe: impl FnMut(f64),
 ) -> Result<Solution<N, T>, Failure> {
-    let mut equation = system.momentum_equation(node, h, &v);
+    let mut last = Trial::at(system, node, h, &v);
     let mut iterations = 0;
     loop {
-        let residual = worst(&equation.residual, &equation.magnitude);
+        let residual = last.residual();
         observe(residual);
         if residual <= 1.0 {
             return Ok(Solution { v, iterations });
@@ -105,30 +145,35 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
             return Err(Failure::Stalled { iterations, residual });
         }
         iterations += 1;
-        let mut step = linear::solve(&equation.jacobian, &equation.residual).ok_or(Failure::Singular)?;
-        let mut halvings = 0;
+        let mut step = last.step(&last.equation.residual).ok_or(Failure::Singular)?;
+        let (mut halvings, mut pivoted) = (0, false);
         loop {
             let trial_v = v - step;
-            let trial = system.momentum_equation(node, h, &trial_v);
+            let trial = Trial::at(system, node, h, &trial_v);
             // Measured in the magnitude at v: one far away would make any residual look small.
-            if worst(&trial.residual, &equation.magnitude) < residual
-                && worst(&trial.residual, &trial.magnitude).is_finite()
-            {
-                (v, equation) = (trial_v, trial);
+            if worst(&trial.equation.residual, &last.magnitude) < residual && trial.residual().is_finite() {
+                (v, last) = (trial_v, trial);
                 break;
             }
             if residual <= FLOOR {
                 return Ok(Solution { v, iterations });
             }
-            if halvings == 0 && contracts(&equation, &trial, &step) {
-                (v, equation) = (trial_v, trial);
+            if halvings == 0 && contracts(&last, &trial, &step) {
+                (v, last) = (trial_v, trial);
                 break;
             }
             if halvings == HALVINGS {
                 return Err(Failure::Stalled { iterations, residual });
             }
-            halvings += 1;
-            step *= T::real(0.5);
+            // A pivot may have been lost, before the step is too long.
+            match last.pivoted(&last.equation.residual) {
+                Some(other) if !pivoted && other != step => (step, pivoted) = (other, true),
+                _ => {
+                    halvings += 1;
+                    step *= T::real(0.5);
+                    pivoted = true;
+                }
+            }
         }
     }
 }
@@ -137,14 +182,14 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
 /// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at v, as at rest at the bottom
 /// of a potential, and so no magnitude to measure its residual in.
 #[cold]
-fn contracts<const N: usize, T: Scalar>(
-    equation: &MomentumEquation<N, T>,
-    trial: &MomentumEquation<N, T>,
+fn contracts<const N: usize, T: Scalar, J: Matrix<N, T>>(
+    last: &Trial<N, T, J>,
+    trial: &Trial<N, T, J>,
     step: &SVector<T, N>,
 ) -> bool {
     let longest = |step: &SVector<T, N>| step.iter().fold(0.0, |longest, entry| worse(entry.abs().to_f64(), longest));
-    worst(&trial.residual, &trial.magnitude).is_finite()
-        && linear::solve(&equation.jacobian, &trial.residual).is_some_and(|next| longest(&next) < 0.5 * longest(step))
+    trial.residual().is_finite()
+        && last.step(&trial.equation.residual).is_some_and(|next| longest(&next) < 0.5 * longest(step))
 }
 
 /// The velocity that belongs to the momenta of a node: the root at h = 0.

@@ -60,13 +60,20 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
     }
 
+    /// The node at the end of the step `(v, h)`, its energy left as it was.
+    #[inline]
+    pub(crate) fn moved(mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> Self {
+        self.shift(h, v);
+        compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
+        self
+    }
+
     /// The node at the end of the step `(v, h)`.
     #[inline]
-    pub(crate) fn advanced(mut self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
-        self.shift(h, v);
-        compensated::add_vector(&mut self.p, &mut self.p_low, &gain.momentum);
-        compensated::add(&mut self.energy, &mut self.energy_low, gain.energy);
-        self
+    pub(crate) fn advanced(self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
+        let mut node = self.moved(h, v, &gain.momentum);
+        compensated::add(&mut node.energy, &mut node.energy_low, gain.energy);
+        node
     }
 
     /// The same place with the momenta and the energy that make `(v, h)` the step from here:
@@ -82,6 +89,15 @@ impl<const N: usize, T: Real> Node<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Node<N, T> {
+    /// Whether every quantity is finite: one comparison.
+    #[inline]
+    pub(crate) fn is_finite(&self) -> bool {
+        // A number less itself is zero, and not a number where it is not finite.
+        let vectors = self.q.iter().chain(self.p.iter());
+        let zero = vectors.fold(self.t + self.energy - (self.t + self.energy), |sum, entry| sum + (*entry - *entry));
+        zero == T::zero()
+    }
+
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
     /// the last good node.
     pub(crate) fn check_finite(&self, t: T) -> Result<(), StepError> {

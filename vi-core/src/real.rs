@@ -2,7 +2,7 @@
 //!
 //! In: formulas written once, generic over [`Real`]. Out: the same formulas in `f64`, `f32`, and later in SIMD lanes.
 //! [`Real`] holds what a formula needs and nothing that a lane of several numbers could not answer;
-//! [`Scalar`] adds what the control flow of a stepper needs: order, precision, conversion to `f64`.
+//! [`Scalar`] adds what the control flow of a stepper needs: order.
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -26,6 +26,11 @@ pub trait Real:
     + num_traits::Zero
     + num_traits::One
 {
+    /// How many numbers this is.
+    const LANES: usize;
+    /// Distance from 1 to the next larger number.
+    const EPSILON: f64;
+
     /// The constant `value`, rounded to this type.
     fn real(value: f64) -> Self;
     /// 1/x.
@@ -89,6 +94,16 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Whether every lane is finite.
     fn is_finite(self) -> bool;
+    /// Whether every lane is above zero.
+    fn is_positive(self) -> bool;
+    /// 1 where `self ≤ bound`, 0 elsewhere: an indicator, lane by lane. A lane that is not a number is not below anything.
+    #[must_use]
+    fn at_most(self, bound: Self) -> Self;
+    /// 1 where `self > bound`, 0 elsewhere.
+    #[must_use]
+    fn is_above(self, bound: Self) -> Self;
+    /// Whether an indicator is 1 in every lane.
+    fn holds(self) -> bool;
     /// The value, of several lanes the first, as it stands in errors and tables.
     fn to_f64(self) -> f64;
     /// The smallest absolute value among the lanes: what a pivot is chosen by.
@@ -96,14 +111,15 @@ pub trait Real:
 }
 
 /// One number: what the control flow of a stepper needs beside the formulas.
-pub trait Scalar: Real + PartialOrd {
-    /// Distance from 1 to the next larger number.
-    const EPSILON: f64;
-}
+pub trait Scalar: Real + PartialOrd {}
 
 macro_rules! impl_real {
     ($($float:ident),*) => {$(
         impl Real for $float {
+            const LANES: usize = 1;
+            #[allow(clippy::cast_lossless)]
+            const EPSILON: f64 = $float::EPSILON as f64;
+
             // A constant of a formula is rounded to the type it is evaluated in: that is what `real` says.
             #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
             #[inline]
@@ -150,6 +166,14 @@ macro_rules! impl_real {
             fn max(self, other: Self) -> Self { $float::max(self, other) }
             #[inline]
             fn is_finite(self) -> bool { $float::is_finite(self) }
+            #[inline]
+            fn is_positive(self) -> bool { self > 0.0 }
+            #[inline]
+            fn at_most(self, bound: Self) -> Self { if self <= bound { 1.0 } else { 0.0 } }
+            #[inline]
+            fn is_above(self, bound: Self) -> Self { if self > bound { 1.0 } else { 0.0 } }
+            #[inline]
+            fn holds(self) -> bool { self != 0.0 }
             #[allow(clippy::cast_lossless)]
             #[inline]
             fn to_f64(self) -> f64 { self as f64 }
@@ -158,10 +182,7 @@ macro_rules! impl_real {
             fn least_magnitude(self) -> f64 { $float::abs(self) as f64 }
         }
 
-        impl Scalar for $float {
-            #[allow(clippy::cast_lossless)]
-            const EPSILON: f64 = $float::EPSILON as f64;
-        }
+        impl Scalar for $float {}
     )*};
 }
 

@@ -28,7 +28,7 @@ fn curve<const N: usize, P: Potential<N, f64>>(
         *v -= inverse * equation.residual;
     }
     let equations = system.extended_system(node, h, v);
-    equations.energy_residual / equations.energy_magnitude / f64::EPSILON
+    equations.energy_residual / system.magnitudes(node, h, v).energy_residual / f64::EPSILON
 }
 
 #[test]

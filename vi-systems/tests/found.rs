@@ -9,6 +9,7 @@ use std::path::Path;
 use vi_codegen::found::{Dependence, Findings, Pattern};
 use vi_codegen::inspect::source;
 use vi_codegen::{derive, syntax::parse};
+use vi_core::linear::Matrix;
 use vi_core::{Node, SMatrix, SVector, State, Stepping};
 
 /// The findings of a ready system.
@@ -29,7 +30,7 @@ fn generic<const N: usize>(seed: f64) -> SVector<f64, N> {
 /// A at a node with the coordinates and the time of a seed.
 fn jacobian<S: Stepping<N>, const N: usize>(system: &S, node: f64, h: f64, v: f64) -> SMatrix<f64, N, N> {
     let state = State { t: node, q: generic(node), p: generic(node + 2.0) };
-    system.momentum_equation(&Node::new(state, 0.3), h, &generic(v)).jacobian
+    system.momentum_equation(&Node::new(state, 0.3), h, &generic(v)).jacobian.dense()
 }
 
 fn check<S: Stepping<N> + Default, const N: usize>(file: &str) -> Findings {

@@ -13,6 +13,7 @@ use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::slots::lost_velocity;
 use super::{Checked, Place};
+use crate::linear::Matrix;
 use crate::{FixedStep, Interval, State, Stepping};
 use nalgebra::SVector;
 
@@ -53,7 +54,7 @@ fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut C
     let [d2, d4] = [system.d2_ld(&interval), system.d4_ld(&interval)];
     let [fd_minus, fd_plus] = [system.fd_minus(&interval), system.fd_plus(&interval)];
     let row = -d2 - fd_minus - node.p;
-    let slack = lost_velocity(&node.q, v, node.t, h) * found.momentum.jacobian.amax();
+    let slack = lost_velocity(&node.q, v, node.t, h) * found.momentum.jacobian.dense().amax();
     let scale = Scale { size: d2.amax() + fd_minus.amax() + node.p.amax(), slack };
     check.vector("residual", &found.momentum.residual, &row, scale)?;
     check.vector("residual alone", &alone.residual, &row, scale)?;
@@ -81,7 +82,7 @@ impl<const N: usize> Between<N> {
         let interval = Interval { t0: before.t, q0: before.q, t1: after.t, q1: after.q };
         let h = after.t - before.t;
         let v = (after.q - before.q) / h;
-        let slope = system.momentum_equation(&crate::Node::new(*before, 0.0), h, &v).jacobian.amax();
+        let slope = system.momentum_equation(&crate::Node::new(*before, 0.0), h, &v).jacobian.dense().amax();
         let slack = lost_velocity(&after.q, &v, after.t, h) * slope;
         let energy_after = -system.d3_ld(&interval) - system.gd_plus(&interval);
         Self {

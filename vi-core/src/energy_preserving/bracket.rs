@@ -53,7 +53,8 @@ impl<const N: usize, T: Scalar> Point<N, T> {
             Err(failure) => return Err(failure),
         };
         let equations = system.extended_system(node, h, &v);
-        let size = momentum::roundings(equations.energy_residual, equations.energy_magnitude);
+        let magnitude = system.magnitudes(node, h, &v).energy_residual;
+        let size = momentum::roundings(equations.energy_residual, magnitude);
         let negative = equations.energy_residual.to_f64() < 0.0;
         let roundings = if negative { -size } else { size };
         if size.is_finite() { Ok(Self { v, h, roundings }) } else { Err(momentum::Failure::NonFinite) }

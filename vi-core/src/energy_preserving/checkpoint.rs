@@ -9,6 +9,7 @@
 //! so that 10⁹ of them lose at most 5e-23 of it. Measured: after 10⁷ steps of 0.01, t is k·h with no error in either part.
 
 use super::fallback::{Fallback, Phase, StepBounds, Switches};
+use super::foretold::Forecasts;
 use super::{EnergyPreserving, Last};
 use crate::{Node, Scalar, StepError, Stepping};
 use nalgebra::SVector;
@@ -26,6 +27,7 @@ use nalgebra::SVector;
 pub struct Checkpoint<const N: usize, T = f64> {
     pub(super) node: Node<N, T>,
     pub(super) last: Last<N, T>,
+    pub(super) forecasts: Forecasts<N, T>,
     pub(super) bounds: Option<StepBounds<T>>,
     pub(super) fallback: Fallback,
     /// The fixed steps under way.
@@ -36,16 +38,19 @@ pub struct Checkpoint<const N: usize, T = f64> {
 impl<const N: usize, T: Scalar> Checkpoint<N, T> {
     /// A run at `node` after the interval `last`, with no fallback and no bounds.
     pub(super) fn new(node: Node<N, T>, last: Last<N, T>) -> Self {
-        Self { node, last, bounds: None, fallback: Fallback::Stop, phase: None, switches: Switches::default() }
+        let forecasts = Forecasts::new(last.v, last.h);
+        let (bounds, fallback, switches) = (None, Fallback::Stop, Switches::default());
+        Self { node, last, forecasts, bounds, fallback, phase: None, switches }
     }
 
     /// Whether a step can follow: what a file says may be anything.
     fn check(&self) -> Result<(), StepError> {
-        let Self { node, last, bounds, phase, .. } = self;
+        let Self { node, last, forecasts, bounds, phase, .. } = self;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
         let numbers = [last.density, last.previous];
-        if !numbers.iter().chain(last.v.iter()).chain(last.slope.iter()).all(|number| number.is_finite()) {
+        let mut numbers = numbers.iter().chain(last.v.iter()).chain(last.slope.iter());
+        if !numbers.all(|number| number.is_finite()) || !forecasts.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last interval", expression: None });
         }
         super::starts::check_step("the last step h", last.h)?;

@@ -19,7 +19,7 @@
 //! AFTER A SWITCH q, p and t go on without a jump.
 
 use super::{EnergyPreserving, Last, newton::Elimination};
-use crate::continuation::{self, Pace};
+use crate::continuation;
 use crate::momentum::{self, Solution};
 use crate::state::Method;
 use crate::{Node, Scalar, Step, StepError, Stepping, compensated};
@@ -250,20 +250,17 @@ where
     fn fixed_step(&mut self, phase: Phase<T>) -> Result<Step<N, T>, StepError> {
         let (system, start, last, h) = (&self.system, self.run.node, self.run.last, phase.h);
         let guess = last.v + last.slope * ((last.h + h) * T::real(0.5));
-        let Solution { v, iterations } = match momentum::solve(system, &start, h, guess) {
-            Ok(solution) => solution,
-            Err(_) => continuation::solve(system, &start, h, last.v, Pace::RESCUE)?,
-        };
+        let Solution { v, iterations } = continuation::nearest(system, &start, h, guess, last.v)?;
         let equations = system.extended_system(&start, h, &v);
         let t = start.t.to_f64();
         let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
         let infinite = StepError::NonFinite { t, quantity: "step density", expression: None };
-        let density = Elimination::of(&equations).ok_or(singular)?.density().ok_or(infinite)?;
+        let density = Elimination::finite(&equations).ok_or(singular)?.density().ok_or(infinite)?;
         let momentum = &equations.momentum;
-        let residual = momentum::worst(&momentum.residual, &momentum.magnitude);
+        let residual = momentum::worst(&momentum.residual, &system.magnitudes(&start, h, &v).residual);
         // The energy row e = c + v·r is what the energy carried lacks of the discrete energy of this interval.
         let gap = equations.energy_residual + v.dot(&momentum.residual);
-        let root = super::Root { v, h, density, iterations, residual };
+        let root = super::Root { v, h, density, iterations, residual, approach: None };
         let step = self.take(start, root, Method::FixedStep)?;
         let phase = Phase { gap, density_next: step.density_next, ..phase };
         self.run.phase = Some(phase);

@@ -1,4 +1,4 @@
-//! Where Newton's iteration starts.
+//! Where Newton's iteration starts when the step was not foretold.
 //!
 //! In: a node and the interval that led to it. Out: a trial `(v, h)`: v extrapolated and improved by one Newton step on the
 //! momentum equation at the last h; then h by the step law, `h = h_last (D_last/D)^(1/3)`, within the factor allowed;
@@ -10,7 +10,6 @@ use crate::{Node, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// The trial that follows `last`.
-#[inline]
 pub(super) fn predict<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -22,7 +21,6 @@ pub(super) fn predict<const N: usize, T: Scalar, S: Stepping<N, T>>(
         .unwrap_or(extrapolated)
 }
 
-#[inline]
 fn improve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -30,7 +28,7 @@ fn improve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     trial: Trial<N, T>,
 ) -> Option<Trial<N, T>> {
     let equations = system.extended_system(node, trial.h, &trial.v);
-    let elimination = Elimination::of(&equations)?;
+    let elimination = Elimination::finite(&equations)?;
     let ratio = last.density.to_f64() / elimination.density()?.to_f64();
     let factor = if ratio > 0.0 && ratio.is_finite() { ratio.cbrt().clamp(1.0 / RATIO, RATIO) } else { 1.0 };
     let h = last.h * T::real(factor);

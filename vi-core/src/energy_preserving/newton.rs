@@ -2,17 +2,19 @@
 //!
 //! In: a trial `(v, h)` and the range that h must keep to. Out: the root with momentum and energy equation at the rounding
 //! floor. With `a = A⁻¹ r`, `b = A⁻¹ ∂r/∂h` the combined and scaled rows of [`ExtendedSystem`] leave one equation for
-//! `y = δh/h`,
+//! δh,
 //!
 //! ```text
-//! S y = −(c/h² − energy_dv·a/h)        S = energy_dh − energy_dv·b = −D/4
-//! δh = h y                              δv = −a − b δh
+//! S δh = −(c/h − energy_dv·a)        S = energy_dh − energy_dv·b = −D/4
+//! δv = −a − b δh
 //! ```
 //!
 //! and S is the step density besides.
 
+use crate::forecast::{Lesson, length_squared};
+use crate::linear::{self, Matrix};
 use crate::momentum;
-use crate::{ExtendedSystem, Node, Scalar, Stepping, linear};
+use crate::{ExtendedSystem, Node, Real, Scalar, Stepping};
 use nalgebra::{SMatrix, SVector};
 
 const ITERATIONS: u32 = 20;
@@ -34,6 +36,8 @@ pub(super) struct Root<const N: usize, T> {
     pub(super) density: T,
     pub(super) iterations: u32,
     pub(super) residual: f64,
+    /// |δv|² and δh² of the first two Newton steps, where there were any.
+    pub(super) approach: Option<[(T, T); 2]>,
 }
 
 /// Why there is no root here.
@@ -58,13 +62,28 @@ pub(super) struct Elimination<const N: usize, T> {
     schur_magnitude: T,
 }
 
-impl<const N: usize, T: Scalar> Elimination<N, T> {
-    /// `None` where A is singular.
+impl<const N: usize, T: Real> Elimination<N, T> {
+    /// Not finite where A is singular.
     #[inline]
-    pub(super) fn of(equations: &ExtendedSystem<N, T>) -> Option<Self> {
+    pub(super) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
         let momentum = &equations.momentum;
         let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
-        let solved = linear::solve(&momentum.jacobian, &both)?;
+        Self::from_solved(equations, &momentum.jacobian.solve(&both))
+    }
+
+    /// `None` where A is singular.
+    #[inline]
+    pub(super) fn finite(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Option<Self> {
+        let momentum = &equations.momentum;
+        let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
+        let solved = linear::solve(&momentum.jacobian, &both);
+        // Elimination without pivoting may lose a matrix that is not singular.
+        let solved = solved.or_else(|| linear::solve(&momentum.jacobian.dense(), &both))?;
+        Some(Self::from_solved(equations, &solved))
+    }
+
+    #[inline]
+    fn from_solved(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, solved: &SMatrix<T, N, 2>) -> Self {
         let (residual, residual_dh) = (solved.column(0).into_owned(), solved.column(1).into_owned());
         let (mut schur, mut schur_magnitude) = (equations.energy_dh, equations.energy_dh.abs());
         for (energy_dv, b) in equations.energy_dv.iter().zip(residual_dh.iter()) {
@@ -72,7 +91,25 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
             schur -= term;
             schur_magnitude += term.abs();
         }
-        Some(Self { residual, residual_dh, schur, schur_magnitude })
+        Self { residual, residual_dh, schur, schur_magnitude }
+    }
+
+    /// The trial that follows, `(δv, δh)` taken.
+    #[inline]
+    pub(super) fn step(&self, equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, trial: &Trial<N, T>) -> Step<N, T> {
+        let h = trial.h;
+        let mut energy = equations.energy_residual / h;
+        for (energy_dv, a) in equations.energy_dv.iter().zip(self.residual.iter()) {
+            energy -= *energy_dv * *a;
+        }
+        let dh = -(energy / self.schur);
+        Step { v: -(self.residual + self.residual_dh * dh), h: dh }
+    }
+
+    /// −4 S, the step density D of the interval.
+    #[inline]
+    pub(super) fn density_or_infinite(&self) -> T {
+        self.schur * T::real(-4.0)
     }
 
     /// Step density D of the interval; `None` where a term of it is not finite.
@@ -83,14 +120,22 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
 
     /// Whether S is zero but for its rounding.
     #[inline]
-    fn is_degenerate(&self) -> bool {
-        self.schur.to_f64().abs() <= VANISHING * T::EPSILON * self.schur_magnitude.to_f64()
+    pub(super) fn is_degenerate(&self) -> bool {
+        !self.schur.abs().is_above(self.schur_magnitude * T::real(VANISHING * T::EPSILON)).holds()
     }
+}
+
+/// A Newton step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step<const N: usize, T> {
+    /// δv.
+    pub(super) v: SVector<T, N>,
+    /// δh.
+    pub(super) h: T,
 }
 
 /// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of
 /// the rows before each iteration, in roundings.
-#[inline]
 pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
@@ -99,26 +144,63 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     mut observe: impl FnMut(f64),
 ) -> Result<Root<N, T>, Failure<T>> {
     let mut before = Rows { momentum: f64::INFINITY, energy: f64::INFINITY };
+    let mut lengths = [None; 2];
     for iterations in 0..=ITERATIONS {
         let equations = system.extended_system(node, trial.h, &trial.v);
-        let elimination = Elimination::of(&equations).ok_or(Failure::NoRoot)?;
-        let rows = Rows::of(&equations);
+        let elimination = Elimination::finite(&equations).ok_or(Failure::NoRoot)?;
+        let rows = Rows::of(system, node, &equations, &trial);
         observe(momentum::worse(rows.momentum, rows.energy));
         let density = elimination.density().ok_or(Failure::NoRoot)?;
-        let (v, h) = (trial.v, trial.h);
         if rows.are_at_floor(&before) {
-            let root = Root { v, h, density, iterations, residual: momentum::worse(rows.momentum, rows.energy) };
+            let (Trial { v, h }, residual) = (trial, momentum::worse(rows.momentum, rows.energy));
+            let [first, second] = lengths;
+            // At the floor after one step: the second would have been no longer than rounding.
+            let approach = first.map(|first| [first, second.unwrap_or((T::zero(), T::zero()))]);
+            let root = Root { v, h, density, iterations, residual, approach };
             return if elimination.is_degenerate() { Err(Failure::Degenerate { h, density }) } else { Ok(root) };
         }
-        let energy = equations.energy_residual / h / h - equations.energy_dv.dot(&elimination.residual) / h;
-        let dh = -(energy / elimination.schur) * h;
-        trial = Trial { v: v - elimination.residual - elimination.residual_dh * dh, h: h + dh };
+        let step = elimination.step(&equations, &trial);
+        if let Some(length) = lengths.get_mut(iterations as usize) {
+            *length = Some((length_squared(&step.v), step.h * step.h));
+        }
+        trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
         if !(trial.h >= shortest && trial.h <= longest) {
             return Err(Failure::NoRoot);
         }
         before = rows;
     }
     Err(Failure::NoRoot)
+}
+
+/// What the way to a root taught of the iteration: for v and for h each, the whole of the second Newton step laid to its
+/// own first one, all measured in steps that are rounding. Also the squares of those.
+pub(super) fn lessons<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    root: &Root<N, T>,
+) -> Option<[(Lesson<T>, T); 2]> {
+    let [first, second] = root.approach?;
+    let Root { v, h, .. } = *root;
+    let (equations, magnitudes) = (system.extended_system(node, h, &v), system.magnitudes(node, h, &v));
+    let noise = magnitudes.residual * T::real(T::EPSILON);
+    let mut noisy = equations;
+    noisy.momentum.residual = noise;
+    noisy.energy_residual = magnitudes.energy_residual * T::real(T::EPSILON);
+    let elimination = Elimination::finite(&noisy)?;
+    // The terms of δh may cancel: rounding does not know their signs.
+    let energy = noisy.energy_residual / h
+        + equations
+            .energy_dv
+            .iter()
+            .zip(elimination.residual.iter())
+            .fold(T::zero(), |sum, (dv, a)| sum + (*dv * *a).abs());
+    let rounding_h = energy / elimination.schur;
+    let rounding_v =
+        length_squared(&elimination.residual) + length_squared(&elimination.residual_dh) * rounding_h * rounding_h;
+    let rounding_h = rounding_h * rounding_h;
+    let worst = (second.0 / rounding_v).max(second.1 / rounding_h);
+    let lesson = |first: T, rounding: T| Lesson { first: first / rounding, second: worst, rounding: T::one() };
+    Some([(lesson(first.0, rounding_v), rounding_v), (lesson(first.1, rounding_h), rounding_h)])
 }
 
 /// The residuals of the rows, in roundings.
@@ -129,11 +211,16 @@ struct Rows {
 }
 
 impl Rows {
-    #[inline]
-    fn of<const N: usize, T: Scalar>(equations: &ExtendedSystem<N, T>) -> Self {
+    fn of<const N: usize, T: Scalar, S: Stepping<N, T>>(
+        system: &S,
+        node: &Node<N, T>,
+        equations: &ExtendedSystem<N, T, S::Jacobian>,
+        trial: &Trial<N, T>,
+    ) -> Self {
+        let magnitudes = system.magnitudes(node, trial.h, &trial.v);
         Self {
-            momentum: momentum::worst(&equations.momentum.residual, &equations.momentum.magnitude),
-            energy: momentum::roundings(equations.energy_residual, equations.energy_magnitude),
+            momentum: momentum::worst(&equations.momentum.residual, &magnitudes.residual),
+            energy: momentum::roundings(equations.energy_residual, magnitudes.energy_residual),
         }
     }
 

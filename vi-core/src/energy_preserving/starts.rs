@@ -103,7 +103,7 @@ fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
     node.check_finite(t)?;
     let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
     let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
-    let elimination = Elimination::of(&system.extended_system(&start, h, &v)).ok_or(singular)?;
+    let elimination = Elimination::finite(&system.extended_system(&start, h, &v)).ok_or(singular)?;
     let density = elimination.density().ok_or(infinite)?;
     let (t_mid, q_mid) = start.midpoint(h, &v);
     // Only the first guess depends on the acceleration: where it has none, v is guessed constant.

@@ -1,9 +1,10 @@
 //! A right system with one function spoiled, as a wrong generator would print it: in every kind of number.
 
 use vi_core::check::Checked;
+use vi_core::linear::Matrix;
 use vi_core::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation, Node, Parameters, Real,
-    SVector, StepError, Stepping,
+    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, Magnitudes, MomentumEquation, Node,
+    Parameters, Real, SMatrix, SVector, StepError, Stepping,
 };
 
 /// The damping of [`Fault::Damping`].
@@ -61,7 +62,7 @@ pub(crate) enum Fault {
 }
 
 /// A system with a fault.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Spoiled<S> {
     pub(crate) system: S,
     pub(crate) fault: Fault,
@@ -153,7 +154,7 @@ impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N,
 impl<S> Spoiled<S> {
     fn spoil_momentum<const N: usize, T: Real>(
         &self,
-        right: MomentumEquation<N, T>,
+        right: MomentumEquation<N, T, S::Jacobian>,
         node: &Node<N, T>,
         h: T,
         v: &SVector<T, N>,
@@ -161,7 +162,7 @@ impl<S> Spoiled<S> {
     where
         S: Stepping<N, T>,
     {
-        let mut wrong = right;
+        let mut wrong = MomentumEquation { residual: right.residual, jacobian: right.jacobian.dense() };
         let half = h * T::real(0.5);
         match self.fault {
             Fault::Residual => wrong.residual += self.system.force(node.t + half, &(node.q + v * half), v) * half,
@@ -170,7 +171,6 @@ impl<S> Spoiled<S> {
                 wrong.residual += v * damping;
                 (0..N).for_each(|i| wrong.jacobian[(i, i)] += damping);
             }
-            Fault::Magnitude => wrong.magnitude *= T::real(1e-3),
             Fault::Jacobian => wrong.jacobian[(N - 1, N - 1)] += T::real(1e-3) * h * h,
             _ => {}
         }
@@ -179,12 +179,22 @@ impl<S> Spoiled<S> {
 }
 
 impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
+    type Jacobian = SMatrix<T, N, N>;
+    const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
+    const SMOOTH: bool = S::SMOOTH;
+
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
         self.spoil_momentum(self.system.momentum_equation(node, h, v), node, h, v)
     }
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
-        let mut found = self.system.extended_system(node, h, v);
-        found.momentum = self.spoil_momentum(found.momentum, node, h, v);
+        let right = self.system.extended_system(node, h, v);
+        let mut found = ExtendedSystem {
+            momentum: self.spoil_momentum(right.momentum, node, h, v),
+            residual_dh: right.residual_dh,
+            energy_residual: right.energy_residual,
+            energy_dv: right.energy_dv,
+            energy_dh: right.energy_dh,
+        };
         match self.fault {
             Fault::ResidualDh => found.residual_dh = -found.residual_dh,
             Fault::EnergyResidual => found.energy_residual += node.energy,
@@ -192,6 +202,12 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
             _ => {}
         }
         found
+    }
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T> {
+        self.unless(Fault::Magnitude, self.system.magnitudes(node, h, v), |right| Magnitudes {
+            residual: right.residual * T::real(1e-3),
+            ..right
+        })
     }
     fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
         let mut gain = self.system.increment(node, h, v);

@@ -13,8 +13,8 @@
 #![allow(dead_code, reason = "each test file takes the systems it needs")]
 
 use vi_core::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation, Node, Real, SMatrix,
-    SVector, StepError, Stepping,
+    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, Magnitudes, MomentumEquation, Node, Real,
+    SMatrix, SVector, StepError, Stepping,
 };
 
 /// A potential and a force at one point, with their derivatives.
@@ -54,7 +54,7 @@ impl<const N: usize, T: Real> Fields<N, T> {
 }
 
 /// What a system of unit mass is made of.
-pub(crate) trait Potential<const N: usize, T: Real> {
+pub(crate) trait Potential<const N: usize, T: Real>: Copy {
     fn fields(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Fields<N, T>;
 }
 
@@ -269,6 +269,10 @@ impl<const N: usize, T: Real, P: Potential<N, T>> DiscreteLagrangian<N, T> for U
 }
 
 impl<const N: usize, T: Real, P: Potential<N, T>> Stepping<N, T> for UnitMass<P> {
+    type Jacobian = SMatrix<T, N, N>;
+    const CONSTANT_JACOBIAN: bool = false;
+    const SMOOTH: bool = true;
+
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
         let (t, q) = node.midpoint(h, v);
         let fields = self.0.fields(t, &q, v);
@@ -276,9 +280,6 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Stepping<N, T> for UnitMass<P>
         let slope = fields.gradient - fields.force;
         MomentumEquation {
             residual: *v + slope * half - node.p - node.p_low,
-            magnitude: v.map(Real::abs)
-                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * half.abs()
-                + node.p.map(Real::abs),
             jacobian: SMatrix::identity() + ((fields.hessian - fields.force_q) * half - fields.force_v) * half,
         }
     }
@@ -299,13 +300,24 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Stepping<N, T> for UnitMass<P>
                 - h * half * (fields.potential_t + v.dot(&fields.gradient))
                 + v.dot(&node.p_low)
                 - node.energy_low,
-            energy_magnitude: kinetic
+            energy_dv: (fields.gradient - fields.force) * half - curvature * (h * quarter),
+            energy_dh: -(quarter * (fields.potential_tt + v.dot(&fields.gradient_t) + v.dot(&curvature))),
+        }
+    }
+
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T> {
+        let (t, q) = node.midpoint(h, v);
+        let fields = self.0.fields(t, &q, v);
+        let half = T::real(0.5);
+        Magnitudes {
+            residual: v.map(Real::abs)
+                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * half).abs()
+                + node.p.map(Real::abs),
+            energy_residual: v.dot(v) * half
                 + fields.potential_magnitude
                 + (h * half).abs() * (fields.potential_t.abs() + magnitude(v, &fields.gradient))
                 + magnitude(v, &node.p)
                 + node.energy.abs(),
-            energy_dv: (fields.gradient - fields.force) * half - curvature * (h * quarter),
-            energy_dh: -(quarter * (fields.potential_tt + v.dot(&fields.gradient_t) + v.dot(&curvature))),
         }
     }
 

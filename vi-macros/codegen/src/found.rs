@@ -11,7 +11,7 @@
 //! separable        p = L_v takes velocities and parameters only: L = T(v) + U(t, q)
 //! ```
 //!
-//! Nothing here changes what is emitted.
+//! The generator chooses by these the form of A and of the mass matrix, and how a step is solved.
 
 mod pattern;
 
@@ -23,10 +23,15 @@ use crate::program::{Function, Operation, OperationId, Program};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 
+/// Rows up to which a matrix that is not diagonal is solved in closed form.
+pub const CLOSED: usize = 3;
+
 /// What is special about a system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a finding of its own")]
 pub struct Findings {
+    /// Number of coordinates.
+    pub size: usize,
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
     /// A force acts.
@@ -37,6 +42,10 @@ pub struct Findings {
     pub separable: bool,
     /// The mass matrix L_vv depends on parameters only.
     pub constant_mass: bool,
+    /// Where the mass matrix has entries other than zero.
+    pub mass: Pattern,
+    /// No `abs`, `sign` or `atan2` in the momentum row: it has no kink and no jump, and Newton's iteration is quadratic.
+    pub smooth: bool,
     /// On what the Jacobian A depends.
     pub jacobian: Dependence,
     /// Where A has entries other than zero.
@@ -73,17 +82,16 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         inputs(function, rows).iter().all(allowed)
     };
     Findings {
+        size: model.dimension(),
         autonomous: system.continuous.autonomous,
         forced: model.forced,
         cyclic: cyclic.collect(),
         separable: momentum.is_some_and(|function| takes(function, &function.results, &velocities)),
         constant_mass: rows("acceleration").is_some_and(|(function, rows)| takes(function, rows, &parameters)),
+        mass: rows("acceleration").map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
+        smooth: equation.is_some_and(|(function, _)| smooth(function)),
         jacobian: equation.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
-        pattern: equation.map_or(Pattern::Dense, |(function, rows)| {
-            let zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
-            let entries: Vec<Vec<bool>> = rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect();
-            pattern::pattern(&entries)
-        }),
+        pattern: equation.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         symmetric: equation.is_some_and(|(_, rows)| symmetric(rows)),
         operations: program.functions().map(|function| (function.name, function.operation_count())).collect(),
     }
@@ -94,6 +102,22 @@ fn matrix(function: &Function, dimension: usize) -> &[Vec<OperationId>] {
     let results = &function.results;
     let first = if function.name == "acceleration" { 0 } else { results.len().saturating_sub(dimension) };
     results.get(first..first + dimension).unwrap_or_default()
+}
+
+/// The pattern of a matrix among the results of a function.
+fn filled(function: &Function, rows: &[Vec<OperationId>]) -> Pattern {
+    let zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
+    let entries: Vec<Vec<bool>> = rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect();
+    pattern::pattern(&entries)
+}
+
+/// Whether a function has no kink and no jump.
+fn smooth(function: &Function) -> bool {
+    use vi_expr::Function::{Abs, Atan2, Sign};
+    let needed = function.operations.needed(&function.results);
+    !needed
+        .into_iter()
+        .any(|id| matches!(function.operations.get(id), Operation::Call(Abs | Sign, _) | Operation::Call2(Atan2, ..)))
 }
 
 /// What these results take as input.
@@ -123,6 +147,12 @@ fn symmetric(rows: &[Vec<OperationId>]) -> bool {
 }
 
 impl Findings {
+    /// The momentum row is linear with a matrix that is the same in every step of one length: it is inverted once per run.
+    #[must_use]
+    pub fn constant_jacobian(&self) -> bool {
+        self.smooth && self.jacobian <= Dependence::Step
+    }
+
     /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
     #[must_use]
     pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
@@ -149,16 +179,33 @@ impl Findings {
         lines.push(format!(
             "The step's equation in `v` is {}",
             match self.jacobian {
-                Dependence::Parameters => "explicit: its Jacobian `A` depends on parameters only",
-                Dependence::Step => "linear: its Jacobian `A` depends on parameters and `h` only",
-                Dependence::Node => "linear: its Jacobian `A` does not depend on `v`",
-                Dependence::Unknown => "nonlinear: its Jacobian `A` depends on `v`",
+                _ if !self.smooth => "not smooth: each residual is measured before a step is taken",
+                Dependence::Parameters =>
+                    "explicit: its Jacobian `A` depends on parameters only and is inverted once per run",
+                Dependence::Step =>
+                    "linear: its Jacobian `A` depends on parameters and `h` only and is inverted once per run",
+                Dependence::Node => "linear: its Jacobian `A` does not depend on `v`, and one solution gives the step",
+                Dependence::Unknown =>
+                    "nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step",
             }
         ));
         if self.pattern != Pattern::Scalar {
             let symmetry = if self.symmetric { "symmetric" } else { "not symmetric" };
-            lines.push(format!("`A` is {}, {symmetry}", self.pattern.text(&list)));
+            lines.push(format!("`A` is {}, {symmetry}; solved {}", self.pattern.text(&list), self.solved()));
         }
         lines
+    }
+
+    /// How A is solved.
+    fn solved(&self) -> &'static str {
+        match &self.pattern {
+            Pattern::Scalar | Pattern::Diagonal => "by division",
+            _ if self.size <= CLOSED => "in closed form",
+            Pattern::Tridiagonal => "by elimination from both ends",
+            Pattern::Banded(_) => "by elimination inside the band",
+            Pattern::Blocks(_) => "block by block",
+            Pattern::Dense if self.symmetric => "by `L D Lᵀ`",
+            Pattern::Dense => "by elimination with pivoting",
+        }
     }
 }

@@ -121,7 +121,10 @@ fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVector
     }
 }
 
-struct Fixed<S, const N: usize> {
+struct Fixed<S, const N: usize>
+where
+    S: Stepping<N>,
+{
     initial: f64,
     integrator: FixedStep<S, N>,
 }

@@ -2,14 +2,13 @@
 
 use super::Source;
 use super::body::{Body, Entry, Place, body, state_parts};
+use super::matrix::matrix;
 use crate::model::Coordinate;
 use crate::symbol::Symbol;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use vi_expr::Expr;
 
-/// Rows up to which a matrix is written out, zeros included.
-const DENSE: usize = 3;
 /// Characters of a formula that documentation shows.
 const CHARACTERS: usize = 400;
 
@@ -87,25 +86,6 @@ pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
     quote!(::vi_core::SVector::from([#(#entries),*]))
 }
 
-/// The matrix whose rows are these groups of results; what is zero for every input is left out of larger ones.
-pub(super) fn matrix_of(rows: &[Vec<Entry>]) -> TokenStream {
-    if rows.len() <= DENSE {
-        let entries = rows.iter().flatten();
-        return quote!(::vi_core::SMatrix::from_row_slice(&[#(#entries),*]));
-    }
-    let assignments = rows.iter().zip(0_usize..).flat_map(|(row, i)| {
-        row.iter().zip(0_usize..).filter(|(entry, _)| !entry.zero).map(move |(entry, j)| {
-            let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
-            quote!(entries[(#i, #j)] = #entry;)
-        })
-    });
-    quote!({
-        let mut entries = ::vi_core::SMatrix::zeros();
-        #(#assignments)*
-        entries
-    })
-}
-
 fn number(source: &Source, name: &str, formula: &str) -> TokenStream {
     let Some((body, documentation)) = source.documented(name, formula, Place::Argument) else {
         return TokenStream::new();
@@ -155,7 +135,8 @@ fn acceleration(source: &Source) -> TokenStream {
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
     let Some((applied, rows)) = body.results.split_last() else { return TokenStream::new() };
-    let (mass, applied) = (matrix_of(rows), vector_of(applied));
+    let (form, mass) = matrix(&source.findings.mass, true, rows);
+    let applied = vector_of(applied);
     quote! {
         #documentation
         #[inline]
@@ -167,7 +148,7 @@ fn acceleration(source: &Source) -> TokenStream {
         ) -> ::core::result::Result<::vi_core::SVector<T, #dimension>, ::vi_core::StepError> {
             let time = t;
             #inputs #statements
-            let mass: ::vi_core::SMatrix<T, #dimension, #dimension> = #mass;
+            let mass: #form = #mass;
             let applied: ::vi_core::SVector<T, #dimension> = #applied;
             ::vi_core::linear::acceleration(time, &mass, &applied)
         }

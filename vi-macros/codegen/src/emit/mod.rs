@@ -10,6 +10,7 @@ mod check;
 mod discrete;
 mod formula;
 mod lagrangian;
+mod matrix;
 mod names;
 mod stepping;
 mod structure;

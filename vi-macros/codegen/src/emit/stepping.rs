@@ -2,7 +2,8 @@
 
 use super::Source;
 use super::body::{Body, Entry, Place, part, parts};
-use super::lagrangian::{matrix_of, vector_of};
+use super::lagrangian::vector_of;
+use super::matrix::matrix;
 use crate::model::Model;
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
@@ -11,10 +12,15 @@ use quote::quote;
 /// The implementation of `Stepping`.
 pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
-    let functions = [momentum_equation(source), extended_system(source), increment(source)];
+    let (constant, smooth) = (source.findings.constant_jacobian(), source.findings.smooth);
+    let (form, equation) = momentum_equation(source);
+    let functions = [equation, extended_system(source), magnitudes(source), increment(source)];
     quote! {
         #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
+            type Jacobian = #form;
+            const CONSTANT_JACOBIAN: bool = #constant;
+            const SMOOTH: bool = #smooth;
             #(#functions)*
         }
     }
@@ -41,24 +47,22 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
     quote!(#(#numbers)* #(#node)*)
 }
 
-/// The momentum row: residual, magnitude and the rows of A, as `MomentumEquation` holds them.
-fn momentum_fields(results: &[Vec<Entry>]) -> TokenStream {
-    let (residual, magnitude) = (vector_of(&results[0]), vector_of(&results[1]));
-    let jacobian = matrix_of(&results[2..]);
-    quote! {
-        ::vi_core::MomentumEquation { residual: #residual, magnitude: #magnitude, jacobian: #jacobian }
-    }
+/// The momentum row, residual and rows of A, as `MomentumEquation` holds them; and the form of A.
+fn momentum_fields(source: &Source, results: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
+    let residual = vector_of(&results[0]);
+    let (form, jacobian) = matrix(&source.findings.pattern, source.findings.symmetric, &results[1..]);
+    (form, quote!(::vi_core::MomentumEquation { residual: #residual, jacobian: #jacobian }))
 }
 
-fn momentum_equation(source: &Source) -> TokenStream {
+fn momentum_equation(source: &Source) -> (TokenStream, TokenStream) {
     let (dimension, of) = (source.dimension(), &source.system.equations);
     let formula = source.formulas("residual", &of.residual);
     let Some((body, documentation)) = source.documented("momentum_equation", &formula, Place::Argument) else {
-        return TokenStream::new();
+        return (TokenStream::new(), TokenStream::new());
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let equation = momentum_fields(&body.results);
-    quote! {
+    let (form, equation) = momentum_fields(source, &body.results);
+    let function = quote! {
         #documentation
         #[inline]
         fn momentum_equation(
@@ -66,10 +70,11 @@ fn momentum_equation(source: &Source) -> TokenStream {
             node: &::vi_core::Node<#dimension, T>,
             h: T,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::MomentumEquation<#dimension, T> {
+        ) -> ::vi_core::MomentumEquation<#dimension, T, Self::Jacobian> {
             #inputs #statements #equation
         }
-    }
+    };
+    (form, function)
 }
 
 fn extended_system(source: &Source) -> TokenStream {
@@ -79,9 +84,9 @@ fn extended_system(source: &Source) -> TokenStream {
         return TokenStream::new();
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let (momentum, energy) = body.results.split_at(source.model.dimension() + 2);
-    let momentum = momentum_fields(momentum);
-    let [residual_dh, energy_residual, energy_magnitude, energy_dv, energy_dh] = energy else {
+    let (momentum, energy) = body.results.split_at(source.model.dimension() + 1);
+    let (_, momentum) = momentum_fields(source, momentum);
+    let [residual_dh, energy_residual, energy_dv, energy_dh] = energy else {
         return TokenStream::new();
     };
     let (residual_dh, energy_dv) = (vector_of(residual_dh), vector_of(energy_dv));
@@ -93,16 +98,38 @@ fn extended_system(source: &Source) -> TokenStream {
             node: &::vi_core::Node<#dimension, T>,
             h: T,
             v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::ExtendedSystem<#dimension, T> {
+        ) -> ::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian> {
             #inputs #statements
             ::vi_core::ExtendedSystem {
                 momentum: #momentum,
                 residual_dh: #residual_dh,
                 energy_residual: #(#energy_residual)*,
-                energy_magnitude: #(#energy_magnitude)*,
                 energy_dv: #energy_dv,
                 energy_dh: #(#energy_dh)*,
             }
+        }
+    }
+}
+
+fn magnitudes(source: &Source) -> TokenStream {
+    let dimension = source.dimension();
+    let formula = "Sums of the absolute values of the terms of `residual` and `energy_residual`.";
+    let Some((body, documentation)) = source.documented("magnitudes", formula, Place::Argument) else {
+        return TokenStream::new();
+    };
+    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
+    let (residual, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
+    quote! {
+        #documentation
+        #[cold]
+        fn magnitudes(
+            &self,
+            node: &::vi_core::Node<#dimension, T>,
+            h: T,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::Magnitudes<#dimension, T> {
+            #inputs #statements
+            ::vi_core::Magnitudes { residual: #residual, energy_residual: #energy }
         }
     }
 }

@@ -147,8 +147,12 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn gd_plus(#over) -> T #none
         }
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#n, T> for #name<T> {
+            type Jacobian = ::vi_core::SMatrix<T, #n, #n>;
+            const CONSTANT_JACOBIAN: bool = false;
+            const SMOOTH: bool = false;
             fn momentum_equation(#from) -> ::vi_core::MomentumEquation<#n, T> #none
             fn extended_system(#from) -> ::vi_core::ExtendedSystem<#n, T> #none
+            fn magnitudes(#from) -> ::vi_core::Magnitudes<#n, T> #none
             fn increment(#from) -> ::vi_core::Increment<#n, T> #none
         }
     }

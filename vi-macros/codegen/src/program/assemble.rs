@@ -173,19 +173,20 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
 fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.equations;
     let residual = assembly.open_all(&of.residual);
-    let mut momentum = vec![residual.clone(), assembly.magnitudes(&residual)];
-    momentum.extend(of.residual_dv.iter().map(|row| assembly.open_all(row)));
     let energy = assembly.open_all(&[of.energy_residual]);
+    let magnitudes = vec![assembly.magnitudes(&residual), assembly.magnitudes(&energy)];
+    let mut momentum = vec![residual];
+    momentum.extend(of.residual_dv.iter().map(|row| assembly.open_all(row)));
     let mut extended = momentum.clone();
     extended.push(assembly.open_all(&of.residual_dh));
-    extended.push(energy.clone());
-    extended.push(assembly.magnitudes(&energy));
+    extended.push(energy);
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
     let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
     Ok(vec![
         assembly.function("momentum_equation", &momentum)?,
         assembly.function("extended_system", &extended)?,
+        assembly.function("magnitudes", &magnitudes)?,
         assembly.function("increment", &gains)?,
     ])
 }

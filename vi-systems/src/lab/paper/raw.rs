@@ -5,6 +5,7 @@
 //! `p1 = D4 L_d + f_d⁺` and `E1 = −D3 L_d − g_d⁺` of that interval. The guess is the best there is, the solution in `(v, h)` from the same node, and
 //! the Jacobian is exact: what is left is the cancellation in `(q1 − q0)/(t1 − t0)`, which `(v, h)` do not have.
 
+use vi_core::linear::Matrix;
 use vi_core::{EnergyPreserving, ExtendedSystem, Interval, Node, SVector, State, Stepping};
 
 /// What the equations are solved for.
@@ -79,7 +80,7 @@ impl RawNode {
     fn rows<S: Stepping<1>>(&self, system: &S, v: f64, h: f64) -> [[f64; 2]; 2] {
         let ExtendedSystem { momentum, residual_dh, energy_dv, energy_dh, .. } =
             system.extended_system(&Node::new(self.state, self.energy), h, &SVector::from([v]));
-        let (r_v, r_h) = (momentum.jacobian.x, residual_dh.x);
+        let (r_v, r_h) = (momentum.jacobian.dense().x, residual_dh.x);
         [[r_v, r_h], [h * energy_dv.x + v * r_v, h * energy_dh + v * r_h]]
     }
 

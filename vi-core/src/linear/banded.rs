@@ -1,0 +1,81 @@
+//! Banded matrices, eliminated inside the band.
+
+use super::Matrix;
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// A matrix whose entries stand at most W places from the diagonal; D = 2 W + 1. Diagonal matrices have D = 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Banded<const N: usize, const D: usize, T> {
+    /// Row i, column i + k − W at `[i][k]`; what would stand outside the matrix is zero.
+    pub rows: [[T; D]; N],
+}
+
+impl<const N: usize, const D: usize, T: Real> Banded<N, D, T> {
+    const WIDTH: usize = D / 2;
+
+    /// The factors of the elimination in place: below the diagonal those of the rows, on it the reciprocals of the pivots.
+    #[inline]
+    fn factors(mut self) -> Self {
+        let (w, rows) = (Self::WIDTH, &mut self.rows);
+        for i in 0..N {
+            let reciprocal = rows[i][w].recip();
+            rows[i][w] = reciprocal;
+            let pivot_row = rows[i];
+            for below in 1..=w.min(N - 1 - i) {
+                let row = &mut rows[i + below];
+                let factor = row[w - below] * reciprocal;
+                row[w - below] = factor;
+                for k in 1..=w {
+                    let eliminated = factor * pivot_row[w + k];
+                    row[w - below + k] -= eliminated;
+                }
+            }
+        }
+        self
+    }
+
+    #[inline]
+    fn substitute<const M: usize>(&self, mut x: SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        let (w, rows) = (Self::WIDTH, &self.rows);
+        for k in 0..M {
+            for i in 0..N {
+                for below in 1..=w.min(N - 1 - i) {
+                    let eliminated = rows[i + below][w - below] * x[(i, k)];
+                    x[(i + below, k)] -= eliminated;
+                }
+            }
+            for i in (0..N).rev() {
+                let right = 1..=w.min(N - 1 - i);
+                let known = right.fold(T::zero(), |sum, right| sum + rows[i][w + right] * x[(i + right, k)]);
+                x[(i, k)] = (x[(i, k)] - known) * rows[i][w];
+            }
+        }
+        x
+    }
+}
+
+impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
+    type Inverse = Self;
+
+    #[inline]
+    fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        self.factors().substitute(*rhs)
+    }
+
+    fn inverse(&self) -> Self {
+        self.factors()
+    }
+
+    #[inline]
+    fn apply(inverse: &Self, rhs: &SVector<T, N>) -> SVector<T, N> {
+        inverse.substitute(*rhs)
+    }
+
+    fn dense(&self) -> SMatrix<T, N, N> {
+        SMatrix::from_fn(|i, j| {
+            let place = (j + Self::WIDTH).checked_sub(i);
+            place.and_then(|place| self.rows[i].get(place)).copied().unwrap_or_else(T::zero)
+        })
+    }
+}

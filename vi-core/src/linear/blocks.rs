@@ -1,0 +1,83 @@
+//! Block-diagonal matrices: bodies that do not feel each other within a step.
+
+use super::{Matrix, dense};
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// A matrix of blocks of at most B rows, whose rows need not stand together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocks<const N: usize, const B: usize, T> {
+    /// The rows of each block, ascending.
+    pub members: &'static [&'static [usize]],
+    /// Row i, column `members[…][k]` of its block at `[i][k]`; the rest is zero.
+    pub rows: [[T; B]; N],
+}
+
+impl<const N: usize, const B: usize, T: Real> Blocks<N, B, T> {
+    /// A block, filled up to B rows with those of the unit matrix.
+    #[inline]
+    fn block(&self, members: &[usize]) -> SMatrix<T, B, B> {
+        SMatrix::from_fn(|i, j| match members.get(i) {
+            Some(row) => self.rows[*row][j],
+            None if i == j => T::one(),
+            None => T::zero(),
+        })
+    }
+
+    #[inline]
+    fn each<const M: usize>(
+        &self,
+        rhs: &SMatrix<T, N, M>,
+        solve: impl Fn(usize, &SMatrix<T, B, M>) -> SMatrix<T, B, M>,
+    ) -> SMatrix<T, N, M> {
+        let mut x = *rhs;
+        for (index, members) in self.members.iter().enumerate() {
+            let part = SMatrix::from_fn(|i, k| members.get(i).map_or_else(T::zero, |row| rhs[(*row, k)]));
+            let part = solve(index, &part);
+            for (i, row) in members.iter().enumerate() {
+                for k in 0..M {
+                    x[(*row, k)] = part[(i, k)];
+                }
+            }
+        }
+        x
+    }
+}
+
+impl<const N: usize, const B: usize, T: Real> Matrix<N, T> for Blocks<N, B, T> {
+    /// The inverse of each block, row by row where its own rows stood.
+    type Inverse = Self;
+
+    #[inline]
+    fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        self.each(rhs, |index, part| Matrix::solve(&self.block(self.members[index]), part))
+    }
+
+    fn inverse(&self) -> Self {
+        let mut inverse = *self;
+        for members in self.members {
+            let block = dense::eliminate(self.block(members), SMatrix::<T, B, B>::identity());
+            for (i, row) in members.iter().enumerate() {
+                inverse.rows[*row] = core::array::from_fn(|j| block[(i, j)]);
+            }
+        }
+        inverse
+    }
+
+    #[inline]
+    fn apply(inverse: &Self, rhs: &SVector<T, N>) -> SVector<T, N> {
+        inverse.each(rhs, |index, part| inverse.block(inverse.members[index]) * part)
+    }
+
+    fn dense(&self) -> SMatrix<T, N, N> {
+        let mut dense = SMatrix::zeros();
+        for members in self.members {
+            for i in *members {
+                for (place, j) in members.iter().enumerate() {
+                    dense[(*i, *j)] = self.rows[*i][place];
+                }
+            }
+        }
+        dense
+    }
+}

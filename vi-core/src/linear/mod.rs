@@ -1,0 +1,99 @@
+//! Small linear systems `A X = B`, each solved by the structure of A.
+//!
+//! In: a matrix A of N × N in one of the forms below and M right-hand sides as the columns of B. Out: X, whose entries are
+//! not finite where A is singular. The generator knows the zero pattern of A and chooses the form:
+//!
+//! | form | A | by |
+//! |---|---|---|
+//! | `SMatrix` | dense | closed form for N ≤ 3; else elimination with partial pivoting |
+//! | [`Symmetric`] | dense and symmetric, N ≥ 4 | `L D Lᵀ`; where a pivot is not positive, elimination with pivoting |
+//! | [`Tridiagonal`] | neighbours only | elimination from both ends at once |
+//! | [`Banded`] | up to a few places from the diagonal | elimination inside the band |
+//! | [`Blocks`] | blocks that do not touch each other | each block for itself |
+//!
+//! The last three eliminate without pivoting. Their matrices are mass matrices plus terms of order h: where a pivot is
+//! lost nevertheless, the iteration that asked does not converge by them, and the stepper solves the dense matrix instead.
+
+mod banded;
+mod blocks;
+mod dense;
+mod symmetric;
+mod tridiagonal;
+
+pub use banded::Banded;
+pub use blocks::Blocks;
+pub use symmetric::Symmetric;
+pub use tridiagonal::Tridiagonal;
+
+use crate::{Real, StepError};
+use core::fmt::Debug;
+use nalgebra::{SMatrix, SVector};
+
+/// A square matrix in the form that its zero pattern allows.
+pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
+    /// What is kept of A to solve with it many times.
+    type Inverse: Copy + Debug;
+
+    /// The X with `A X = rhs`; not finite where A is singular.
+    fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M>;
+    /// A, ready to solve with many times.
+    fn inverse(&self) -> Self::Inverse;
+    /// The x with `A x = rhs`, from the inverse of A.
+    fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N>;
+    /// A with its zeros.
+    fn dense(&self) -> SMatrix<T, N, N>;
+}
+
+/// The X with `matrix · X = rhs`; `None` where it is not finite.
+#[inline]
+#[must_use]
+pub fn solve<T: Real, const N: usize, const M: usize>(
+    matrix: &impl Matrix<N, T>,
+    rhs: &SMatrix<T, N, M>,
+) -> Option<SMatrix<T, N, M>> {
+    let solution = matrix.solve(rhs);
+    solution.iter().all(|entry| entry.is_finite()).then_some(solution)
+}
+
+/// The acceleration a with `mass · a = applied`, as generated code asks for it.
+///
+/// # Errors
+/// [`StepError::Singular`] where the mass matrix cannot be inverted at the time `t`.
+#[inline]
+pub fn acceleration<T: Real, const N: usize>(
+    t: T,
+    mass: &impl Matrix<N, T>,
+    applied: &SVector<T, N>,
+) -> Result<SVector<T, N>, StepError> {
+    // Elimination without pivoting may lose a matrix that is not singular.
+    let solution = solve(mass, applied).or_else(|| solve(&mass.dense(), applied));
+    solution.ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
+}
+
+/// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 where an entry is not a number.
+#[must_use]
+pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i8 {
+    let mut a = *matrix;
+    let mut sign = 1;
+    for column in 0..N {
+        if dense::pivot(&mut a, column).is_some() {
+            sign = -sign;
+        }
+        match a[(column, column)].to_f64() {
+            pivot if pivot > 0.0 => {}
+            pivot if pivot < 0.0 => sign = -sign,
+            _ => return 0,
+        }
+        for row in column + 1..N {
+            let factor = a[(row, column)] / a[(column, column)];
+            for k in column..N {
+                let eliminated = factor * a[(column, k)];
+                a[(row, k)] -= eliminated;
+            }
+        }
+    }
+    sign
+}
+
+#[cfg(test)]
+mod tests;

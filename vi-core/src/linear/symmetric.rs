@@ -1,0 +1,88 @@
+//! Dense symmetric matrices by `A = L D Lᵀ`, half the products of an elimination.
+
+use super::{Matrix, dense};
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// A symmetric matrix, given whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Symmetric<const N: usize, T>(pub SMatrix<T, N, N>);
+
+/// L below the diagonal, the reciprocals of D on it.
+type Factors<const N: usize, T> = SMatrix<T, N, N>;
+
+impl<const N: usize, T: Real> Symmetric<N, T> {
+    /// The factors; `None` where a pivot is not positive, and elimination without pivoting not stable.
+    #[inline]
+    fn factors(&self) -> Option<Factors<N, T>> {
+        let mut a = self.0;
+        let mut positive = true;
+        for column in 0..N {
+            let pivot = a[(column, column)];
+            positive &= pivot.is_positive();
+            let reciprocal = pivot.recip();
+            a[(column, column)] = reciprocal;
+            for row in column + 1..N {
+                a[(column, row)] = a[(row, column)];
+                a[(row, column)] *= reciprocal;
+            }
+            // Column by column, so that the rows inside one column are independent of each other.
+            for k in column + 1..N {
+                let above = a[(column, k)];
+                for row in k..N {
+                    let eliminated = a[(row, column)] * above;
+                    a[(row, k)] -= eliminated;
+                }
+            }
+        }
+        positive.then_some(a)
+    }
+}
+
+/// Solves with the factors.
+#[inline]
+fn substitute<const N: usize, const M: usize, T: Real>(
+    factors: &Factors<N, T>,
+    mut x: SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
+    for k in 0..M {
+        for column in 0..N {
+            let known = x[(column, k)];
+            for row in column + 1..N {
+                let eliminated = factors[(row, column)] * known;
+                x[(row, k)] -= eliminated;
+            }
+        }
+        for row in (0..N).rev() {
+            let below = (row + 1..N).fold(T::zero(), |sum, below| sum + factors[(below, row)] * x[(below, k)]);
+            x[(row, k)] = x[(row, k)] * factors[(row, row)] - below;
+        }
+    }
+    x
+}
+
+impl<const N: usize, T: Real> Matrix<N, T> for Symmetric<N, T> {
+    type Inverse = SMatrix<T, N, N>;
+
+    #[inline]
+    fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        match self.factors() {
+            Some(factors) => substitute(&factors, *rhs),
+            None => dense::eliminate(self.0, *rhs),
+        }
+    }
+
+    fn inverse(&self) -> Self::Inverse {
+        self.0.inverse()
+    }
+
+    #[inline]
+    fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
+        inverse * rhs
+    }
+
+    #[inline]
+    fn dense(&self) -> SMatrix<T, N, N> {
+        self.0
+    }
+}

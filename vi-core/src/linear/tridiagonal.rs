@@ -1,0 +1,133 @@
+//! Tridiagonal matrices, eliminated from both ends at once: the two halves do not wait for each other.
+//!
+//! ```text
+//! lower_i x_{i−1} + diagonal_i x_i + upper_i x_{i+1} = b_i        lower_0 = upper_{N−1} = 0
+//! ```
+
+use super::Matrix;
+use crate::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// A matrix of three diagonals, entry i of each in row i.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tridiagonal<const N: usize, T> {
+    /// Left of the diagonal; the first is not used.
+    pub lower: [T; N],
+    /// The diagonal.
+    pub diagonal: [T; N],
+    /// Right of the diagonal; the last is not used.
+    pub upper: [T; N],
+}
+
+/// The matrix with the reciprocals of its pivots, which are those of the elimination from above in the rows before the
+/// middle, from below in the rows after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Factors<const N: usize, T> {
+    matrix: Tridiagonal<N, T>,
+    reciprocals: [T; N],
+}
+
+impl<const N: usize, T: Real> Tridiagonal<N, T> {
+    const MIDDLE: usize = N / 2;
+
+    /// Row i from the top, and the row as far from the bottom, `step` rows into each half; both halves have a step but
+    /// for the last one of an odd N.
+    #[inline]
+    fn factors(&self) -> Factors<N, T> {
+        let Self { lower, diagonal, upper } = self;
+        let mut reciprocals = [T::zero(); N];
+        let (mut above, mut below) = (T::zero(), T::zero());
+        for step in 0..Self::MIDDLE {
+            let (i, j) = (step, N - 1 - step);
+            let from_above = if step == 0 { T::zero() } else { lower[i] * upper[i - 1] };
+            let from_below = if step == 0 { T::zero() } else { upper[j] * lower[j + 1] };
+            above = (diagonal[i] - from_above * above).recip();
+            reciprocals[i] = above;
+            if j > Self::MIDDLE {
+                below = (diagonal[j] - from_below * below).recip();
+                reciprocals[j] = below;
+            }
+        }
+        let m = Self::MIDDLE;
+        let mut pivot = diagonal[m];
+        if m > 0 {
+            pivot -= lower[m] * upper[m - 1] * reciprocals[m - 1];
+        }
+        if m + 1 < N {
+            pivot -= upper[m] * lower[m + 1] * reciprocals[m + 1];
+        }
+        reciprocals[m] = pivot.recip();
+        Factors { matrix: *self, reciprocals }
+    }
+}
+
+impl<const N: usize, T: Real> Factors<N, T> {
+    #[inline]
+    fn substitute<const M: usize>(&self, mut x: SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        let Self { matrix: Tridiagonal { lower, upper, .. }, reciprocals } = self;
+        let m = Tridiagonal::<N, T>::MIDDLE;
+        for k in 0..M {
+            let mut x = x.column_mut(k);
+            for step in 0..m {
+                let (i, j) = (step, N - 1 - step);
+                let known = if step == 0 { T::zero() } else { lower[i] * x[i - 1] };
+                x[i] = (x[i] - known) * reciprocals[i];
+                if j > m {
+                    let known = if step == 0 { T::zero() } else { upper[j] * x[j + 1] };
+                    x[j] = (x[j] - known) * reciprocals[j];
+                }
+            }
+            let mut middle = x[m];
+            if m > 0 {
+                middle -= lower[m] * x[m - 1];
+            }
+            if m + 1 < N {
+                middle -= upper[m] * x[m + 1];
+            }
+            x[m] = middle * reciprocals[m];
+            for step in 1..=m {
+                let i = m - step;
+                let known = upper[i] * reciprocals[i] * x[i + 1];
+                x[i] -= known;
+                if m + step < N {
+                    let j = m + step;
+                    let known = lower[j] * reciprocals[j] * x[j - 1];
+                    x[j] -= known;
+                }
+            }
+        }
+        x
+    }
+}
+
+impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
+    type Inverse = Factors<N, T>;
+
+    #[inline]
+    fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        self.factors().substitute(*rhs)
+    }
+
+    fn inverse(&self) -> Self::Inverse {
+        self.factors()
+    }
+
+    #[inline]
+    fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
+        inverse.substitute(*rhs)
+    }
+
+    fn dense(&self) -> SMatrix<T, N, N> {
+        SMatrix::from_fn(|i, j| {
+            if i == j {
+                self.diagonal[i]
+            } else if i == j + 1 {
+                self.lower[i]
+            } else if j == i + 1 {
+                self.upper[i]
+            } else {
+                T::zero()
+            }
+        })
+    }
+}

@@ -1,0 +1,164 @@
+//! Momentum steps of one length, one after the other.
+//!
+//! In: a node, the step h, and the velocities of the strides before. Out: the velocity v that solves the momentum equation,
+//! and the stride that follows. Three ways, the first that does:
+//!
+//! ```text
+//! A constant    v = −A⁻¹ r(0), the inverse computed once per run
+//! foretold      v extrapolated, then Newton steps until one is shorter than the trusted ρ (`forecast`)
+//! sought        Newton's iteration to the rounding floor, every residual measured; else the continuation in h
+//! ```
+//!
+//! Every 64th stride is a lesson: it starts from the last velocity, to learn what may be trusted.
+
+use crate::continuation::{self, Pace};
+use crate::fixed_step::Branch;
+use crate::forecast::{Forecast, Lesson, length_squared};
+use crate::linear::Matrix;
+use crate::momentum::{self, Solution};
+use crate::{Node, Real, Scalar, StepError, Stepping};
+use nalgebra::SVector;
+
+/// Newton steps that may follow a guess before every residual is measured.
+const ATTEMPTS: u32 = 3;
+
+/// The inverse of a constant A.
+pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
+
+/// A momentum step of a given length that is taken again and again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub(crate) struct Stride<const N: usize, T> {
+    pub(crate) h: T,
+    pub(crate) forecast: Forecast<N, T>,
+}
+
+/// A velocity, the stride after it, and the Newton iterations it took.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Taken<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    pub(crate) next: Stride<N, T>,
+    pub(crate) iterations: u32,
+}
+
+impl<const N: usize, T: Real> Stride<N, T> {
+    /// The first stride, with a guess of its velocity.
+    pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
+        Self { h, forecast: Forecast::new(guess) }
+    }
+
+    /// The velocity from the one foretold, and how many Newton steps it took; the indicator is 1 in each lane where it can
+    /// be trusted.
+    #[inline]
+    fn attempt<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> (SVector<T, N>, T, u32) {
+        let Self { h, forecast } = self;
+        let (mut v, mut done, mut before) = (forecast.guess(), T::zero(), None);
+        for attempt in 1..=ATTEMPTS {
+            let equation = system.momentum_equation(node, *h, &v);
+            let step = equation.jacobian.solve(&equation.residual);
+            let length = length_squared(&step);
+            // A lane that is done stays as it is: what a trajectory becomes does not depend on its neighbours.
+            v -= if before.is_none() { step } else { step * (T::one() - done) };
+            // A step that is not much shorter than the one before belongs to another root.
+            let contracts = before.map_or_else(T::one, |before: T| length.at_most(before * T::real(0.25)));
+            done = done.max(length.at_most(forecast.radius()) * contracts);
+            if done.holds() {
+                return (v, done, attempt);
+            }
+            before = Some(length);
+        }
+        (v, done, ATTEMPTS)
+    }
+
+    /// The velocity from the last one, and ρ² from how the steps became shorter.
+    fn lesson<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> (SVector<T, N>, T, T) {
+        let Self { h, forecast } = self;
+        let mut v = forecast.newest();
+        let newton_step = |v: &SVector<T, N>| {
+            let equation = system.momentum_equation(node, *h, v);
+            (equation.jacobian.solve(&equation.residual), equation.jacobian)
+        };
+        let (step, _) = newton_step(&v);
+        let first = length_squared(&step);
+        v -= step;
+        let (step, jacobian) = newton_step(&v);
+        let second = length_squared(&step);
+        let noise = system.magnitudes(node, *h, &v).residual * T::real(T::EPSILON);
+        let rounding = length_squared(&jacobian.solve(&noise));
+        let radius = Lesson { first, second, rounding }.radius() * second.at_most(first * T::real(0.25));
+        let trusted = |length: T| length.at_most(radius) * radius.is_above(T::zero());
+        v -= step;
+        let mut done = trusted(second);
+        if !done.holds() {
+            let (step, _) = newton_step(&v);
+            v -= step * (T::one() - done);
+            done = done.max(trusted(length_squared(&step)));
+        }
+        (v, done, radius)
+    }
+}
+
+impl<const N: usize, T: Scalar> Stride<N, T> {
+    /// The inverse of A where it is constant and solves the equation to rounding.
+    pub(crate) fn inverse<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Option<Inverse<S, N, T>> {
+        if !S::CONSTANT_JACOBIAN {
+            return None;
+        }
+        let equation = system.momentum_equation(node, self.h, &SVector::zeros());
+        let inverse = equation.jacobian.inverse();
+        let v = -S::Jacobian::apply(&inverse, &equation.residual);
+        (momentum::residual(system, node, self.h, &v) <= momentum::FLOOR).then_some(inverse)
+    }
+
+    /// The velocity by one product with the inverse of A, or from the one foretold; `None` where it has to be sought.
+    #[inline]
+    pub(crate) fn foretold<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        inverse: Option<&Inverse<S, N, T>>,
+    ) -> Option<Taken<N, T>> {
+        let Self { h, forecast } = self;
+        if S::CONSTANT_JACOBIAN {
+            let rest = system.momentum_equation(node, *h, &SVector::zeros());
+            let v = -S::Jacobian::apply(inverse?, &rest.residual);
+            return Some(Taken { v, next: Self { h: *h, forecast: forecast.with_newest(v) }, iterations: 0 });
+        }
+        if !S::SMOOTH || forecast.is_learning() {
+            return None;
+        }
+        let (v, done, iterations) = self.attempt(system, node);
+        done.holds().then(|| Taken { v, next: Self { h: *h, forecast: forecast.after(v) }, iterations })
+    }
+
+    /// The velocity without the forecast, or by a lesson for it.
+    ///
+    /// # Errors
+    /// Those of Newton's iteration and of the continuation.
+    #[cold]
+    pub(crate) fn sought<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        branch: Branch,
+    ) -> Result<Taken<N, T>, StepError> {
+        let Self { h, forecast } = self;
+        let taken = |v, forecast, iterations| Taken { v, next: Self { h: *h, forecast }, iterations };
+        if S::SMOOTH && branch == Branch::Nearest && forecast.is_learning() {
+            let (v, done, radius) = self.lesson(system, node);
+            if done.holds() && v.iter().all(|entry| entry.is_finite()) {
+                return Ok(taken(v, forecast.learnt(v, radius), 2));
+            }
+        }
+        let (guess, start) = (forecast.guess(), forecast.newest());
+        let Solution { v, iterations } = match branch {
+            Branch::Nearest => continuation::nearest(system, node, *h, guess, start)?,
+            Branch::Connected => continuation::solve(system, node, *h, start, Pace::CLOSE)?,
+        };
+        Ok(taken(v, forecast.missed(v), iterations))
+    }
+}

@@ -1,0 +1,95 @@
+//! Matrices in the form that their zero pattern allows, as `vi_core::linear` solves them.
+
+use super::body::Entry;
+use crate::found::{CLOSED, Pattern};
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+/// The type and the value of the matrix whose rows are these groups of results.
+pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
+    let size = Literal::usize_unsuffixed(rows.len());
+    match pattern {
+        Pattern::Diagonal => banded(rows, 0),
+        _ if rows.len() <= CLOSED => {
+            let entries = rows.iter().flatten();
+            let value = quote!(::vi_core::SMatrix::from_row_slice(&[#(#entries),*]));
+            (quote!(::vi_core::SMatrix<T, #size, #size>), value)
+        }
+        Pattern::Tridiagonal => tridiagonal(rows),
+        Pattern::Banded(width) => banded(rows, *width),
+        Pattern::Blocks(blocks) => in_blocks(rows, blocks),
+        Pattern::Scalar | Pattern::Dense => dense(rows, symmetric),
+    }
+}
+
+/// The entry at this row and column; outside the matrix, zero.
+fn entry(rows: &[Vec<Entry>], row: usize, column: Option<usize>) -> TokenStream {
+    let entry = column.and_then(|column| rows.get(row)?.get(column));
+    entry.map_or_else(|| quote!(T::real(0.0)), |entry| quote!(#entry))
+}
+
+fn tridiagonal(rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
+    let size = Literal::usize_unsuffixed(rows.len());
+    let lower = (0..rows.len()).map(|row| entry(rows, row, row.checked_sub(1)));
+    let diagonal = (0..rows.len()).map(|row| entry(rows, row, Some(row)));
+    let upper = (0..rows.len()).map(|row| entry(rows, row, Some(row + 1)));
+    (
+        quote!(::vi_core::linear::Tridiagonal<#size, T>),
+        quote! {
+            ::vi_core::linear::Tridiagonal {
+                lower: [#(#lower),*],
+                diagonal: [#(#diagonal),*],
+                upper: [#(#upper),*],
+            }
+        },
+    )
+}
+
+fn banded(rows: &[Vec<Entry>], width: usize) -> (TokenStream, TokenStream) {
+    let places = 2 * width + 1;
+    let (size, diagonals) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(places));
+    let bands = (0..rows.len()).map(|row| {
+        let entries = (0..places).map(|place| entry(rows, row, (row + place).checked_sub(width)));
+        quote!([#(#entries),*])
+    });
+    (quote!(::vi_core::linear::Banded<#size, #diagonals, T>), quote!(::vi_core::linear::Banded { rows: [#(#bands),*] }))
+}
+
+fn in_blocks(rows: &[Vec<Entry>], blocks: &[Vec<usize>]) -> (TokenStream, TokenStream) {
+    let largest = blocks.iter().map(Vec::len).max().unwrap_or(1);
+    let (size, width) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(largest));
+    let block_rows = (0..rows.len()).map(|row| {
+        let members = blocks.iter().find(|members| members.contains(&row)).map(Vec::as_slice).unwrap_or_default();
+        let entries = (0..largest).map(|place| entry(rows, row, members.get(place).copied()));
+        quote!([#(#entries),*])
+    });
+    let members = blocks.iter().map(|members| {
+        let members = members.iter().map(|row| Literal::usize_unsuffixed(*row));
+        quote!(&[#(#members),*])
+    });
+    (
+        quote!(::vi_core::linear::Blocks<#size, #width, T>),
+        quote!(::vi_core::linear::Blocks { members: &[#(#members),*], rows: [#(#block_rows),*] }),
+    )
+}
+
+/// What is zero for every input is left out.
+fn dense(rows: &[Vec<Entry>], symmetric: bool) -> (TokenStream, TokenStream) {
+    let size = Literal::usize_unsuffixed(rows.len());
+    let assignments = rows.iter().zip(0_usize..).flat_map(|(row, i)| {
+        row.iter().zip(0_usize..).filter(|(entry, _)| !entry.zero).map(move |(entry, j)| {
+            let (i, j) = (Literal::usize_unsuffixed(i), Literal::usize_unsuffixed(j));
+            quote!(entries[(#i, #j)] = #entry;)
+        })
+    });
+    let value = quote!({
+        let mut entries = ::vi_core::SMatrix::zeros();
+        #(#assignments)*
+        entries
+    });
+    if symmetric {
+        (quote!(::vi_core::linear::Symmetric<#size, T>), quote!(::vi_core::linear::Symmetric(#value)))
+    } else {
+        (quote!(::vi_core::SMatrix<T, #size, #size>), value)
+    }
+}
