@@ -28,7 +28,8 @@ fn energy_preserving<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) 
     }
     let mean = f64::from(iterations) / f64::from(steps);
     println!("{}: {mean:.2} iterations over {steps} steps to t = {:.0}", S::NAME, run.state().t);
-    assert!(mean <= limit(N) && mean > 0.5, "{}: {mean}", S::NAME);
+    // None at all where A is constant: its inverse was computed once.
+    assert!(mean <= limit(N) && (mean > 0.5 || S::CONSTANT_JACOBIAN && iterations == 0), "{}: {mean}", S::NAME);
 }
 
 /// Measured: 1.0 (linear systems) to 2.5 (spherical pendulum).
@@ -42,7 +43,8 @@ fn fixed<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
     }
     let mean = f64::from(iterations) / f64::from(STEPS);
     println!("{}: {mean:.2} iterations over {STEPS} fixed steps", S::NAME);
-    assert!(mean <= limit(N) && mean > 0.5, "{}: {mean}", S::NAME);
+    // None at all where A is constant: its inverse was computed once.
+    assert!(mean <= limit(N) && (mean > 0.5 || S::CONSTANT_JACOBIAN && iterations == 0), "{}: {mean}", S::NAME);
 }
 
 mod of_fixed_steps {

@@ -157,20 +157,22 @@ where
         let (mut node, system) = (self.node, &self.system);
         // Before the first whole step the velocities of the substeps are not known: each follows the one before.
         let mut known: Option<SVector<T, N>> = None;
-        for ((stride, next), inverse) in self.strides.iter().zip(&mut self.following).zip(&self.inverses) {
-            let stride = match known {
-                Some(v) if stride.forecast.is_new() => Stride::new(stride.h, v),
-                _ => *stride,
+        self.following.copy_from_slice(&self.strides);
+        for (stride, inverse) in self.following.iter_mut().zip(&self.inverses) {
+            if let Some(v) = known.filter(|_| stride.forecast.is_new()) {
+                *stride = Stride::new(stride.h, v);
+            }
+            let v = if let Some((v, _)) = stride.foretold(system, &node, inverse.as_ref()) {
+                stride.take::<S>(v);
+                v
+            } else {
+                let guess = stride.forecast.newest();
+                let sought = stride.seek(system, &node, Branch::Nearest);
+                sought.map_err(|failure| failure.explained(system, &node, stride.h, &guess))?.0
             };
-            let taken = match stride.foretold(system, &node, inverse.as_ref()) {
-                Some(taken) => taken,
-                None => stride
-                    .sought(system, &node, Branch::Nearest)
-                    .map_err(|failure| failure.explained(system, &node, stride.h, &stride.forecast.newest()))?,
-            };
-            node = node.moved(stride.h, &taken.v, &system.increment(&node, stride.h, &taken.v).momentum);
+            node = node.moved(stride.h, &v, &system.increment(&node, stride.h, &v).momentum);
             node.check_finite(self.node.t)?;
-            (*next, known) = (taken.next, Some(taken.v));
+            known = Some(v);
         }
         self.node = node;
         core::mem::swap(&mut self.strides, &mut self.following);

@@ -89,9 +89,13 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        if let Some((run, step)) = self.foretold() {
-            self.run = run;
-            return Ok(step);
+        if let Some(root) = self.foretold() {
+            let (node, last, step) = self.run.reached(&self.system, &self.run.node, &root, Method::EnergyPreserving);
+            if node.is_finite() {
+                self.run.forecasts.push(root.v, root.h);
+                (self.run.node, self.run.last) = (node, last);
+                return Ok(step);
+            }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers.
         let (run, outcome) = sought(self.system, self.run);
@@ -99,21 +103,17 @@ where
         outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
 
-    /// The run after a step that had not to be sought, and the step.
+    /// The next step, where it has not to be sought.
     #[inline]
-    fn foretold(&self) -> Option<(Checkpoint<N, T>, Step<N, T>)> {
+    fn foretold(&self) -> Option<Root<N, T>> {
         let Self { system, run, .. } = self;
         let Checkpoint { node, last, forecasts, bounds, phase, .. } = run;
         if phase.is_some() {
             return None;
         }
         let root = forecasts.root(system, node, last)?;
-        if bounds.as_ref().is_some_and(|bounds| !bounds.admit(root.h)) || self.runs_away(root.h) {
-            return None;
-        }
-        let forecasts = forecasts.after(root.v, root.h);
-        let (run, step) = run.after(system, *node, &root, forecasts, Method::EnergyPreserving);
-        run.node.is_finite().then_some((run, step))
+        let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(root.h)) && !self.runs_away(root.h);
+        allowed.then_some(root)
     }
 
     /// The state reached last.
@@ -177,14 +177,14 @@ where
 
     /// Takes the step `root` from `start`, and learns from it.
     fn take(&mut self, start: Node<N, T>, root: Root<N, T>, method: Method<T>) -> Result<Step<N, T>, StepError> {
-        let forecasts = match method {
+        let (node, last, step) = self.run.reached(&self.system, &start, &root, method);
+        node.check_finite(start.t)?;
+        match method {
             // A length that was given foretells none.
-            Method::FixedStep => foretold::Forecasts::new(root.v, root.h),
-            _ => self.run.forecasts.learnt(&self.system, &start, &root),
-        };
-        let (run, step) = self.run.after(&self.system, start, &root, forecasts, method);
-        run.node.check_finite(start.t)?;
-        self.run = run;
+            Method::FixedStep => self.run.forecasts = foretold::Forecasts::new(root.v, root.h),
+            _ => self.run.forecasts.learn(&self.system, &start, &root),
+        }
+        (self.run.node, self.run.last) = (node, last);
         Ok(step)
     }
 
@@ -231,18 +231,17 @@ fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
 }
 
 impl<const N: usize, T: Real> Checkpoint<N, T> {
-    /// The run after the step `root` from `start`, and the step.
+    /// The node and the interval after the step `root` from `start`, and the step.
     #[inline]
-    fn after<S: Stepping<N, T>>(
+    fn reached<S: Stepping<N, T>>(
         &self,
         system: &S,
-        start: Node<N, T>,
+        start: &Node<N, T>,
         root: &Root<N, T>,
-        forecasts: foretold::Forecasts<N, T>,
         method: Method<T>,
-    ) -> (Self, Step<N, T>) {
+    ) -> (Node<N, T>, Last<N, T>, Step<N, T>) {
         let Root { v, h, density, iterations, residual, .. } = *root;
-        let gain = system.increment(&start, h, &v);
+        let gain = system.increment(start, h, &v);
         let node = start.advanced(h, &v, &gain);
         let (t_mid, q_mid) = start.midpoint(h, &v);
         let last = &self.last;
@@ -264,7 +263,7 @@ impl<const N: usize, T: Real> Checkpoint<N, T> {
             method,
         };
         let last = Last { v, h, previous: last.h, density, slope };
-        (Self { node, last, forecasts, ..*self }, step)
+        (node, last, step)
     }
 }
 

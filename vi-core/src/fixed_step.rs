@@ -14,7 +14,7 @@
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 use crate::momentum;
-use crate::stride::{Inverse, Stride, Taken};
+use crate::stride::{Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -40,8 +40,8 @@ where
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Branch {
-    /// The root that Newton's iteration reaches from the velocity extrapolated over the last steps. It depends on the steps
-    /// before, and on nothing else.
+    /// The root that Newton's iteration reaches from the velocity of the last step, or extrapolated over the last ones. It
+    /// depends on the steps before, and on nothing else.
     #[default]
     Nearest,
     /// The root that is connected with h = 0, where it is the velocity that belongs to p: it depends on the state alone.
@@ -130,29 +130,24 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        // Rare paths get copies, so that a loop over steps may keep the run in registers.
-        match self.foretold().map_or_else(|| sought(self.system, self.run), Ok) {
-            Ok(run) => {
-                self.run = run;
-                Ok(run.node.state())
-            }
-            Err(failure) => {
-                let failure = explained(failure, self.system, self.run);
-                self.failure = Some(failure);
-                Err(failure)
+        let Self { system, inverse, run, .. } = self;
+        if let Some((v, iterations)) = run.foretold(system, inverse.as_ref()) {
+            let node = run.reached(system, &v);
+            if node.is_finite() {
+                run.stride.take::<S>(v);
+                run.node = node;
+                run.steps += 1;
+                run.iterations = iterations;
+                return Ok(node.state());
             }
         }
-    }
-
-    /// The run after a step that had not to be sought.
-    #[inline]
-    fn foretold(&self) -> Option<Checkpoint<N, T>> {
-        let Checkpoint { node, stride, branch, .. } = &self.run;
-        if *branch != Branch::Nearest {
-            return None;
+        // The rare path gets copies, so that a loop over steps may keep the run in registers.
+        let (run, outcome) = sought(self.system, self.run);
+        match outcome {
+            Ok(()) => self.run = run,
+            Err(failure) => self.failure = Some(failure),
         }
-        let after = self.run.after(&self.system, stride.foretold(&self.system, node, self.inverse.as_ref())?);
-        after.node.is_finite().then_some(after)
+        outcome.map(|()| self.run.node.state())
     }
 
     /// The state reached last.
@@ -201,37 +196,47 @@ where
     }
 }
 
-impl<const N: usize, T: Real> Checkpoint<N, T> {
-    /// The run after a step.
+impl<const N: usize, T: Scalar> Checkpoint<N, T> {
+    /// The velocity of the next step, where it has not to be sought.
     #[inline]
-    fn after<S: Stepping<N, T>>(&self, system: &S, Taken { v, next, iterations }: Taken<N, T>) -> Self {
+    fn foretold<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        inverse: Option<&Inverse<S, N, T>>,
+    ) -> Option<(SVector<T, N>, u32)> {
+        let Self { node, stride, branch, .. } = self;
+        if *branch == Branch::Nearest { stride.foretold(system, node, inverse) } else { None }
+    }
+
+    /// The node after the step of velocity v.
+    #[inline]
+    fn reached<S: Stepping<N, T>>(&self, system: &S, v: &SVector<T, N>) -> Node<N, T> {
         let h = self.stride.h;
-        let gain = system.increment(&self.node, h, &v);
-        let node = self.node.moved(h, &v, &gain.momentum);
-        Self { node, stride: next, steps: self.steps + 1, iterations, ..*self }
+        self.node.moved(h, v, &system.increment(&self.node, h, v).momentum)
+    }
+
+    /// Takes a step that has to be sought.
+    fn seek<S: Stepping<N, T>>(&mut self, system: &S) -> Result<(), StepError> {
+        let (v, iterations) = self.stride.seek(system, &self.node, self.branch)?;
+        let node = self.reached(system, &v);
+        node.check_finite(self.node.t)?;
+        (self.node, self.iterations) = (node, iterations);
+        self.steps += 1;
+        Ok(())
     }
 }
 
-/// The run after a step that has to be sought.
+/// The run after a step that has to be sought; or the error, with the expression that is not finite.
 #[cold]
 #[inline(never)]
 fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: S,
-    run: Checkpoint<N, T>,
-) -> Result<Checkpoint<N, T>, StepError> {
-    let after = run.after(&system, run.stride.sought(&system, &run.node, run.branch)?);
-    after.node.check_finite(run.node.t)?;
-    Ok(after)
-}
-
-/// The error with the expression that is not finite.
-#[cold]
-fn explained<const N: usize, T: Scalar, S: Stepping<N, T>>(
-    failure: StepError,
-    system: S,
-    run: Checkpoint<N, T>,
-) -> StepError {
-    failure.explained(&system, &run.node, run.stride.h, &run.stride.forecast.newest())
+    before: Checkpoint<N, T>,
+) -> (Checkpoint<N, T>, Result<(), StepError>) {
+    let mut run = before;
+    let outcome = run.seek(&system);
+    let v = before.stride.forecast.newest();
+    (run, outcome.map_err(|failure| failure.explained(&system, &before.node, before.stride.h, &v)))
 }
 
 impl<S, const N: usize, T> Iterator for FixedStep<S, N, T>

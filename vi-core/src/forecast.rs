@@ -5,7 +5,7 @@
 //! evaluated to confirm it.
 //!
 //! ```text
-//! guess   Σ w_i u_i,  w_i = (−1)^i binomial(m+1, i+1),  i = 0 the newest           error O(h^(m+1))
+//! guess   Σ w_i u_i,  w_i = (−1)^i binomial(m+1, i+1),  i = 0 the newest; error O(h^(m+1))
 //! radius  after a step |δ| the next one is C |δ|²:  ρ² = ε/(4 C),  ε the length of a step that is all rounding
 //! ```
 //!
@@ -21,18 +21,22 @@ use nalgebra::SVector;
 const INTERVAL: u32 = 64;
 /// The same after ρ has become less than a quarter of what it was.
 const ALERT: u32 = 8;
-/// Velocities that are kept: the highest order is one less.
-pub(crate) const DEPTH: usize = 7;
+/// Unknowns that a guess is made of: the highest order is one less.
+const DEPTH: usize = RING + 1;
+/// Places for the older ones: a power of two.
+const RING: usize = 8;
 
-/// Rows are orders m, columns the weights of the last u, the newest first.
+/// Rows are orders m, columns the weights, the newest first.
 const WEIGHTS: [[f64; DEPTH]; DEPTH] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0],
-    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0],
-    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0],
-    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0],
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0, 0.0, 0.0],
+    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0, 0.0, 0.0],
+    [8.0, -28.0, 56.0, -70.0, 56.0, -28.0, 8.0, -1.0, 0.0],
+    [9.0, -36.0, 84.0, -126.0, 126.0, -84.0, 36.0, -9.0, 1.0],
 ];
 
 /// Guesses of the next M unknowns.
@@ -43,15 +47,19 @@ const WEIGHTS: [[f64; DEPTH]; DEPTH] = [
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
 pub(crate) struct Forecast<const M: usize, T> {
-    /// The unknowns of the last steps, the newest first; before there are so many the oldest stands in.
-    last: [SVector<T, M>; DEPTH],
-    /// What the guess takes of each.
+    /// The unknowns of the last step: the only ones that the next guess waits for.
+    newest: SVector<T, M>,
+    /// Those of the steps before in a ring, which is written in one place a step.
+    older: [SVector<T, M>; RING],
+    /// Steps taken, modulo the ring: where the next of `older` goes.
+    head: u32,
+    /// What the guess takes of each, the newest first.
     weights: [T; DEPTH],
     /// ρ²; zero where nothing is trusted.
     radius: T,
     /// Steps until the next one that learns.
     until: u32,
-    /// How many of `last` are steps.
+    /// How many of these are steps, up to one more than there are.
     known: u32,
 }
 
@@ -80,7 +88,7 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// Before the first step, with a guess of it.
     pub(crate) fn new(guess: SVector<T, M>) -> Self {
         let weights = WEIGHTS[0].map(T::real);
-        Self { last: [guess; DEPTH], weights, radius: T::zero(), until: 0, known: 0 }
+        Self { newest: guess, older: [guess; RING], head: 0, weights, radius: T::zero(), until: 0, known: 0 }
     }
 
     /// Whether there was no step yet.
@@ -91,24 +99,31 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// The unknowns of the last step.
     #[inline]
     pub(crate) fn newest(&self) -> SVector<T, M> {
-        let [newest, ..] = self.last;
-        newest
+        self.newest
     }
 
     /// Whether everything is a finite number.
     pub(crate) fn is_finite(&self) -> bool {
-        let numbers = self.last.iter().flat_map(|u| u.iter()).chain(&self.weights);
+        let numbers = self.older.iter().flat_map(|u| u.iter()).chain(self.newest.iter()).chain(&self.weights);
         numbers.chain([&self.radius]).all(|number| number.is_finite())
+    }
+
+    /// The unknowns of the step i before the newest, i from 1.
+    #[inline]
+    fn before(&self, i: usize) -> &SVector<T, M> {
+        &self.older[(self.head as usize).wrapping_sub(i) % RING]
     }
 
     /// The guess of the next step.
     #[inline]
     pub(crate) fn guess(&self) -> SVector<T, M> {
-        let [newest, older @ ..] = &self.last;
-        let [weight, weights @ ..] = self.weights;
+        let [newest, weights @ ..] = &self.weights;
+        let mut sum = SVector::zeros();
+        for (i, weight) in weights.iter().enumerate() {
+            sum += self.before(i + 1) * *weight;
+        }
         // The newest last: it is the one that is waited for.
-        let older = older.iter().zip(weights).fold(SVector::zeros(), |sum, (u, weight)| sum + u * weight);
-        older + newest * weight
+        sum + self.newest * *newest
     }
 
     /// ρ².
@@ -123,60 +138,71 @@ impl<const M: usize, T: Real> Forecast<M, T> {
         self.until == 0
     }
 
-    /// The forecast after the step `u` where none is needed.
+    /// Takes the step `u` where no guess is needed.
     #[inline]
-    pub(crate) fn with_newest(mut self, u: SVector<T, M>) -> Self {
-        self.last[0] = u;
-        self
+    pub(crate) fn replace(&mut self, u: SVector<T, M>) {
+        self.newest = u;
     }
 
-    /// The forecast after the step `u`.
+    /// Takes the step `u`.
     #[inline]
-    pub(crate) fn after(mut self, u: SVector<T, M>) -> Self {
-        let [a, b, c, d, e, f, _] = self.last;
-        self.last = [u, a, b, c, d, e, f];
+    pub(crate) fn push(&mut self, u: SVector<T, M>) {
+        self.older[self.head as usize % RING] = self.newest;
+        self.head = (self.head + 1) % RING as u32;
+        self.newest = u;
         self.until = self.until.saturating_sub(1);
-        self
     }
 
-    /// The forecast after a step `u` that was not come by from here: the next one learns, unless this one should have.
-    pub(crate) fn missed(self, u: SVector<T, M>) -> Self {
-        if self.is_learning() { self.learnt(u, T::zero()) } else { Self { until: 0, ..self.after(u) } }
-    }
-
-    /// The forecast after the step `u` that started from the last one, and what it taught.
-    pub(crate) fn learnt(self, u: SVector<T, M>, radius: T) -> Self {
-        let known = self.known;
-        let narrowed = !radius.is_above(self.radius * T::real(1.0 / 16.0)).holds();
-        let weights = self.best_weights(&u);
-        // The first steps know no higher order yet.
-        let until = match (known as usize) < DEPTH {
-            true => 1,
-            false if narrowed => ALERT,
-            false => INTERVAL,
-        };
-        Self { weights, radius, until, known: known.saturating_add(1), ..self }.after(u)
-    }
-
-    /// The weights of the order that would have guessed `u` best.
-    fn best_weights(&self, u: &SVector<T, M>) -> [T; DEPTH] {
-        let mut weights = WEIGHTS[0].map(T::real);
-        let mut least = self.distance(&weights, u);
-        for row in WEIGHTS.iter().take(self.known as usize).skip(1) {
-            let row = row.map(T::real);
-            let distance = self.distance(&row, u);
-            let better = least.is_above(distance);
-            for (weight, other) in weights.iter_mut().zip(row) {
-                *weight += (other - *weight) * better;
-            }
-            least += (distance - least) * better;
+    /// Takes a step `u` that was not come by from here: the next one learns, unless this one should have.
+    pub(crate) fn miss(&mut self, u: SVector<T, M>) {
+        if self.is_learning() {
+            self.learn(u, T::zero());
+        } else {
+            self.push(u);
+            self.until = 0;
         }
-        weights
     }
 
-    /// Squared distance of a guess from `u`.
-    fn distance(&self, weights: &[T; DEPTH], u: &SVector<T, M>) -> T {
-        length_squared(&(Self { weights: *weights, ..*self }.guess() - u))
+    /// Takes the step `u` that started from the last one, and ρ² as it taught.
+    pub(crate) fn learn(&mut self, u: SVector<T, M>, radius: T) {
+        let narrowed = !radius.is_above(self.radius * T::real(1.0 / 16.0)).holds();
+        self.weights = self.best_weights(&u);
+        self.radius = radius;
+        self.push(u);
+        self.until = match (self.known as usize) < DEPTH {
+            // The first steps know no higher order yet.
+            true => 0,
+            false if narrowed => ALERT - 1,
+            false => INTERVAL - 1,
+        };
+        self.known = (self.known + 1).min(DEPTH as u32);
+    }
+
+    /// The weights of the order that would have guessed `u` best: the highest up to which each order halves the error of the
+    /// one before, so that no order is chosen by chance where the steps are not smooth. The error of order m is the difference
+    /// of order m + 1 of the steps up to `u`.
+    fn best_weights(&self, u: &SVector<T, M>) -> [T; DEPTH] {
+        let mut best = WEIGHTS[0].map(T::real);
+        let mut differences = [SVector::zeros(); DEPTH];
+        differences[0] = self.newest;
+        for (i, difference) in differences.iter_mut().enumerate().skip(1) {
+            *difference = *self.before(i);
+        }
+        let mut newest = u - differences[0];
+        let (mut least, mut climbing) = (length_squared(&newest), T::one());
+        for (order, weights) in WEIGHTS.iter().enumerate().take(self.known as usize).skip(1) {
+            for i in 0..DEPTH - order {
+                differences[i] -= differences[i + 1];
+            }
+            newest -= differences[0];
+            let distance = length_squared(&newest);
+            climbing = climbing * distance.at_most(least * T::real(0.25));
+            for (weight, other) in best.iter_mut().zip(weights) {
+                *weight += (T::real(*other) - *weight) * climbing;
+            }
+            least = distance;
+        }
+        best
     }
 }
 

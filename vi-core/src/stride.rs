@@ -37,14 +37,6 @@ pub(crate) struct Stride<const N: usize, T> {
     pub(crate) forecast: Forecast<N, T>,
 }
 
-/// A velocity, the stride after it, and the Newton iterations it took.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Taken<const N: usize, T> {
-    pub(crate) v: SVector<T, N>,
-    pub(crate) next: Stride<N, T>,
-    pub(crate) iterations: u32,
-}
-
 impl<const N: usize, T: Real> Stride<N, T> {
     /// The first stride, with a guess of its velocity.
     pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
@@ -114,51 +106,58 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         (momentum::residual(system, node, self.h, &v) <= momentum::FLOOR).then_some(inverse)
     }
 
-    /// The velocity by one product with the inverse of A, or from the one foretold; `None` where it has to be sought.
+    /// The velocity by one product with the inverse of A, or from the one foretold, and the Newton iterations it took;
+    /// `None` where it has to be sought.
     #[inline]
     pub(crate) fn foretold<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         inverse: Option<&Inverse<S, N, T>>,
-    ) -> Option<Taken<N, T>> {
-        let Self { h, forecast } = self;
+    ) -> Option<(SVector<T, N>, u32)> {
         if S::CONSTANT_JACOBIAN {
-            let rest = system.momentum_equation(node, *h, &SVector::zeros());
-            let v = -S::Jacobian::apply(inverse?, &rest.residual);
-            return Some(Taken { v, next: Self { h: *h, forecast: forecast.with_newest(v) }, iterations: 0 });
+            let rest = system.momentum_equation(node, self.h, &SVector::zeros());
+            return Some((-S::Jacobian::apply(inverse?, &rest.residual), 0));
         }
-        if !S::SMOOTH || forecast.is_learning() {
+        if !S::SMOOTH || self.forecast.is_learning() {
             return None;
         }
         let (v, done, iterations) = self.attempt(system, node);
-        done.holds().then(|| Taken { v, next: Self { h: *h, forecast: forecast.after(v) }, iterations })
+        done.holds().then_some((v, iterations))
     }
 
-    /// The velocity without the forecast, or by a lesson for it.
+    /// Takes a velocity that was foretold.
+    #[inline]
+    pub(crate) fn take<S: Stepping<N, T>>(&mut self, v: SVector<T, N>) {
+        if S::CONSTANT_JACOBIAN { self.forecast.replace(v) } else { self.forecast.push(v) }
+    }
+
+    /// The velocity without the forecast, or by a lesson for it; and the Newton iterations it took. The forecast takes it.
     ///
     /// # Errors
     /// Those of Newton's iteration and of the continuation.
-    #[cold]
-    pub(crate) fn sought<S: Stepping<N, T>>(
-        &self,
+    pub(crate) fn seek<S: Stepping<N, T>>(
+        &mut self,
         system: &S,
         node: &Node<N, T>,
         branch: Branch,
-    ) -> Result<Taken<N, T>, StepError> {
-        let Self { h, forecast } = self;
-        let taken = |v, forecast, iterations| Taken { v, next: Self { h: *h, forecast }, iterations };
-        if S::SMOOTH && branch == Branch::Nearest && forecast.is_learning() {
+    ) -> Result<(SVector<T, N>, u32), StepError> {
+        if S::SMOOTH && branch == Branch::Nearest && self.forecast.is_learning() {
             let (v, done, radius) = self.lesson(system, node);
             if done.holds() && v.iter().all(|entry| entry.is_finite()) {
-                return Ok(taken(v, forecast.learnt(v, radius), 2));
+                self.forecast.learn(v, radius);
+                return Ok((v, 2));
             }
         }
-        let (guess, start) = (forecast.guess(), forecast.newest());
+        let Self { h, forecast } = self;
+        let start = forecast.newest();
+        // Where a smooth motion was not foretold, what was foretold may be anywhere.
+        let guess = if S::SMOOTH { start } else { forecast.guess() };
         let Solution { v, iterations } = match branch {
             Branch::Nearest => continuation::nearest(system, node, *h, guess, start)?,
             Branch::Connected => continuation::solve(system, node, *h, start, Pace::CLOSE)?,
         };
-        Ok(taken(v, forecast.missed(v), iterations))
+        forecast.miss(v);
+        Ok((v, iterations))
     }
 }

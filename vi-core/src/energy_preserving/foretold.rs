@@ -1,17 +1,20 @@
 //! The step as the steps before it foretell it.
 //!
-//! In: the velocities and lengths of the last steps. Out: the root of both equations by one Newton step, where that is
-//! shorter than what is trusted (`forecast`), the length stays inside the range and D keeps its sign. `None` else, and
+//! In: the velocities and lengths of the last steps. Out: the root of both equations by Newton steps from the guess, the last
+//! of them shorter than what is trusted (`forecast`), the length stays inside the range and D keeps its sign. `None` else, and
 //! for every 64th step, which learns what may be trusted.
 
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
-use crate::forecast::{Forecast, length_squared};
+use crate::forecast::{Forecast, Lesson, length_squared};
 use crate::{Node, Real, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Residual that is left where nothing was evaluated to confirm it, at most, in roundings: a quarter by v, a quarter by h.
 const UNCONFIRMED: f64 = 0.5;
+
+/// Newton steps that may follow a guess.
+const ATTEMPTS: u32 = 3;
 
 /// The forecasts of v and h, which learn together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,10 +45,11 @@ impl<const N: usize, T: Real> Forecasts<N, T> {
         self.v.is_finite() && self.h.is_finite()
     }
 
-    /// The forecasts after the step `(v, h)`.
+    /// Takes the step `(v, h)`.
     #[inline]
-    pub(super) fn after(self, v: SVector<T, N>, h: T) -> Self {
-        Self { v: self.v.after(v), h: self.h.after(SVector::repeat(h)) }
+    pub(super) fn push(&mut self, v: SVector<T, N>, h: T) {
+        self.v.push(v);
+        self.h.push(SVector::repeat(h));
     }
 }
 
@@ -61,31 +65,43 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         if !S::SMOOTH || self.is_learning() {
             return None;
         }
-        let [guess] = self.h.guess().into();
-        let trial = Trial { v: self.v.guess(), h: guess };
-        let equations = system.extended_system(node, trial.h, &trial.v);
-        let elimination = Elimination::of(&equations);
-        let step = elimination.step(&equations, &trial);
-        let (v, h) = (trial.v + step.v, trial.h + step.h);
-        let density = elimination.density_or_infinite();
-        let trusted = length_squared(&step.v) <= self.v.radius() && step.h * step.h <= self.h.radius();
-        let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
-        let forward = density * last.density > T::zero() && !elimination.is_degenerate();
-        let root = Root { v, h, density, iterations: 1, residual: UNCONFIRMED, approach: None };
-        (trusted && in_range && forward).then_some(root)
+        let [h] = self.h.guess().into();
+        let (mut trial, mut before) = (Trial { v: self.v.guess(), h }, None);
+        for iterations in 1..=ATTEMPTS {
+            let equations = system.extended_system(node, trial.h, &trial.v);
+            let elimination = Elimination::of(&equations);
+            let step = elimination.step(&equations, &trial);
+            trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
+            let lengths = (length_squared(&step.v), step.h * step.h);
+            if lengths.0 <= self.v.radius() && lengths.1 <= self.h.radius() {
+                let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
+                let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
+                // At the smallest root D has the sign that it had.
+                let forward = density * last.density > T::zero() && !elimination.is_degenerate();
+                let root = Root { v, h, density, iterations, residual: UNCONFIRMED, approach: None };
+                return (in_range && forward).then_some(root);
+            }
+            // Steps that do not become much shorter lead to another root, or to none.
+            let shorter = |now: T, before: T, radius: T| now <= (before * T::real(0.25)).max(radius);
+            let contracts = before
+                .is_none_or(|(v, h)| shorter(lengths.0, v, self.v.radius()) && shorter(lengths.1, h, self.h.radius()));
+            if !contracts {
+                return None;
+            }
+            before = Some(lengths);
+        }
+        None
     }
 
-    /// The forecasts after a step that was not foretold: what it taught.
-    #[cold]
-    pub(super) fn learnt<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>, root: &Root<N, T>) -> Self {
-        let h = SVector::repeat(root.h);
-        let radius = |(lesson, rounding): (crate::forecast::Lesson<T>, T)| {
+    /// Takes a step that was not foretold, and what it taught.
+    pub(super) fn learn<S: Stepping<N, T>>(&mut self, system: &S, node: &Node<N, T>, root: &Root<N, T>) {
+        let radius = |(lesson, rounding): (Lesson<T>, T)| {
             let radius = lesson.radius() * rounding;
             if radius.is_finite() { radius } else { T::zero() }
         };
-        match newton::lessons(system, node, root).filter(|_| S::SMOOTH) {
-            Some([by_v, by_h]) => Self { v: self.v.learnt(root.v, radius(by_v)), h: self.h.learnt(h, radius(by_h)) },
-            None => Self { v: self.v.learnt(root.v, T::zero()), h: self.h.learnt(h, T::zero()) },
-        }
+        let lessons = newton::lessons(system, node, root).filter(|_| S::SMOOTH);
+        let [by_v, by_h] = lessons.map_or([T::zero(); 2], |lessons| lessons.map(radius));
+        self.v.learn(root.v, by_v);
+        self.h.learn(SVector::repeat(root.h), by_h);
     }
 }

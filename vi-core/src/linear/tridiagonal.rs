@@ -30,10 +30,9 @@ pub struct Factors<const N: usize, T> {
 impl<const N: usize, T: Real> Tridiagonal<N, T> {
     const MIDDLE: usize = N / 2;
 
-    /// Row i from the top, and the row as far from the bottom, `step` rows into each half; both halves have a step but
-    /// for the last one of an odd N.
+    /// The reciprocals of the pivots, those of the two halves in turn; the lower half of an even N is a row shorter.
     #[inline]
-    fn factors(&self) -> Factors<N, T> {
+    fn reciprocals(&self) -> [T; N] {
         let Self { lower, diagonal, upper } = self;
         let mut reciprocals = [T::zero(); N];
         let (mut above, mut below) = (T::zero(), T::zero());
@@ -57,15 +56,13 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
             pivot -= upper[m] * lower[m + 1] * reciprocals[m + 1];
         }
         reciprocals[m] = pivot.recip();
-        Factors { matrix: *self, reciprocals }
+        reciprocals
     }
-}
 
-impl<const N: usize, T: Real> Factors<N, T> {
     #[inline]
-    fn substitute<const M: usize>(&self, mut x: SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        let Self { matrix: Tridiagonal { lower, upper, .. }, reciprocals } = self;
-        let m = Tridiagonal::<N, T>::MIDDLE;
+    fn substitute<const M: usize>(&self, reciprocals: &[T; N], mut x: SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        let Self { lower, upper, .. } = self;
+        let m = Self::MIDDLE;
         for k in 0..M {
             let mut x = x.column_mut(k);
             for step in 0..m {
@@ -105,16 +102,16 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
 
     #[inline]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        self.factors().substitute(*rhs)
+        self.substitute(&self.reciprocals(), *rhs)
     }
 
     fn inverse(&self) -> Self::Inverse {
-        self.factors()
+        Factors { matrix: *self, reciprocals: self.reciprocals() }
     }
 
     #[inline]
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
-        inverse.substitute(*rhs)
+        inverse.matrix.substitute(&inverse.reciprocals, *rhs)
     }
 
     fn dense(&self) -> SMatrix<T, N, N> {

@@ -66,8 +66,8 @@ fn findings_in_words() {
         "Not autonomous: `L` depends on the time `t`; no force acts",
         "Cyclic: q0; its momentum is conserved",
         "`L = T(v) + U(t, q)` with a constant mass matrix",
-        "The step's equation in `v` is explicit: its Jacobian `A` depends on parameters only",
-        "`A` is diagonal, symmetric",
+        "The step's equation in `v` is explicit: its Jacobian `A` depends on parameters only and is inverted once per run",
+        "`A` is diagonal, symmetric; solved by division",
     ];
     assert_eq!(words(free), wanted);
     let relativistic = words("coord x; L = -sqrt(1 - dot(x)^2) - x^2; force x = sin(t); discretize midpoint;");
