@@ -1,12 +1,12 @@
 //! What the next step will be, foretold, and how far Newton's iteration may be trusted from there.
 //!
 //! In: the unknowns `u` of the last steps. Out: a guess of those of the next one, by a polynomial through the last m + 1
-//! of them, and a distance ρ: a Newton step shorter than ρ leaves less than a quarter of a rounding, and nothing need be
+//! of them, and a distance ρ: a Newton step shorter than ρ leaves less than a share of one rounding, and nothing need be
 //! evaluated to confirm it.
 //!
 //! ```text
 //! guess   Σ w_i u_i,  w_i = (−1)^i binomial(m+1, i+1),  i = 0 the newest; error O(h^(m+1))
-//! radius  after a step |δ| the next one is C |δ|²:  ρ² = ε/(4 C),  ε the length of a step that is all rounding
+//! radius  after a step |δ| the next one is C |δ|²:  ρ² = share ε/C,  ε the length of a step that is all rounding
 //! ```
 //!
 //! C and the best m change slowly along a motion. They are learnt from one step in [`INTERVAL`], which starts on purpose
@@ -75,10 +75,10 @@ pub(crate) struct Lesson<T> {
 }
 
 impl<T: Real> Lesson<T> {
-    /// ρ² = ε/(4 C) with C = |δ2|/|δ1|², or less where that is below rounding.
-    pub(crate) fn radius(&self) -> T {
+    /// ρ² = share ε/C with C = |δ2|/|δ1|², or less where that is below rounding.
+    pub(crate) fn radius(&self, share: f64) -> T {
         let second = self.second.max(self.rounding).sqrt();
-        let radius = self.rounding.sqrt() * self.first * T::real(0.25) / second;
+        let radius = self.rounding.sqrt() * self.first * T::real(share) / second;
         // 0/0: the first step had no length, and nothing was learnt.
         radius * self.first.is_above(T::zero())
     }

@@ -22,6 +22,9 @@ use nalgebra::SVector;
 /// Newton steps that may follow a guess before every residual is measured.
 const ATTEMPTS: u32 = 3;
 
+/// Part of a rounding that Newton's iteration may leave.
+const SHARE: f64 = 0.25;
+
 /// The inverse of a constant A.
 pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
 
@@ -81,7 +84,7 @@ impl<const N: usize, T: Real> Stride<N, T> {
         let second = length_squared(&step);
         let noise = system.magnitudes(node, *h, &v).residual * T::real(T::EPSILON);
         let rounding = length_squared(&jacobian.solve(&noise));
-        let radius = Lesson { first, second, rounding }.radius() * second.at_most(first * T::real(0.25));
+        let radius = Lesson { first, second, rounding }.radius(SHARE) * second.at_most(first * T::real(0.25));
         let trusted = |length: T| length.at_most(radius) * radius.is_above(T::zero());
         v -= step;
         let mut done = trusted(second);
