@@ -1,0 +1,120 @@
+//! Steppers written by hand, each for one system: what an expert would write who knows all that the generator knows.
+//!
+//! All solve for v (and h) by Newton's iteration from a guess extrapolated with order 4 over the last steps, and stop by the
+//! length of a Newton step: the convergence is quadratic, and the constant is tuned to the system and its h. The force at
+//! the solution is carried there by its derivative, and so are the next guess and its place. Generic over [`Sum`]: plain sums, or those that keep what rounding takes
+//! from them, as the generated steppers do.
+
+pub mod double_well;
+pub mod kepler;
+
+use core::fmt::Debug;
+
+/// Newton iterations after which a step is given up.
+const ITERATIONS: usize = 20;
+
+/// A number that grows by increments: t, q or p.
+pub trait Sum: Copy + Debug {
+    /// The number at the start.
+    fn new(value: f64) -> Self;
+    /// The number, rounded.
+    fn value(self) -> f64;
+    /// The number plus `y`, rounded.
+    fn plus(self, y: f64) -> f64;
+    /// Grows by `factor · increment`.
+    fn grow(&mut self, factor: f64, increment: f64);
+}
+
+/// An ordinary sum.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain(f64);
+
+impl Sum for Plain {
+    #[inline]
+    fn new(value: f64) -> Self {
+        Self(value)
+    }
+
+    #[inline]
+    fn value(self) -> f64 {
+        self.0
+    }
+
+    #[inline]
+    fn plus(self, y: f64) -> f64 {
+        self.0 + y
+    }
+
+    #[inline]
+    fn grow(&mut self, factor: f64, increment: f64) {
+        self.0 = mul_add(factor, increment, self.0);
+    }
+}
+
+/// A sum with what rounding took from it, which is given to the next increment: Kahan's, the compensated summation of
+/// Hairer, Lubich, Wanner, Geometric Numerical Integration, section VIII.5. It loses the last place of the increment.
+#[derive(Clone, Copy, Debug)]
+pub struct Compensated {
+    value: f64,
+    low: f64,
+}
+
+impl Sum for Compensated {
+    #[inline]
+    fn new(value: f64) -> Self {
+        Self { value, low: 0.0 }
+    }
+
+    #[inline]
+    fn value(self) -> f64 {
+        self.value
+    }
+
+    #[inline]
+    fn plus(self, y: f64) -> f64 {
+        (self.value + y) + self.low
+    }
+
+    #[inline]
+    fn grow(&mut self, factor: f64, increment: f64) {
+        let increment = mul_add(factor, increment, self.low);
+        let sum = self.value + increment;
+        self.low = increment - (sum - self.value);
+        self.value = sum;
+    }
+}
+
+/// `a b + c`, fused where the target has the instruction: elsewhere `f64::mul_add` calls a function.
+#[inline]
+pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
+    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// A quantity over the last five steps, the newest first, from which the next value is extrapolated with order 4:
+/// `5 v1 − 10 v2 + 10 v3 − 5 v4 + v5`.
+#[derive(Clone, Copy, Debug)]
+struct History([f64; 5]);
+
+impl History {
+    fn constant(value: f64) -> Self {
+        Self([value; 5])
+    }
+
+    /// The value after the one that comes next, but for five times that.
+    #[inline]
+    fn known(&self) -> f64 {
+        let [v1, v2, v3, v4, _] = self.0;
+        mul_add(10.0, v2 - v1, mul_add(-5.0, v3, v4))
+    }
+
+    #[inline]
+    fn push(&mut self, value: f64) {
+        let [v1, v2, v3, v4, _] = self.0;
+        self.0 = [value, v1, v2, v3, v4];
+    }
+}
+
+#[cold]
+fn not_converged() -> ! {
+    panic!("Newton's iteration has not converged in {ITERATIONS} iterations");
+}

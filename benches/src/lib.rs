@@ -1,0 +1,4 @@
+//! The generated steppers and their rivals, each as something that can be run, compared and timed.
+
+pub mod hand;
+pub mod run;
