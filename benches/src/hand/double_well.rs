@@ -27,8 +27,8 @@ pub struct Fixed<S> {
     history: History,
     /// Where the next step starts: v, and x there.
     trial: (f64, f64),
-    /// 1/A at the last two steps.
-    inverse: [f64; 2],
+    /// 1/A at the last three steps.
+    inverse: [f64; 3],
 }
 
 impl<S: Sum> Fixed<S> {
@@ -37,7 +37,7 @@ impl<S: Sum> Fixed<S> {
         let (m, half) = (system.m, h / 2.0);
         let v = p / m;
         let (t, history, trial) = (S::new(0.0), History::constant(v), (v, q + half * v));
-        let (square, inverse) = (half * half, [1.0 / m; 2]);
+        let (square, inverse) = (half * half, [1.0 / m; 3]);
         Self { m, h, half, square, tolerance, t, q: S::new(q), p: S::new(p), history, trial, inverse }
     }
 }
@@ -45,9 +45,9 @@ impl<S: Sum> Fixed<S> {
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let Self { m, h, half, square, inverse: [inverse1, inverse2], .. } = *self;
+        let Self { m, h, half, square, inverse: [inverse1, inverse2, inverse3], .. } = *self;
         let (mut v, mut x) = self.trial;
-        let mut inverse = inverse1 + (inverse1 - inverse2);
+        let mut inverse = mul_add(3.0, inverse1 - inverse2, inverse3);
         let known = self.history.known();
         for _ in 0..ITERATIONS {
             // The next guess were there no Newton step.
@@ -62,7 +62,7 @@ impl<S: Sum> Stepper for Fixed<S> {
             v += newton;
             if newton.abs() <= self.tolerance {
                 self.trial = (mul_add(5.0, newton, next), mul_add(3.5 * h, newton, next_x));
-                self.inverse = [here, inverse1];
+                self.inverse = [here, inverse1, inverse2];
                 self.history.push(v);
                 self.q.grow(h, v);
                 self.p.grow(h, mul_add(half * slope, newton, force));

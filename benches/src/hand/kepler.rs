@@ -25,8 +25,8 @@ pub struct Fixed<S> {
     history: [History; 2],
     /// Where the next step starts: v, and x there.
     trial: [[f64; 2]; 2],
-    /// A⁻¹ at the last two steps: xx, xy, yy.
-    inverse: [[f64; 3]; 2],
+    /// A⁻¹ at the last three steps: xx, xy, yy.
+    inverse: [[f64; 3]; 3],
 }
 
 impl<S: Sum> Fixed<S> {
@@ -44,7 +44,7 @@ impl<S: Sum> Fixed<S> {
             p: p.map(S::new),
             history: p.map(History::constant),
             trial: [p, [q[0] + half * p[0], q[1] + half * p[1]]],
-            inverse: [[1.0, 0.0, 1.0]; 2],
+            inverse: [[1.0, 0.0, 1.0]; 3],
         }
     }
 }
@@ -81,9 +81,9 @@ fn times([xx, xy, yy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let Self { mu, h, half, square, inverse: [inverse1, inverse2], .. } = *self;
+        let Self { mu, h, half, square, inverse: [inverse1, inverse2, inverse3], .. } = *self;
         let [mut v, mut x] = self.trial;
-        let mut inverse: [f64; 3] = from_fn(|i| inverse1[i] + (inverse1[i] - inverse2[i]));
+        let mut inverse: [f64; 3] = from_fn(|i| mul_add(3.0, inverse1[i] - inverse2[i], inverse3[i]));
         let known: [f64; 2] = from_fn(|i| self.history[i].known());
         for _ in 0..ITERATIONS {
             // The next guess were there no Newton step.
@@ -102,7 +102,7 @@ impl<S: Sum> Stepper for Fixed<S> {
                     self.q[i].grow(h, v[i]);
                     self.p[i].grow(h, mul_add(half, carried[i], field.force[i]));
                 }
-                self.inverse = [field.inverse, inverse1];
+                self.inverse = [field.inverse, inverse1, inverse2];
                 self.t.grow(h, 1.0);
                 return;
             }
