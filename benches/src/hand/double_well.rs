@@ -9,7 +9,7 @@
 //! [ −F + s F' v    F' v²      ] [ δs ] = − [ c/s ]           determinant m F' v² − F²
 //! ```
 
-use super::{History, ITERATIONS, Sum, mul_add, not_converged};
+use super::{History, ITERATIONS, Lagged, Sum, mul_add, not_converged};
 use crate::run::Stepper;
 use vi_systems::systems::DoubleWell;
 
@@ -28,7 +28,7 @@ pub struct Fixed<S> {
     /// Where the next step starts: v, and x there.
     trial: (f64, f64),
     /// 1/A at the last three steps.
-    inverse: [f64; 3],
+    inverse: Lagged,
 }
 
 impl<S: Sum> Fixed<S> {
@@ -37,7 +37,7 @@ impl<S: Sum> Fixed<S> {
         let (m, half) = (system.m, h / 2.0);
         let v = p / m;
         let (t, history, trial) = (S::new(0.0), History::constant(v), (v, q + half * v));
-        let (square, inverse) = (half * half, [1.0 / m; 3]);
+        let (square, inverse) = (half * half, Lagged::constant(1.0 / m));
         Self { m, h, half, square, tolerance, t, q: S::new(q), p: S::new(p), history, trial, inverse }
     }
 }
@@ -45,9 +45,9 @@ impl<S: Sum> Fixed<S> {
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let Self { m, h, half, square, inverse: [inverse1, inverse2, inverse3], .. } = *self;
+        let Self { m, h, half, square, .. } = *self;
         let (mut v, mut x) = self.trial;
-        let mut inverse = mul_add(3.0, inverse1 - inverse2, inverse3);
+        let mut inverse = self.inverse.next();
         let known = self.history.known();
         for _ in 0..ITERATIONS {
             // The next guess were there no Newton step.
@@ -62,7 +62,7 @@ impl<S: Sum> Stepper for Fixed<S> {
             v += newton;
             if newton.abs() <= self.tolerance {
                 self.trial = (mul_add(5.0, newton, next), mul_add(3.5 * h, newton, next_x));
-                self.inverse = [here, inverse1, inverse2];
+                self.inverse.push(here);
                 self.history.push(v);
                 self.q.grow(h, v);
                 self.p.grow(h, mul_add(half * slope, newton, force));
@@ -71,6 +71,79 @@ impl<S: Sum> Stepper for Fixed<S> {
             }
             x = self.q.plus(half * v);
             inverse = 1.0 / mul_add(-square, mul_add(-6.0, x * x, 1.0), m);
+        }
+        not_converged()
+    }
+
+    fn state(&self) -> Vec<f64> {
+        vec![self.t.value(), self.q.value(), self.p.value()]
+    }
+}
+
+/// Energy-preserving steps.
+#[derive(Clone, Debug)]
+pub struct EnergyPreserving<S> {
+    m: f64,
+    energy: f64,
+    tolerance: f64,
+    t: S,
+    q: S,
+    p: S,
+    /// Of v and of h/2.
+    history: [History; 2],
+    /// 1/determinant at the last three steps.
+    inverse: Lagged,
+}
+
+impl<S: Sum> EnergyPreserving<S> {
+    /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
+    /// relative in h, is the last one.
+    pub fn new(system: &DoubleWell, (q, v): (f64, f64), h: f64, tolerance: f64) -> Self {
+        let (m, half) = (system.m, h / 2.0);
+        let force = q * (1.0 - 2.0 * q * q);
+        let (t, end, p) = (S::new(half), S::new(q + half * v), S::new(m * v + half * force));
+        let energy = m * v * v / 2.0 + (q * q - 1.0) * q * q / 2.0;
+        let slope = 1.0 - 6.0 * q * q;
+        // From v alone Newton's iteration would find the step back, (v, −h).
+        let history = [History::line(v, h * force / m), History::constant(half)];
+        let inverse = Lagged::constant(1.0 / (m * slope * v * v - force * force));
+        Self { m, energy, tolerance, t, q: end, p, history, inverse }
+    }
+}
+
+impl<S: Sum> Stepper for EnergyPreserving<S> {
+    #[inline]
+    fn step(&mut self) {
+        let m = self.m;
+        let [mut v, mut s] = [self.history[0].next(), self.history[1].next()];
+        let mut inverse = self.inverse.next();
+        for _ in 0..ITERATIONS {
+            let over = 1.0 / s;
+            let x = self.q.plus(s * v);
+            let x2 = x * x;
+            let slope = mul_add(-6.0, x2, 1.0);
+            let force = x * mul_add(-2.0, x2, 1.0);
+            let r = self.p.plus(mul_add(s, force, -(m * v)));
+            let e = mul_add(0.5 * x2, x2 - 1.0, mul_add(0.5 * m * v, v, -self.energy));
+            let c = mul_add(v, r, e) * over;
+            let (sv, vv) = (s * slope * v, slope * v * v);
+            let determinant = mul_add(m, vv, -(force * force));
+            let dv = mul_add(r, vv, -c * (force + sv)) * inverse;
+            let ds = -mul_add(c, mul_add(-s * s, slope, m), r * (sv - force)) * inverse;
+            (v, s) = (v + dv, s + ds);
+            if dv.abs() <= self.tolerance && ds.abs() <= self.tolerance * s {
+                let h = 2.0 * s;
+                self.history[0].push(v);
+                self.history[1].push(s);
+                self.inverse.push(1.0 / determinant);
+                // x has moved by s δv + v δs, but for a product of both.
+                let force = mul_add(slope, mul_add(s, dv, v * ds), force);
+                self.q.grow(h, v);
+                self.p.grow(h, force);
+                self.t.grow(h, 1.0);
+                return;
+            }
+            inverse = 1.0 / determinant;
         }
         not_converged()
     }

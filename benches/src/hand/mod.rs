@@ -5,8 +5,12 @@
 //! the solution is carried there by its derivative, and so are the next guess and its place. Generic over [`Sum`]: plain sums, or those that keep what rounding takes
 //! from them, as the generated steppers do.
 
+pub mod chain;
+pub mod double_pendulum;
 pub mod double_well;
 pub mod kepler;
+pub mod oscillator;
+mod sine;
 
 use core::fmt::Debug;
 
@@ -100,6 +104,18 @@ impl History {
         Self([value; 5])
     }
 
+    /// A past on a line, to start from: the newest value and its increment over a step.
+    fn line(value: f64, increment: f64) -> Self {
+        Self([0.0, 1.0, 2.0, 3.0, 4.0].map(|age| value - age * increment))
+    }
+
+    /// The value that comes next.
+    #[inline]
+    fn next(&self) -> f64 {
+        let [v1, v2, v3, v4, v5] = self.0;
+        mul_add(5.0, v1, mul_add(10.0, v3 - v2, mul_add(-5.0, v4, v5)))
+    }
+
     /// The value after the one that comes next, but for five times that.
     #[inline]
     fn known(&self) -> f64 {
@@ -117,4 +133,43 @@ impl History {
 #[cold]
 fn not_converged() -> ! {
     panic!("Newton's iteration has not converged in {ITERATIONS} iterations");
+}
+
+/// A slowly varying quantity over the last three steps, the newest first, extrapolated with order 2: the inverse of a
+/// derivative, which Newton's iteration needs less exactly than the residual, and before its quotient could be there.
+#[derive(Clone, Copy, Debug)]
+struct Lagged([f64; 3]);
+
+impl Lagged {
+    fn constant(value: f64) -> Self {
+        Self([value; 3])
+    }
+
+    #[inline]
+    fn next(&self) -> f64 {
+        let [a, b, c] = self.0;
+        mul_add(3.0, a - b, c)
+    }
+
+    #[inline]
+    fn push(&mut self, value: f64) {
+        let [a, b, _] = self.0;
+        self.0 = [value, a, b];
+    }
+}
+
+/// A Newton step on two momentum rows and the energy row, bordered: `A δv + b δs = −r`, `g·δv + k δs = −c`. One quotient.
+#[inline]
+fn bordered([a, b, g]: [[f64; 2]; 3], off: [f64; 2], k: f64, r: [f64; 2], c: f64) -> ([f64; 2], f64) {
+    // A = [a0 off0; off1 a1].
+    let adjugate = |r: [f64; 2]| {
+        [mul_add(a[1], r[0], -(off[0] * r[1])), mul_add(a[0], r[1], -(off[1] * r[0]))]
+    };
+    let determinant = mul_add(a[0], a[1], -(off[0] * off[1]));
+    let (ar, ab) = (adjugate(r), adjugate(b));
+    let schur = mul_add(k, determinant, -mul_add(g[0], ab[0], g[1] * ab[1]));
+    let over = 1.0 / (schur * determinant);
+    let ds = mul_add(g[0], ar[0], mul_add(g[1], ar[1], -(c * determinant))) * (over * determinant);
+    let over = over * schur;
+    ([-mul_add(ab[0], ds, ar[0]) * over, -mul_add(ab[1], ds, ar[1]) * over], ds)
 }
