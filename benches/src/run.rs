@@ -16,27 +16,21 @@ pub trait Stepper: Clone {
     fn state(&self) -> Vec<f64>;
 }
 
-/// A stepper of any kind.
+/// A stepper of any kind, at the start of its run.
 pub trait Run {
-    /// Takes so many steps.
-    fn run(&mut self, steps: usize);
-    /// Time, coordinates and momenta, in this order.
-    fn state(&self) -> Vec<f64>;
+    /// The state after so many steps from the start.
+    fn run(&self, steps: usize) -> Vec<f64>;
 }
 
 impl<S: Stepper> Run for S {
     #[inline(never)]
-    fn run(&mut self, steps: usize) {
-        // A local copy may live in registers.
+    fn run(&self, steps: usize) -> Vec<f64> {
+        // A copy may live in registers.
         let mut stepper = self.clone();
         for _ in 0..steps {
             stepper.step();
         }
-        *self = stepper;
-    }
-
-    fn state(&self) -> Vec<f64> {
-        Stepper::state(self)
+        stepper.state()
     }
 }
 

@@ -98,7 +98,7 @@ pub struct Fixed<S> {
     t: S,
     q: [S; 2],
     p: [S; 2],
-    history: [History; 2],
+    history: [History<7>; 2],
     /// Where the next step starts: velocities, and angles there.
     trial: [[f64; 2]; 2],
 }
@@ -129,7 +129,7 @@ impl<S: Sum> Stepper for Fixed<S> {
         let known = self.history.map(|v| v.known());
         for _ in 0..ITERATIONS {
             // The next guess were there no Newton step.
-            let next: [f64; 2] = from_fn(|i| mul_add(5.0, v[i], known[i]));
+            let next: [f64; 2] = from_fn(|i| mul_add(7.0, v[i], known[i]));
             let next_q: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, v[i], s * next[i])));
             let middle = Middle::at(&self.constants, q, v);
             let r: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
@@ -144,8 +144,8 @@ impl<S: Sum> Stepper for Fixed<S> {
             if newton[0].abs().max(newton[1].abs()) <= self.tolerance {
                 let carried = middle.carried(before, newton, newton.map(|d| s * d));
                 for i in 0..2 {
-                    self.trial[0][i] = mul_add(5.0, newton[i], next[i]);
-                    self.trial[1][i] = mul_add(3.5 * h, newton[i], next_q[i]);
+                    self.trial[0][i] = mul_add(7.0, newton[i], next[i]);
+                    self.trial[1][i] = mul_add(4.5 * h, newton[i], next_q[i]);
                     self.history[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
                     self.p[i].grow(h, middle.force[i] + carried[i]);
@@ -173,9 +173,9 @@ pub struct EnergyPreserving<S> {
     t: S,
     q: [S; 2],
     p: [S; 2],
-    v: [History; 2],
+    v: [History<7>; 2],
     /// Half of h.
-    s: History,
+    s: History<7>,
 }
 
 impl<S: Sum> EnergyPreserving<S> {

@@ -1,6 +1,6 @@
 //! Steppers written by hand, each for one system: what an expert would write who knows all that the generator knows.
 //!
-//! All solve for v (and h) by Newton's iteration from a guess extrapolated with order 4 over the last steps, and stop by the
+//! All solve for v (and h) by Newton's iteration from a guess extrapolated with order 4 or 6 over the last steps, and stop by the
 //! length of a Newton step: the convergence is quadratic, and the constant is tuned to the system and its h. The force at
 //! the solution is carried there by its derivative, and so are the next guess and its place. Generic over [`Sum`]: plain sums, or those that keep what rounding takes
 //! from them, as the generated steppers do.
@@ -94,39 +94,52 @@ pub(crate) fn mul_add(a: f64, b: f64, c: f64) -> f64 {
     if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
 }
 
-/// A quantity over the last five steps, the newest first, from which the next value is extrapolated with order 4:
-/// `5 v1 − 10 v2 + 10 v3 − 5 v4 + v5`.
+/// A quantity over the last K steps, the newest first, from which the next value is extrapolated with order K − 1: for
+/// K = 5 `5 v1 − 10 v2 + 10 v3 − 5 v4 + v5`.
 #[derive(Clone, Copy, Debug)]
-struct History([f64; 5]);
+struct History<const K: usize = 5>([f64; K]);
 
-impl History {
+impl<const K: usize> History<K> {
+    /// Binomial coefficients with alternating signs.
+    const COEFFICIENTS: [f64; K] = {
+        let (mut coefficients, mut i, mut coefficient) = ([0.0; K], 0, -1.0);
+        while i < K {
+            coefficient *= -((K - i) as f64) / ((i + 1) as f64);
+            coefficients[i] = coefficient;
+            i += 1;
+        }
+        coefficients
+    };
+
     fn constant(value: f64) -> Self {
-        Self([value; 5])
+        Self([value; K])
     }
 
     /// A past on a line, to start from: the newest value and its increment over a step.
     fn line(value: f64, increment: f64) -> Self {
-        Self([0.0, 1.0, 2.0, 3.0, 4.0].map(|age| value - age * increment))
+        let mut age = -1.0;
+        Self([value; K].map(|value| {
+            age += 1.0;
+            value - age * increment
+        }))
     }
 
     /// The value that comes next.
     #[inline]
     fn next(&self) -> f64 {
-        let [v1, v2, v3, v4, v5] = self.0;
-        mul_add(5.0, v1, mul_add(10.0, v3 - v2, mul_add(-5.0, v4, v5)))
+        (0..K).rev().fold(0.0, |sum, i| mul_add(Self::COEFFICIENTS[i], self.0[i], sum))
     }
 
-    /// The value after the one that comes next, but for five times that.
+    /// The value after the one that comes next, but for K times that.
     #[inline]
     fn known(&self) -> f64 {
-        let [v1, v2, v3, v4, _] = self.0;
-        mul_add(10.0, v2 - v1, mul_add(-5.0, v3, v4))
+        (1..K).rev().fold(0.0, |sum, i| mul_add(Self::COEFFICIENTS[i], self.0[i - 1], sum))
     }
 
     #[inline]
     fn push(&mut self, value: f64) {
-        let [v1, v2, v3, v4, _] = self.0;
-        self.0 = [value, v1, v2, v3, v4];
+        self.0.copy_within(..K - 1, 1);
+        self.0[0] = value;
     }
 }
 
@@ -162,9 +175,7 @@ impl Lagged {
 #[inline]
 fn bordered([a, b, g]: [[f64; 2]; 3], off: [f64; 2], k: f64, r: [f64; 2], c: f64) -> ([f64; 2], f64) {
     // A = [a0 off0; off1 a1].
-    let adjugate = |r: [f64; 2]| {
-        [mul_add(a[1], r[0], -(off[0] * r[1])), mul_add(a[0], r[1], -(off[1] * r[0]))]
-    };
+    let adjugate = |r: [f64; 2]| [mul_add(a[1], r[0], -(off[0] * r[1])), mul_add(a[0], r[1], -(off[1] * r[0]))];
     let determinant = mul_add(a[0], a[1], -(off[0] * off[1]));
     let (ar, ab) = (adjugate(r), adjugate(b));
     let schur = mul_add(k, determinant, -mul_add(g[0], ab[0], g[1] * ab[1]));
