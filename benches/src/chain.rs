@@ -58,6 +58,7 @@ impl From<&LongChain> for Springs {
 impl Springs {
     /// Tensions and stiffnesses at the displacements `x`.
     #[inline]
+    #[must_use]
     pub fn pull<const M: usize>(&self, x: &[f64; M]) -> ([f64; M], [f64; M]) {
         let [k, alpha, beta] = self.k;
         let (mut tension, mut stiffness) = ([0.0; M], [0.0; M]);
@@ -73,6 +74,7 @@ impl Springs {
 
 /// `x_i − x_{i−1}`, the wall before the first.
 #[inline]
+#[must_use]
 pub fn stretches<const M: usize>(x: &[f64; M]) -> [f64; M] {
     let mut stretch = [0.0; M];
     stretch[0] = x[0];
@@ -83,11 +85,13 @@ pub fn stretches<const M: usize>(x: &[f64; M]) -> [f64; M] {
 }
 
 /// The lowest mode, of amplitude 1, at rest.
+#[must_use]
 pub fn lowest_mode<const N: usize>() -> [f64; N] {
-    let length = f64::from(u32::try_from(N + 1).expect("a small number"));
-    let mut place = 0.0;
-    [0.0; N].map(|_| {
-        place += 1.0;
-        (core::f64::consts::PI * place / length).sin()
-    })
+    let mut places = [0.0; N];
+    let mut length = 1.0;
+    for place in &mut places {
+        *place = length;
+        length += 1.0;
+    }
+    places.map(|place| (core::f64::consts::PI * place / length).sin())
 }

@@ -67,6 +67,10 @@ impl Contest {
     }
 
     /// How far each entry is from the generated trajectory after [`COMPARED`] steps.
+    ///
+    /// # Panics
+    /// Where an entry has another number of coordinates.
+    #[must_use]
     pub fn deviations(&self) -> Vec<f64> {
         let states: Vec<Vec<f64>> = self.entries.iter().map(|entry| entry.run.run(COMPARED)).collect();
         let deviation = |state: &Vec<f64>| {

@@ -22,6 +22,7 @@ pub struct Fixed<const N: usize, const M: usize> {
 
 impl<const N: usize, const M: usize> Fixed<N, M> {
     /// From `q` at rest at t = 0. A Newton step of `tolerance` is the last one.
+    #[must_use]
     pub fn new(springs: Springs, q: [f64; N], h: f64, tolerance: f64) -> Self {
         const { assert!(M == N + 1) };
         Self { springs, h, tolerance, t: 0.0, q: q.into(), p: SVector::zeros(), history: [SVector::zeros(); 5] }

@@ -3,7 +3,9 @@
 pub mod chain;
 pub mod contest;
 pub mod contests;
+pub mod count;
 pub mod dense;
+pub mod document;
 pub mod hand;
 pub mod newton;
 pub mod problem;

@@ -1,11 +1,12 @@
 //! Time of a step, in rounds that take turns.
 //!
 //! In: a contest. Out: nanoseconds per step and the ratio to the generated stepper, as medians with quartiles. In every round
-//! each entry runs once from its start, so that a slower machine slows all of them; ratios are taken inside a round.
+//! each entry runs once from its start, so that a slower machine slows all of them; ratios are taken inside
+//! a round. Time is that of the thread where the system tells it.
 
-use crate::contest::Contest;
+use crate::contest::{Contest, Entry};
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Rounds of a contest.
 pub const ROUNDS: usize = 31;
@@ -24,10 +25,11 @@ pub struct Timing {
 }
 
 /// The timings of all entries, in their order.
+#[must_use]
 pub fn contest(contest: &Contest) -> Vec<Timing> {
-    let steps: Vec<usize> = contest.entries.iter().map(|entry| enough(|steps| once(contest, entry, steps))).collect();
+    let steps: Vec<usize> = contest.entries.iter().map(|entry| enough(|steps| once(entry, steps))).collect();
     let rounds: Vec<Vec<f64>> = (0..ROUNDS)
-        .map(|_| contest.entries.iter().zip(&steps).map(|(entry, steps)| once(contest, entry, *steps)).collect())
+        .map(|_| contest.entries.iter().zip(&steps).map(|(entry, steps)| once(entry, *steps)).collect())
         .collect();
     (0..contest.entries.len())
         .map(|index| {
@@ -38,11 +40,25 @@ pub fn contest(contest: &Contest) -> Vec<Timing> {
 }
 
 /// Nanoseconds per step and trajectory of one run.
-fn once(_: &Contest, entry: &crate::contest::Entry, steps: usize) -> f64 {
-    let start = Instant::now();
+fn once(entry: &Entry, steps: usize) -> f64 {
+    let start = now();
     black_box(entry.run.run(black_box(steps)));
     let count = u32::try_from(steps * entry.trajectories).expect("a round is short");
-    start.elapsed().as_secs_f64() * 1e9 / f64::from(count)
+    now().checked_sub(start).unwrap().as_secs_f64() * 1e9 / f64::from(count)
+}
+
+/// Time that this thread has had: on a shared machine the clock on the wall runs for others too.
+#[cfg(unix)]
+fn now() -> Duration {
+    let spent = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::try_from(spent).expect("time is not negative")
+}
+
+/// Time since the first call.
+#[cfg(not(unix))]
+fn now() -> Duration {
+    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+    START.elapsed()
 }
 
 /// Steps that fill a round; the first runs warm up besides.

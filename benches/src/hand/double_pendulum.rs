@@ -181,6 +181,7 @@ pub struct EnergyPreserving<S> {
 impl<S: Sum> EnergyPreserving<S> {
     /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
     /// relative in h, is the last one.
+    #[must_use]
     pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
         let (constants, half) = (Constants::of(system), h / 2.0);
         let middle = Middle::at(&constants, q, v);

@@ -33,6 +33,7 @@ pub struct Fixed<S> {
 
 impl<S: Sum> Fixed<S> {
     /// From `(q, p)` at t = 0. A Newton step of `tolerance` is the last one.
+    #[must_use]
     pub fn new(system: &DoubleWell, (q, p): (f64, f64), h: f64, tolerance: f64) -> Self {
         let (m, half) = (system.m, h / 2.0);
         let v = p / m;
@@ -98,6 +99,7 @@ pub struct EnergyPreserving<S> {
 impl<S: Sum> EnergyPreserving<S> {
     /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
     /// relative in h, is the last one.
+    #[must_use]
     pub fn new(system: &DoubleWell, (q, v): (f64, f64), h: f64, tolerance: f64) -> Self {
         let (m, half) = (system.m, h / 2.0);
         let force = q * (1.0 - 2.0 * q * q);

@@ -152,12 +152,13 @@ pub struct EnergyPreserving<S> {
 impl<S: Sum> EnergyPreserving<S> {
     /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
     /// relative in h, is the last one.
+    #[must_use]
     pub fn new(system: &Kepler, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
         let (mu, half) = (system.mu, h / 2.0);
         let Field { force, potential, .. } = Field::at(mu, q);
         Self {
             mu,
-            energy: (v[0] * v[0] + v[1] * v[1]) / 2.0 + potential,
+            energy: f64::midpoint(v[0] * v[0], v[1] * v[1]) + potential,
             tolerance,
             t: S::new(half),
             q: from_fn(|i| S::new(q[i] + half * v[i])),

@@ -102,13 +102,17 @@ struct History<const K: usize = 5>([f64; K]);
 impl<const K: usize> History<K> {
     /// Binomial coefficients with alternating signs.
     const COEFFICIENTS: [f64; K] = {
-        let (mut coefficients, mut i, mut coefficient) = ([0.0; K], 0, -1.0);
+        // Pascal's triangle, row by row: no number larger than it has to be.
+        let (mut row, mut i) = ([0.0; K], 0);
         while i < K {
-            coefficient *= -((K - i) as f64) / ((i + 1) as f64);
-            coefficients[i] = coefficient;
+            let (mut left, mut j) = (-1.0, 0);
+            while j <= i {
+                (row[j], left) = (row[j] - left, row[j]);
+                j += 1;
+            }
             i += 1;
         }
-        coefficients
+        row
     };
 
     fn constant(value: f64) -> Self {
@@ -138,8 +142,7 @@ impl<const K: usize> History<K> {
 
     #[inline]
     fn push(&mut self, value: f64) {
-        self.0.copy_within(..K - 1, 1);
-        self.0[0] = value;
+        self.0 = core::array::from_fn(|age| if age == 0 { value } else { self.0[age - 1] });
     }
 }
 
@@ -183,4 +186,36 @@ fn bordered([a, b, g]: [[f64; 2]; 3], off: [f64; 2], k: f64, r: [f64; 2], c: f64
     let ds = mul_add(g[0], ar[0], mul_add(g[1], ar[1], -(c * determinant))) * (over * determinant);
     let over = over * schur;
     ([-mul_add(ab[0], ds, ar[0]) * over, -mul_add(ab[1], ds, ar[1]) * over], ds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Compensated, History, Plain, Sum};
+
+    #[test]
+    fn extrapolation_is_exact_for_polynomials() {
+        assert!(History::<5>::COEFFICIENTS.iter().eq(&[5.0, -10.0, 10.0, -5.0, 1.0]));
+        let mut history = History::<7>::constant(0.0);
+        let value = |t: f64| t.powi(6) - 3.0 * t.powi(5) + t;
+        for t in 0..7 {
+            history.push(value(f64::from(t)));
+        }
+        // Integers below 2⁵³: no rounding.
+        assert_eq!(history.next().to_bits(), value(7.0).to_bits());
+        assert_eq!((7.0 * value(7.0) + history.known()).to_bits(), {
+            history.push(value(7.0));
+            history.next().to_bits()
+        });
+    }
+
+    #[test]
+    fn compensated_sums_keep_what_plain_ones_lose() {
+        let (mut plain, mut kept) = (Plain::new(0.0), Compensated::new(0.0));
+        for _ in 0..1_000_000 {
+            plain.grow(0.1, 1.0);
+            kept.grow(0.1, 1.0);
+        }
+        // The plain sum is 1.3e-6 off, the other one by less than an ulp, 1.5e-11.
+        assert!((plain.value() - 1e5).abs() > 1e-6 && (kept.value() - 1e5).abs() < 2e-11);
+    }
 }

@@ -23,6 +23,7 @@ pub struct Fixed<S> {
 
 impl<S: Sum> Fixed<S> {
     /// From `(q, p)` at t = 0.
+    #[must_use]
     pub fn new(system: &HarmonicOscillator, (q, p): (f64, f64), h: f64) -> Self {
         let (m, k, s) = (system.m, system.k, h / 2.0);
         let over = 1.0 / (m + s * s * k);
@@ -61,6 +62,7 @@ pub struct Newton<S> {
 
 impl<S: Sum> Newton<S> {
     /// From `(q, p)` at t = 0. A Newton step of `tolerance` is the last one.
+    #[must_use]
     pub fn new(system: &HarmonicOscillator, (q, p): (f64, f64), h: f64, tolerance: f64) -> Self {
         let (m, k, history) = (system.m, system.k, History::constant(p / system.m));
         Self { m, k, h, tolerance, t: S::new(0.0), q: S::new(q), p: S::new(p), history }
