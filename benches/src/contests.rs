@@ -1,0 +1,242 @@
+//! All contests: systems, starts, steps, tolerances tuned by hand, and what is to be reached.
+//!
+//! The bound of a rival is at least twice its deviation from the generated trajectory after 1000 steps, in either build.
+
+use crate::chain::{LongChain, Springs, lowest_mode};
+use crate::contest::{Contest, Target};
+use crate::dense;
+use crate::hand::{self, Compensated, Plain};
+use crate::newton::{Difference, Dual, Newton};
+use crate::problem::Problem;
+use crate::run::Run;
+use core::array::from_fn;
+use std::hint::black_box;
+use vi_core::{EnergyPreserving, FixedStep, SVector, State, Stepping};
+use vi_systems::systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler};
+
+const BY_HAND: &str = "by hand, sums compensated";
+const BY_HAND_PLAIN: &str = "by hand, plain sums";
+const DUAL: &str = "Newton, dual numbers";
+const DIFFERENCE: &str = "Newton, differences";
+const DENSE: &str = "dense LU of nalgebra";
+
+/// Compensated sums. Measured: 1.6e-15, Kepler.
+const KEPT: f64 = 4e-15;
+/// Plain sums. Measured: 1.4e-12, the time of the chains.
+const LOST: f64 = 3e-12;
+/// Energy-preserving steps have h from `H = E0`, and a rounding of H is one of `1/(h² D)` times as much in h. Measured: double
+/// well 1.5e-9, Kepler 2.5e-10, double pendulum 2.1e-10; where the rows are not combined and end by their residuals 2.7e-7, 1.0e-9
+/// and 2.9e-9.
+const ROUGH: [[f64; 2]; 3] = [[3e-9, 6e-7], [5e-10, 2e-9], [5e-10, 6e-9]];
+
+/// All contests.
+#[must_use]
+pub fn all() -> Vec<Contest> {
+    vec![
+        double_well(),
+        double_well_energy(),
+        kepler(),
+        kepler_energy(),
+        double_pendulum(),
+        double_pendulum_energy(),
+        oscillator(),
+        chain::<_, 16, 17>("Chain of 16, fixed step, h = 0.1", &black_box(FpuChain::default()), 10.0),
+        chain::<_, 64, 65>("Chain of 64, fixed step, h = 0.1", &black_box(LongChain::default()), 60.0),
+    ]
+}
+
+fn double_well() -> Contest {
+    let (system, start, h, tolerance) = (black_box(DoubleWell::default()), (0.74, 0.0), black_box(0.01), 1e-8);
+    Contest::new("Double well, fixed step, h = 0.01", fixed(&system, ([start.0], [start.1]), h))
+        .rival(
+            BY_HAND,
+            KEPT,
+            Target::AtMost(1.05),
+            hand::double_well::Fixed::<Compensated>::new(&system, start, h, tolerance),
+        )
+        .rival(BY_HAND_PLAIN, LOST, Target::None, hand::double_well::Fixed::<Plain>::new(&system, start, h, tolerance))
+        .rival(DUAL, LOST, Target::Faster(3.0), newton::<_, Dual, 1>(&system, ([start.0], [start.1]), h, 1e-14))
+        .rival(DIFFERENCE, LOST, Target::None, newton::<_, Difference, 1>(&system, ([start.0], [start.1]), h, 1e-14))
+}
+
+fn double_well_energy() -> Contest {
+    let (system, start, h, tolerance) = (black_box(DoubleWell::default()), (0.74, 0.0), black_box(0.01), 1e-8);
+    let arrays = ([start.0], [start.1]);
+    Contest::new("Double well, energy-preserving, h0 = 0.01", energy_preserving(&system, arrays, h))
+        .rival(
+            BY_HAND,
+            ROUGH[0][0],
+            Target::AtMost(1.05),
+            hand::double_well::EnergyPreserving::<Compensated>::new(&system, start, h, tolerance),
+        )
+        .rival(
+            BY_HAND_PLAIN,
+            ROUGH[0][0],
+            Target::None,
+            hand::double_well::EnergyPreserving::<Plain>::new(&system, start, h, tolerance),
+        )
+        .rival(DUAL, ROUGH[0][1], Target::Faster(5.0), newton_energy::<_, Dual, 1, 2>(&system, arrays, h, 1e-15))
+        .rival(DIFFERENCE, ROUGH[0][1], Target::None, newton_energy::<_, Difference, 1, 2>(&system, arrays, h, 1e-15))
+}
+
+/// An orbit of eccentricity 0.15.
+fn kepler() -> Contest {
+    let (system, start, h, tolerance) = (black_box(Kepler::default()), ([0.8, 0.0], [0.0, 1.2]), black_box(0.01), 1e-8);
+    Contest::new("Kepler, fixed step, h = 0.01", fixed(&system, start, h))
+        .rival(
+            BY_HAND,
+            KEPT,
+            Target::AtMost(1.05),
+            hand::kepler::Fixed::<Compensated>::new(&system, start, h, tolerance),
+        )
+        .rival(BY_HAND_PLAIN, LOST, Target::None, hand::kepler::Fixed::<Plain>::new(&system, start, h, tolerance))
+        .rival(DUAL, LOST, Target::Faster(3.0), newton::<_, Dual, 2>(&system, start, h, 5e-15))
+        .rival(DIFFERENCE, LOST, Target::None, newton::<_, Difference, 2>(&system, start, h, 5e-15))
+}
+
+fn kepler_energy() -> Contest {
+    let (system, start, h, tolerance) = (black_box(Kepler::default()), ([0.8, 0.0], [0.0, 1.2]), black_box(0.01), 1e-8);
+    Contest::new("Kepler, energy-preserving, h0 = 0.01", energy_preserving(&system, start, h))
+        .rival(
+            BY_HAND,
+            ROUGH[1][0],
+            Target::AtMost(1.05),
+            hand::kepler::EnergyPreserving::<Compensated>::new(&system, start, h, tolerance),
+        )
+        .rival(
+            BY_HAND_PLAIN,
+            ROUGH[1][0],
+            Target::None,
+            hand::kepler::EnergyPreserving::<Plain>::new(&system, start, h, tolerance),
+        )
+        .rival(DUAL, ROUGH[1][1], Target::None, newton_energy::<_, Dual, 2, 3>(&system, start, h, 1e-15))
+        .rival(DIFFERENCE, ROUGH[1][1], Target::None, newton_energy::<_, Difference, 2, 3>(&system, start, h, 1e-15))
+}
+
+/// Swinging in both modes; the step density keeps its sign.
+fn double_pendulum() -> Contest {
+    let (system, start, h, tolerance) =
+        (black_box(DoublePendulum::default()), ([0.3, 0.2], [0.0, 0.1]), black_box(0.01), 1e-7);
+    Contest::new("Double pendulum, fixed step, h = 0.01", fixed(&system, start, h))
+        .rival(
+            BY_HAND,
+            KEPT,
+            Target::AtMost(1.05),
+            hand::double_pendulum::Fixed::<Compensated>::new(&system, start, h, tolerance),
+        )
+        .rival(
+            BY_HAND_PLAIN,
+            LOST,
+            Target::None,
+            hand::double_pendulum::Fixed::<Plain>::new(&system, start, h, tolerance),
+        )
+        .rival(DUAL, LOST, Target::Faster(5.0), newton::<_, Dual, 2>(&system, start, h, 1e-13))
+        .rival(DIFFERENCE, LOST, Target::None, newton::<_, Difference, 2>(&system, start, h, 1e-13))
+}
+
+fn double_pendulum_energy() -> Contest {
+    let (system, start, h, tolerance) =
+        (black_box(DoublePendulum::default()), ([0.3, 0.2], [0.0, 0.1]), black_box(0.01), 1e-7);
+    Contest::new("Double pendulum, energy-preserving, h0 = 0.01", energy_preserving(&system, start, h))
+        .rival(
+            BY_HAND,
+            ROUGH[2][0],
+            Target::AtMost(1.05),
+            hand::double_pendulum::EnergyPreserving::<Compensated>::new(&system, start, h, tolerance),
+        )
+        .rival(
+            BY_HAND_PLAIN,
+            ROUGH[2][0],
+            Target::None,
+            hand::double_pendulum::EnergyPreserving::<Plain>::new(&system, start, h, tolerance),
+        )
+        .rival(DUAL, ROUGH[2][1], Target::None, newton_energy::<_, Dual, 2, 3>(&system, start, h, 1e-14))
+        .rival(DIFFERENCE, ROUGH[2][1], Target::None, newton_energy::<_, Difference, 2, 3>(&system, start, h, 1e-14))
+}
+
+fn oscillator() -> Contest {
+    let (system, start, h) = (black_box(HarmonicOscillator::default()), (0.8, 0.0), black_box(0.01));
+    Contest::new("Harmonic oscillator, fixed step, h = 0.01", fixed(&system, ([start.0], [start.1]), h))
+        .rival(
+            "closed form by hand, sums compensated",
+            KEPT,
+            Target::AtMost(1.05),
+            hand::oscillator::Fixed::<Compensated>::new(&system, start, h),
+        )
+        .rival(
+            "closed form by hand, plain sums",
+            LOST,
+            Target::None,
+            hand::oscillator::Fixed::<Plain>::new(&system, start, h),
+        )
+        .rival(
+            "Newton by hand, sums compensated",
+            KEPT,
+            Target::Faster(3.5),
+            hand::oscillator::Newton::<Compensated>::new(&system, start, h, 1e-8),
+        )
+        .rival(DUAL, LOST, Target::None, newton::<_, Dual, 1>(&system, ([start.0], [start.1]), h, 1e-14))
+}
+
+/// A chain in its lowest mode.
+fn chain<S: Stepping<N> + Clone + 'static, const N: usize, const M: usize>(
+    name: &'static str,
+    system: &S,
+    faster: f64,
+) -> Contest
+where
+    for<'a> Springs: From<&'a S>,
+    dense::Fixed<N, M>: Run,
+{
+    let (q, h) = (lowest_mode::<N>(), black_box(0.1));
+    let springs = || Springs::from(system);
+    Contest::new(name, fixed(system, (q, [0.0; N]), h))
+        .rival(BY_HAND, KEPT, Target::AtMost(1.05), hand::chain::Fixed::<Compensated, N, M>::new(springs(), q, h, 1e-9))
+        .rival(BY_HAND_PLAIN, LOST, Target::None, hand::chain::Fixed::<Plain, N, M>::new(springs(), q, h, 1e-9))
+        .rival(DENSE, LOST, Target::Faster(faster), dense::Fixed::<N, M>::new(springs(), q, h, 1e-9))
+}
+
+fn fixed<S: Stepping<N> + Clone, const N: usize>(system: &S, (q, v): ([f64; N], [f64; N]), h: f64) -> FixedStep<S, N> {
+    FixedStep::new(*system, State::at(system, 0.0, q, v), h).expect("a regular start")
+}
+
+fn energy_preserving<S: Stepping<N> + Clone, const N: usize>(
+    system: &S,
+    (q, v): ([f64; N], [f64; N]),
+    h: f64,
+) -> EnergyPreserving<S, N> {
+    EnergyPreserving::from_midpoint(*system, 0.0, q, v, h).expect("a regular start")
+}
+
+/// Newton's method with derivatives found at run time, from the same start as [`fixed`].
+fn newton<S: Stepping<N> + Problem<N>, D, const N: usize>(
+    system: &S,
+    (q, v): ([f64; N], [f64; N]),
+    h: f64,
+    tolerance: f64,
+) -> Newton<S, D, N, N>
+where
+    D: crate::newton::Derivatives,
+{
+    let State { t, p, .. } = State::at(system, 0.0, q, v);
+    Newton::new(*system, (t, q, p), [v; 2], h, tolerance)
+}
+
+/// The same from the start of [`energy_preserving`].
+fn newton_energy<S: Stepping<N> + Problem<N>, D, const N: usize, const M: usize>(
+    system: &S,
+    (q, v): ([f64; N], [f64; N]),
+    h: f64,
+    tolerance: f64,
+) -> Newton<S, D, N, M>
+where
+    D: crate::newton::Derivatives,
+{
+    let (q_mid, v_mid) = (SVector::from(q), SVector::from(v));
+    let a = system.acceleration(0.0, &q_mid, &v_mid).expect("a regular start");
+    let [force, momentum] = system.gradients(q, v);
+    let energy = system.energy(0.0, &q_mid, &v_mid);
+    let p = SVector::from_fn(|i, _| if i < N { momentum[i] + 0.5 * h * force[i] } else { -energy });
+    let end = from_fn(|i| q[i] + 0.5 * h * v[i]);
+    Newton::new(*system, (0.5 * h, end, p), [v, from_fn(|i| v[i] - h * a[i])], h, tolerance)
+}

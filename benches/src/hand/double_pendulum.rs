@@ -1,0 +1,255 @@
+//! The double pendulum in absolute angles: both steppers, two unknowns and three.
+//!
+//! With `a = (m1 + m2) l1²`, `b = m2 l2²`, `c = m2 l1 l2`, `G1 = (m1 + m2) g l1`, `G2 = m2 g l2`, the angles x and y at the
+//! middle, d = x − y, `s = h/2`, velocities u and v, and `w = c u v cos d`:
+//!
+//! ```text
+//! L_v = (a u + c v cos d, b v + c u cos d)          L_q = (−c u v sin d − G1 sin x, c u v sin d − G2 sin y)
+//! r = L_v − s L_q − p0
+//! A = [ a + s² (w + G1 cos x)                        c cos d + s c (u + v) sin d − s² w ]
+//!     [ c cos d − s c (u + v) sin d − s² w           b + s² (w + G2 cos y)              ]
+//! ```
+
+use super::{History, ITERATIONS, Sum, bordered, mul_add, not_converged, sine::sin_cos};
+use crate::run::Stepper;
+use core::array::from_fn;
+use vi_systems::systems::DoublePendulum;
+
+#[derive(Clone, Copy, Debug)]
+struct Constants {
+    a: f64,
+    b: f64,
+    c: f64,
+    weight: [f64; 2],
+}
+
+impl Constants {
+    fn of(system: &DoublePendulum) -> Self {
+        let &DoublePendulum { m1, m2, l1, l2, g } = system;
+        let weight = [(m1 + m2) * g * l1, m2 * g * l2];
+        Self { a: (m1 + m2) * l1 * l1, b: m2 * l2 * l2, c: m2 * l1 * l2, weight }
+    }
+}
+
+/// What L says at the middle of a step.
+struct Middle {
+    momentum: [f64; 2],
+    force: [f64; 2],
+    /// `c sin d` and `c cos d`.
+    sine: f64,
+    cosine: f64,
+    /// `G cos` of both angles.
+    upright: [f64; 2],
+    w: f64,
+}
+
+impl Middle {
+    #[inline]
+    fn at(constants: &Constants, q: [f64; 2], [u, v]: [f64; 2]) -> Self {
+        let Constants { a, b, c, weight } = *constants;
+        let [(sin_x, cos_x), (sin_y, cos_y)] = q.map(sin_cos);
+        let sine = c * mul_add(sin_x, cos_y, -(cos_x * sin_y));
+        let cosine = c * mul_add(cos_x, cos_y, sin_x * sin_y);
+        let (w, pull) = (u * v * cosine, u * v * sine);
+        Self {
+            momentum: [mul_add(a, u, v * cosine), mul_add(b, v, u * cosine)],
+            force: [-mul_add(weight[0], sin_x, pull), mul_add(-weight[1], sin_y, pull)],
+            sine,
+            cosine,
+            upright: [weight[0] * cos_x, weight[1] * cos_y],
+            w,
+        }
+    }
+
+    /// A, its diagonal and the rest.
+    #[inline]
+    fn derivative(&self, constants: &Constants, s: f64, [u, v]: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let square = s * s;
+        let even = mul_add(-square, self.w, self.cosine);
+        let odd = s * (u + v) * self.sine;
+        let diagonal = [
+            mul_add(square, self.w + self.upright[0], constants.a),
+            mul_add(square, self.w + self.upright[1], constants.b),
+        ];
+        (diagonal, [even + odd, even - odd])
+    }
+
+    /// What L_v gains as the angles move on with the velocities, less L_q.
+    #[inline]
+    fn steady(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let turn = self.sine * (v - u);
+        [mul_add(turn, v, -self.force[0]), mul_add(turn, u, -self.force[1])]
+    }
+
+    /// The change of L_q where the velocities change by `dv` and the angles by `dq`.
+    #[inline]
+    fn carried(&self, [u, v]: [f64; 2], dv: [f64; 2], dq: [f64; 2]) -> [f64; 2] {
+        let pull = mul_add(self.sine, mul_add(v, dv[0], u * dv[1]), self.w * (dq[0] - dq[1]));
+        [-mul_add(self.upright[0], dq[0], pull), mul_add(-self.upright[1], dq[1], pull)]
+    }
+}
+
+/// Fixed steps.
+#[derive(Clone, Debug)]
+pub struct Fixed<S> {
+    constants: Constants,
+    h: f64,
+    tolerance: f64,
+    t: S,
+    q: [S; 2],
+    p: [S; 2],
+    history: [History<7>; 2],
+    /// Where the next step starts: velocities, and angles there.
+    trial: [[f64; 2]; 2],
+}
+
+impl<S: Sum> Fixed<S> {
+    /// From angles `q` and velocities `v` at t = 0. A Newton step of `tolerance` is the last one.
+    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+        let constants = Constants::of(system);
+        let start = Middle::at(&constants, q, v);
+        Self {
+            constants,
+            h,
+            tolerance,
+            t: S::new(0.0),
+            q: q.map(S::new),
+            p: start.momentum.map(S::new),
+            history: v.map(History::constant),
+            trial: [v, from_fn(|i| q[i] + h / 2.0 * v[i])],
+        }
+    }
+}
+
+impl<S: Sum> Stepper for Fixed<S> {
+    #[inline]
+    fn step(&mut self) {
+        let (h, s) = (self.h, self.h / 2.0);
+        let [mut v, mut q] = self.trial;
+        let known = self.history.map(|v| v.known());
+        for _ in 0..ITERATIONS {
+            // The next guess were there no Newton step.
+            let next: [f64; 2] = from_fn(|i| mul_add(7.0, v[i], known[i]));
+            let next_q: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, v[i], s * next[i])));
+            let middle = Middle::at(&self.constants, q, v);
+            let r: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
+            let (diagonal, off) = middle.derivative(&self.constants, s, v);
+            let over = 1.0 / mul_add(diagonal[0], diagonal[1], -(off[0] * off[1]));
+            let newton = [
+                mul_add(diagonal[1], r[0], -(off[0] * r[1])) * over,
+                mul_add(diagonal[0], r[1], -(off[1] * r[0])) * over,
+            ];
+            let before = v;
+            v = from_fn(|i| v[i] + newton[i]);
+            if newton[0].abs().max(newton[1].abs()) <= self.tolerance {
+                let carried = middle.carried(before, newton, newton.map(|d| s * d));
+                for i in 0..2 {
+                    self.trial[0][i] = mul_add(7.0, newton[i], next[i]);
+                    self.trial[1][i] = mul_add(4.5 * h, newton[i], next_q[i]);
+                    self.history[i].push(v[i]);
+                    self.q[i].grow(h, v[i]);
+                    self.p[i].grow(h, middle.force[i] + carried[i]);
+                }
+                self.t.grow(h, 1.0);
+                return;
+            }
+            q = from_fn(|i| self.q[i].plus(s * v[i]));
+        }
+        not_converged()
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let ([q1, q2], [p1, p2]) = (self.q.map(S::value), self.p.map(S::value));
+        vec![self.t.value(), q1, q2, p1, p2]
+    }
+}
+
+/// Energy-preserving steps.
+#[derive(Clone, Debug)]
+pub struct EnergyPreserving<S> {
+    constants: Constants,
+    energy: f64,
+    tolerance: f64,
+    t: S,
+    q: [S; 2],
+    p: [S; 2],
+    v: [History<7>; 2],
+    /// Half of h.
+    s: History<7>,
+}
+
+impl<S: Sum> EnergyPreserving<S> {
+    /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
+    /// relative in h, is the last one.
+    #[must_use]
+    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+        let (constants, half) = (Constants::of(system), h / 2.0);
+        let middle = Middle::at(&constants, q, v);
+        let (mass, [coupling, _]) = middle.derivative(&constants, 0.0, v);
+        let applied = middle.steady(v).map(|steady| -steady);
+        let over = 1.0 / (mass[0] * mass[1] - coupling * coupling);
+        let acceleration = [
+            (mass[1] * applied[0] - coupling * applied[1]) * over,
+            (mass[0] * applied[1] - coupling * applied[0]) * over,
+        ];
+        Self {
+            constants,
+            energy: energy(&middle, v),
+            tolerance,
+            t: S::new(half),
+            q: from_fn(|i| S::new(q[i] + half * v[i])),
+            p: from_fn(|i| S::new(middle.momentum[i] + half * middle.force[i])),
+            // From v alone Newton's iteration would find the step back, (v, −h).
+            v: from_fn(|i| History::line(v[i], h * acceleration[i])),
+            s: History::constant(half),
+        }
+    }
+}
+
+/// `v·L_v − L = v·L_v/2 + V`.
+#[inline]
+fn energy(middle: &Middle, v: [f64; 2]) -> f64 {
+    let Middle { momentum, upright, .. } = middle;
+    mul_add(0.5 * v[0], momentum[0], mul_add(0.5 * v[1], momentum[1], -(upright[0] + upright[1])))
+}
+
+impl<S: Sum> Stepper for EnergyPreserving<S> {
+    #[inline]
+    fn step(&mut self) {
+        let (mut v, mut s) = (self.v.map(|v| v.next()), self.s.next());
+        for _ in 0..ITERATIONS {
+            let over = 1.0 / s;
+            let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+            let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
+            let c = (energy(&middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1])) * over;
+            // L_qq v, and what L_v and L_q gain while the angles move on.
+            let bent = middle.carried(v, [0.0; 2], v);
+            let k = mul_add(v[0], bent[0], v[1] * bent[1]);
+            let steady = middle.steady(v);
+            let (diagonal, off) = middle.derivative(&self.constants, s, v);
+            let across = from_fn(|i| mul_add(-s, bent[i], steady[i]));
+            let along = from_fn(|i| mul_add(s, bent[i], steady[i]));
+            let (dv, ds) = bordered([diagonal, across, along], off, k, r, c);
+            let before = v;
+            (v, s) = (from_fn(|i| v[i] + dv[i]), s + ds);
+            if dv[0].abs().max(dv[1].abs()) <= self.tolerance && ds.abs() <= self.tolerance * s {
+                let h = 2.0 * s;
+                let carried = middle.carried(before, dv, from_fn(|i| mul_add(s, dv[i], before[i] * ds)));
+                for i in 0..2 {
+                    self.v[i].push(v[i]);
+                    self.q[i].grow(h, v[i]);
+                    self.p[i].grow(h, middle.force[i] + carried[i]);
+                }
+                self.s.push(s);
+                self.t.grow(h, 1.0);
+                return;
+            }
+        }
+        not_converged()
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let ([q1, q2], [p1, p2]) = (self.q.map(S::value), self.p.map(S::value));
+        vec![self.t.value(), q1, q2, p1, p2]
+    }
+}

@@ -1,0 +1,65 @@
+//! What is timed: a stepper at some point of its run.
+//!
+//! In: anything that takes steps. Out: [`Run`], behind which a table of unlike steppers is one list. The loop over the steps is
+//! inside, so that a step is inlined into it as in a user's program.
+
+use vi_core::{EnergyPreserving, FixedStep, Stepping};
+
+/// A stepper that takes one step at a time.
+pub trait Stepper: Clone {
+    /// Takes one step.
+    ///
+    /// # Panics
+    /// Where there is none: every run here has all its steps.
+    fn step(&mut self);
+    /// Time, coordinates and momenta, in this order.
+    fn state(&self) -> Vec<f64>;
+}
+
+/// A stepper of any kind, at the start of its run.
+pub trait Run {
+    /// The state after so many steps from the start.
+    fn run(&self, steps: usize) -> Vec<f64>;
+}
+
+impl<S: Stepper> Run for S {
+    #[inline(never)]
+    fn run(&self, steps: usize) -> Vec<f64> {
+        // A copy may live in registers.
+        let mut stepper = self.clone();
+        for _ in 0..steps {
+            stepper.step();
+        }
+        stepper.state()
+    }
+}
+
+fn flat<const N: usize>(state: vi_core::State<N>) -> Vec<f64> {
+    [state.t].into_iter().chain(state.q.iter().copied()).chain(state.p.iter().copied()).collect()
+}
+
+impl<S: Stepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
+    #[inline]
+    fn step(&mut self) {
+        if let Err(failure) = FixedStep::step(self) {
+            panic!("{failure}");
+        }
+    }
+
+    fn state(&self) -> Vec<f64> {
+        flat(FixedStep::state(self))
+    }
+}
+
+impl<S: Stepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<S, N> {
+    #[inline]
+    fn step(&mut self) {
+        if let Err(failure) = EnergyPreserving::step(self) {
+            panic!("{failure}");
+        }
+    }
+
+    fn state(&self) -> Vec<f64> {
+        flat(EnergyPreserving::state(self))
+    }
+}
