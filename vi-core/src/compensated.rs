@@ -21,15 +21,23 @@ pub(crate) fn add<T: Real>(value: &mut T, low: &mut T, increment: T) {
     (*value, *low) = two_sum(sum, lost + *low);
 }
 
-/// Adds `increment`, entry by entry, exact to an ulp of each increment, which are themselves rounded: half the operations.
+/// Adds `increment`, exact to an ulp of it, as it is itself rounded: half the operations.
+#[inline]
+pub(crate) fn add_rounded<T: Real>(value: &mut T, low: &mut T, increment: T) {
+    (*value, *low) = two_sum(*value, increment + *low);
+}
+
+/// The same, entry by entry.
 #[inline]
 pub(crate) fn add_vector<T: Real, const N: usize>(
     value: &mut SVector<T, N>,
     low: &mut SVector<T, N>,
     increment: &SVector<T, N>,
 ) {
-    for ((value, low), increment) in value.iter_mut().zip(low.iter_mut()).zip(increment.iter()) {
-        (*value, *low) = two_sum(*value, *increment + *low);
+    // Slices become vector instructions, the iterators of a matrix do not.
+    let (value, low, increment) = (value.as_mut_slice(), low.as_mut_slice(), increment.as_slice());
+    for ((value, low), increment) in value.iter_mut().zip(low).zip(increment) {
+        add_rounded(value, low, *increment);
     }
 }
 

@@ -91,7 +91,7 @@ where
         }
         if let Some(root) = self.foretold() {
             let (node, last, step) = self.run.reached(&self.system, &self.run.node, &root, Method::EnergyPreserving);
-            if node.is_finite() {
+            if node.is_finite() && node.energy.is_finite() {
                 self.run.forecasts.push(root.v, root.h);
                 (self.run.node, self.run.last) = (node, last);
                 return Ok(step);

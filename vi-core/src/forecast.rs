@@ -9,7 +9,7 @@
 //! radius  after a step |δ| the next one is C |δ|²:  ρ² = share ε/C,  ε the length of a step that is all rounding
 //! ```
 //!
-//! C and the best m change slowly along a motion. They are learnt from one step in [`INTERVAL`], which starts on purpose
+//! C and the best m change slowly along a motion. They are learnt from one step in 64 to 256, which starts on purpose
 //! from the last u: its first two Newton steps are C, and which m would have guessed best is seen from the solution. A step
 //! whose Newton steps do not come below ρ is taken by the slow way, which measures every residual.
 //! Everything is one formula for one number or for lanes of them: conditions are indicators, 1 or 0 in each lane.
@@ -17,26 +17,27 @@
 use crate::Real;
 use nalgebra::SVector;
 
-/// Steps between two that learn.
+/// Steps between two that learn, at first.
 const INTERVAL: u32 = 64;
+/// The same where ρ stays as it is.
+const LONG_INTERVAL: u32 = 256;
 /// The same after ρ has become less than a quarter of what it was.
 const ALERT: u32 = 8;
 /// Unknowns that a guess is made of: the highest order is one less.
-const DEPTH: usize = RING + 1;
-/// Places for the older ones: a power of two.
+const DEPTH: usize = 8;
+/// Unknowns that are kept to choose the order by: a power of two.
 const RING: usize = 8;
 
 /// Rows are orders m, columns the weights, the newest first.
 const WEIGHTS: [[f64; DEPTH]; DEPTH] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0, 0.0, 0.0],
-    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0, 0.0, 0.0],
-    [8.0, -28.0, 56.0, -70.0, 56.0, -28.0, 8.0, -1.0, 0.0],
-    [9.0, -36.0, 84.0, -126.0, 126.0, -84.0, 36.0, -9.0, 1.0],
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0, 0.0],
+    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0, 0.0],
+    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0, 0.0],
+    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0, 0.0],
+    [8.0, -28.0, 56.0, -70.0, 56.0, -28.0, 8.0, -1.0],
 ];
 
 /// Guesses of the next M unknowns.
@@ -47,18 +48,23 @@ const WEIGHTS: [[f64; DEPTH]; DEPTH] = [
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
 pub(crate) struct Forecast<const M: usize, T> {
-    /// The unknowns of the last step: the only ones that the next guess waits for.
-    newest: SVector<T, M>,
-    /// Those of the steps before in a ring, which is written in one place a step.
-    older: [SVector<T, M>; RING],
-    /// Steps taken, modulo the ring: where the next of `older` goes.
-    head: u32,
+    /// The guess of the next step.
+    guess: SVector<T, M>,
+    /// What the steps up to now give to the guesses after the next one, each used up in its turn: a step adds its part to all
+    /// of them at once, and none waits for another.
+    parts: [SVector<T, M>; DEPTH - 1],
+    /// The unknowns of the last steps in a ring, which is written in one place a step.
+    last: [SVector<T, M>; RING],
+    /// Where in the ring the newest stands.
+    newest: u32,
     /// What the guess takes of each, the newest first.
     weights: [T; DEPTH],
     /// ρ²; zero where nothing is trusted.
     radius: T,
     /// Steps until the next one that learns.
     until: u32,
+    /// Steps from the last one that learnt to the next.
+    interval: u32,
     /// How many of these are steps, up to one more than there are.
     known: u32,
 }
@@ -87,8 +93,17 @@ impl<T: Real> Lesson<T> {
 impl<const M: usize, T: Real> Forecast<M, T> {
     /// Before the first step, with a guess of it.
     pub(crate) fn new(guess: SVector<T, M>) -> Self {
-        let weights = WEIGHTS[0].map(T::real);
-        Self { newest: guess, older: [guess; RING], head: 0, weights, radius: T::zero(), until: 0, known: 0 }
+        Self {
+            guess,
+            parts: [SVector::zeros(); DEPTH - 1],
+            last: [guess; RING],
+            newest: 0,
+            weights: WEIGHTS[0].map(T::real),
+            radius: T::zero(),
+            until: 0,
+            interval: INTERVAL,
+            known: 0,
+        }
     }
 
     /// Whether there was no step yet.
@@ -99,31 +114,26 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// The unknowns of the last step.
     #[inline]
     pub(crate) fn newest(&self) -> SVector<T, M> {
-        self.newest
+        *self.before(0)
+    }
+
+    /// The unknowns of the step i before the last one.
+    #[inline]
+    fn before(&self, i: usize) -> &SVector<T, M> {
+        &self.last[(self.newest as usize).wrapping_sub(i) % RING]
     }
 
     /// Whether everything is a finite number.
     pub(crate) fn is_finite(&self) -> bool {
-        let numbers = self.older.iter().flat_map(|u| u.iter()).chain(self.newest.iter()).chain(&self.weights);
+        let vectors = self.last.iter().chain(&self.parts).chain([&self.guess]);
+        let numbers = vectors.flat_map(|u| u.iter()).chain(&self.weights);
         numbers.chain([&self.radius]).all(|number| number.is_finite())
-    }
-
-    /// The unknowns of the step i before the newest, i from 1.
-    #[inline]
-    fn before(&self, i: usize) -> &SVector<T, M> {
-        &self.older[(self.head as usize).wrapping_sub(i) % RING]
     }
 
     /// The guess of the next step.
     #[inline]
     pub(crate) fn guess(&self) -> SVector<T, M> {
-        let [newest, weights @ ..] = &self.weights;
-        let mut sum = SVector::zeros();
-        for (i, weight) in weights.iter().enumerate() {
-            sum += self.before(i + 1) * *weight;
-        }
-        // The newest last: it is the one that is waited for.
-        sum + self.newest * *newest
+        self.guess
     }
 
     /// ρ².
@@ -141,16 +151,41 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// Takes the step `u` where no guess is needed.
     #[inline]
     pub(crate) fn replace(&mut self, u: SVector<T, M>) {
-        self.newest = u;
+        self.last[self.newest as usize % RING] = u;
     }
 
     /// Takes the step `u`.
     #[inline]
     pub(crate) fn push(&mut self, u: SVector<T, M>) {
-        self.older[self.head as usize % RING] = self.newest;
-        self.head = (self.head + 1) % RING as u32;
-        self.newest = u;
+        self.keep(u);
         self.until = self.until.saturating_sub(1);
+        let [weight, weights @ .., last] = &self.weights;
+        let [first, rest @ ..] = &mut self.parts;
+        self.guess = *first + u * *weight;
+        let mut part = first;
+        for (later, weight) in rest.iter_mut().zip(weights) {
+            *part = *later + u * *weight;
+            part = later;
+        }
+        *part = u * *last;
+    }
+
+    #[inline]
+    fn keep(&mut self, u: SVector<T, M>) {
+        self.newest = (self.newest + 1) % RING as u32;
+        self.last[self.newest as usize % RING] = u;
+    }
+
+    /// The guesses of the steps after the last one, by the weights as they are now.
+    fn refresh(&mut self) {
+        let sum = |forecast: &Self, ahead: usize| {
+            let weights = forecast.weights.iter().skip(ahead).enumerate();
+            weights.fold(SVector::zeros(), |sum, (i, weight)| sum + forecast.before(i) * *weight)
+        };
+        self.guess = sum(self, 0);
+        for ahead in 1..DEPTH {
+            self.parts[ahead - 1] = sum(self, ahead);
+        }
     }
 
     /// Takes a step `u` that was not come by from here: the next one learns, unless this one should have.
@@ -166,15 +201,18 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// Takes the step `u` that started from the last one, and ρ² as it taught.
     pub(crate) fn learn(&mut self, u: SVector<T, M>, radius: T) {
         let narrowed = !radius.is_above(self.radius * T::real(1.0 / 16.0)).holds();
+        let steady = !narrowed && radius.at_most(self.radius * T::real(16.0)).holds();
         self.weights = self.best_weights(&u);
         self.radius = radius;
-        self.push(u);
-        self.until = match (self.known as usize) < DEPTH {
-            // The first steps know no higher order yet.
-            true => 0,
-            false if narrowed => ALERT - 1,
-            false => INTERVAL - 1,
+        self.keep(u);
+        self.refresh();
+        self.interval = match (narrowed, steady) {
+            (true, _) => ALERT,
+            (_, true) => (2 * self.interval).clamp(INTERVAL, LONG_INTERVAL),
+            _ => INTERVAL,
         };
+        // The first steps know no higher order yet.
+        self.until = if (self.known as usize) < DEPTH { 0 } else { self.interval - 1 };
         self.known = (self.known + 1).min(DEPTH as u32);
     }
 
@@ -183,11 +221,7 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// of order m + 1 of the steps up to `u`.
     fn best_weights(&self, u: &SVector<T, M>) -> [T; DEPTH] {
         let mut best = WEIGHTS[0].map(T::real);
-        let mut differences = [SVector::zeros(); DEPTH];
-        differences[0] = self.newest;
-        for (i, difference) in differences.iter_mut().enumerate().skip(1) {
-            *difference = *self.before(i);
-        }
+        let mut differences: [SVector<T, M>; DEPTH] = core::array::from_fn(|i| *self.before(i));
         let mut newest = u - differences[0];
         let (mut least, mut climbing) = (length_squared(&newest), T::one());
         for (order, weights) in WEIGHTS.iter().enumerate().take(self.known as usize).skip(1) {
@@ -206,8 +240,15 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     }
 }
 
-/// |u|².
+/// |u|², in four sums that do not wait for each other.
 #[inline]
 pub(crate) fn length_squared<const M: usize, T: Real>(u: &SVector<T, M>) -> T {
-    u.iter().fold(T::zero(), |sum, entry| sum + *entry * *entry)
+    let mut sums = [T::zero(); 4];
+    for part in u.as_slice().chunks(4) {
+        for (sum, entry) in sums.iter_mut().zip(part) {
+            *sum += *entry * *entry;
+        }
+    }
+    let [a, b, c, d] = sums;
+    (a + b) + (c + d)
 }

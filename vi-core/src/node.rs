@@ -56,7 +56,7 @@ impl<const N: usize, T: Real> Node<N, T> {
     /// Moves time by `h` and coordinates by `h v`; momenta and energy stay.
     #[inline]
     pub(crate) fn shift(&mut self, h: T, v: &SVector<T, N>) {
-        compensated::add(&mut self.t, &mut self.t_low, h);
+        compensated::add_rounded(&mut self.t, &mut self.t_low, h);
         compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
     }
 
@@ -89,13 +89,11 @@ impl<const N: usize, T: Real> Node<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Node<N, T> {
-    /// Whether every quantity is finite: one comparison.
+    /// Whether time, coordinates and momenta are finite, without a branch for each.
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
-        // A number less itself is zero, and not a number where it is not finite.
-        let vectors = self.q.iter().chain(self.p.iter());
-        let zero = vectors.fold(self.t + self.energy - (self.t + self.energy), |sum, entry| sum + (*entry - *entry));
-        zero == T::zero()
+        let all = |vector: &SVector<T, N>| vector.as_slice().iter().fold(true, |all, entry| all & entry.is_finite());
+        self.t.is_finite() & all(&self.q) & all(&self.p)
     }
 
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of

@@ -23,7 +23,7 @@ use nalgebra::SVector;
 const ATTEMPTS: u32 = 3;
 
 /// Part of a rounding that Newton's iteration may leave.
-const SHARE: f64 = 0.25;
+const SHARE: f64 = 1.0;
 
 /// The inverse of a constant A.
 pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
@@ -50,23 +50,16 @@ impl<const N: usize, T: Real> Stride<N, T> {
     /// be trusted.
     #[inline]
     fn attempt<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> (SVector<T, N>, T, u32) {
-        let Self { h, forecast } = self;
-        let (mut v, mut done, mut before) = (forecast.guess(), T::zero(), None);
-        for attempt in 1..=ATTEMPTS {
-            let equation = system.momentum_equation(node, *h, &v);
-            let step = equation.jacobian.solve(&equation.residual);
-            let length = length_squared(&step);
-            // A lane that is done stays as it is: what a trajectory becomes does not depend on its neighbours.
-            v -= if before.is_none() { step } else { step * (T::one() - done) };
-            // A step that is not much shorter than the one before belongs to another root.
-            let contracts = before.map_or_else(T::one, |before: T| length.at_most(before * T::real(0.25)));
-            done = done.max(length.at_most(forecast.radius()) * contracts);
-            if done.holds() {
-                return (v, done, attempt);
-            }
-            before = Some(length);
+        let guess = self.forecast.guess();
+        let equation = system.momentum_equation(node, self.h, &guess);
+        let step = equation.jacobian.solve(&equation.residual);
+        let (length, v) = (length_squared(&step), guess - step);
+        let done = length.at_most(self.forecast.radius());
+        if done.holds() {
+            return (v, done, 1);
         }
-        (v, done, ATTEMPTS)
+        // By copies, so that a loop over steps may keep its own in registers.
+        further(*system, *node, (self.h, self.forecast.radius()), v, length, done)
     }
 
     /// The velocity from the last one, and ρ² from how the steps became shorter.
@@ -95,6 +88,32 @@ impl<const N: usize, T: Real> Stride<N, T> {
         }
         (v, done, radius)
     }
+}
+
+/// The Newton steps that follow where the first was too long.
+#[inline(never)]
+fn further<const N: usize, T: Real, S: Stepping<N, T>>(
+    system: S,
+    node: Node<N, T>,
+    (h, radius): (T, T),
+    mut v: SVector<T, N>,
+    mut before: T,
+    mut done: T,
+) -> (SVector<T, N>, T, u32) {
+    for attempt in 2..=ATTEMPTS {
+        let equation = system.momentum_equation(&node, h, &v);
+        let step = equation.jacobian.solve(&equation.residual);
+        let length = length_squared(&step);
+        // A lane that is done stays as it is: what a trajectory becomes does not depend on its neighbours.
+        v -= step * (T::one() - done);
+        // A step that is not much shorter than the one before belongs to another root.
+        done = done.max(length.at_most(radius) * length.at_most(before * T::real(0.25)));
+        if done.holds() {
+            return (v, done, attempt);
+        }
+        before = length;
+    }
+    (v, done, ATTEMPTS)
 }
 
 impl<const N: usize, T: Scalar> Stride<N, T> {
