@@ -109,12 +109,12 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let instructions = self.instructions;
         let clock = Clock { elapsed: self.elapsed(), h: self.h };
         let Self { fixed, nodes: [start, end], velocities, verdict, .. } = self;
-        let [v1, v2, v3, v4, oldest] = velocities;
+        let [v1, v2, v3, v4, v5, v6, oldest] = velocities;
         // Before there are enough velocities, every step starts from the last one.
         if self.steps < DEPTH as u64 || self.steps.is_multiple_of(INTERVAL) {
             dispatch::lesson::<S, N>(instructions, fixed, clock, start, end, oldest, verdict, v1);
         } else {
-            dispatch::foretold::<S, N>(instructions, fixed, clock, start, end, oldest, verdict, v1, v2, v3, v4);
+            dispatch::foretold::<S, N>(instructions, fixed, clock, start, end, oldest, verdict, v1, v2, v3, v4, v5, v6);
             if any(&verdict.refused, &self.running) {
                 dispatch::again::<S, N>(instructions, fixed, clock, start, end, oldest, verdict);
             }
@@ -151,7 +151,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let [last, before, ..] = [0, 1].map(|index| self.velocities[index].get(lane));
         let v = fixed_step::velocity(&system, node, self.h, last * 2.0 - before, last)?;
         let gain = vi_core::Stepping::increment(&system, node, self.h, &v);
-        let next = node.advanced(self.h, &v, &gain);
+        let next = node.moved(self.h, &v, &gain.momentum);
         next.check_finite(node.t)?;
         Ok((next, v))
     }

@@ -70,7 +70,7 @@ macro_rules! copies {
 
 copies! {
     foretold(fixed: &Fixed<S::Rows<WIDTH>>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
-        verdict: &mut Verdict, v1: &Rows<N>, v2: &Rows<N>, v3: &Rows<N>, v4: &Rows<N>);
+        verdict: &mut Verdict, v1: &Rows<N>, v2: &Rows<N>, v3: &Rows<N>, v4: &Rows<N>, v5: &Rows<N>, v6: &Rows<N>);
     again(fixed: &Fixed<S::Rows<WIDTH>>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
         verdict: &mut Verdict);
     lesson(fixed: &Fixed<S::Rows<WIDTH>>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,

@@ -67,6 +67,10 @@ impl<const FUSED: bool> num_traits::One for Lane<FUSED> {
 }
 
 impl<const FUSED: bool> Real for Lane<FUSED> {
+    /// The compiler widens one to so many, or half: formulas that choose by this choose what suits a vector.
+    const LANES: usize = 8;
+    const EPSILON: f64 = f64::EPSILON;
+
     #[inline(always)]
     fn real(value: f64) -> Self {
         Self(value)
@@ -91,6 +95,22 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.0.is_finite()
+    }
+    #[inline(always)]
+    fn is_positive(self) -> bool {
+        self.0 > 0.0
+    }
+    #[inline(always)]
+    fn at_most(self, bound: Self) -> Self {
+        Self(Real::at_most(self.0, bound.0))
+    }
+    #[inline(always)]
+    fn is_above(self, bound: Self) -> Self {
+        Self(Real::is_above(self.0, bound.0))
+    }
+    #[inline(always)]
+    fn holds(self) -> bool {
+        self.0 != 0.0
     }
     #[inline(always)]
     fn to_f64(self) -> f64 {

@@ -5,9 +5,9 @@
 //! meaning.
 //!
 //! ```text
-//! foretold   v = 5 (v1 − v4) + 10 (v3 − v2) + v5, one Newton step δ, accepted where |δ|² ≤ ρ²; ρ is learnt
+//! foretold   v = 7 (v1 − v6) − 21 (v2 − v5) + 35 (v3 − v4) + v7, one Newton step δ, accepted where |δ|² ≤ ρ²; ρ is learnt
 //! again      another Newton step of those that were refused, accepted where it is also half as long as the one before
-//! lesson     v = v1, three Newton steps: ρ² = ε |δ1|²/(4 |δ2|), ε the length of a step that is all rounding
+//! lesson     v = v1, three Newton steps: ρ² = ε |δ1|²/(4 |δ2|), ε one rounding of the larger of v and v7
 //! ```
 //!
 //! After a Newton step δ the next one is C |δ|², so that one shorter than ρ leaves less than a rounding.
@@ -19,10 +19,11 @@ use crate::ensemble::WIDTH;
 use crate::lane::Lane;
 use crate::rows::{Nodes, Row, Rows};
 use nalgebra::SVector;
-use vi_core::{Batch, Node, Real, Stepping, linear};
+use vi_core::linear::Matrix;
+use vi_core::{Batch, Node, Real, Stepping};
 
 /// Velocities that the next one is foretold from.
-pub(crate) const DEPTH: usize = 5;
+pub(crate) const DEPTH: usize = 7;
 
 /// What does not change during a run.
 #[derive(Clone, Debug)]
@@ -85,29 +86,17 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     #[inline(always)]
     fn correction(&self, v: &SVector<Lane<FUSED>, N>) -> Correction<N, Lane<FUSED>> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
-        let step = solved(&equation.jacobian, &equation.residual);
+        let step = equation.jacobian.solve(&equation.residual);
         Correction { length: length_squared(&step), step }
-    }
-
-    /// Squared length of a Newton step that is all rounding.
-    #[inline(always)]
-    fn rounding(&self, v: &SVector<Lane<FUSED>, N>) -> Lane<FUSED> {
-        let equation = self.system.momentum_equation(&self.node, self.h, v);
-        length_squared(&solved(&equation.jacobian, &(equation.magnitude * Lane(f64::EPSILON))))
     }
 
     /// Sets the rows of this trajectory at the end of the step.
     #[inline(always)]
     fn set(&self, end: &mut Nodes<N>, velocity: &mut Rows<N>, lane: usize, v: &SVector<Lane<FUSED>, N>) {
         let gain = self.system.increment(&self.node, self.h, v);
-        end.set_lane(lane, &self.node.advanced(self.h, v, &gain));
+        end.set_lane(lane, &self.node.moved(self.h, v, &gain.momentum));
         velocity.set_lane(lane, v);
     }
-}
-
-#[inline(always)]
-fn solved<const N: usize, T: Real>(matrix: &nalgebra::SMatrix<T, N, N>, rhs: &SVector<T, N>) -> SVector<T, N> {
-    linear::solve(matrix, rhs).unwrap_or_else(|| SVector::from([T::real(f64::NAN); N]))
 }
 
 #[inline(always)]
@@ -138,13 +127,16 @@ pub(crate) fn foretold<S: Batch<N>, const N: usize, const FUSED: bool>(
     v2: &Rows<N>,
     v3: &Rows<N>,
     v4: &Rows<N>,
+    v5: &Rows<N>,
+    v6: &Rows<N>,
 ) {
     for lane in 0..WIDTH {
         let trajectory = fixed.trajectory::<S, N, FUSED>(clock, start, lane);
-        let v5 = velocity.lane(lane);
-        let fourth = (v1.lane(lane) - v4.lane(lane)) * Lane(5.0) + (v3.lane(lane) - v2.lane(lane)) * Lane(10.0) + v5;
-        let Correction { step, length } = trajectory.correction(&fourth);
-        trajectory.set(end, velocity, lane, &(fourth - step));
+        let oldest = velocity.lane(lane);
+        let far = (v2.lane(lane) - v5.lane(lane)) * Lane(-21.0) + (v3.lane(lane) - v4.lane(lane)) * Lane(35.0) + oldest;
+        let guess = (v1.lane(lane) - v6.lane(lane)) * Lane(7.0) + far;
+        let Correction { step, length } = trajectory.correction(&guess);
+        trajectory.set(end, velocity, lane, &(guess - step));
         verdict.length.0[lane] = length.0;
         verdict.refused.0[lane] = mask(length.0 <= verdict.radius.0[lane]);
     }
@@ -189,7 +181,7 @@ pub(crate) fn lesson<S: Batch<N>, const N: usize, const FUSED: bool>(
         let first = trajectory.correction(&v);
         let v = v - first.step;
         let second = trajectory.correction(&v);
-        let rounding = trajectory.rounding(&v).0;
+        let rounding = length_squared(&v).max(length_squared(&velocity.lane(lane))).0 * (f64::EPSILON * f64::EPSILON);
         let v = v - second.step;
         let third = trajectory.correction(&v);
         trajectory.set(end, velocity, lane, &(v - third.step));
