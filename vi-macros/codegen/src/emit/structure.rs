@@ -68,7 +68,7 @@ pub(super) fn batch(source: &Source) -> TokenStream {
     let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
     let (_, marker_value) = marker(names.is_empty());
     quote! {
-        #[allow(unused_variables)]
+        #[allow(clippy::all, clippy::pedantic, unused_variables)]
         impl ::vi_core::Batch<#dimension> for #name<f64> {
             type Rows<const W: usize> = #name<[f64; W]>;
             type In<T: ::vi_core::Real> = #name<T>;
