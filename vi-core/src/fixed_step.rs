@@ -13,9 +13,9 @@
 //! from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several roots: see
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
-use crate::momentum;
 use crate::stride::{Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
+use crate::{continuation, momentum};
 use nalgebra::SVector;
 
 /// The variational integrator with a given step; see the [module](self).
@@ -251,6 +251,24 @@ where
     fn next(&mut self) -> Option<Self::Item> {
         Some(self.step())
     }
+}
+
+/// The velocity of one step of length h from a node, as [`FixedStep`] finds it by [`Branch::Nearest`]: from `guess`, or,
+/// where Newton's iteration fails from there, by the continuation from `last`, the velocity of the step before.
+///
+/// # Errors
+/// Those of [`FixedStep::step`].
+#[cold]
+pub fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    guess: SVector<T, N>,
+    last: SVector<T, N>,
+) -> Result<SVector<T, N>, StepError> {
+    continuation::nearest(system, node, h, guess, last)
+        .map(|solution| solution.v)
+        .map_err(|failure| failure.explained(system, node, h, &last))
 }
 
 /// A step must lead somewhere.

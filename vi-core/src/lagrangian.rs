@@ -159,6 +159,18 @@ pub trait Parameters<T: Real = f64> {
     fn parameter_mut(&mut self, name: &str) -> Option<&mut T>;
 }
 
+/// A system of which many can be integrated at once, each with its own parameters.
+pub trait Batch<const N: usize>: Stepping<N> + Copy + Send + Sync {
+    /// The parameters of W systems, side by side.
+    type Rows<const W: usize>: Clone + core::fmt::Debug + Send + Sync;
+    /// The system in another kind of number.
+    type In<T: Real>: Stepping<N, T>;
+    /// The parameters of W systems, side by side.
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W>;
+    /// One of the systems, every parameter rounded to `T`.
+    fn pick<T: Real, const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self::In<T>;
+}
+
 /// A system may be lent as well as given.
 impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for &S {
     const NAME: &'static str = S::NAME;

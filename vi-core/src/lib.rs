@@ -41,7 +41,8 @@ pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, Magnitudes, MomentumEquation, Parameters, Stepping,
+    Batch, DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, Magnitudes, MomentumEquation, Parameters,
+    Stepping,
 };
 pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};

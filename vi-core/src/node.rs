@@ -62,7 +62,8 @@ impl<const N: usize, T: Real> Node<N, T> {
 
     /// The node at the end of the step `(v, h)`, its energy left as it was.
     #[inline]
-    pub(crate) fn moved(mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> Self {
+    #[must_use]
+    pub fn moved(mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> Self {
         self.shift(h, v);
         compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
         self
@@ -98,7 +99,10 @@ impl<const N: usize, T: Scalar> Node<N, T> {
 
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
     /// the last good node.
-    pub(crate) fn check_finite(&self, t: T) -> Result<(), StepError> {
+    ///
+    /// # Errors
+    /// That one.
+    pub fn check_finite(&self, t: T) -> Result<(), StepError> {
         let entries = |vector: &SVector<T, N>| vector.iter().all(|entry| entry.is_finite());
         let quantities = [
             (self.t.is_finite() && self.t_low.is_finite(), "time"),

@@ -1,8 +1,10 @@
 //! The numbers that generated code computes with.
 //!
-//! In: formulas written once, generic over [`Real`]. Out: the same formulas in `f64`, `f32`, and later in SIMD lanes.
+//! In: formulas written once, generic over [`Real`]. Out: the same formulas in `f64`, `f32`, and in lanes of an ensemble.
 //! [`Real`] holds what a formula needs and nothing that a lane of several numbers could not answer;
 //! [`Scalar`] adds what the control flow of a stepper needs: order.
+
+pub mod sine;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -113,6 +115,18 @@ pub trait Real:
 /// One number: what the control flow of a stepper needs beside the formulas.
 pub trait Scalar: Real + PartialOrd {}
 
+/// Sine and cosine, in this order, without a branch for angles that one meets.
+#[inline]
+fn sin_cos(x: f64) -> (f64, f64) {
+    if x.abs() <= sine::LARGEST { sine::sin_cos::<{ cfg!(target_feature = "fma") }>(x) } else { large_sin_cos(x) }
+}
+
+/// Sine and cosine of an angle of many turns, or of what is not a number.
+#[cold]
+fn large_sin_cos(x: f64) -> (f64, f64) {
+    x.sin_cos()
+}
+
 macro_rules! impl_real {
     ($($float:ident),*) => {$(
         impl Real for $float {
@@ -133,11 +147,16 @@ macro_rules! impl_real {
             #[inline]
             fn ln(self) -> Self { $float::ln(self) }
             #[inline]
-            fn sin(self) -> Self { $float::sin(self) }
+            fn sin(self) -> Self { Real::sin_cos(self).0 }
             #[inline]
-            fn cos(self) -> Self { $float::cos(self) }
+            fn cos(self) -> Self { Real::sin_cos(self).1 }
+            // In double precision, whatever the type: it costs less than the library's call.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
             #[inline]
-            fn sin_cos(self) -> (Self, Self) { $float::sin_cos(self) }
+            fn sin_cos(self) -> (Self, Self) {
+                let (sine, cosine) = sin_cos(self as f64);
+                (sine as $float, cosine as $float)
+            }
             #[inline]
             fn tan(self) -> Self { $float::tan(self) }
             #[inline]

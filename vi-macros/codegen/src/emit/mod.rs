@@ -40,8 +40,9 @@ pub fn items(model: &Model, system: &DiscreteSystem, program: &Program, findings
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);
     let stepping = stepping::item(&source);
+    let batch = structure::batch(&source);
     let check = check::items(&source);
-    quote! { #structure #lagrangian #discrete #stepping #check }
+    quote! { #structure #lagrangian #discrete #stepping #batch #check }
 }
 
 impl Source<'_> {

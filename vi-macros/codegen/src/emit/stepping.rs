@@ -64,7 +64,7 @@ fn momentum_equation(source: &Source) -> (TokenStream, TokenStream) {
     let (form, equation) = momentum_fields(source, &body.results);
     let function = quote! {
         #documentation
-        #[inline]
+        #[inline(always)]
         fn momentum_equation(
             &self,
             node: &::vi_core::Node<#dimension, T>,
@@ -145,7 +145,7 @@ fn increment(source: &Source) -> TokenStream {
     let (momentum, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
     quote! {
         #documentation
-        #[inline]
+        #[inline(always)]
         fn increment(
             &self,
             node: &::vi_core::Node<#dimension, T>,

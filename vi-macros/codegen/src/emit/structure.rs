@@ -62,6 +62,29 @@ pub(super) fn items(source: &Source) -> TokenStream {
     }
 }
 
+/// The implementation of `Batch`: parameters side by side.
+pub(super) fn batch(source: &Source) -> TokenStream {
+    let (name, dimension) = (&source.model.name, source.dimension());
+    let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
+    let (_, marker_value) = marker(names.is_empty());
+    quote! {
+        #[allow(clippy::all, clippy::pedantic, unused_variables)]
+        impl ::vi_core::Batch<#dimension> for #name<f64> {
+            type Rows<const W: usize> = #name<[f64; W]>;
+            type In<T: ::vi_core::Real> = #name<T>;
+
+            fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+                #name { #(#names: ::core::array::from_fn(|index| systems[index].#names),)* #marker_value }
+            }
+
+            #[inline(always)]
+            fn pick<T: ::vi_core::Real, const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self::In<T> {
+                #name { #(#names: T::real(rows.#names[index]),)* #marker_value }
+            }
+        }
+    }
+}
+
 /// What the generator found out, as the end of the struct's documentation.
 fn found(source: &Source) -> TokenStream {
     let model = source.model;

@@ -1,0 +1,130 @@
+//! The trajectories of a caller.
+//!
+//! In: systems, states, a step h; then how many steps to take. Out: for each trajectory, in the order given, the state
+//! reached or how it [`Ended`]. Blocks of [`WIDTH`] trajectories are shared among the threads of rayon's current pool.
+
+use crate::block::Block;
+use crate::dispatch::Instructions;
+use core::fmt;
+use rayon::prelude::*;
+use vi_core::{Batch, State, StepError};
+
+/// Trajectories in a block: several vectors, so that one is computed while another waits.
+pub const WIDTH: usize = 64;
+
+/// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
+const WORTHWHILE: u64 = 1 << 14;
+
+/// Many trajectories of one system, each with its own parameters and state, with one step.
+///
+/// ```
+/// use vi_core::State;
+/// use vi_ensemble::Ensemble;
+/// use vi_systems::Pendulum;
+///
+/// let pendulums: Vec<_> = (1..=100).map(|i| Pendulum { l: 0.01 * f64::from(i), ..Pendulum::default() }).collect();
+/// let starts = pendulums.iter().map(|pendulum| State::at(pendulum, 0.0, [1.0], [0.0])).collect();
+/// let mut ensemble = Ensemble::new(pendulums, starts, 0.001)?;
+/// ensemble.run(1000);
+/// for (i, result) in ensemble.results().enumerate() {
+///     match result {
+///         Ok(state) => assert!(state.q[0].abs() < 1.001),
+///         Err(ended) => println!("trajectory {i} {ended}"),
+///     }
+/// }
+/// # Ok::<(), vi_core::StepError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Ensemble<S: Batch<N>, const N: usize> {
+    blocks: Vec<Block<S, N>>,
+    h: f64,
+    steps: u64,
+}
+
+/// How a trajectory ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ended<const N: usize> {
+    /// The last good state.
+    pub state: State<N>,
+    /// Steps taken up to there.
+    pub steps: u64,
+    /// Why there was no other.
+    pub error: StepError,
+}
+
+impl<const N: usize> fmt::Display for Ended<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "ended after {} steps: {}", self.steps, self.error)
+    }
+}
+
+impl<const N: usize> core::error::Error for Ended<N> {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        Some(&self.error)
+    }
+}
+
+impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
+    /// The trajectories of `systems` from `states`, pair by pair, with the step `h` in units of time (negative: backwards).
+    /// A state from which no step can be taken is a trajectory that ended before its first step.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an h that is zero or not finite, and where there are not as many systems as states.
+    #[allow(clippy::needless_pass_by_value, clippy::cast_precision_loss)]
+    pub fn new(systems: Vec<S>, states: Vec<State<N>>, h: f64) -> Result<Self, StepError> {
+        if !h.is_finite() || h == 0.0 {
+            return Err(StepError::InvalidInput { input: "the step h", allowed: "finite and not zero", value: h });
+        }
+        if systems.len() != states.len() {
+            let value = systems.len() as f64;
+            let (input, allowed) = ("the number of systems", "that of the states");
+            return Err(StepError::InvalidInput { input, allowed, value });
+        }
+        let instructions = Instructions::detected();
+        let trajectories: Vec<(S, State<N>)> = systems.into_iter().zip(states).collect();
+        let blocks = trajectories.par_chunks(WIDTH).map(|chunk| Block::new(chunk, h, instructions)).collect();
+        Ok(Self { blocks, h, steps: 0 })
+    }
+
+    /// Takes `steps` steps of every trajectory that has not ended.
+    pub fn run(&mut self, steps: u64) {
+        let together = WORTHWHILE / (WIDTH as u64 * steps.max(1));
+        let together = usize::try_from(together).unwrap_or(usize::MAX).max(1);
+        self.blocks.par_iter_mut().with_min_len(together).for_each(|block| block.run(steps));
+        self.steps += steps;
+    }
+
+    /// Takes `steps` steps, `every` at a time (at least one), and lets `observe` look after each part.
+    pub fn run_observed(&mut self, steps: u64, every: u64, mut observe: impl FnMut(&Self)) {
+        let mut left = steps;
+        while left > 0 {
+            let part = left.min(every.max(1));
+            self.run(part);
+            left -= part;
+            observe(self);
+        }
+    }
+
+    /// The state of each trajectory, in the order given; of one that has ended, how.
+    pub fn results(&self) -> impl Iterator<Item = Result<State<N>, Ended<N>>> + '_ {
+        self.blocks.iter().flat_map(|block| (0..block.len()).map(|lane| block.result(lane)))
+    }
+
+    /// How many trajectories have not ended.
+    #[must_use]
+    pub fn running(&self) -> usize {
+        self.blocks.iter().map(Block::running).sum()
+    }
+
+    /// Steps taken by those that have not ended.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The step, in units of time.
+    #[must_use]
+    pub fn h(&self) -> f64 {
+        self.h
+    }
+}

@@ -1,0 +1,25 @@
+//! Many trajectories of one system, each with its own parameters and its own start.
+//!
+//! In: systems of one kind, a state for each, one step h. Out: for each trajectory the state reached, or the typed error
+//! that it ended with and the step at which it did. The step is that of [`vi_core::FixedStep`], to rounding.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`ensemble`] | the trajectories of a caller, in blocks, over threads |
+//! | `block` | [`WIDTH`](ensemble::WIDTH) trajectories side by side, and what becomes of one that the common path refuses |
+//! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
+//! | `dispatch` | copies of these loops for the instruction sets of a processor, chosen at run time |
+//! | `lane` | the number that the loops compute with |
+//! | `rows` | nodes and velocities of a block, one row per coordinate |
+//!
+//! A trajectory depends neither on its neighbours nor on the number of threads, bit for bit; on processors with and
+//! without fused multiply-add it differs by rounding.
+
+mod block;
+mod dispatch;
+pub mod ensemble;
+mod lane;
+mod rows;
+mod sweep;
+
+pub use ensemble::{Ended, Ensemble};
