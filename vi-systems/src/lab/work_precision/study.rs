@@ -179,7 +179,10 @@ fn timed<S: Stepping<N>, const N: usize>(
             progress.message(run.method.name());
             progress.advance_by(1);
             if run.outcome.is_ok() {
-                times.push(clock::seconds(|| reached(system, start, until, run.method, run.setting)));
+                let again = || reached(system, start, until, run.method, run.setting);
+                // Once unwatched: another method's code was the last to run.
+                core::hint::black_box(again().is_ok());
+                times.push(clock::seconds(again));
             }
         }
     }
