@@ -21,6 +21,9 @@ use vi_systems::DampedOscillator;
 const STEPS: u32 = 500;
 /// Growth that counts as instability: none is allowed to a motion that decays.
 const BOUND: f64 = 10.0;
+/// Amplitude of a motion that has come to rest: far above the smallest numbers, where rounding is no longer relative.
+const REST: f64 = 1e-200;
+const DECAYS: Class = Class { label: "decays, as the motion", ..LASTING };
 /// What the chart shows of `c h`.
 const WIDEST: f64 = 6.0;
 /// What the map of each scheme shows: `c h` from and to, and `h ω` up to. The instability is a band beside a pole: the
@@ -160,10 +163,15 @@ fn class(scheme: Scheme, ch: f64, h_omega: f64) -> Class {
     let state = State::at(&system, 0.0, [1.0], [0.0]);
     let course = Composition::new(system, scheme, state, 1.0).map(|mut run| {
         // Displacement and momentum both: at an extreme one of them vanishes.
-        Course::of(limit, || run.step().map(|state| (state.t, state.q.x.hypot(state.p.x))))
+        Course::of(limit, || {
+            run.step().map(|state| {
+                let size = state.q.x.hypot(state.p.x);
+                (if size < REST { f64::INFINITY } else { state.t }, size)
+            })
+        })
     });
     match course.map_or_else(Ending::Failing, |course| course.ending) {
-        Ending::Lasting => Class { label: "decays, as the motion", ..LASTING },
+        Ending::Lasting => DECAYS,
         Ending::Unbounded => UNBOUNDED,
         ending @ Ending::Failing(_) => ending.class(),
     }
@@ -201,6 +209,7 @@ mod tests {
         for (scheme, name, range, fastest) in MAPS {
             let grid = Grid::new(axes(range, fastest), 50);
             let cells = grid.cells(|ch, h_omega| class(scheme, ch, h_omega), |_| ());
+            assert!(cells.iter().all(|cell| [DECAYS, UNBOUNDED].contains(cell)), "{name}");
             assert_eq!(strays(&grid, &cells, UNBOUNDED, |ch, h_omega| radius(scheme, ch, h_omega) > 1.0), 0, "{name}");
         }
     }

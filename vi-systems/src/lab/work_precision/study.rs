@@ -117,7 +117,7 @@ pub(crate) fn findings<S: Stepping<N>, const N: usize>(
     let (start, until) = (Motion { t: 0.0, q, v }, STEPS * study.h);
     progress.message("reference");
     let reference = Reference::new(system, &start, until).map_err(|ended| ended.to_string())?;
-    let agreement = reference.agreement(2.0 * study.h).map_err(|ended| ended.to_string())?;
+    let agreement = reference.agreement(study.h).map_err(|ended| ended.to_string())?;
     let finest = finest(N, study.quick);
     let mut runs: Vec<Run> = Method::ALL
         .into_iter()
