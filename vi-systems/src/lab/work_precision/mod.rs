@@ -9,7 +9,7 @@
 //! |---|---|
 //! | [`study`] | every run: error, evaluations, seconds |
 //! | [`method`], [`rival`] | one run of one method; DOP853 |
-//! | [`reference`] | the motion that errors are measured against, and how well it is known |
+//! | [`mod@reference`] | the motion that errors are measured against, and how well it is known |
 //! | [`drift`] | the energy over a long time |
 //! | [`counting`], [`clock`] | evaluations, seconds |
 //! | [`figures`] | charts, tables, and what they leave out |
