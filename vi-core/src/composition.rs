@@ -9,7 +9,9 @@
 //!
 //! It keeps what its parts keep: symplecticity, symmetry, conserved momenta. Some weights are negative, as they must be
 //! above order 2: those substeps go backwards in time, and there damping feeds. A midpoint composition of `a = −c v`
-//! is unstable from `c h` = 1.13 (triple jump), 3.02 (Suzuki 4), 2.73 (Kahan–Li 6), 3.30 (Kahan–Li 8).
+//! is unstable in bands of `c h`, the first of which begin at 1.13 (triple jump), 3.02 (Suzuki 4), 2.73 (Kahan–Li 6) and
+//! 3.30 (Kahan–Li 8), and beyond them it is no approximation: the section "Compositions and damping" of `vi-lab stability`
+//! shows the factor of a step, and the bands.
 //!
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of Computation
 //! 66 (1997) 1089.

@@ -212,6 +212,32 @@ fn the_map_of_a_system_is_a_page_with_its_files() {
 }
 
 #[test]
+fn every_method_is_compared_and_a_run_that_ends_says_why() {
+    let out = temporary("work-precision");
+    // A driven double well: its energy-preserving runs end, the others reach the end.
+    let (status, output, errors) = lab(&["work-precision", "double-well-duffing", "--quick", "--out", path(&out)]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let methods = ["fixed step", "Suzuki 4", "Kahan–Li 6", "Kahan–Li 8", "energy-preserving", "DOP853"];
+    assert!(methods.iter().all(|method| output.contains(method)), "{output}");
+    assert!(output.trim_end().ends_with(path(&out.join("index.html"))), "{output}");
+    for name in ["work-precision", "evaluations", "order", "energy"] {
+        assert!(fs::metadata(out.join(format!("{name}.svg"))).is_ok_and(|file| file.len() > 5000), "{name}");
+        assert!(fs::metadata(out.join(format!("{name}.csv"))).is_ok_and(|file| file.len() > 500), "{name}");
+    }
+    let runs = fs::read_to_string(out.join("runs.csv")).expect("the runs");
+    for method in methods {
+        let of: Vec<&str> = runs.lines().filter(|line| line.starts_with(method)).collect();
+        let ended = of.iter().filter(|line| line.contains("no energy-preserving step leads forward")).count();
+        assert!(of.len() >= 9, "{method}: {} runs", of.len());
+        assert_eq!(ended, if method == "energy-preserving" { of.len() } else { 0 }, "{method}");
+    }
+    let page = fs::read_to_string(out.join("index.html")).expect("the page");
+    let said = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step leads forward from t = ";
+    assert!(page.contains(said) && page.contains("(debug build") | page.contains("(release build"), "the page says so");
+    fs::remove_dir_all(out).expect("the folder can be removed");
+}
+
+#[test]
 fn wrong_axes_are_status_2() {
     let cases: [(&[&str], &str); 5] = [
         (&["stability", "double-wel"], "there is no system `double-wel`; did you mean `double-well`?"),

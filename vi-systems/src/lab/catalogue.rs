@@ -3,8 +3,10 @@
 //! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
 
 use super::failure::Failure;
+use super::progress::Progress;
 use super::simulation::{self, Plan, Simulation};
 use super::table::Table;
+use super::work_precision::{self, Findings, Study};
 use vi_core::{Parameters, SVector, StepError, Stepping};
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
@@ -27,6 +29,8 @@ pub(crate) trait System: Send + Sync {
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
     /// Starts a run.
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
+    /// Error against work of every method; an error says why there is no reference.
+    fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String>;
 }
 
 /// A system in the catalogue.
@@ -79,6 +83,10 @@ where
 
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
         simulation::begin(self.0.clone(), plan)
+    }
+
+    fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String> {
+        work_precision::findings(&self.0, study, progress)
     }
 }
 

@@ -10,6 +10,7 @@
 //! | [`run`] | `vi-lab run`: rows as CSV or NPY |
 //! | [`paper`] | `vi-lab paper`: figures, tables and the page |
 //! | [`stability`] | `vi-lab stability`: where methods fail, as maps |
+//! | [`work_precision`] | `vi-lab work-precision`: error against time, for every method |
 //! | [`expand`], [`explain`] | what a system becomes, stage by stage; its mathematics |
 //! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
 //! | [`numbers`], [`progress`], [`machine`], [`failure`] | numbers in prose, bars, versions, errors |
@@ -29,6 +30,7 @@ mod simulation;
 mod stability;
 mod start;
 mod table;
+mod work_precision;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -59,6 +61,8 @@ enum Action {
     Run(run::Arguments),
     /// Chart where methods fail: the whole page, or the map of one system
     Stability(stability::Arguments),
+    /// Chart error against time, evaluations and step for every method on one system
+    WorkPrecision(work_precision::Arguments),
     /// Show what the systems in a file become, stage by stage
     Expand(expand::Arguments),
     /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
@@ -103,6 +107,7 @@ fn act(action: Action) -> Result<(), Failure> {
         }
         Action::Run(arguments) => run::run(&arguments),
         Action::Stability(arguments) => print(&stability::write(&arguments)?),
+        Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments)?),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),
         Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
         Action::List => print(&catalogue::table().text()),

@@ -22,6 +22,8 @@ struct Drawn<'a> {
     series: &'a Series,
     coordinates: Vec<(f64, f64)>,
     values: Vec<(f64, f64)>,
+    /// Whisker of each point: its end as drawn, and as computed; none without whiskers.
+    whiskers: Vec<(f64, f64)>,
 }
 
 impl Chart {
@@ -34,7 +36,10 @@ impl Chart {
     pub(super) fn figure_over(&self, map: Option<Vec<LegendEntry>>) -> Figure {
         let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
         let x = self.x.ruler(placed.iter().flat_map(|drawn| drawn.coordinates.iter().map(|point| point.0)));
-        let y = self.y.ruler(placed.iter().flat_map(|drawn| drawn.coordinates.iter().map(|point| point.1)));
+        let ordinates = |drawn: &Drawn<'_>| -> Vec<f64> {
+            drawn.coordinates.iter().map(|point| point.1).chain(drawn.whiskers.iter().map(|end| end.0)).collect()
+        };
+        let y = self.y.ruler(placed.iter().flat_map(ordinates));
         let area = self.area(&x, &y);
         let drawn: Vec<Drawn<'_>> = placed.into_iter().map(|drawn| thinned(&drawn, &x, &y, area)).collect();
         Figure { name: self.name, svg: self.svg(&drawn, (&x, &y), area, map), csv: self.csv(&drawn) }
@@ -43,9 +48,16 @@ impl Chart {
     /// The points that have a place on the axes.
     fn place<'a>(&self, series: &'a Series) -> Drawn<'a> {
         let both = |&(x, y): &(f64, f64)| Some((self.x.coordinate(x)?, self.y.coordinate(y)?));
-        let (coordinates, values) =
-            series.points.iter().filter_map(|point| Some((both(point)?, *point))).collect::<(Vec<_>, Vec<_>)>();
-        Drawn { series, coordinates, values }
+        let mut drawn = Drawn { series, coordinates: Vec::new(), values: Vec::new(), whiskers: Vec::new() };
+        for (index, point) in series.points.iter().enumerate() {
+            let Some(coordinates) = both(point) else { continue };
+            drawn.coordinates.push(coordinates);
+            drawn.values.push(*point);
+            // A whisker without a place on the axis has no length.
+            let whisker = series.whiskers.get(index);
+            drawn.whiskers.extend(whisker.map(|end| (self.y.coordinate(*end).unwrap_or(coordinates.1), *end)));
+        }
+        drawn
     }
 
     /// Size of the plot area where both axes have ranges.
@@ -117,11 +129,15 @@ impl Chart {
             let (shown, computed) = (drawn.values.len(), drawn.series.points.len());
             let _ = writeln!(csv, "# {name}: {shown} of {computed} points, those that the figure shows");
         }
-        let _ = writeln!(csv, "series,\"{}\",\"{}\"", self.x.label, self.y.label);
+        let whiskers = drawn.iter().any(|drawn| !drawn.whiskers.is_empty());
+        let third = if whiskers { ",whisker" } else { "" };
+        let _ = writeln!(csv, "series,\"{}\",\"{}\"{third}", self.x.label, self.y.label);
         for (number, drawn) in drawn.iter().enumerate() {
             let name = drawn.series.label.clone().unwrap_or_else(|| format!("background {number}"));
-            for (x, y) in &drawn.values {
-                let _ = writeln!(csv, "\"{name}\",{x:e},{y:e}");
+            for (index, (x, y)) in drawn.values.iter().enumerate() {
+                let end = drawn.whiskers.get(index).map_or_else(String::new, |(_, end)| format!("{end:e}"));
+                let third = if whiskers { format!(",{end}") } else { end };
+                let _ = writeln!(csv, "\"{name}\",{x:e},{y:e}{third}");
             }
         }
         csv
@@ -157,7 +173,12 @@ fn thinned<'a>(drawn: &Drawn<'a>, x: &Ruler, y: &Ruler, area: (f64, f64)) -> Dra
         drawn.coordinates.iter().map(|&(a, b)| (pixel(x, area.0, a), pixel(y, area.1, b))).collect();
     let kept = drawn.series.thinning.keep(&pixels);
     let pick = |points: &[(f64, f64)]| kept.iter().filter_map(|&index| points.get(index).copied()).collect();
-    Drawn { series: drawn.series, coordinates: pick(&drawn.coordinates), values: pick(&drawn.values) }
+    Drawn {
+        series: drawn.series,
+        coordinates: pick(&drawn.coordinates),
+        values: pick(&drawn.values),
+        whiskers: pick(&drawn.whiskers),
+    }
 }
 
 /// The library's plots for one series: a line, markers, or both.
@@ -171,7 +192,10 @@ fn plots(drawn: &Drawn<'_>) -> Vec<Plot> {
     }
     if let Some((shape, radius)) = marker {
         let scatter = ScatterPlot::new().with_data(points()).with_color(colour).with_size(radius);
-        plots.push(Plot::Scatter(scatter.with_marker(shape)));
+        // A whisker is the distance to its end, downwards or upwards.
+        let ends = drawn.coordinates.iter().zip(&drawn.whiskers);
+        let arms = ends.map(|(point, end)| ((point.1 - end.0).max(0.0), (end.0 - point.1).max(0.0)));
+        plots.push(Plot::Scatter(scatter.with_marker(shape).with_y_err_asymmetric(arms)));
     }
     plots
 }

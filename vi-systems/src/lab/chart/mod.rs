@@ -44,6 +44,8 @@ pub(crate) struct Series {
     thinning: Thinning,
     /// The points, in the units of the axes, before any logarithm.
     pub(crate) points: Vec<(f64, f64)>,
+    /// Ordinates up to which a whisker goes from each point; empty where there are none.
+    whiskers: Vec<f64>,
 }
 
 /// A figure as files hold it.
@@ -60,22 +62,27 @@ pub(crate) struct Figure {
 impl Series {
     /// A line through a function of the abscissa: thinned to its envelope.
     pub(crate) fn line(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
-        Self { label: Some(label.into()), look, thinning: Thinning::Envelope, points }
+        Self { label: Some(label.into()), look, thinning: Thinning::Envelope, points, whiskers: Vec::new() }
     }
 
     /// Separate points.
     pub(crate) fn scatter(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
-        Self { label: Some(label.into()), look, thinning: Thinning::Cells, points }
+        Self { label: Some(label.into()), look, thinning: Thinning::Cells, points, whiskers: Vec::new() }
     }
 
     /// A curve in the plane.
     pub(crate) fn curve(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
-        Self { label: Some(label.into()), look, thinning: Thinning::Curve, points }
+        Self { label: Some(label.into()), look, thinning: Thinning::Curve, points, whiskers: Vec::new() }
     }
 
     /// A curve of the background, without an entry in the legend.
     pub(crate) fn background(points: Vec<(f64, f64)>) -> Self {
-        Self { label: None, look: Look::BACKGROUND, thinning: Thinning::Curve, points }
+        Self { label: None, look: Look::BACKGROUND, thinning: Thinning::Curve, points, whiskers: Vec::new() }
+    }
+
+    /// The same series with a whisker at each point, up or down to the ordinate given for it.
+    pub(crate) fn with_whiskers(self, whiskers: Vec<f64>) -> Self {
+        Self { whiskers, ..self }
     }
 
     /// The same series without an entry in the legend.

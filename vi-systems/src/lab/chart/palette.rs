@@ -33,6 +33,8 @@ impl Look {
     pub(crate) const ENERGY: Self = Self::of("#D55E00", MarkerShape::Circle);
     /// The fixed-step integrator.
     pub(crate) const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
+    /// A method of other makers.
+    pub(crate) const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
     /// The exact solution, or a law.
     pub(crate) const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
     /// Below [`Look::EXACT`] where the ground is coloured.
@@ -61,6 +63,11 @@ impl Look {
     /// The line alone, dashed.
     pub(crate) const fn dashed(self) -> Self {
         Self { marker: None, stroke: Stroke::Dashed, ..self }
+    }
+
+    /// The line alone, dotted.
+    pub(crate) const fn dotted(self) -> Self {
+        Self { marker: None, stroke: Stroke::Dotted, ..self }
     }
 
     /// The markers alone, of the given radius.

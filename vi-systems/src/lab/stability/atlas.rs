@@ -7,6 +7,7 @@ use super::super::chart::{Axis, Chart, Class, Map, Series, middles};
 use super::super::failure::Failure;
 use super::super::progress::Progress;
 use super::super::report::Report;
+use super::super::table::Table;
 use super::contour;
 use rayon::prelude::*;
 
@@ -132,6 +133,11 @@ impl Atlas {
     /// A chart and its caption.
     pub(super) fn chart(&mut self, chart: &Chart, caption: &str) -> Result<(), Failure> {
         self.report.figure(&chart.figure(), caption)
+    }
+
+    /// A table and its caption.
+    pub(super) fn table(&mut self, table: &Table, caption: &str) -> Result<(), Failure> {
+        self.report.table(table, caption)
     }
 
     /// The report with all that is in it.

@@ -14,6 +14,7 @@
 
 mod atlas;
 mod chain;
+mod composed;
 mod contour;
 mod damping;
 mod ending;
@@ -38,7 +39,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Maps on the whole page.
-const MAPS: u32 = 19;
+const MAPS: u32 = 23;
 
 /// `vi-lab stability [SYSTEM]`.
 #[derive(Debug, Args)]
@@ -102,6 +103,7 @@ fn whole(arguments: &Arguments) -> Result<Report, Failure> {
     roots::section(&mut atlas)?;
     stiff::section(&mut atlas)?;
     damping::section(&mut atlas)?;
+    composed::section(&mut atlas)?;
     kepler::section(&mut atlas)?;
     separatrix::section(&mut atlas)?;
     chain::section(&mut atlas)?;
@@ -126,8 +128,8 @@ mod tests {
             .filter_map(|rest| rest.split('"').next())
             .filter(|name| !name.starts_with('#'))
             .collect();
-        // 19 maps and 3 charts, in two forms each.
-        assert_eq!(files.len(), 2 * 22);
+        // 23 maps and 4 charts, in two forms each, and a table.
+        assert_eq!(files.len(), 2 * 27 + 1);
         for name in files {
             let text = fs::read_to_string(out.join(name)).unwrap_or_default();
             assert!(text.len() > 100 && !text.contains("NaN"), "{name}");

@@ -1,0 +1,148 @@
+//! A system that counts how often its equations are evaluated.
+//!
+//! In: a system. Out: the same system, and a count of the calls that an integrator pays for: a residual with its
+//! Jacobian, the gain of a step, an acceleration; each counts one. Everything else is passed on uncounted.
+
+use core::cell::Cell;
+use vi_core::{
+    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation, Node, SVector, StepError,
+    Stepping,
+};
+
+/// A system, and the evaluations so far.
+#[derive(Clone, Debug)]
+pub(super) struct Counting<S> {
+    system: S,
+    evaluations: Cell<u64>,
+}
+
+impl<S> Counting<S> {
+    /// The system with a count of zero.
+    pub(super) fn new(system: S) -> Self {
+        Self { system, evaluations: Cell::new(0) }
+    }
+
+    /// Evaluations so far.
+    pub(super) fn evaluations(&self) -> u64 {
+        self.evaluations.get()
+    }
+
+    /// The system, for a call that counts.
+    fn counted(&self) -> &S {
+        self.evaluations.update(|count| count + 1);
+        &self.system
+    }
+}
+
+impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<S> {
+    const NAME: &'static str = S::NAME;
+    const COORDINATES: [&'static str; N] = S::COORDINATES;
+    const AUTONOMOUS: bool = S::AUTONOMOUS;
+    const FORCED: bool = S::FORCED;
+    const CYCLIC: [bool; N] = S::CYCLIC;
+
+    fn lagrangian(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
+        self.system.lagrangian(t, q, v)
+    }
+
+    fn energy(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> f64 {
+        self.system.energy(t, q, v)
+    }
+
+    fn momentum(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.system.momentum(t, q, v)
+    }
+
+    fn force(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.system.force(t, q, v)
+    }
+
+    fn acceleration(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<SVector<f64, N>, StepError> {
+        self.counted().acceleration(t, q, v)
+    }
+
+    fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {
+        self.system.step_density(t, q, v)
+    }
+
+    fn non_finite(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Option<&'static str> {
+        self.system.non_finite(t, q, v)
+    }
+}
+
+impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Counting<S> {
+    fn ld(&self, interval: &Interval<N>) -> f64 {
+        self.system.ld(interval)
+    }
+
+    fn d1_ld(&self, interval: &Interval<N>) -> f64 {
+        self.system.d1_ld(interval)
+    }
+
+    fn d2_ld(&self, interval: &Interval<N>) -> SVector<f64, N> {
+        self.system.d2_ld(interval)
+    }
+
+    fn d3_ld(&self, interval: &Interval<N>) -> f64 {
+        self.system.d3_ld(interval)
+    }
+
+    fn d4_ld(&self, interval: &Interval<N>) -> SVector<f64, N> {
+        self.system.d4_ld(interval)
+    }
+
+    fn fd_minus(&self, interval: &Interval<N>) -> SVector<f64, N> {
+        self.system.fd_minus(interval)
+    }
+
+    fn fd_plus(&self, interval: &Interval<N>) -> SVector<f64, N> {
+        self.system.fd_plus(interval)
+    }
+
+    fn gd_minus(&self, interval: &Interval<N>) -> f64 {
+        self.system.gd_minus(interval)
+    }
+
+    fn gd_plus(&self, interval: &Interval<N>) -> f64 {
+        self.system.gd_plus(interval)
+    }
+}
+
+impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<S> {
+    fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
+        self.counted().momentum_equation(node, h, v)
+    }
+
+    fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
+        self.counted().extended_system(node, h, v)
+    }
+
+    fn increment(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Increment<N> {
+        self.counted().increment(node, h, v)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vi_core::{FixedStep, State};
+    use vi_systems::Pendulum;
+
+    #[test]
+    fn every_evaluation_of_a_fixed_step_is_counted_and_no_bit_is_changed() {
+        let (plain, counting) = (Pendulum::default(), Counting::new(Pendulum::default()));
+        let start = State::at(&plain, 0.0, [1.0], [0.0]);
+        let mut runs = (
+            FixedStep::new(plain, start, 0.01).expect("a start"),
+            FixedStep::new(&counting, start, 0.01).expect("a start"),
+        );
+        for _ in 0..100 {
+            let before = counting.evaluations();
+            assert_eq!(runs.0.step(), runs.1.step());
+            // One residual an iteration and one gain a step at least; one residual more where the last one is confirmed.
+            let spent = counting.evaluations() - before;
+            let iterations = u64::from(runs.1.iterations());
+            assert!((iterations + 1..=iterations + 2).contains(&spent), "{spent} for {iterations} iterations");
+        }
+    }
+}

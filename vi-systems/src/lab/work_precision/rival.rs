@@ -1,0 +1,185 @@
+//! The rival: the Runge–Kutta method of order 8 of Dormand and Prince (DOP853), of the crate `differential-equations`.
+//!
+//! In: a system, of which nothing is used but its acceleration, a motion, the time to reach and a tolerance, relative and
+//! absolute. Out: the motion at that time, and each step on the way to who wants to see it. The library evaluates the
+//! acceleration fifteen times in an accepted step, three of them for dense output, which it makes always.
+
+use core::array;
+use core::cell::Cell;
+use core::fmt;
+use differential_equations::control::ControlFlag;
+use differential_equations::error::Error;
+use differential_equations::interpolate::Interpolation;
+use differential_equations::methods::ExplicitRungeKutta;
+use differential_equations::ode::{ODE, solve_ode};
+use differential_equations::solout::Solout;
+use differential_equations::solution::Solution;
+use differential_equations::traits::State;
+use vi_core::check::Motion;
+use vi_core::{Lagrangian, SVector, StepError};
+
+/// Why a run did not reach its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ended {
+    /// A step failed, or the acceleration.
+    Step(StepError),
+    /// The rival gave up at this time, for this reason.
+    Rival(f64, &'static str),
+    /// The steps became so short that the run would not have ended.
+    Short(f64),
+    /// The run arrived, but with numbers that are not finite.
+    NonFinite,
+}
+
+impl fmt::Display for Ended {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step(error) => error.fmt(f),
+            Self::Rival(t, reason) => write!(f, "{reason} at t = {t:.9}"),
+            Self::Short(t) => write!(f, "more than ten times the steps were taken up to t = {t:.9}"),
+            Self::NonFinite => f.write_str("a number is not finite at the end"),
+        }
+    }
+}
+
+/// Coordinates and velocities as the library carries them.
+#[derive(Clone, Copy, Debug)]
+struct Phase<const N: usize>([[f64; N]; 2]);
+
+impl<const N: usize> Phase<N> {
+    fn of(motion: &Motion<N>) -> Self {
+        Self([motion.q.into(), motion.v.into()])
+    }
+
+    fn at(&self, t: f64) -> Motion<N> {
+        let [q, v] = self.0;
+        Motion { t, q: q.into(), v: v.into() }
+    }
+}
+
+impl<const N: usize> State<f64> for Phase<N> {
+    fn len(&self) -> usize {
+        2 * N
+    }
+
+    fn get_component(&self, index: usize) -> f64 {
+        self.0.as_flattened()[index]
+    }
+
+    fn set_component(&mut self, index: usize, value: f64) {
+        self.0.as_flattened_mut()[index] = value;
+    }
+
+    fn map_components_mut<F: FnMut(usize, &mut f64)>(&mut self, mut f: F) {
+        self.0.as_flattened_mut().iter_mut().enumerate().for_each(|(index, entry)| f(index, entry));
+    }
+
+    fn zeros_like(&self) -> Self {
+        Self::zeros()
+    }
+
+    fn zeros() -> Self {
+        Self(array::from_fn(|_| [0.0; N]))
+    }
+
+    fn mul_add_assign(&mut self, alpha: f64, other: &Self) {
+        self.add_scaled(alpha, other);
+    }
+
+    fn scale_mut(&mut self, alpha: f64) {
+        self.scale_by(alpha);
+    }
+}
+
+/// The motion as a system of first order. An acceleration that fails is none: the library shortens its step, and where
+/// that does not help, the failure is told in its place.
+struct Equations<S> {
+    system: S,
+    failure: Cell<Option<StepError>>,
+}
+
+impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<S> {
+    fn diff(&self, t: f64, y: &Phase<N>, dydt: &mut Phase<N>) {
+        let [q, v] = y.0;
+        let acceleration = self.system.acceleration(t, &q.into(), &v.into()).unwrap_or_else(|error| {
+            self.failure.set(Some(error));
+            SVector::repeat(f64::NAN)
+        });
+        dydt.0 = [v, acceleration.into()];
+    }
+}
+
+/// Shows every accepted step, and stores none.
+struct Watch<F>(F);
+
+impl<F: FnMut(Motion<N>), const N: usize> Solout<f64, Phase<N>> for Watch<F> {
+    fn solout<I: Interpolation<f64, Phase<N>> + ?Sized>(
+        &mut self,
+        t: f64,
+        _t_prev: f64,
+        y: &Phase<N>,
+        _y_prev: &Phase<N>,
+        _interpolator: &mut I,
+        _solution: &mut Solution<f64, Phase<N>>,
+    ) -> ControlFlag<f64, Phase<N>> {
+        self.0(y.at(t));
+        ControlFlag::Continue
+    }
+}
+
+/// The motion at `end`; `watch` is shown the start and every step.
+pub(super) fn motion<S: Lagrangian<N>, const N: usize>(
+    system: S,
+    start: &Motion<N>,
+    end: f64,
+    tolerance: f64,
+    watch: impl FnMut(Motion<N>),
+) -> Result<Motion<N>, Ended> {
+    let equations = Equations { system, failure: Cell::new(None) };
+    let mut solver = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(usize::MAX);
+    let mut last = *start;
+    let mut watch = watch;
+    let mut every = Watch(|motion| {
+        last = motion;
+        watch(motion);
+    });
+    let solved = solve_ode(&mut solver, &equations, start.t, end, &Phase::of(start), &mut every).map(drop);
+    match (solved, equations.failure.get()) {
+        (Ok(()), _) => Ok(last),
+        (Err(_), Some(failure)) => Err(Ended::Step(failure)),
+        (Err(Error::Stiffness { .. }), _) => Err(Ended::Rival(last.t, "the equations were found stiff")),
+        (Err(Error::StepSize { .. }), _) => Err(Ended::Rival(last.t, "the step became too small")),
+        (Err(_), _) => Err(Ended::Rival(last.t, "the library refused")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vi_systems::{DampedOscillator, Kepler};
+
+    #[test]
+    fn the_damped_oscillator_is_met() {
+        let (system, t) = (DampedOscillator::default(), 40.0);
+        let start = Motion { t: 0.0, q: [1.0].into(), v: [0.0].into() };
+        let end = motion(system, &start, t, 1e-14, drop).expect("the motion");
+        let (decay, omega) = (0.02_f64, (4.0_f64 - 0.02 * 0.02).sqrt());
+        let exact = (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin());
+        // Measured 3.5e-14.
+        assert!((end.q[0] - exact).abs() < 4e-14, "{:e}", end.q[0] - exact);
+        assert!((end.t - t).abs() < 1e-14);
+    }
+
+    #[test]
+    fn every_step_is_shown_and_a_run_into_the_centre_ends() {
+        let system = Kepler::default();
+        let start = Motion { t: 0.0, q: [1.0, 0.0].into(), v: [0.0, 0.0].into() };
+        let mut times = Vec::new();
+        let ended = motion(system, &start, 2.0, 1e-9, |motion| times.push(motion.t));
+        // Free fall from r = 1 with μ = 1 ends at t = π/√8.
+        let fall = core::f64::consts::PI / 8.0_f64.sqrt();
+        let at_the_centre = |t: f64| (t - fall).abs() < 1e-6;
+        assert!(matches!(ended, Err(Ended::Step(StepError::Singular { t, .. })) if at_the_centre(t)), "{ended:?}");
+        assert!(times.len() > 10 && times.is_sorted());
+    }
+}
