@@ -8,6 +8,7 @@ mod assemble;
 mod lower;
 mod magnitude;
 mod operations;
+mod order;
 mod powers;
 mod verify;
 

@@ -81,6 +81,12 @@ impl Operations {
         &self.list[id.0 as usize]
     }
 
+    /// The index of an operation that is listed.
+    #[must_use]
+    pub fn find(&self, operation: &Operation) -> Option<OperationId> {
+        self.index.get(operation).copied()
+    }
+
     /// The operation is the argument of the rule that this symbol names.
     pub fn call_it(&mut self, id: OperationId, name: Symbol) {
         if !matches!(self.get(id), Operation::Constant(_) | Operation::Input(_)) {
