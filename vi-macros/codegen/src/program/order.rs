@@ -6,26 +6,27 @@
 //! operands are there.
 
 use super::{Function, OperationId};
-use std::collections::{BTreeMap, BTreeSet};
 
 impl Function {
     /// The operations that the results need, in an order in which few values are held at a time.
     #[must_use]
     pub fn local_order(&self) -> Vec<OperationId> {
-        let vectors = self.depth_first(&self.side_by_side());
-        let mut rank: BTreeMap<OperationId, (usize, bool)> = BTreeMap::new();
-        rank.extend(vectors.into_iter().zip(0..).map(|(id, place)| (id, (place, false))));
-        let mut order = self.operations.needed(&self.results);
-        for id in &order {
-            if !rank.contains_key(id) {
-                let operands = self.operations.get(*id).operands();
-                let last = operands.filter_map(|operand| rank.get(&operand)).map(|(place, _)| *place).max();
-                rank.insert(*id, (last.unwrap_or(0), true));
+        let (mut place, mut operations) = (vec![None; self.operations.len()], Vec::new());
+        for id in self.depth_first(&self.side_by_side()) {
+            place[id.index()] = Some(operations.len());
+            operations.push((operations.len(), false, id));
+        }
+        for id in self.operations.needed(&self.results) {
+            if place[id.index()].is_none() {
+                let operands = self.operations.get(id).operands();
+                let last = operands.filter_map(|operand| place[operand.index()]).max().unwrap_or(0);
+                place[id.index()] = Some(last);
+                operations.push((last, true, id));
             }
         }
         // Ascending indices keep operands before results among those of one place.
-        order.sort_by_key(|id| (rank.get(id).copied(), *id));
-        order
+        operations.sort_unstable();
+        operations.into_iter().map(|(_, _, id)| id).collect()
     }
 
     /// The components of all vectors, ordered by how far along their vector they are; all results where there is none.
@@ -44,15 +45,16 @@ impl Function {
 
     /// These operations and all that they need, each right after its operands.
     fn depth_first(&self, roots: &[OperationId]) -> Vec<OperationId> {
-        let (mut seen, mut order) = (BTreeSet::new(), Vec::new());
+        let (mut seen, mut order) = (vec![false; self.operations.len()], Vec::new());
         let mut open: Vec<(OperationId, bool)> = roots.iter().rev().map(|root| (*root, false)).collect();
         while let Some((id, operands_done)) = open.pop() {
             if operands_done {
                 order.push(id);
-            } else if seen.insert(id) {
+            } else if !core::mem::replace(&mut seen[id.index()], true) {
                 open.push((id, true));
-                let operands: Vec<OperationId> = self.operations.get(id).operands().collect();
-                open.extend(operands.into_iter().rev().map(|operand| (operand, false)));
+                let first = open.len();
+                open.extend(self.operations.get(id).operands().map(|operand| (operand, false)));
+                open[first..].reverse();
             }
         }
         order
