@@ -4,8 +4,10 @@
 mod families;
 
 use families::{LENGTHS, LINKS};
-use vi_codegen::program::Program;
+use vi_codegen::program::{Operation, OperationId, Program};
+use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{discrete, model, program, syntax};
+use vi_expr::Function;
 
 fn lowered(text: &str) -> Program {
     let tokens = text.parse().expect("tokens");
@@ -66,4 +68,47 @@ fn the_jacobian_of_the_chain_keeps_its_zeros() {
             }
         }
     }
+}
+
+/// Sines and cosines that a function calls.
+fn sines(program: &Program, name: &str) -> usize {
+    let function = program.function(name).expect("every function is there");
+    let called =
+        |id: &OperationId| matches!(function.operations.get(*id), Operation::Call(Function::Sin | Function::Cos, _));
+    function.operations.needed(&function.results).iter().filter(|id| called(id)).count()
+}
+
+#[test]
+fn the_pendulum_takes_one_sine_and_cosine_a_link() {
+    for links in LINKS {
+        let program = lowered(&families::pendulum(links));
+        for name in ["momentum_equation", "extended_system", "magnitudes"] {
+            assert_eq!(sines(&program, name), 2 * links, "{name}, {links} links");
+        }
+    }
+}
+
+#[test]
+fn sums_of_angles_take_the_signs_that_they_have() {
+    let program = lowered(
+        "pub struct System {
+            coord a, b;
+            let sines = sin(a + b) + 2 * sin(a - b) + 4 * sin(b - 2 * a) + 8 * sin(-a - b);
+            L = dot(a)^2 / 2 + dot(b)^2 / 2 + sines + 16 * cos(a + b) + 32 * cos(a - b) + sin(a) + cos(b) + sin(2 * a);
+            discretize midpoint;
+        }",
+    );
+    let function = program.function("lagrangian").expect("every function is there");
+    let (a, b) = (0.7_f64, -0.4_f64);
+    let found = function.evaluate(&mut |symbol| match symbol {
+        Symbol::Continuous(Variable::Coordinate(0)) => a,
+        Symbol::Continuous(Variable::Coordinate(1)) => b,
+        _ => 0.0,
+    });
+    let sines = (a + b).sin() + 2.0 * (a - b).sin() + 4.0 * (b - 2.0 * a).sin() + 8.0 * (-a - b).sin();
+    let wanted = sines + 16.0 * (a + b).cos() + 32.0 * (a - b).cos() + a.sin() + b.cos() + (2.0 * a).sin();
+    // Measured: DIFFERENCE.
+    assert!((found[0] - wanted).abs() <= 0.0, "{:e}", found[0] - wanted);
+    // Of a, of b, of 2a, each once.
+    assert_eq!(sines(&program, "lagrangian"), 6);
 }
