@@ -76,5 +76,5 @@ pub fn derive(system: syntax::System) -> syn::Result<Derived> {
 /// The items of a derived system.
 #[must_use]
 pub fn items(derived: &Derived) -> TokenStream {
-    emit::items(&derived.model, &derived.system, &derived.program, &derived.findings)
+    emit::items(&derived.model, &derived.system, &derived.program, &derived.findings, emit::LIMIT)
 }

@@ -7,17 +7,34 @@
 //! d/dx F(t_k, q_k, v_k) = F_t dt_k/dx + Σ_i F_{q_i} dq_{k,i}/dx + Σ_i F_{v_i} dv_{k,i}/dx
 //! ```
 //!
-//! A partial derivative that depends on parameters only is put in place, so that zeros and constants act at once.
+//! A partial derivative that depends on parameters only is put in place, so that zeros and constants act at once. Of each
+//! partial derivative it is known on what it depends: most of those of a long chain are zero, and never derived.
 
 use super::Point;
 use crate::model::Model;
 use crate::symbol::{Field, Quantity, Symbol, Variable};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::{Expr, Pool};
 
 /// Partial derivatives of L and f in `(t, q, v)`.
 pub struct Fields {
-    definitions: BTreeMap<(Quantity, Vec<Variable>), Expr>,
+    definitions: BTreeMap<(Quantity, Vec<Variable>), Definition>,
+}
+
+/// A partial derivative, and what it depends on but parameters.
+struct Definition {
+    expr: Expr,
+    variables: BTreeSet<Variable>,
+}
+
+impl Definition {
+    fn new(pool: &Pool<Symbol>, expr: Expr) -> Self {
+        let variable = |symbol| match symbol {
+            Symbol::Continuous(variable) => Some(variable),
+            _ => None,
+        };
+        Self { expr, variables: pool.symbols(expr).into_iter().filter_map(variable).collect() }
+    }
 }
 
 /// How the arguments of the points change with one variable: per point, the nonzero ones.
@@ -25,10 +42,11 @@ pub(super) type Changes = Vec<Vec<(Variable, Expr)>>;
 
 impl Fields {
     /// L and f themselves.
-    pub(super) fn new(model: &Model) -> Self {
-        let forces = model.forces.iter().enumerate().map(|(index, force)| ((Quantity::Force(index), vec![]), *force));
-        let lagrangian = ((Quantity::Lagrangian, vec![]), model.lagrangian);
-        Self { definitions: forces.chain([lagrangian]).collect() }
+    pub(super) fn new(pool: &Pool<Symbol>, model: &Model) -> Self {
+        let forces = model.forces.iter().enumerate().map(|(index, force)| (Quantity::Force(index), *force));
+        let quantities = forces.chain([(Quantity::Lagrangian, model.lagrangian)]);
+        let define = |(quantity, expr)| ((quantity, vec![]), Definition::new(pool, expr));
+        Self { definitions: quantities.map(define).collect() }
     }
 
     /// A partial derivative of L or f in `(t, q, v)`: `derivatives` in any order.
@@ -39,40 +57,49 @@ impl Fields {
         mut derivatives: Vec<Variable>,
     ) -> Expr {
         derivatives.sort_unstable();
-        let key = (quantity, derivatives);
-        if let Some(known) = self.definitions.get(&key) {
-            return *known;
+        self.defined(pool, quantity, &derivatives).expr
+    }
+
+    /// A partial derivative, kept from the first time on: `derivatives` ascend.
+    fn defined(&mut self, pool: &mut Pool<Symbol>, quantity: Quantity, derivatives: &[Variable]) -> &Definition {
+        let key = (quantity, derivatives.to_vec());
+        if !self.definitions.contains_key(&key) {
+            // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
+            let derived = match derivatives.split_last() {
+                Some((last, basic)) => {
+                    let basic = self.defined(pool, quantity, basic);
+                    if basic.variables.contains(last) {
+                        pool.derivative(basic.expr, &mut |pool, symbol| {
+                            if *symbol == Symbol::Continuous(*last) { pool.one() } else { pool.zero() }
+                        })
+                    } else {
+                        pool.zero()
+                    }
+                }
+                None => pool.zero(),
+            };
+            self.definitions.insert(key.clone(), Definition::new(pool, derived));
         }
-        let (quantity, mut derivatives) = key;
-        // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
-        let derived = match derivatives.pop() {
-            Some(last) => {
-                let basic = self.partial(pool, quantity, derivatives.clone());
-                derivatives.push(last);
-                pool.derivative(basic, &mut |pool, symbol| {
-                    if *symbol == Symbol::Continuous(last) { pool.one() } else { pool.zero() }
-                })
-            }
-            None => pool.zero(),
-        };
-        self.definitions.insert((quantity, derivatives), derived);
-        derived
+        &self.definitions[&key]
     }
 
     /// The definition of a field in `(t, q, v)`.
     #[must_use]
     pub fn definition(&self, field: &Field) -> Option<Expr> {
-        self.definitions.get(&(field.quantity, field.derivatives.clone())).copied()
+        self.definitions.get(&(field.quantity, field.derivatives.clone())).map(|definition| definition.expr)
     }
 
     /// A partial derivative at a point: a field, or its value in place where that depends on parameters only.
     fn at_point(&mut self, pool: &mut Pool<Symbol>, field: Field) -> Expr {
-        let value = self.partial(pool, field.quantity, field.derivatives.clone());
-        if pool.depends_on(value, &|symbol| matches!(symbol, Symbol::Continuous(_))) {
-            pool.symbol(Symbol::Field(field))
-        } else {
-            value
-        }
+        let value = self.defined(pool, field.quantity, &field.derivatives);
+        if value.variables.is_empty() { value.expr } else { pool.symbol(Symbol::Field(field)) }
+    }
+
+    /// Whether a symbol changes with the points; others change by themselves only.
+    pub(super) fn moves(&self, symbol: &Symbol, changes: &Changes) -> bool {
+        let Symbol::Field(Field { quantity, derivatives, point }) = symbol else { return false };
+        let definition = self.definitions.get(&(*quantity, derivatives.clone()));
+        definition.is_some_and(|of| changes[*point].iter().any(|(variable, _)| of.variables.contains(variable)))
     }
 
     /// The fields of an expression that depend on parameters only, put in place.
@@ -95,8 +122,10 @@ impl Fields {
             let Symbol::Field(field) = symbol else {
                 return direct(pool, symbol);
             };
+            let variables = self.defined(pool, field.quantity, &field.derivatives).variables.clone();
             let terms: Vec<Expr> = changes[field.point]
                 .iter()
+                .filter(|(variable, _)| variables.contains(variable))
                 .map(|(variable, change)| {
                     let mut derivatives = field.derivatives.clone();
                     derivatives.push(*variable);

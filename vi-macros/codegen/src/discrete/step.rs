@@ -13,6 +13,7 @@
 use super::fields::changes;
 use super::{Fields, Point, Slots, bounded};
 use crate::symbol::Symbol;
+use std::collections::BTreeSet;
 use vi_expr::{Expr, Pool, Rational, TooLarge};
 
 /// The equations of one step.
@@ -53,14 +54,15 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let energy = pool.sub(power, start);
     let energy_residual = combined(pool, energy, &velocities, &residual)?;
 
+    let rows = residual.iter().chain([&energy]).map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, &residual, energy, &Symbol::StepVelocity(j))?;
+        let column = by_unknown(pool, fields, &points, &rows, &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
     }
-    let column = by_unknown(pool, fields, &points, &residual, energy, &Symbol::Step)?;
+    let column = by_unknown(pool, fields, &points, &rows, &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
 
     let mut momentum_increment = Vec::with_capacity(dimension);
@@ -124,7 +126,7 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
     Point { time, coordinates, velocities }
 }
 
-/// The derivatives of all rows by one unknown.
+/// The derivatives of all rows by one unknown: the energy row is the last one.
 struct Column {
     residual: Vec<Expr>,
     energy: Expr,
@@ -134,8 +136,7 @@ fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
     points: &[Point],
-    residual: &[Expr],
-    energy: Expr,
+    rows: &[(Expr, BTreeSet<Symbol>)],
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
     bounded(pool)?;
@@ -143,17 +144,22 @@ fn by_unknown(
         if symbol == unknown { pool.one() } else { pool.zero() }
     };
     let changes = changes(pool, points, &direct);
-    let mut derive = |expr: Expr| {
-        let slope = fields.derivative(pool, expr, &direct, &changes);
-        pool.expand(slope)
-    };
-    Ok(Column { residual: residual.iter().map(|row| derive(*row)).collect::<Result<_, _>>()?, energy: derive(energy)? })
+    let mut column = Vec::with_capacity(rows.len());
+    for (row, symbols) in rows {
+        // Most rows of a long chain do not know most unknowns.
+        let varies = symbols.iter().any(|symbol| symbol == unknown || fields.moves(symbol, &changes));
+        let slope = if varies { fields.derivative(pool, *row, &direct, &changes) } else { pool.zero() };
+        column.push(pool.expand(slope)?);
+    }
+    let energy = column.pop().unwrap_or(pool.zero());
+    Ok(Column { residual: column, energy })
 }
 
 /// `row − v·column`, multiplied out.
 fn combined(pool: &mut Pool<Symbol>, row: Expr, velocities: &[Expr], column: &[Expr]) -> Result<Expr, TooLarge> {
     let mut terms = vec![row];
-    for (velocity, entry) in velocities.iter().zip(column) {
+    let zero = pool.zero();
+    for (velocity, entry) in velocities.iter().zip(column).filter(|(_, entry)| **entry != zero) {
         let product = pool.mul(*velocity, *entry);
         terms.push(pool.neg(product));
     }

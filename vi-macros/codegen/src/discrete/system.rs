@@ -22,7 +22,7 @@ pub fn system(model: &mut Model) -> Result<DiscreteSystem> {
 }
 
 fn derive(model: &Model, pool: &mut Pool<Symbol>) -> Result<DiscreteSystem> {
-    let mut fields = Fields::new(model);
+    let mut fields = Fields::new(pool, model);
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
     let evaluated = rule::evaluate(pool, &model.rule, model.dimension(), model.forced)?;

@@ -1,15 +1,17 @@
 //! The body of a function: inputs named, shared terms bound once, results as formulas.
 //!
 //! In: a [`Function`]. Out: statements, and one formula per result. A term that is used more than once, is an argument
-//! of the rule, or makes a line too long, gets a name; everything else is written where it is used.
+//! of the rule, or makes a line too long, gets a name; everything else is written where it is used. In a function that is
+//! too long for one body all results have names, and [`pieces`] compute them.
 
 use super::formula::Formula;
 use super::names::Names;
+use super::pieces::{Statement, Writing, pieces};
 use crate::model::Model;
 use crate::program::{Function, Operation, OperationId};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{ToTokens, quote};
+use quote::{ToTokens, format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
 
@@ -55,13 +57,16 @@ struct Printer<'a> {
     uses: BTreeMap<OperationId, usize>,
     results: BTreeSet<OperationId>,
     written: BTreeMap<OperationId, Formula>,
+    named: BTreeMap<OperationId, Ident>,
     inputs: BTreeMap<Symbol, Ident>,
-    statements: TokenStream,
+    statements: Vec<Statement>,
+    in_pieces: bool,
 }
 
-/// Prints a function of a system whose rule has so many points.
-pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place) -> Body {
-    let needed = function.operations.needed(&function.results);
+/// Prints a function of a system whose rule has so many points, in pieces if it has more operations than `limit`.
+pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place, limit: usize) -> Body {
+    let in_pieces = function.operation_count() > limit;
+    let needed = if in_pieces { function.local_order() } else { function.operations.needed(&function.results) };
     let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
     for id in function.results.iter().flatten() {
         *uses.entry(*id).or_default() += 1;
@@ -78,17 +83,19 @@ pub(super) fn body(model: &Model, function: &Function, points: usize, place: Pla
         uses,
         results: function.results.iter().flatten().copied().collect(),
         written: BTreeMap::new(),
+        named: BTreeMap::new(),
         inputs: BTreeMap::new(),
-        statements: TokenStream::new(),
+        statements: Vec::new(),
+        in_pieces,
     };
     printer.name_inputs(&needed, place);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
     for id in needed {
         printer.write(id);
     }
-    let results = function.results.iter().map(|group| group.iter().map(|id| printer.result(*id)).collect()).collect();
-    let statements = printer.statements;
     let prelude = constants.then(|| quote!(let real = T::real;));
+    let statements = printer.statements(prelude.as_ref(), limit);
+    let results = function.results.iter().map(|group| group.iter().map(|id| printer.result(*id)).collect()).collect();
     Body { statements: quote!(#prelude #statements), results, inputs: printer.inputs }
 }
 
@@ -114,8 +121,15 @@ impl Printer<'_> {
     fn write(&mut self, id: OperationId) {
         let operation = self.function.operations.get(id).clone();
         let formula = match &operation {
-            Operation::Input(Symbol::Parameter(index)) => Formula::parameter(&self.model.parameters[*index].name),
-            Operation::Input(symbol) => Formula::name(&self.names.of(symbol)),
+            Operation::Input(Symbol::Parameter(index)) => {
+                let system = if self.in_pieces { format_ident!("system") } else { format_ident!("self") };
+                Formula::parameter(&system, &self.model.parameters[*index].name)
+            }
+            Operation::Input(symbol) => {
+                let name = self.names.of(symbol);
+                self.named.insert(id, name.clone());
+                Formula::name(&name)
+            }
             Operation::Call(function @ (Elementary::Sin | Elementary::Cos), angle) => {
                 if let Some(formula) = self.sine(id, *function, *angle) {
                     formula
@@ -130,8 +144,13 @@ impl Printer<'_> {
         }
         let uses = self.uses.get(&id).copied().unwrap_or(0);
         let shared = uses > 1 && formula.operations > 0;
-        // A long formula gets a line of its own, unless it is a result, which stands by itself already.
-        let long = formula.operations > LINE && !self.results.contains(&id);
+        // A long formula gets a line of its own. A result stands by itself already, but must come out of its piece.
+        let line = match (self.results.contains(&id), self.in_pieces) {
+            (true, true) => 0,
+            (true, false) => usize::MAX,
+            (false, _) => LINE,
+        };
+        let long = formula.operations > line;
         let name = match self.function.operations.name(id) {
             Some(symbol) => Some(self.names.of(symbol)),
             None if shared || long => Some(self.names.next_shared()),
@@ -140,7 +159,7 @@ impl Printer<'_> {
         let formula = match name {
             Some(name) => {
                 let tokens = formula.tokens();
-                self.statements.extend(quote!(let #name = #tokens;));
+                self.state(&[(id, &name)], &operation, formula.operations, quote!(let #name = #tokens;));
                 Formula::name(&name)
             }
             None => formula,
@@ -155,16 +174,56 @@ impl Printer<'_> {
         }
         let other = if function == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
         let wanted = Operation::Call(other, angle);
-        let (partner, _) = self.function.operations.iter().find(|(_, operation)| **operation == wanted)?;
+        let partner = self.function.operations.find(&wanted)?;
         self.uses.get(&partner)?;
         let (sine, cosine) = self.names.next_sine();
         let argument = self.operand(angle);
-        let argument = argument.receiver();
-        self.statements.extend(quote!(let (#sine, #cosine) = #argument.sin_cos();));
+        let (receiver, operations) = (argument.receiver(), argument.operations + 2);
+        let tokens = quote!(let (#sine, #cosine) = #receiver.sin_cos(););
         let (own, partners) = if function == Elementary::Sin { (sine, cosine) } else { (cosine, sine) };
+        self.state(&[(id, &own), (partner, &partners)], &Operation::Call(function, angle), operations, tokens);
         self.written.insert(partner, Formula::name(&partners));
         self.written.insert(id, Formula::name(&own));
         Some(Formula::name(&own))
+    }
+
+    /// A statement that binds the operation, and its partner if it has one.
+    fn state(
+        &mut self,
+        binds: &[(OperationId, &Ident)],
+        operation: &Operation,
+        operations: usize,
+        tokens: TokenStream,
+    ) {
+        let mut reads = Vec::new();
+        if self.in_pieces {
+            let mut open: Vec<OperationId> = operation.operands().collect();
+            while let Some(operand) = open.pop() {
+                if self.named.contains_key(&operand) {
+                    reads.push(operand);
+                } else {
+                    open.extend(self.function.operations.get(operand).operands());
+                }
+            }
+        }
+        self.named.extend(binds.iter().map(|(id, name)| (*id, (*name).clone())));
+        self.statements.push(Statement { binds: binds.iter().map(|(id, _)| *id).collect(), reads, operations, tokens });
+    }
+
+    /// The statements, in pieces where there are too many operations.
+    fn statements(&mut self, prelude: Option<&TokenStream>, limit: usize) -> TokenStream {
+        if !self.in_pieces {
+            return self.statements.iter().map(|statement| &statement.tokens).cloned().collect();
+        }
+        let operations = &self.function.operations;
+        let inputs =
+            self.inputs.keys().filter_map(|symbol| operations.find(&Operation::Input(symbol.clone()))).collect();
+        let results = self.function.results.iter().flatten().copied().collect();
+        let (system, function) = (&self.model.name, self.function.name);
+        let writing = Writing { inputs, results, system, function, prelude, named: &self.named };
+        let pieces = pieces(&self.statements, limit, &writing, &mut self.names);
+        self.written.extend(pieces.results.into_iter().map(|(id, place)| (id, Formula::atom(place, 0))));
+        pieces.statements
     }
 
     fn operand(&self, id: OperationId) -> Formula {

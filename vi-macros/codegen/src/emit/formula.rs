@@ -31,11 +31,12 @@ impl Formula {
     }
 
     /// A field of the system.
-    pub(super) fn parameter(ident: &Ident) -> Self {
-        Self::atom(quote!(self.#ident), 0)
+    pub(super) fn parameter(system: &Ident, ident: &Ident) -> Self {
+        Self::atom(quote!(#system.#ident), 0)
     }
 
-    fn atom(tokens: TokenStream, operations: usize) -> Self {
+    /// What binds as tightly as a name.
+    pub(super) fn atom(tokens: TokenStream, operations: usize) -> Self {
         Self { tokens, binding: Binding::Atom, operations }
     }
 

@@ -72,7 +72,7 @@ impl Source<'_> {
     /// The body of a function with its documentation: formula and operation count.
     pub(super) fn documented(&self, name: &str, formula: &str, place: Place) -> Option<(Body, TokenStream)> {
         let function = self.function(name)?;
-        let printed = body(self.model, function, self.system.slots.points.len(), place);
+        let printed = body(self.model, function, self.system.slots.points.len(), place, self.limit);
         let count = function.operation_count();
         let noun = if count == 1 { "operation" } else { "operations" };
         let lines = format!("{formula}\n\n{count} {noun}.");

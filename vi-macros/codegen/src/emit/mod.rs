@@ -12,6 +12,7 @@ mod formula;
 mod lagrangian;
 mod matrix;
 mod names;
+mod pieces;
 mod stepping;
 mod structure;
 
@@ -30,12 +31,22 @@ struct Source<'a> {
     system: &'a DiscreteSystem,
     program: &'a Program,
     findings: &'a Findings,
+    limit: usize,
 }
 
-/// The items of a system, in fixed order.
+/// Operations that one function holds at most; a longer one is emitted in pieces.
+pub const LIMIT: usize = 800;
+
+/// The items of a system, in fixed order, in functions of at most `limit` operations, which is [`LIMIT`] but in tests.
 #[must_use]
-pub fn items(model: &Model, system: &DiscreteSystem, program: &Program, findings: &Findings) -> TokenStream {
-    let source = Source { model, system, program, findings };
+pub fn items(
+    model: &Model,
+    system: &DiscreteSystem,
+    program: &Program,
+    findings: &Findings,
+    limit: usize,
+) -> TokenStream {
+    let source = Source { model, system, program, findings, limit };
     let structure = structure::items(&source);
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);

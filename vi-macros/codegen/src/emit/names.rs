@@ -19,8 +19,10 @@ pub(super) struct Names<'a> {
 }
 
 /// Names that the printed code itself uses, and Rust's keywords that an identifier could be made into.
-const TAKEN: [&str; 12] =
-    ["real", "self", "node", "interval", "mass", "applied", "entries", "T", "Some", "None", "Ok", "Err"];
+const TAKEN: [&str; 15] = [
+    "real", "self", "system", "inputs", "values", "node", "interval", "mass", "applied", "entries", "T", "Some",
+    "None", "Ok", "Err",
+];
 
 impl<'a> Names<'a> {
     /// Names for a function of a system whose rule has so many points.
@@ -50,6 +52,11 @@ impl<'a> Names<'a> {
     pub(super) fn next_sine(&mut self) -> (Ident, Ident) {
         self.shared += 1;
         (self.free(format!("sin{}", self.shared)), self.free(format!("cos{}", self.shared)))
+    }
+
+    /// The identifier of a piece of the function.
+    pub(super) fn piece(&mut self, function: &str, number: usize) -> Ident {
+        self.free(format!("{function}_part_{number}"))
     }
 
     fn free(&mut self, mut wanted: String) -> Ident {

@@ -38,8 +38,12 @@ pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
     assembled
 }
 
-/// The expressions that a function lowers, with the arguments of the points in place.
-pub(super) type Expressions = Vec<Vec<Expr>>;
+/// The expressions that a function lowers, and the arguments of the points in them.
+pub(super) struct Expressions {
+    pub(super) results: Vec<Expr>,
+    pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
+}
+
 type Assembled = core::result::Result<Vec<(Function, Expressions)>, TooLarge>;
 
 struct Assembly<'a> {
@@ -105,8 +109,7 @@ impl<'a> Assembly<'a> {
         let mut values = lowering.lower(&flat).into_iter();
         let operations = lowering.operations;
         let results = groups.iter().map(|group| values.by_ref().take(group.len()).collect()).collect();
-        let closed = groups.iter().map(|group| group.iter().map(|e| close(self.pool, &used, *e)).collect()).collect();
-        Ok((Function { name, operations, results }, closed))
+        Ok((Function { name, operations, results }, Expressions { results: flat, arguments: used }))
     }
 }
 
@@ -123,14 +126,6 @@ fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
     });
     let moved = pool.expand(moved).ok()?;
     matches!(pool.node(moved), Node::Symbol(Symbol::StepVelocity(_))).then_some(moved)
-}
-
-/// The arguments of the points put in place.
-fn close(pool: &mut Pool<Symbol>, arguments: &BTreeMap<(usize, Variable), Expr>, expr: Expr) -> Expr {
-    pool.substitute(expr, &mut |_, symbol| match symbol {
-        Symbol::AtPoint(point, variable) => arguments.get(&(*point, *variable)).copied(),
-        _ => None,
-    })
 }
 
 fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {

@@ -9,7 +9,7 @@ use super::operations::{Operation, OperationId, Operations};
 use super::powers::{Factor, Occurrence};
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, Zero};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::{Expr, Node, Pool, Rational, Sum};
 
 /// What an expression depends on, the widest last.
@@ -28,6 +28,8 @@ pub(super) struct Lowering<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
     pub(super) operations: Operations,
     pub(super) occurrences: BTreeMap<Expr, Occurrence>,
+    /// The arguments of sines and cosines.
+    pub(super) angles: BTreeSet<Expr>,
     values: BTreeMap<Expr, OperationId>,
     dependences: BTreeMap<Expr, Dependence>,
     arguments: &'a BTreeMap<(usize, Variable), Expr>,
@@ -36,14 +38,16 @@ pub(super) struct Lowering<'a> {
 impl<'a> Lowering<'a> {
     /// A function with these arguments of the points.
     pub(super) fn new(pool: &'a mut Pool<Symbol>, arguments: &'a BTreeMap<(usize, Variable), Expr>) -> Self {
-        let (operations, occurrences) = (Operations::default(), BTreeMap::new());
-        Self { pool, operations, occurrences, values: BTreeMap::new(), dependences: BTreeMap::new(), arguments }
+        let (operations, occurrences, angles) = (Operations::default(), BTreeMap::new(), BTreeSet::new());
+        let (values, dependences) = (BTreeMap::new(), BTreeMap::new());
+        Self { pool, operations, occurrences, angles, values, dependences, arguments }
     }
 
     /// Lowers expressions and all that they need, children first.
     pub(super) fn lower(&mut self, exprs: &[Expr]) -> Vec<OperationId> {
         let used: Vec<Expr> = exprs.iter().copied().chain(self.arguments.values().copied()).collect();
         self.record_powers(&used);
+        self.record_angles(&used);
         for expr in self.pool.reachable(&used) {
             self.value(expr);
         }
@@ -108,6 +112,9 @@ impl<'a> Lowering<'a> {
     }
 
     fn call(&mut self, function: vi_expr::Function, arguments: &[Expr]) -> OperationId {
+        if let Some(value) = arguments.first().and_then(|angle| self.of_two_angles(function, *angle)) {
+            return value;
+        }
         let values: Vec<OperationId> = arguments.iter().map(|argument| self.value(*argument)).collect();
         match values[..] {
             [only] => self.operations.add(Operation::Call(function, only)),

@@ -4,10 +4,12 @@
 //! [`Program`]: per emitted function its inputs, the operations with everything shared once, and its results.
 //! AFTER THIS no field, no power and no sum is left: only operations of two operands, calls, inputs and constants.
 
+mod angles;
 mod assemble;
 mod lower;
 mod magnitude;
 mod operations;
+mod order;
 mod powers;
 mod verify;
 

@@ -10,6 +10,13 @@ use vi_expr::Function;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct OperationId(u32);
 
+impl OperationId {
+    /// As a place in the list of operations.
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// An operation, its operands by index.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Operation {
@@ -78,7 +85,13 @@ impl Operations {
     /// An operation by its index.
     #[must_use]
     pub fn get(&self, id: OperationId) -> &Operation {
-        &self.list[id.0 as usize]
+        &self.list[id.index()]
+    }
+
+    /// The index of an operation that is listed.
+    #[must_use]
+    pub fn find(&self, operation: &Operation) -> Option<OperationId> {
+        self.index.get(operation).copied()
     }
 
     /// The operation is the argument of the rule that this symbol names.
@@ -94,6 +107,11 @@ impl Operations {
         self.names.get(&id)
     }
 
+    /// How many operations are listed.
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+
     /// All operations with their indices, operands before results.
     pub fn iter(&self) -> impl Iterator<Item = (OperationId, &Operation)> {
         (0..).map(OperationId).zip(&self.list)
@@ -103,13 +121,13 @@ impl Operations {
     #[must_use]
     pub fn needed(&self, results: &[Vec<OperationId>]) -> Vec<OperationId> {
         let mut needed = vec![false; self.list.len()];
-        results.iter().flatten().for_each(|id| needed[id.0 as usize] = true);
+        results.iter().flatten().for_each(|id| needed[id.index()] = true);
         for index in (0..self.list.len()).rev() {
             if needed[index] {
-                self.list[index].operands().for_each(|id| needed[id.0 as usize] = true);
+                self.list[index].operands().for_each(|id| needed[id.index()] = true);
             }
         }
-        self.iter().map(|(id, _)| id).filter(|id| needed[id.0 as usize]).collect()
+        self.iter().map(|(id, _)| id).filter(|id| needed[id.index()]).collect()
     }
 
     fn negative_product(&mut self, a: OperationId, b: OperationId) -> OperationId {

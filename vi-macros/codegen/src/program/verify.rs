@@ -44,8 +44,13 @@ pub(super) fn agrees(
         let position = u32::try_from(inputs.len()).map_or(0.0, |n| f64::from(n) + 1.0);
         *inputs.entry(symbol.clone()).or_insert_with(|| 0.2 + (position * 0.618_033_988_749_894_9).fract())
     };
-    let flat: Vec<Expr> = expressions.iter().flatten().copied().collect();
-    let wanted = pool.evaluate_all(&flat, &mut input);
+    let arguments: Vec<Expr> = expressions.arguments.values().copied().collect();
+    let at_points = pool.evaluate_all(&arguments, &mut input);
+    let at_points: BTreeMap<_, _> = expressions.arguments.keys().zip(at_points).collect();
+    let wanted = pool.evaluate_all(&expressions.results, &mut |symbol| match symbol {
+        Symbol::AtPoint(point, variable) => at_points.get(&(*point, *variable)).copied().unwrap_or(f64::NAN),
+        _ => input(symbol),
+    });
     let found = function.evaluate(&mut input);
     let scale = wanted.iter().chain(&found).filter(|x| x.is_finite()).fold(1.0_f64, |scale, x| scale.max(x.abs()));
     let equal = |(wanted, found): (&f64, &f64)| {

@@ -1,0 +1,1295 @@
+/// Two coupled pendula, driven and damped: matrices, forces and sums over all coordinates.
+///
+/// Discretized by the rule `midpoint`. What the generator found:
+///
+/// * Not autonomous: `L` or `f` depends on the time `t`; a force acts
+/// * The mass matrix depends on the state
+/// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step
+/// * `A` is dense, not symmetric; solved in closed form
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(non_snake_case)]
+pub struct Pendula<T = f64> {
+    /// Parameter `m`, 1.2 by default.
+    pub m: T,
+    /// Parameter `k`, 0.7 by default.
+    pub k: T,
+    /// Parameter `b`, 0.1 by default.
+    pub b: T,
+}
+
+impl ::core::default::Default for Pendula<f64> {
+    fn default() -> Self {
+        Self { m: 1.2, k: 0.7, b: 0.1 }
+    }
+}
+
+impl<T: ::vi_core::Real> Pendula<T> {
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(unused_variables)]
+    pub fn from_f64(system: &Pendula<f64>) -> Self {
+        Self {
+            m: T::real(system.m),
+            k: T::real(system.k),
+            b: T::real(system.b),
+        }
+    }
+}
+
+impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Pendula<T> {
+    const PARAMETERS: &'static [&'static str] = &["m", "k", "b"];
+    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+        match name {
+            "m" => Some(&mut self.m),
+            "k" => Some(&mut self.k),
+            "b" => Some(&mut self.b),
+            _ => None,
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
+    const NAME: &'static str = "Pendula";
+    const COORDINATES: [&'static str; 2] = ["q[0]", "q[1]"];
+    const AUTONOMOUS: bool = false;
+    const FORCED: bool = true;
+    const CYCLIC: [bool; 2] = [false, false];
+
+    /// `L = dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - k*(q[0] - q[1])^2/2 + m*(dot(q[0])^2 + dot(q[1])^2) + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]))`
+    ///
+    /// 26 operations.
+    #[inline]
+    fn lagrangian(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> T {
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0, q_1]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = q_0 - q_1;
+        let (sin2, cos2) = q_0.sin_cos();
+        let (sin3, cos3) = q_1.sin_cos();
+        let s4 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
+            + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot);
+        s4 + (t.sin() * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
+            - self.k * real(0.5) * (s1 * s1)
+    }
+
+    /// `v·L_v − L = dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 + k*(q[0] - q[1])^2/2 - (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1])) + m*dot(q[0])^2 + m*dot(q[1])^2`
+    ///
+    /// 26 operations.
+    #[inline]
+    fn energy(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> T {
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0, q_1]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = q_0 - q_1;
+        let (sin2, cos2) = q_0.sin_cos();
+        let (sin3, cos3) = q_1.sin_cos();
+        let s4 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
+            + self.k * real(0.5) * (s1 * s1)
+            - (t.sin() * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
+        s4 + (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * self.m
+    }
+
+    /// `p_q[0] = dot(q[1])*cos(q[0] - q[1])/4 + 2*m*dot(q[0])`
+    ///
+    /// `p_q[1] = dot(q[0])*cos(q[0] - q[1])/4 + 2*m*dot(q[1])`
+    ///
+    /// 11 operations.
+    #[inline]
+    fn momentum(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0, q_1]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = (q_0 - q_1).cos();
+        let s2 = self.m * real(2.0);
+        ::vi_core::SVector::from([
+            q_1_dot * s1 * real(0.25) + s2 * q_0_dot,
+            q_0_dot * s1 * real(0.25) + s2 * q_1_dot,
+        ])
+    }
+
+    /// `f_q[0] = -b*dot(q[0])`
+    ///
+    /// `f_q[1] = -b*dot(q[1])`
+    ///
+    /// 4 operations.
+    #[inline]
+    fn force(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        ::vi_core::SVector::from([-(self.b * q_0_dot), -(self.b * q_1_dot)])
+    }
+
+    /// Solves `M a = L_q + f − L_vt − L_vq v`.
+    ///
+    /// 34 operations.
+    #[inline]
+    fn acceleration(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
+        let time = t;
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0, q_1]: [T; 2] = (*q).into();
+        let real = T::real;
+        let (sin1, cos1) = q_0.sin_cos();
+        let (sin2, cos2) = q_1.sin_cos();
+        let s3 = t.sin() * real(0.3333333333333333) + real(1.0);
+        let s4 = self.m * real(2.0);
+        let s5 = (cos1 * cos2 + sin1 * sin2) * real(0.25);
+        let s6 = sin1 * cos2 - cos1 * sin2;
+        let s7 = self.k * (q_0 - q_1);
+        let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
+            &[s4, s5, s5, s4],
+        );
+        let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
+            -(self.b * q_0_dot + s7 + s3 * sin1 + q_1_dot * q_1_dot * s6 * real(0.25)),
+            s7 + q_0_dot * q_0_dot * s6 * real(0.25) - self.b * q_1_dot - s3 * sin2,
+        ]);
+        ::vi_core::linear::acceleration(time, &mass, &applied)
+    }
+
+    /// `D = (-b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-k - dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - (sin(t)/3 + 1)*cos(q[0])) - sin(q[0])*cos(t)/3 - dot(q[1])*sin(q[0] - q[1])*dot(dot(q[0]))/4 + dot(q[1])*(k + dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4) - dot(q[0])*sin(q[0] - q[1])*dot(dot(q[1]))/4) + …`
+    ///
+    /// 78 operations.
+    #[inline]
+    fn step_density(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::result::Result<T, ::vi_core::StepError> {
+        let [q_0_ddot, q_1_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0, q_1]: [T; 2] = (*q).into();
+        let real = T::real;
+        /// Part 1 of `step_density`: 39 operations.
+        #[inline(never)]
+        fn step_density_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 7],
+            values: &mut [T; 11],
+        ) {
+            let real = T::real;
+            let q_0_dot = inputs[3];
+            let q_1_dot = inputs[4];
+            let q_0 = inputs[1];
+            let q_1 = inputs[2];
+            let t = inputs[0];
+            let q_0_ddot = inputs[5];
+            let q_1_ddot = inputs[6];
+            let (sin1, cos1) = q_0.sin_cos();
+            let (sin2, cos2) = q_1.sin_cos();
+            let s3 = sin1 * cos2 - cos1 * sin2;
+            let s4 = q_1_dot * s3;
+            let s5 = system.k * (q_0 - q_1);
+            let (sin6, cos6) = t.sin_cos();
+            let s7 = sin6 * real(0.3333333333333333) + real(1.0);
+            let s8 = (-((system.b + s4 * real(0.25)) * q_0_dot) - (s5 + s7 * sin1))
+                * q_0_ddot + q_0_dot * sin1 * cos6 * real(0.3333333333333333);
+            let s9 = q_0_dot * s3;
+            let s10 = s8
+                + q_1_ddot * (s5 - s7 * sin2 + (s9 * real(0.25) - system.b) * q_1_dot)
+                + q_1_dot * cos6 * sin2 * real(0.3333333333333333);
+            values[1] = cos1;
+            values[2] = cos2;
+            values[3] = sin1;
+            values[4] = sin2;
+            values[5] = sin6;
+            values[6] = s7;
+            values[7] = cos6;
+            values[8] = s4;
+            values[9] = s9;
+            values[10] = s10;
+        }
+        /// Part 2 of `step_density`: 39 operations.
+        #[inline(never)]
+        fn step_density_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 7],
+            values: &mut [T; 11],
+        ) {
+            let real = T::real;
+            let q_0_dot = inputs[3];
+            let q_1_dot = inputs[4];
+            let cos1 = values[1];
+            let cos2 = values[2];
+            let sin1 = values[3];
+            let sin2 = values[4];
+            let sin6 = values[5];
+            let s7 = values[6];
+            let cos6 = values[7];
+            let s4 = values[8];
+            let q_0_ddot = inputs[5];
+            let q_1_ddot = inputs[6];
+            let s9 = values[9];
+            let s10 = values[10];
+            let s11 = system.k
+                + q_0_dot * q_1_dot * (cos1 * cos2 + sin1 * sin2) * real(0.25);
+            let s12 = s4 * q_0_ddot * real(0.25);
+            let s13 = s9 * q_1_ddot * real(0.25);
+            let s14 = q_0_dot
+                * (q_1_dot * s11 - q_0_dot * (s11 + s7 * cos1)
+                    - sin1 * cos6 * real(0.3333333333333333) - s12 - s13);
+            let s15 = q_1_dot
+                * (s12 + s13 + q_0_dot * s11 - q_1_dot * (s11 + s7 * cos2)
+                    - cos6 * sin2 * real(0.3333333333333333));
+            let s16 = s10 + sin6 * (cos1 + cos2) * real(0.3333333333333333) - s14 - s15;
+            values[0] = s16;
+        }
+        let system = self;
+        let inputs = [t, q_0, q_1, q_0_dot, q_1_dot, q_0_ddot, q_1_ddot];
+        let mut values = [T::real(0.0); 11];
+        step_density_part_1(system, &inputs, &mut values);
+        step_density_part_2(system, &inputs, &mut values);
+        Ok(values[0])
+    }
+
+    /// The first of what L and f are made of that is not finite here.
+    ///
+    /// 30 operations.
+    #[cold]
+    fn non_finite(
+        &self,
+        t: T,
+        q: &::vi_core::SVector<T, 2>,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::core::option::Option<&'static str> {
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0, q_1]: [T; 2] = (*q).into();
+        let real = T::real;
+        let s1 = q_0 - q_1;
+        let (sin2, cos2) = q_0.sin_cos();
+        let (sin3, cos3) = q_1.sin_cos();
+        let s4 = cos2 * cos3 + sin2 * sin3;
+        let s5 = t.sin();
+        let s6 = q_0_dot * q_1_dot * s4 * real(0.25)
+            + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
+            + (s5 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
+        let values = [
+            ("m", self.m),
+            ("k", self.k),
+            ("b", self.b),
+            ("dot(q[0])", q_0_dot),
+            ("dot(q[1])", q_1_dot),
+            ("q[0]", q_0),
+            ("q[1]", q_1),
+            ("cos(q[0] - q[1])", s4),
+            ("t", t),
+            ("sin(t)", s5),
+            ("cos(q[0])", cos2),
+            ("cos(q[1])", cos3),
+            (
+                "dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - k*(q[0] - q[1])^2/2 + m*(dot(q[0])^2 + dot(q[1])^2) + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]))",
+                s6 - self.k * real(0.5) * (s1 * s1),
+            ),
+            ("-b*dot(q[0])", -(self.b * q_0_dot)),
+            ("-b*dot(q[1])", -(self.b * q_1_dot)),
+        ];
+        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
+    /// `ld = h*L`
+    ///
+    /// 33 operations.
+    #[inline]
+    fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let t0 = interval.t0;
+        let t1 = interval.t1;
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let t_mid = (t0 + t1) * real(0.5);
+        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+        let s1 = q_0_mid - q_1_mid;
+        let (sin2, cos2) = q_0_mid.sin_cos();
+        let (sin3, cos3) = q_1_mid.sin_cos();
+        let s4 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
+            + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot);
+        h
+            * (s4 + (t_mid.sin() * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
+                - self.k * real(0.5) * (s1 * s1))
+    }
+
+    /// `d1_ld = h*L_t/2 - L + L_v_q[0]*v_q[0] + L_v_q[1]*v_q[1]`
+    ///
+    /// 50 operations.
+    #[inline]
+    fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let t0 = interval.t0;
+        let t1 = interval.t1;
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let t_mid = (t0 + t1) * real(0.5);
+        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+        let s1 = q_0_mid - q_1_mid;
+        let (sin2, cos2) = q_0_mid.sin_cos();
+        let (sin3, cos3) = q_1_mid.sin_cos();
+        let s4 = cos2 * cos3 + sin2 * sin3;
+        let (sin5, cos5) = t_mid.sin_cos();
+        let s6 = cos2 + cos3;
+        let s7 = self.m * real(2.0);
+        let s8 = self.k * real(0.5) * (s1 * s1)
+            + q_0_dot * (s7 * q_0_dot + q_1_dot * s4 * real(0.25))
+            + q_1_dot * (s7 * q_1_dot + q_0_dot * s4 * real(0.25));
+        let s9 = s8 - q_0_dot * q_1_dot * s4 * real(0.25)
+            - self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
+            - (sin5 * real(0.3333333333333333) + real(1.0)) * s6;
+        s9 + h * real(0.16666666666666666) * s6 * cos5
+    }
+
+    /// `d2_ld_q[0] = h*L_q[0]/2 - L_v_q[0]`
+    ///
+    /// `d2_ld_q[1] = h*L_q[1]/2 - L_v_q[1]`
+    ///
+    /// 44 operations.
+    #[inline]
+    fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let t0 = interval.t0;
+        let t1 = interval.t1;
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let t_mid = (t0 + t1) * real(0.5);
+        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+        let (sin1, cos1) = q_0_mid.sin_cos();
+        let (sin2, cos2) = q_1_mid.sin_cos();
+        let s3 = cos1 * cos2 + sin1 * sin2;
+        let s4 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
+        let s5 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
+            + self.k * (q_0_mid - q_1_mid);
+        let s6 = self.m * real(2.0);
+        let s7 = h * real(0.5);
+        ::vi_core::SVector::from([
+            -(s6 * q_0_dot + q_1_dot * s3 * real(0.25)) - s7 * (s5 + s4 * sin1),
+            s7 * (s5 - s4 * sin2) - (s6 * q_1_dot + q_0_dot * s3 * real(0.25)),
+        ])
+    }
+
+    /// `d3_ld = L + h*L_t/2 - L_v_q[0]*v_q[0] - L_v_q[1]*v_q[1]`
+    ///
+    /// 50 operations.
+    #[inline]
+    fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let t0 = interval.t0;
+        let t1 = interval.t1;
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let t_mid = (t0 + t1) * real(0.5);
+        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+        let s1 = q_0_mid - q_1_mid;
+        let (sin2, cos2) = q_0_mid.sin_cos();
+        let (sin3, cos3) = q_1_mid.sin_cos();
+        let s4 = cos2 * cos3 + sin2 * sin3;
+        let (sin5, cos5) = t_mid.sin_cos();
+        let s6 = cos2 + cos3;
+        let s7 = self.m * real(2.0);
+        let s8 = q_0_dot * q_1_dot * s4 * real(0.25)
+            + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
+            + (sin5 * real(0.3333333333333333) + real(1.0)) * s6;
+        let s9 = s8 - self.k * real(0.5) * (s1 * s1)
+            - q_0_dot * (s7 * q_0_dot + q_1_dot * s4 * real(0.25))
+            - q_1_dot * (s7 * q_1_dot + q_0_dot * s4 * real(0.25));
+        s9 + h * real(0.16666666666666666) * s6 * cos5
+    }
+
+    /// `d4_ld_q[0] = L_v_q[0] + h*L_q[0]/2`
+    ///
+    /// `d4_ld_q[1] = L_v_q[1] + h*L_q[1]/2`
+    ///
+    /// 43 operations.
+    #[inline]
+    fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let t0 = interval.t0;
+        let t1 = interval.t1;
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let t_mid = (t0 + t1) * real(0.5);
+        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+        let (sin1, cos1) = q_0_mid.sin_cos();
+        let (sin2, cos2) = q_1_mid.sin_cos();
+        let s3 = cos1 * cos2 + sin1 * sin2;
+        let s4 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
+        let s5 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
+            + self.k * (q_0_mid - q_1_mid);
+        let s6 = self.m * real(2.0);
+        let s7 = h * real(0.5);
+        ::vi_core::SVector::from([
+            s6 * q_0_dot + q_1_dot * s3 * real(0.25) - s7 * (s5 + s4 * sin1),
+            s6 * q_1_dot + q_0_dot * s3 * real(0.25) + s7 * (s5 - s4 * sin2),
+        ])
+    }
+
+    /// `fd_minus_q[0] = h*f_q[0]/2`
+    ///
+    /// `fd_minus_q[1] = h*f_q[1]/2`
+    ///
+    /// 6 operations.
+    #[inline]
+    fn fd_minus(
+        &self,
+        interval: &::vi_core::Interval<2, T>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let s1 = self.b * h * real(0.5);
+        ::vi_core::SVector::from([-(s1 * q_0_dot), -(s1 * q_1_dot)])
+    }
+
+    /// `fd_plus_q[0] = h*f_q[0]/2`
+    ///
+    /// `fd_plus_q[1] = h*f_q[1]/2`
+    ///
+    /// 6 operations.
+    #[inline]
+    fn fd_plus(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        let s1 = self.b * h * real(0.5);
+        ::vi_core::SVector::from([-(s1 * q_0_dot), -(s1 * q_1_dot)])
+    }
+
+    /// `gd_minus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2`
+    ///
+    /// 6 operations.
+    #[inline]
+    fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * real(0.5) * self.b * h
+    }
+
+    /// `gd_plus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2`
+    ///
+    /// 6 operations.
+    #[inline]
+    fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+        let h = interval.t1 - interval.t0;
+        let [q_0_0, q_1_0]: [T; 2] = interval.q0.into();
+        let [q_0_1, q_1_1]: [T; 2] = interval.q1.into();
+        let q_0_dot = (q_0_1 - q_0_0) / h;
+        let q_1_dot = (q_1_1 - q_1_0) / h;
+        let real = T::real;
+        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * real(0.5) * self.b * h
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
+impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
+    type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+    const CONSTANT_JACOBIAN: bool = false;
+    const SMOOTH: bool = true;
+
+    /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
+    ///
+    /// `residual_q[1] = L_v_q[1] - h*f_q[1]/2 - h*L_q[1]/2 - p0_q[1]_low - p0_q[1]`
+    ///
+    /// 83 operations.
+    #[inline]
+    fn momentum_equation(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        /// Part 1 of `momentum_equation`: 43 operations.
+        #[inline(never)]
+        fn momentum_equation_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 13],
+            values: &mut [T; 17],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let t0 = inputs[0];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let t0_low = inputs[8];
+            let q_0_0_low = inputs[9];
+            let q_1_0_low = inputs[10];
+            let p0_q_0_low = inputs[11];
+            let p0_q_0 = inputs[6];
+            let s1 = system.m * real(2.0);
+            let s2 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
+            let (sin3, cos3) = q_0_mid.sin_cos();
+            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
+            let (sin4, cos4) = q_1_mid.sin_cos();
+            let s5 = cos3 * cos4 + sin3 * sin4;
+            let s6 = system.b * h * real(0.5);
+            let s7 = q_0_dot * q_1_dot;
+            let s8 = sin3 * cos4 - cos3 * sin4;
+            let s9 = s7 * s8 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let t_mid = t0 + (s2 + t0_low);
+            let s10 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
+            let s11 = s1 * q_0_dot + q_1_dot * s5 * real(0.25) - p0_q_0
+                + (s6 * q_0_dot - p0_q_0_low + s2 * (s9 + s10 * sin3));
+            values[6] = s2;
+            values[7] = cos3;
+            values[8] = cos4;
+            values[9] = sin4;
+            values[10] = s5;
+            values[11] = s7;
+            values[12] = s10;
+            values[13] = s8;
+            values[14] = s9;
+            values[15] = s1;
+            values[16] = s6;
+            values[0] = s11;
+        }
+        /// Part 2 of `momentum_equation`: 40 operations.
+        #[inline(never)]
+        fn momentum_equation_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 13],
+            values: &mut [T; 17],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s2 = values[6];
+            let p0_q_1_low = inputs[12];
+            let p0_q_1 = inputs[7];
+            let cos3 = values[7];
+            let cos4 = values[8];
+            let sin4 = values[9];
+            let s5 = values[10];
+            let s7 = values[11];
+            let s10 = values[12];
+            let s8 = values[13];
+            let s9 = values[14];
+            let s1 = values[15];
+            let s6 = values[16];
+            let s12 = system.b * real(0.5);
+            let s13 = h * real(0.25);
+            let s14 = system.k + s7 * s5 * real(0.25);
+            let s15 = s1 + (s12 + s13 * (s14 + s10 * cos3)) * h;
+            let s16 = s5 * real(0.25);
+            let s17 = (q_0_dot + q_1_dot) * real(0.125) * s8;
+            let s18 = s13 * s14;
+            let s19 = s16 - (s17 + s18) * h;
+            let s20 = s1 * q_1_dot + q_0_dot * s5 * real(0.25) - p0_q_1
+                + (s6 * q_1_dot - p0_q_1_low - s2 * (s9 - s10 * sin4));
+            let s21 = s16 + (s17 - s18) * h;
+            let s22 = s1 + (s12 + s13 * (s14 + s10 * cos4)) * h;
+            values[1] = s20;
+            values[2] = s15;
+            values[3] = s21;
+            values[4] = s19;
+            values[5] = s22;
+        }
+        let system = self;
+        let inputs = [
+            t0,
+            q_0_0,
+            q_1_0,
+            h,
+            q_0_dot,
+            q_1_dot,
+            p0_q_0,
+            p0_q_1,
+            t0_low,
+            q_0_0_low,
+            q_1_0_low,
+            p0_q_0_low,
+            p0_q_1_low,
+        ];
+        let mut values = [T::real(0.0); 17];
+        momentum_equation_part_1(system, &inputs, &mut values);
+        momentum_equation_part_2(system, &inputs, &mut values);
+        ::vi_core::MomentumEquation {
+            residual: ::vi_core::SVector::from([values[0], values[1]]),
+            jacobian: ::vi_core::SMatrix::from_row_slice(
+                &[values[2], values[3], values[4], values[5]],
+            ),
+        }
+    }
+
+    /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
+    ///
+    /// 172 operations.
+    #[inline]
+    fn extended_system(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        /// Part 1 of `extended_system`: 25 operations.
+        #[inline(never)]
+        fn extended_system_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 47],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let q_0_0_low = inputs[10];
+            let q_1_0_low = inputs[11];
+            let s1 = system.m * real(2.0);
+            let s2 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
+            let (sin3, cos3) = q_0_mid.sin_cos();
+            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
+            let (sin4, cos4) = q_1_mid.sin_cos();
+            let s5 = cos3 + cos4;
+            let s6 = cos3 * cos4 + sin3 * sin4;
+            let s7 = q_1_dot * s6 * real(0.25);
+            let s8 = system.b * h * real(0.5);
+            let s9 = q_0_dot * q_1_dot;
+            let s10 = sin3 * cos4 - cos3 * sin4;
+            let s11 = q_0_mid - q_1_mid;
+            values[12] = s2;
+            values[13] = s11;
+            values[14] = cos3;
+            values[15] = cos4;
+            values[16] = sin3;
+            values[17] = sin4;
+            values[18] = s6;
+            values[19] = s9;
+            values[24] = s5;
+            values[26] = s10;
+            values[31] = s1;
+            values[32] = s7;
+            values[33] = s8;
+        }
+        /// Part 2 of `extended_system`: 31 operations.
+        #[inline(never)]
+        fn extended_system_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 47],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let t0 = inputs[0];
+            let q_0_dot = inputs[4];
+            let t0_low = inputs[9];
+            let s2 = values[12];
+            let p0_q_0_low = inputs[12];
+            let p0_q_0 = inputs[6];
+            let s11 = values[13];
+            let cos3 = values[14];
+            let sin3 = values[16];
+            let s6 = values[18];
+            let s9 = values[19];
+            let s10 = values[26];
+            let s1 = values[31];
+            let s7 = values[32];
+            let s8 = values[33];
+            let s12 = s9 * s10 * real(0.25) + system.k * s11;
+            let t_mid = t0 + (s2 + t0_low);
+            let (sin13, cos13) = t_mid.sin_cos();
+            let s14 = sin13 * real(0.3333333333333333) + real(1.0);
+            let s15 = s14 * sin3;
+            let s16 = s12 + s15;
+            let s17 = s1 * q_0_dot + s7 - p0_q_0
+                + (s8 * q_0_dot - p0_q_0_low + s2 * s16);
+            let s18 = system.b * real(0.5);
+            let s19 = h * real(0.25);
+            let s20 = system.k + s9 * s6 * real(0.25);
+            let s21 = s20 + s14 * cos3;
+            let s22 = s1 + (s18 + s19 * s21) * h;
+            values[22] = sin13;
+            values[23] = s14;
+            values[25] = cos13;
+            values[27] = s15;
+            values[28] = s12;
+            values[29] = s16;
+            values[0] = s17;
+            values[35] = s20;
+            values[36] = s21;
+            values[38] = s18;
+            values[39] = s19;
+            values[2] = s22;
+        }
+        /// Part 3 of `extended_system`: 32 operations.
+        #[inline(never)]
+        fn extended_system_part_3<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 47],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s11 = values[13];
+            let sin3 = values[16];
+            let s6 = values[18];
+            let cos13 = values[25];
+            let s10 = values[26];
+            let s15 = values[27];
+            let s20 = values[35];
+            let s21 = values[36];
+            let s18 = values[38];
+            let s19 = values[39];
+            let s23 = s6 * real(0.25);
+            let s24 = (q_0_dot + q_1_dot) * real(0.125) * s10;
+            let s25 = s19 * s20;
+            let s26 = s23 - (s24 + s25) * h;
+            let s27 = system.k * real(0.5);
+            let s28 = s27 * s11;
+            let s29 = q_1_dot * q_1_dot;
+            let s30 = s28 + s15 * real(0.5) + s18 * q_0_dot + s29 * s10 * real(0.125);
+            let s31 = sin3 * cos13;
+            let s32 = s31 * real(0.08333333333333333);
+            let s33 = q_0_dot * s21 * real(0.25);
+            let s34 = q_1_dot * s20;
+            let s35 = s34 * real(0.25);
+            let s36 = s30 + (s32 + s33 - s35) * h;
+            let s37 = s30 + (s35 - s33 - s32) * h;
+            values[21] = s29;
+            values[34] = s27;
+            values[40] = s23;
+            values[41] = s24;
+            values[42] = s25;
+            values[4] = s26;
+            values[43] = s28;
+            values[44] = s31;
+            values[45] = s33;
+            values[46] = s34;
+            values[6] = s36;
+            values[9] = s37;
+        }
+        /// Part 4 of `extended_system`: 50 operations.
+        #[inline(never)]
+        fn extended_system_part_4<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 47],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s2 = values[12];
+            let p0_q_0_low = inputs[12];
+            let p0_q_0 = inputs[6];
+            let p0_q_1_low = inputs[13];
+            let p0_q_1 = inputs[7];
+            let energy0_low = inputs[14];
+            let energy0 = inputs[8];
+            let s11 = values[13];
+            let cos4 = values[15];
+            let sin4 = values[17];
+            let s6 = values[18];
+            let s29 = values[21];
+            let s14 = values[23];
+            let s5 = values[24];
+            let cos13 = values[25];
+            let s12 = values[28];
+            let s16 = values[29];
+            let s1 = values[31];
+            let s7 = values[32];
+            let s8 = values[33];
+            let s27 = values[34];
+            let s20 = values[35];
+            let s18 = values[38];
+            let s19 = values[39];
+            let s23 = values[40];
+            let s24 = values[41];
+            let s25 = values[42];
+            let s38 = s14 * sin4;
+            let s39 = s12 - s38;
+            let s40 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
+                + (s5 * cos13 * real(0.16666666666666666) - q_0_dot * s16 * real(0.5)
+                    + q_1_dot * s39 * real(0.5)) * h;
+            let s41 = s1 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
+                + (s8 * q_1_dot - p0_q_1_low - s2 * s39);
+            let s42 = s23 + (s24 - s25) * h;
+            let s43 = s20 + s14 * cos4;
+            let s44 = s1 + (s18 + s19 * s43) * h;
+            let s45 = q_0_dot * q_0_dot;
+            let s46 = q_1_dot * p0_q_1 + s27 * (s11 * s11) - energy0
+                - system.m * (s45 + s29) - s14 * s5 + (p0_q_0 - s7) * q_0_dot;
+            let s47 = s46 + s40;
+            values[20] = s45;
+            values[30] = s38;
+            values[1] = s41;
+            values[8] = s47;
+            values[37] = s43;
+            values[3] = s42;
+            values[5] = s44;
+        }
+        /// Part 5 of `extended_system`: 34 operations.
+        #[inline(never)]
+        fn extended_system_part_5<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 47],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let sin4 = values[17];
+            let s45 = values[20];
+            let sin13 = values[22];
+            let s5 = values[24];
+            let cos13 = values[25];
+            let s10 = values[26];
+            let s38 = values[30];
+            let s20 = values[35];
+            let s43 = values[37];
+            let s18 = values[38];
+            let s28 = values[43];
+            let s31 = values[44];
+            let s33 = values[45];
+            let s34 = values[46];
+            let s48 = s38 * real(0.5) + s18 * q_1_dot - s28 - s45 * s10 * real(0.125);
+            let s49 = sin4 * cos13;
+            let s50 = s49 * real(0.08333333333333333);
+            let s51 = q_0_dot * s20 * real(0.25);
+            let s52 = q_1_dot * s43 * real(0.25);
+            let s53 = (-s52 - s49 * real(0.16666666666666666)) * q_1_dot
+                - sin13 * s5 * real(0.08333333333333333)
+                + (s34 * real(0.5) - s33 - s31 * real(0.16666666666666666)) * q_0_dot;
+            let s54 = s48 + (s50 - s51 + s52) * h;
+            let s55 = s48 + (s51 - s52 - s50) * h;
+            values[7] = s54;
+            values[10] = s55;
+            values[11] = s53;
+        }
+        let system = self;
+        let inputs = [
+            t0,
+            q_0_0,
+            q_1_0,
+            h,
+            q_0_dot,
+            q_1_dot,
+            p0_q_0,
+            p0_q_1,
+            energy0,
+            t0_low,
+            q_0_0_low,
+            q_1_0_low,
+            p0_q_0_low,
+            p0_q_1_low,
+            energy0_low,
+        ];
+        let mut values = [T::real(0.0); 47];
+        extended_system_part_1(system, &inputs, &mut values);
+        extended_system_part_2(system, &inputs, &mut values);
+        extended_system_part_3(system, &inputs, &mut values);
+        extended_system_part_4(system, &inputs, &mut values);
+        extended_system_part_5(system, &inputs, &mut values);
+        ::vi_core::ExtendedSystem {
+            momentum: ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([values[0], values[1]]),
+                jacobian: ::vi_core::SMatrix::from_row_slice(
+                    &[values[2], values[3], values[4], values[5]],
+                ),
+            },
+            residual_dh: ::vi_core::SVector::from([values[6], values[7]]),
+            energy_residual: values[8],
+            energy_dv: ::vi_core::SVector::from([values[9], values[10]]),
+            energy_dh: values[11],
+        }
+    }
+
+    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
+    ///
+    /// 200 operations.
+    #[cold]
+    fn magnitudes(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Magnitudes<2, T> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let energy0 = node.energy;
+        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        /// Part 1 of `magnitudes`: 29 operations.
+        #[inline(never)]
+        fn magnitudes_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 12],
+            values: &mut [T; 37],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let q_0_0_low = inputs[10];
+            let q_1_0_low = inputs[11];
+            let p0_q_0 = inputs[6];
+            let s1 = system.b * h;
+            let s2 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
+            let (sin3, cos3) = q_0_mid.sin_cos();
+            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
+            let (sin4, cos4) = q_1_mid.sin_cos();
+            let s5 = cos3 + cos4;
+            let s6 = cos3 * cos4 + sin3 * sin4;
+            let s7 = p0_q_0.abs() + (s1 * q_0_dot).abs() * real(0.5)
+                + (system.m * q_0_dot).abs() * real(2.0)
+                + (q_1_dot * s6).abs() * real(0.25);
+            values[3] = s2;
+            values[5] = q_0_mid;
+            values[6] = q_1_mid;
+            values[7] = s1;
+            values[9] = cos3;
+            values[10] = cos4;
+            values[11] = sin3;
+            values[12] = sin4;
+            values[13] = s6;
+            values[16] = s5;
+            values[27] = s7;
+        }
+        /// Part 2 of `magnitudes`: 48 operations.
+        #[inline(never)]
+        fn magnitudes_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 12],
+            values: &mut [T; 37],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let t0 = inputs[0];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let t0_low = inputs[9];
+            let s2 = values[3];
+            let q_0_mid = values[5];
+            let q_1_mid = values[6];
+            let cos3 = values[9];
+            let cos4 = values[10];
+            let sin3 = values[11];
+            let sin4 = values[12];
+            let s5 = values[16];
+            let s8 = h.abs() * real(0.5);
+            let s9 = q_0_dot * q_1_dot;
+            let s10 = sin3 * cos4 - cos3 * sin4;
+            let s11 = s9 * s10;
+            let s12 = q_0_mid - q_1_mid;
+            let s13 = system.k * s12;
+            let s14 = s11 * real(0.25) + s13;
+            let s15 = s11.abs() * real(0.25) + s13.abs();
+            let t_mid = t0 + (s2 + t0_low);
+            let (sin16, cos16) = t_mid.sin_cos();
+            let s17 = sin16 * real(0.3333333333333333) + real(1.0);
+            let s18 = s17 * sin3;
+            let s19 = s15 + s18.abs();
+            let s20 = h * t_mid;
+            let s21 = s5 * cos16 * real(0.3333333333333333)
+                + (sin16 * s5 * real(0.16666666666666666)
+                    + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666)
+                        * cos16) * h;
+            let s22 = (sin16.abs() * real(0.3333333333333333)
+                + (h * cos16).abs() * real(0.16666666666666666) + real(1.0))
+                * (cos3.abs() + cos4.abs());
+            values[4] = t_mid;
+            values[8] = s12;
+            values[14] = s9;
+            values[15] = s17;
+            values[17] = cos16;
+            values[18] = s10;
+            values[19] = s18;
+            values[21] = s15;
+            values[22] = s19;
+            values[23] = s20;
+            values[26] = s8;
+            values[31] = s21;
+            values[32] = s14;
+            values[34] = s22;
+        }
+        /// Part 3 of `magnitudes`: 50 operations.
+        #[inline(never)]
+        fn magnitudes_part_3<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 12],
+            values: &mut [T; 37],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s2 = values[3];
+            let q_0_mid = values[5];
+            let q_1_mid = values[6];
+            let p0_q_0 = inputs[6];
+            let p0_q_1 = inputs[7];
+            let energy0 = inputs[8];
+            let s12 = values[8];
+            let cos3 = values[9];
+            let sin3 = values[11];
+            let s6 = values[13];
+            let s9 = values[14];
+            let s17 = values[15];
+            let cos16 = values[17];
+            let s10 = values[18];
+            let s18 = values[19];
+            let s19 = values[22];
+            let s20 = values[23];
+            let s8 = values[26];
+            let s7 = values[27];
+            let s14 = values[32];
+            let s23 = q_1_dot * s10 * real(0.25);
+            let s24 = s9 * s6;
+            let s25 = system.k + s24 * real(0.25);
+            let s26 = s25 + s17 * cos3;
+            let s27 = s14 + s18
+                + (q_1_dot * s25 * real(0.5) - q_0_dot * s26 * real(0.5)
+                    - sin3 * cos16 * real(0.16666666666666666)) * h;
+            let s28 = s7 + s8 * s19
+                + (s20 * sin3 * cos16).abs() * real(0.16666666666666666)
+                + (q_0_mid * (s23 - s2 * s26)).abs();
+            let s29 = s2 * s25;
+            let s30 = s28 + (q_1_mid * (s23 - s29)).abs();
+            let s31 = energy0.abs() + (q_0_dot * p0_q_0).abs() + (q_1_dot * p0_q_1).abs()
+                + s24.abs() * real(0.25) + (system.k * (s12 * s12)).abs() * real(0.5);
+            values[24] = s25;
+            values[25] = s29;
+            values[0] = s30;
+            values[33] = s27;
+            values[35] = s31;
+        }
+        /// Part 4 of `magnitudes`: 40 operations.
+        #[inline(never)]
+        fn magnitudes_part_4<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 12],
+            values: &mut [T; 37],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let t_mid = values[4];
+            let q_0_mid = values[5];
+            let p0_q_1 = inputs[7];
+            let s1 = values[7];
+            let sin4 = values[12];
+            let s6 = values[13];
+            let s17 = values[15];
+            let s10 = values[18];
+            let s15 = values[21];
+            let s19 = values[22];
+            let s21 = values[31];
+            let s27 = values[33];
+            let s31 = values[35];
+            let s32 = s31 + system.m.abs() * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
+                + s19 * (h * q_0_dot).abs() * real(0.5);
+            let s33 = p0_q_1.abs() + (s1 * q_1_dot).abs() * real(0.5)
+                + (system.m * q_1_dot).abs() * real(2.0)
+                + (q_0_dot * s6).abs() * real(0.25);
+            let s34 = s17 * sin4;
+            let s35 = s15 + s34.abs();
+            let s36 = s32 + s35 * (h * q_1_dot).abs() * real(0.5) + (t_mid * s21).abs()
+                + (q_0_mid * s27).abs();
+            let s37 = q_0_dot * s10 * real(0.25);
+            values[20] = s34;
+            values[28] = s35;
+            values[29] = s37;
+            values[30] = s33;
+            values[36] = s36;
+        }
+        /// Part 5 of `magnitudes`: 33 operations.
+        #[inline(never)]
+        fn magnitudes_part_5<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 12],
+            values: &mut [T; 37],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s2 = values[3];
+            let q_0_mid = values[5];
+            let q_1_mid = values[6];
+            let cos4 = values[10];
+            let sin4 = values[12];
+            let s17 = values[15];
+            let cos16 = values[17];
+            let s34 = values[20];
+            let s20 = values[23];
+            let s25 = values[24];
+            let s29 = values[25];
+            let s8 = values[26];
+            let s35 = values[28];
+            let s37 = values[29];
+            let s33 = values[30];
+            let s14 = values[32];
+            let s22 = values[34];
+            let s36 = values[36];
+            let s38 = s33 + s8 * s35
+                + (s20 * sin4 * cos16).abs() * real(0.16666666666666666)
+                + (q_0_mid * (s37 + s29)).abs();
+            let s39 = s25 + s17 * cos4;
+            let s40 = s14 - s34
+                + (sin4 * cos16 * real(0.16666666666666666) - q_0_dot * s25 * real(0.5)
+                    + q_1_dot * s39 * real(0.5)) * h;
+            let s41 = s36 + (q_1_mid * s40).abs() + s22;
+            let s42 = s38 + (q_1_mid * (s37 + s2 * s39)).abs();
+            values[1] = s42;
+            values[2] = s41;
+        }
+        let system = self;
+        let inputs = [
+            t0,
+            q_0_0,
+            q_1_0,
+            h,
+            q_0_dot,
+            q_1_dot,
+            p0_q_0,
+            p0_q_1,
+            energy0,
+            t0_low,
+            q_0_0_low,
+            q_1_0_low,
+        ];
+        let mut values = [T::real(0.0); 37];
+        magnitudes_part_1(system, &inputs, &mut values);
+        magnitudes_part_2(system, &inputs, &mut values);
+        magnitudes_part_3(system, &inputs, &mut values);
+        magnitudes_part_4(system, &inputs, &mut values);
+        magnitudes_part_5(system, &inputs, &mut values);
+        ::vi_core::Magnitudes {
+            residual: ::vi_core::SVector::from([values[0], values[1]]),
+            energy_residual: values[2],
+        }
+    }
+
+    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+    ///
+    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+    ///
+    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
+    ///
+    /// 48 operations.
+    #[inline]
+    fn increment(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Increment<2, T> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let t_mid = t0 + (s1 + t0_low);
+        let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+        let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+        let s2 = self.b * h;
+        let (sin3, cos3) = t_mid.sin_cos();
+        let s4 = sin3 * real(0.3333333333333333) + real(1.0);
+        let (sin5, cos5) = q_0_mid.sin_cos();
+        let (sin6, cos6) = q_1_mid.sin_cos();
+        let s7 = q_0_dot * q_1_dot * (sin5 * cos6 - cos5 * sin6) * real(0.25)
+            + self.k * (q_0_mid - q_1_mid);
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([
+                -(h * (s7 + s4 * sin5)) - s2 * q_0_dot,
+                h * (s7 - s4 * sin6) - s2 * q_1_dot,
+            ]),
+            energy: (-((q_0_dot * q_0_dot + q_1_dot * q_1_dot) * self.b)
+                - (cos5 + cos6) * cos3 * real(0.3333333333333333)) * h,
+        }
+    }
+}
+
+impl ::vi_core::check::Checked<2> for Pendula<f64> {
+    type In<T: ::vi_core::Real> = Pendula<T>;
+    fn convert<T: ::vi_core::Real>(&self) -> Pendula<T> {
+        Pendula::from_f64(self)
+    }
+}
