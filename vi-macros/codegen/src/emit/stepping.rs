@@ -9,6 +9,9 @@ use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::quote;
 
+/// Operations up to which a function is always inlined.
+const INLINED: usize = 250;
+
 /// The implementation of `Stepping`.
 pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
@@ -54,6 +57,13 @@ fn momentum_fields(source: &Source, results: &[Vec<Entry>]) -> (TokenStream, Tok
     (form, quote!(::vi_core::MomentumEquation { residual: #residual, jacobian: #jacobian }))
 }
 
+/// In a loop over trajectories a call is a wall: short functions are inlined whatever the compiler thinks of it. Long ones
+/// stand in several places of a stepper, and would be compiled in each.
+fn inline(source: &Source, name: &str) -> TokenStream {
+    let short = source.function(name).is_some_and(|function| function.operation_count() <= INLINED);
+    if short { quote!(#[inline(always)]) } else { quote!(#[inline]) }
+}
+
 fn momentum_equation(source: &Source) -> (TokenStream, TokenStream) {
     let (dimension, of) = (source.dimension(), &source.system.equations);
     let formula = source.formulas("residual", &of.residual);
@@ -62,9 +72,10 @@ fn momentum_equation(source: &Source) -> (TokenStream, TokenStream) {
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
     let (form, equation) = momentum_fields(source, &body.results);
+    let inline = inline(source, "momentum_equation");
     let function = quote! {
         #documentation
-        #[inline(always)]
+        #inline
         fn momentum_equation(
             &self,
             node: &::vi_core::Node<#dimension, T>,
@@ -143,9 +154,10 @@ fn increment(source: &Source) -> TokenStream {
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
     let (momentum, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
+    let inline = inline(source, "increment");
     quote! {
         #documentation
-        #[inline(always)]
+        #inline
         fn increment(
             &self,
             node: &::vi_core::Node<#dimension, T>,
