@@ -327,7 +327,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
     ///
     /// 19 operations.
-    #[inline]
+    #[inline(always)]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<1, T>,
@@ -429,7 +429,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     /// `E1 − E0 = h*f_x*v_x`
     ///
     /// 13 operations.
-    #[inline]
+    #[inline(always)]
     fn increment(
         &self,
         node: &::vi_core::Node<1, T>,
@@ -446,6 +446,31 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
                 -((self.k * x_mid + self.c * x_dot) * h),
             ]),
             energy: -(self.c * h * (x_dot * x_dot)),
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, unused_variables)]
+impl ::vi_core::Batch<1> for DampedOscillator<f64> {
+    type Rows<const W: usize> = DampedOscillator<[f64; W]>;
+    type In<T: ::vi_core::Real> = DampedOscillator<T>;
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+        DampedOscillator {
+            m: ::core::array::from_fn(|index| systems[index].m),
+            k: ::core::array::from_fn(|index| systems[index].k),
+            c: ::core::array::from_fn(|index| systems[index].c),
+        }
+    }
+
+    #[inline(always)]
+    fn pick<T: ::vi_core::Real, const W: usize>(
+        rows: &Self::Rows<W>,
+        index: usize,
+    ) -> Self::In<T> {
+        DampedOscillator {
+            m: T::real(rows.m[index]),
+            k: T::real(rows.k[index]),
+            c: T::real(rows.c[index]),
         }
     }
 }

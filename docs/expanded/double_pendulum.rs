@@ -460,7 +460,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
     ///
     /// 91 operations.
-    #[inline]
+    #[inline(always)]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -670,7 +670,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     /// `E1 − E0 = 0`
     ///
     /// 33 operations.
-    #[inline]
+    #[inline(always)]
     fn increment(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -697,6 +697,35 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
                         * self.m2),
             ]),
             energy: real(0.0),
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, unused_variables)]
+impl ::vi_core::Batch<2> for DoublePendulum<f64> {
+    type Rows<const W: usize> = DoublePendulum<[f64; W]>;
+    type In<T: ::vi_core::Real> = DoublePendulum<T>;
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+        DoublePendulum {
+            m1: ::core::array::from_fn(|index| systems[index].m1),
+            m2: ::core::array::from_fn(|index| systems[index].m2),
+            l1: ::core::array::from_fn(|index| systems[index].l1),
+            l2: ::core::array::from_fn(|index| systems[index].l2),
+            g: ::core::array::from_fn(|index| systems[index].g),
+        }
+    }
+
+    #[inline(always)]
+    fn pick<T: ::vi_core::Real, const W: usize>(
+        rows: &Self::Rows<W>,
+        index: usize,
+    ) -> Self::In<T> {
+        DoublePendulum {
+            m1: T::real(rows.m1[index]),
+            m2: T::real(rows.m2[index]),
+            l1: T::real(rows.l1[index]),
+            l2: T::real(rows.l2[index]),
+            g: T::real(rows.g[index]),
         }
     }
 }

@@ -349,7 +349,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
     ///
     /// 48 operations.
-    #[inline]
+    #[inline(always)]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -513,7 +513,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     /// `E1 − E0 = 0`
     ///
     /// 21 operations.
-    #[inline]
+    #[inline(always)]
     fn increment(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -533,6 +533,27 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([-(s4 * x_mid * s3), -(s4 * y_mid * s3)]),
             energy: real(0.0),
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, unused_variables)]
+impl ::vi_core::Batch<2> for Kepler<f64> {
+    type Rows<const W: usize> = Kepler<[f64; W]>;
+    type In<T: ::vi_core::Real> = Kepler<T>;
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+        Kepler {
+            mu: ::core::array::from_fn(|index| systems[index].mu),
+        }
+    }
+
+    #[inline(always)]
+    fn pick<T: ::vi_core::Real, const W: usize>(
+        rows: &Self::Rows<W>,
+        index: usize,
+    ) -> Self::In<T> {
+        Kepler {
+            mu: T::real(rows.mu[index]),
         }
     }
 }

@@ -56,7 +56,7 @@ pub(crate) struct Forecast<const M: usize, T> {
     /// The unknowns of the last steps in a ring, which is written in one place a step.
     last: [SVector<T, M>; RING],
     /// Where in the ring the newest stands.
-    newest: u32,
+    newest: usize,
     /// What the guess takes of each, the newest first.
     weights: [T; DEPTH],
     /// ρ²; zero where nothing is trusted.
@@ -66,7 +66,7 @@ pub(crate) struct Forecast<const M: usize, T> {
     /// Steps from the last one that learnt to the next.
     interval: u32,
     /// How many of these are steps, up to one more than there are.
-    known: u32,
+    known: usize,
 }
 
 /// What one step in many shows of Newton's iteration.
@@ -120,7 +120,7 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// The unknowns of the step i before the last one.
     #[inline]
     fn before(&self, i: usize) -> &SVector<T, M> {
-        &self.last[(self.newest as usize).wrapping_sub(i) % RING]
+        &self.last[self.newest.wrapping_sub(i) % RING]
     }
 
     /// Whether everything is a finite number.
@@ -151,7 +151,7 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// Takes the step `u` where no guess is needed.
     #[inline]
     pub(crate) fn replace(&mut self, u: SVector<T, M>) {
-        self.last[self.newest as usize % RING] = u;
+        self.last[self.newest % RING] = u;
     }
 
     /// Takes the step `u`.
@@ -172,8 +172,8 @@ impl<const M: usize, T: Real> Forecast<M, T> {
 
     #[inline]
     fn keep(&mut self, u: SVector<T, M>) {
-        self.newest = (self.newest + 1) % RING as u32;
-        self.last[self.newest as usize % RING] = u;
+        self.newest = (self.newest + 1) % RING;
+        self.last[self.newest % RING] = u;
     }
 
     /// The guesses of the steps after the last one, by the weights as they are now.
@@ -212,8 +212,8 @@ impl<const M: usize, T: Real> Forecast<M, T> {
             _ => INTERVAL,
         };
         // The first steps know no higher order yet.
-        self.until = if (self.known as usize) < DEPTH { 0 } else { self.interval - 1 };
-        self.known = (self.known + 1).min(DEPTH as u32);
+        self.until = if self.known < DEPTH { 0 } else { self.interval - 1 };
+        self.known = (self.known + 1).min(DEPTH);
     }
 
     /// The weights of the order that would have guessed `u` best: the highest up to which each order halves the error of the
@@ -224,13 +224,13 @@ impl<const M: usize, T: Real> Forecast<M, T> {
         let mut differences: [SVector<T, M>; DEPTH] = core::array::from_fn(|i| *self.before(i));
         let mut newest = u - differences[0];
         let (mut least, mut climbing) = (length_squared(&newest), T::one());
-        for (order, weights) in WEIGHTS.iter().enumerate().take(self.known as usize).skip(1) {
+        for (order, weights) in WEIGHTS.iter().enumerate().take(self.known).skip(1) {
             for i in 0..DEPTH - order {
                 differences[i] -= differences[i + 1];
             }
             newest -= differences[0];
             let distance = length_squared(&newest);
-            climbing = climbing * distance.at_most(least * T::real(0.25));
+            climbing *= distance.at_most(least * T::real(0.25));
             for (weight, other) in best.iter_mut().zip(weights) {
                 *weight += (T::real(*other) - *weight) * climbing;
             }

@@ -31,7 +31,7 @@ fn assert_resumes<const N: usize, P: Potential<N, f64> + Clone>(
     let stored: energy_preserving::Checkpoint<N> = through_json(&checkpoint);
     assert_eq!(format!("{stored:?}"), format!("{checkpoint:?}"));
     let mut resumed =
-        EnergyPreserving::restart(interrupted.system().clone(), stored).unwrap_or_else(|error| panic!("{error}"));
+        EnergyPreserving::restart(*interrupted.system(), stored).unwrap_or_else(|error| panic!("{error}"));
     for step in 0..second {
         assert_eq!(bits(whole.step()), bits(resumed.step()), "step {step} after {first}");
     }

@@ -83,7 +83,7 @@ fn second_order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> 
 
 /// The check passes for the right system, and fails for the spoiled one by numbers of which the failure speaks.
 fn trips<const N: usize, S: Checked<N>>(system: S, place: &Place<N>, fault: Fault, check: Check<Spoiled<S>, N>) {
-    let right = check(&Spoiled { system: system.clone(), fault: Fault::None }, place);
+    let right = check(&Spoiled { system, fault: Fault::None }, place);
     let report = right.unwrap_or_else(|failure| panic!("{failure}"));
     assert!(report.compared > 0 && report.worst <= report.tolerance, "{report}");
     let failure = check(&Spoiled { system, fault }, place).expect_err("a fault that nothing sees");

@@ -99,7 +99,7 @@ pub(super) fn samples<const N: usize, S: Checked<N>>(
     let sample = |state: Motion<N>| {
         let mut beside = |entry: f64, extent: f64| entry + BESIDE * extent * draw.next();
         let (q, v) = (state.q.zip_map(&extent.q, &mut beside), state.v.zip_map(&extent.v, &mut beside));
-        let mut varied = system.clone();
+        let mut varied = *system;
         for name in S::PARAMETERS {
             if let Some(parameter) = varied.parameter_mut(name) {
                 *parameter *= 1.0 + VARIATION * draw.next();
@@ -107,7 +107,7 @@ pub(super) fn samples<const N: usize, S: Checked<N>>(
         }
         // An exponent, say, may allow no other value.
         let values = |system: &S| system.lagrangian(state.t, &q, &v) + system.force(state.t, &q, &v).sum();
-        let system = if values(&varied).is_finite() { varied } else { system.clone() };
+        let system = if values(&varied).is_finite() { varied } else { *system };
         Sample { system, t: state.t, q, v, h: place.h }
     };
     Ok(states.into_iter().map(sample).collect())

@@ -63,7 +63,7 @@ where
     }
 
     fn parameters(&self) -> Vec<(&'static str, f64)> {
-        let mut system = self.0.clone();
+        let mut system = self.0;
         S::PARAMETERS.iter().filter_map(|name| Some((*name, *system.parameter_mut(name)?))).collect()
     }
 
@@ -72,7 +72,7 @@ where
     }
 
     fn copy(&self) -> Box<dyn System> {
-        Box::new(Self(self.0.clone()))
+        Box::new(Self(self.0))
     }
 
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
@@ -82,7 +82,7 @@ where
     }
 
     fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
-        simulation::begin(self.0.clone(), plan)
+        simulation::begin(self.0, plan)
     }
 
     fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String> {

@@ -85,7 +85,7 @@ where
 {
     let q0 = SVector::from([q0]);
     let second = second_point(&system, (0.0, q0, SVector::zeros()), h0)?;
-    let mut integrator = EnergyPreserving::from_points(system.clone(), (0.0, q0), second)?;
+    let mut integrator = EnergyPreserving::from_points(system, (0.0, q0), second)?;
     let mut values = Vec::new();
     while integrator.state().t < UNTIL {
         let step = integrator.step()?;

@@ -5,26 +5,21 @@
 
 use core::cell::Cell;
 use vi_core::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation, Node, SVector, StepError,
-    Stepping,
+    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, Magnitudes, MomentumEquation, Node, SVector,
+    StepError, Stepping,
 };
 
-/// A system, and the evaluations so far.
-#[derive(Clone, Debug)]
-pub(super) struct Counting<S> {
+/// A system, and the evaluations so far: its copies count together.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counting<'a, S> {
     system: S,
-    evaluations: Cell<u64>,
+    evaluations: &'a Cell<u64>,
 }
 
-impl<S> Counting<S> {
-    /// The system with a count of zero.
-    pub(super) fn new(system: S) -> Self {
-        Self { system, evaluations: Cell::new(0) }
-    }
-
-    /// Evaluations so far.
-    pub(super) fn evaluations(&self) -> u64 {
-        self.evaluations.get()
+impl<'a, S> Counting<'a, S> {
+    /// The system, and where its evaluations are added.
+    pub(super) fn new(system: S, evaluations: &'a Cell<u64>) -> Self {
+        Self { system, evaluations }
     }
 
     /// The system, for a call that counts.
@@ -34,7 +29,7 @@ impl<S> Counting<S> {
     }
 }
 
-impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<S> {
+impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<'_, S> {
     const NAME: &'static str = S::NAME;
     const COORDINATES: [&'static str; N] = S::COORDINATES;
     const AUTONOMOUS: bool = S::AUTONOMOUS;
@@ -70,7 +65,7 @@ impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<S> {
     }
 }
 
-impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Counting<S> {
+impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Counting<'_, S> {
     fn ld(&self, interval: &Interval<N>) -> f64 {
         self.system.ld(interval)
     }
@@ -108,13 +103,21 @@ impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Countin
     }
 }
 
-impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<S> {
-    fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
+impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
+    type Jacobian = S::Jacobian;
+    const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
+    const SMOOTH: bool = S::SMOOTH;
+
+    fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N, f64, S::Jacobian> {
         self.counted().momentum_equation(node, h, v)
     }
 
-    fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
+    fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N, f64, S::Jacobian> {
         self.counted().extended_system(node, h, v)
+    }
+
+    fn magnitudes(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Magnitudes<N> {
+        self.system.magnitudes(node, h, v)
     }
 
     fn increment(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Increment<N> {
@@ -130,17 +133,18 @@ mod tests {
 
     #[test]
     fn every_evaluation_of_a_fixed_step_is_counted_and_no_bit_is_changed() {
-        let (plain, counting) = (Pendulum::default(), Counting::new(Pendulum::default()));
+        let evaluations = Cell::new(0);
+        let (plain, counting) = (Pendulum::default(), Counting::new(Pendulum::default(), &evaluations));
         let start = State::at(&plain, 0.0, [1.0], [0.0]);
         let mut runs = (
             FixedStep::new(plain, start, 0.01).expect("a start"),
-            FixedStep::new(&counting, start, 0.01).expect("a start"),
+            FixedStep::new(counting, start, 0.01).expect("a start"),
         );
         for _ in 0..100 {
-            let before = counting.evaluations();
+            let before = evaluations.get();
             assert_eq!(runs.0.step(), runs.1.step());
             // One residual an iteration and one gain a step at least; one residual more where the last one is confirmed.
-            let spent = counting.evaluations() - before;
+            let spent = evaluations.get() - before;
             let iterations = u64::from(runs.1.iterations());
             assert!((iterations + 1..=iterations + 2).contains(&spent), "{spent} for {iterations} iterations");
         }

@@ -11,6 +11,7 @@ use super::counting::Counting;
 use super::method::{Method, steps};
 use super::reference::Reference;
 use super::rival::{self, Ended};
+use core::cell::Cell;
 use vi_core::check::Motion;
 use vi_core::{Composition, EnergyPreserving, FixedStep, State, StepError, Stepping};
 
@@ -110,10 +111,11 @@ pub(super) fn all<S: Stepping<N>, const N: usize>(
             progress.advance_by(1);
             let initial = system.energy(start.t, &start.q, &start.v);
             let mut watch = Watch { system, reference, initial, largest: 0.0, worst: Vec::new() };
-            let counting = Counting::new(system);
+            let evaluations = Cell::new(0);
+            let counting = Counting::new(system, &evaluations);
             let ended = run(&counting, &mut watch, start, long, (method, setting)).err();
             #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-            let count = counting.evaluations() as f64;
+            let count = evaluations.get() as f64;
             let reached = watch.worst.last().map_or(long, |(t, _)| *t);
             Drift { method, setting, worst: watch.worst, rate: count / reached, ended }
         })
@@ -122,7 +124,7 @@ pub(super) fn all<S: Stepping<N>, const N: usize>(
 
 /// Runs to the end `long`, and shows the energy on the way.
 fn run<S: Stepping<N>, const N: usize>(
-    counting: &Counting<&S>,
+    counting: &Counting<'_, &S>,
     watch: &mut Watch<'_, S, N>,
     start: &Motion<N>,
     long: f64,

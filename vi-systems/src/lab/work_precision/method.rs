@@ -115,7 +115,7 @@ pub(super) fn reached<S: Stepping<N>, const N: usize>(
             run.state()
         }
         Method::Rival => {
-            let motion = rival::motion(&system, start, end, setting, drop)?;
+            let motion = rival::motion(system, start, end, setting, drop)?;
             State::at(&system, motion.t, motion.q, motion.v)
         }
     };

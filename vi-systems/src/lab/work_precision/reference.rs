@@ -88,7 +88,7 @@ impl<S: Stepping<N>, const N: usize> Reference<S, N> {
     /// What ended one of the runs.
     pub(super) fn agreement(&self, h: f64) -> Result<Agreement, Ended> {
         let (start, end) = (self.track.first().ok_or(Ended::NonFinite)?, self.track.last().ok_or(Ended::NonFinite)?);
-        let distance = |method, setting| self.error(&reached(&self.system, start, end.t, method, setting)?);
+        let distance = |method, setting| self.error(&reached(self.system, start, end.t, method, setting)?);
         let composed = distance(Method::Composed(Scheme::KAHAN_LI_8), h)?;
         Ok(Agreement { composed, h, rival: distance(Method::Rival, TOLERANCE)? })
     }

@@ -11,6 +11,7 @@ use super::drift::{self, Drift};
 use super::method::{Method, reached};
 use super::reference::{Agreement, Reference};
 use super::rival::Ended;
+use core::cell::Cell;
 use vi_core::check::Motion;
 use vi_core::{SVector, StepError, Stepping};
 
@@ -157,11 +158,10 @@ fn untimed<S: Stepping<N>, const N: usize>(
     until: f64,
     (method, setting): (Method, f64),
 ) -> Result<Point, Ended> {
-    let counting = Counting::new(system);
-    let state = reached(&counting, start, until, method, setting)?;
-    let evaluations = counting.evaluations();
+    let evaluations = Cell::new(0);
+    let state = reached(Counting::new(system, &evaluations), start, until, method, setting)?;
     let error = reference.error(&state)?;
-    Ok(Point { error, evaluations, seconds: f64::INFINITY, median: f64::INFINITY })
+    Ok(Point { error, evaluations: evaluations.get(), seconds: f64::INFINITY, median: f64::INFINITY })
 }
 
 /// Times every run that reaches its end, in rounds: what disturbs the machine for a while then disturbs all alike.
