@@ -36,7 +36,7 @@ pub use fallback::{Fallback, Switches};
 
 use crate::condition::Condition;
 use crate::state::Method;
-use crate::{Node, Real, Scalar, State, Step, StepError, Stepping};
+use crate::{Increment, Node, Real, Scalar, State, Step, StepError, Stepping};
 use nalgebra::SVector;
 use newton::{Failure, Root, Trial};
 
@@ -89,8 +89,8 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        if let Some(root) = self.foretold() {
-            let (node, last, step) = self.run.reached(&self.system, &self.run.node, &root, Method::EnergyPreserving);
+        if let Some((root, gain)) = self.foretold() {
+            let (node, last, step) = self.run.reached(&self.run.node, &root, &gain, Method::EnergyPreserving);
             if node.is_finite() && node.energy.is_finite() {
                 self.run.forecasts.push(root.v, root.h);
                 (self.run.node, self.run.last) = (node, last);
@@ -105,15 +105,15 @@ where
 
     /// The next step, where it has not to be sought.
     #[inline]
-    fn foretold(&self) -> Option<Root<N, T>> {
+    fn foretold(&self) -> Option<(Root<N, T>, Increment<N, T>)> {
         let Self { system, run, .. } = self;
         let Checkpoint { node, last, forecasts, bounds, phase, .. } = run;
         if phase.is_some() {
             return None;
         }
-        let root = forecasts.root(system, node, last)?;
+        let (root, gain) = forecasts.root(system, node, last)?;
         let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(root.h)) && !self.runs_away(root.h);
-        allowed.then_some(root)
+        allowed.then_some((root, gain))
     }
 
     /// The state reached last.
@@ -177,7 +177,8 @@ where
 
     /// Takes the step `root` from `start`, and learns from it.
     fn take(&mut self, start: Node<N, T>, root: Root<N, T>, method: Method<T>) -> Result<Step<N, T>, StepError> {
-        let (node, last, step) = self.run.reached(&self.system, &start, &root, method);
+        let gain = self.system.increment(&start, root.h, &root.v);
+        let (node, last, step) = self.run.reached(&start, &root, &gain, method);
         node.check_finite(start.t)?;
         match method {
             // A length that was given foretells none.
@@ -233,16 +234,15 @@ fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
 impl<const N: usize, T: Real> Checkpoint<N, T> {
     /// The node and the interval after the step `root` from `start`, and the step.
     #[inline]
-    fn reached<S: Stepping<N, T>>(
+    fn reached(
         &self,
-        system: &S,
         start: &Node<N, T>,
         root: &Root<N, T>,
+        gain: &Increment<N, T>,
         method: Method<T>,
     ) -> (Node<N, T>, Last<N, T>, Step<N, T>) {
         let Root { v, h, density, iterations, residual, .. } = *root;
-        let gain = system.increment(start, h, &v);
-        let node = start.advanced(h, &v, &gain);
+        let node = start.advanced(h, &v, gain);
         let (t_mid, q_mid) = start.midpoint(h, &v);
         let last = &self.last;
         // One over the time between the middles of the two intervals.

@@ -13,7 +13,7 @@
 //! from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several roots: see
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
-use crate::stride::{Inverse, Stride};
+use crate::stride::{Found, Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use crate::{continuation, momentum};
 use nalgebra::SVector;
@@ -131,20 +131,22 @@ where
             return Err(failure);
         }
         let Self { system, inverse, run, .. } = self;
-        if let Some((v, iterations)) = run.foretold(system, inverse.as_ref()) {
-            let node = run.reached(system, &v);
-            if node.is_finite() {
-                run.stride.take::<S>(v);
-                run.node = node;
-                run.steps += 1;
-                run.iterations = iterations;
-                return Ok(node.state());
+        if let Some(found) = run.foretold(system, inverse.as_ref()) {
+            if run.node.stays_finite(run.stride.h, &found.v, &found.gain) {
+                run.stride.take::<S>(found.v);
+                run.take(&found);
+                return Ok(run.node.state());
             }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers.
         let (run, outcome) = sought(self.system, self.run);
         match outcome {
-            Ok(()) => self.run = run,
+            // The rest is as it was, and known to be.
+            Ok(()) => {
+                self.run.node = run.node;
+                self.run.stride.forecast = run.stride.forecast;
+                (self.run.steps, self.run.iterations) = (run.steps, run.iterations);
+            }
             Err(failure) => self.failure = Some(failure),
         }
         outcome.map(|()| self.run.node.state())
@@ -197,32 +199,27 @@ where
 }
 
 impl<const N: usize, T: Scalar> Checkpoint<N, T> {
-    /// The velocity of the next step, where it has not to be sought.
+    /// The next step, where it has not to be sought.
     #[inline]
-    fn foretold<S: Stepping<N, T>>(
-        &self,
-        system: &S,
-        inverse: Option<&Inverse<S, N, T>>,
-    ) -> Option<(SVector<T, N>, u32)> {
+    fn foretold<S: Stepping<N, T>>(&self, system: &S, inverse: Option<&Inverse<S, N, T>>) -> Option<Found<N, T>> {
         let Self { node, stride, branch, .. } = self;
         if *branch == Branch::Nearest { stride.foretold(system, node, inverse) } else { None }
     }
 
-    /// The node after the step of velocity v.
+    /// Moves to the end of a step.
     #[inline]
-    fn reached<S: Stepping<N, T>>(&self, system: &S, v: &SVector<T, N>) -> Node<N, T> {
-        let h = self.stride.h;
-        self.node.moved(h, v, &system.increment(&self.node, h, v).momentum)
+    fn take(&mut self, found: &Found<N, T>) {
+        self.node.advance(self.stride.h, &found.v, &found.gain);
+        self.steps += 1;
+        self.iterations = found.iterations;
     }
 
     /// Takes a step that has to be sought.
     fn seek<S: Stepping<N, T>>(&mut self, system: &S) -> Result<(), StepError> {
-        let (v, iterations) = self.stride.seek(system, &self.node, self.branch)?;
-        let node = self.reached(system, &v);
-        node.check_finite(self.node.t)?;
-        (self.node, self.iterations) = (node, iterations);
-        self.steps += 1;
-        Ok(())
+        let t = self.node.t;
+        let found = self.stride.seek(system, &self.node, self.branch)?;
+        self.take(&found);
+        self.node.check_finite(t)
     }
 }
 

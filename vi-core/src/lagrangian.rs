@@ -95,6 +95,35 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T>;
     /// What momentum and energy gain over the solved step.
     fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T>;
+
+    /// What the momenta gain over the step of velocity `v + δv`, where `solve` gives δv from the momentum equation at `v`. The
+    /// generator writes it to first order in δv where that costs less than another evaluation: what it leaves
+    /// out is of the second order, as Newton's iteration does.
+    #[inline(always)]
+    fn momentum_step(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+        solve: impl FnOnce(&MomentumEquation<N, T, Self::Jacobian>) -> SVector<T, N>,
+    ) -> SVector<T, N> {
+        let dv = solve(&self.momentum_equation(node, h, v));
+        self.increment(node, h, &(v + dv)).momentum
+    }
+
+    /// The same in both unknowns: what momentum and energy gain over the step `(v + δv, h + δh)`, where `solve` gives
+    /// (δv, δh) from both equations at `(v, h)`.
+    #[inline(always)]
+    fn extended_step(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+        solve: impl FnOnce(&ExtendedSystem<N, T, Self::Jacobian>) -> (SVector<T, N>, T),
+    ) -> Increment<N, T> {
+        let (dv, dh) = solve(&self.extended_system(node, h, v));
+        self.increment(node, h + dh, &(v + dv))
+    }
 }
 
 /// The momentum equation at a trial velocity.
@@ -283,5 +312,27 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     #[inline]
     fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
         S::increment(self, node, h, v)
+    }
+
+    #[inline(always)]
+    fn momentum_step(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+        solve: impl FnOnce(&MomentumEquation<N, T, S::Jacobian>) -> SVector<T, N>,
+    ) -> SVector<T, N> {
+        S::momentum_step(self, node, h, v, solve)
+    }
+
+    #[inline(always)]
+    fn extended_step(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+        solve: impl FnOnce(&ExtendedSystem<N, T, S::Jacobian>) -> (SVector<T, N>, T),
+    ) -> Increment<N, T> {
+        S::extended_step(self, node, h, v, solve)
     }
 }

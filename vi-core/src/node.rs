@@ -60,12 +60,18 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
     }
 
+    /// Moves to the end of the step `(v, h)`; the energy stays.
+    #[inline]
+    pub fn advance(&mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) {
+        self.shift(h, v);
+        compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
+    }
+
     /// The node at the end of the step `(v, h)`, its energy left as it was.
     #[inline]
     #[must_use]
     pub fn moved(mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> Self {
-        self.shift(h, v);
-        compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
+        self.advance(h, v, momentum_gain);
         self
     }
 
@@ -95,6 +101,17 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     pub(crate) fn is_finite(&self) -> bool {
         let all = |vector: &SVector<T, N>| vector.as_slice().iter().fold(true, |all, entry| all & entry.is_finite());
         self.t.is_finite() & all(&self.q) & all(&self.p)
+    }
+
+    /// Whether time, coordinates and momenta stay finite over the step `(v, h)`.
+    #[inline]
+    pub(crate) fn stays_finite(&self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
+        let mut finite = (self.t + (h + self.t_low)).is_finite();
+        for i in 0..N {
+            finite &= (self.q[i] + (h * v[i] + self.q_low[i])).is_finite();
+            finite &= (self.p[i] + (momentum_gain[i] + self.p_low[i])).is_finite();
+        }
+        finite
     }
 
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of

@@ -28,6 +28,16 @@ const SHARE: f64 = 1.0;
 /// The inverse of a constant A.
 pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
 
+/// A momentum step that was found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    /// What the momenta gain.
+    pub(crate) gain: SVector<T, N>,
+    /// Newton iterations that it took.
+    pub(crate) iterations: u32,
+}
+
 /// A momentum step of a given length that is taken again and again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -45,31 +55,42 @@ impl<const N: usize, T: Real> Stride<N, T> {
     pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
         Self { h, forecast: Forecast::new(guess) }
     }
+}
 
-    /// The velocity from the one foretold, and how many Newton steps it took; the indicator is 1 in each lane where it can
-    /// be trusted.
-    #[inline]
-    fn attempt<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> (SVector<T, N>, T, u32) {
-        let guess = self.forecast.guess();
-        let equation = system.momentum_equation(node, self.h, &guess);
-        let step = equation.jacobian.solve(&equation.residual);
-        let (length, v) = (length_squared(&step), guess - step);
-        let done = length.at_most(self.forecast.radius());
-        if done.holds() {
-            return (v, done, 1);
+impl<const N: usize, T: Scalar> Stride<N, T> {
+    /// The step from the velocity foretold; `None` where it cannot be trusted. One loop, in line: a call that is lent
+    /// the node would keep a loop over steps from holding it in registers.
+    #[inline(always)]
+    fn attempt<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Option<Found<N, T>> {
+        let (mut v, mut before) = (self.forecast.guess(), None);
+        for iterations in 1..=ATTEMPTS {
+            let mut step = SVector::zeros();
+            let gain = system.momentum_step(node, self.h, &v, |equation| {
+                step = -equation.jacobian.solve(&equation.residual);
+                step
+            });
+            v += step;
+            let length = length_squared(&step);
+            // A step that is not much shorter than the one before belongs to another root.
+            if before.is_some_and(|before| length > before * T::real(0.25)) {
+                return None;
+            }
+            if length <= self.forecast.radius() {
+                return Some(Found { v, gain, iterations });
+            }
+            before = Some(length);
         }
-        // By copies, so that a loop over steps may keep its own in registers.
-        further(*system, *node, (self.h, self.forecast.radius()), v, length, done)
+        None
     }
 
-    /// The velocity from the last one, and ρ² from how the steps became shorter.
-    fn lesson<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> (SVector<T, N>, T, T) {
+    /// The velocity from the last one, and ρ² from how the steps became shorter; `None` where they do not.
+    fn lesson<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Option<(SVector<T, N>, T)> {
         let Self { h, forecast } = self;
-        let mut v = forecast.newest();
         let newton_step = |v: &SVector<T, N>| {
             let equation = system.momentum_equation(node, *h, v);
             (equation.jacobian.solve(&equation.residual), equation.jacobian)
         };
+        let mut v = forecast.newest();
         let (step, _) = newton_step(&v);
         let first = length_squared(&step);
         v -= step;
@@ -77,46 +98,21 @@ impl<const N: usize, T: Real> Stride<N, T> {
         let second = length_squared(&step);
         let noise = system.magnitudes(node, *h, &v).residual * T::real(T::EPSILON);
         let rounding = length_squared(&jacobian.solve(&noise));
-        let radius = Lesson { first, second, rounding }.radius(SHARE) * second.at_most(first * T::real(0.25));
-        let trusted = |length: T| length.at_most(radius) * radius.is_above(T::zero());
+        let radius = Lesson { first, second, rounding }.radius(SHARE);
+        if !(radius > T::zero() && second <= first * T::real(0.25)) {
+            return None;
+        }
         v -= step;
-        let mut done = trusted(second);
-        if !done.holds() {
+        if second > radius {
             let (step, _) = newton_step(&v);
-            v -= step * (T::one() - done);
-            done = done.max(trusted(length_squared(&step)));
+            v -= step;
+            if !(length_squared(&step) <= radius) {
+                return None;
+            }
         }
-        (v, done, radius)
+        v.iter().all(|entry| entry.is_finite()).then_some((v, radius))
     }
-}
 
-/// The Newton steps that follow where the first was too long.
-#[inline(never)]
-fn further<const N: usize, T: Real, S: Stepping<N, T>>(
-    system: S,
-    node: Node<N, T>,
-    (h, radius): (T, T),
-    mut v: SVector<T, N>,
-    mut before: T,
-    mut done: T,
-) -> (SVector<T, N>, T, u32) {
-    for attempt in 2..=ATTEMPTS {
-        let equation = system.momentum_equation(&node, h, &v);
-        let step = equation.jacobian.solve(&equation.residual);
-        let length = length_squared(&step);
-        // A lane that is done stays as it is: what a trajectory becomes does not depend on its neighbours.
-        v -= step * (T::one() - done);
-        // A step that is not much shorter than the one before belongs to another root.
-        done = done.max(length.at_most(radius) * length.at_most(before * T::real(0.25)));
-        if done.holds() {
-            return (v, done, attempt);
-        }
-        before = length;
-    }
-    (v, done, ATTEMPTS)
-}
-
-impl<const N: usize, T: Scalar> Stride<N, T> {
     /// The inverse of A where it is constant and solves the equation to rounding.
     pub(crate) fn inverse<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Option<Inverse<S, N, T>> {
         if !S::CONSTANT_JACOBIAN {
@@ -128,24 +124,23 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         (momentum::residual(system, node, self.h, &v) <= momentum::FLOOR).then_some(inverse)
     }
 
-    /// The velocity by one product with the inverse of A, or from the one foretold, and the Newton iterations it took;
-    /// `None` where it has to be sought.
+    /// The step by one product with the inverse of A, or from the velocity foretold; `None` where it has to be sought.
     #[inline]
     pub(crate) fn foretold<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         inverse: Option<&Inverse<S, N, T>>,
-    ) -> Option<(SVector<T, N>, u32)> {
+    ) -> Option<Found<N, T>> {
         if S::CONSTANT_JACOBIAN {
             let rest = system.momentum_equation(node, self.h, &SVector::zeros());
-            return Some((-S::Jacobian::apply(inverse?, &rest.residual), 0));
+            let v = -S::Jacobian::apply(inverse?, &rest.residual);
+            return Some(Found { v, gain: system.increment(node, self.h, &v).momentum, iterations: 0 });
         }
         if !S::SMOOTH || self.forecast.is_learning() {
             return None;
         }
-        let (v, done, iterations) = self.attempt(system, node);
-        done.holds().then_some((v, iterations))
+        self.attempt(system, node)
     }
 
     /// Takes a velocity that was foretold.
@@ -154,7 +149,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         if S::CONSTANT_JACOBIAN { self.forecast.replace(v) } else { self.forecast.push(v) }
     }
 
-    /// The velocity without the forecast, or by a lesson for it; and the Newton iterations it took. The forecast takes it.
+    /// The step without the forecast, or by a lesson for it. The forecast takes it.
     ///
     /// # Errors
     /// Those of Newton's iteration and of the continuation.
@@ -163,23 +158,27 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         system: &S,
         node: &Node<N, T>,
         branch: Branch,
-    ) -> Result<(SVector<T, N>, u32), StepError> {
+    ) -> Result<Found<N, T>, StepError> {
+        let h = self.h;
+        let found = |v, iterations| {
+            let gain = system.increment(node, h, &v).momentum;
+            Found { v, gain, iterations }
+        };
         if S::SMOOTH && branch == Branch::Nearest && self.forecast.is_learning() {
-            let (v, done, radius) = self.lesson(system, node);
-            if done.holds() && v.iter().all(|entry| entry.is_finite()) {
+            if let Some((v, radius)) = self.lesson(system, node) {
                 self.forecast.learn(v, radius);
-                return Ok((v, 2));
+                return Ok(found(v, 2));
             }
         }
-        let Self { h, forecast } = self;
+        let Self { forecast, .. } = self;
         let start = forecast.newest();
         // Where a smooth motion was not foretold, what was foretold may be anywhere.
         let guess = if S::SMOOTH { start } else { forecast.guess() };
         let Solution { v, iterations } = match branch {
-            Branch::Nearest => continuation::nearest(system, node, *h, guess, start)?,
-            Branch::Connected => continuation::solve(system, node, *h, start, Pace::CLOSE)?,
+            Branch::Nearest => continuation::nearest(system, node, h, guess, start)?,
+            Branch::Connected => continuation::solve(system, node, h, start, Pace::CLOSE)?,
         };
         forecast.miss(v);
-        Ok((v, iterations))
+        Ok(found(v, iterations))
     }
 }

@@ -7,7 +7,7 @@
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
 use crate::forecast::{Forecast, Lesson, length_squared};
-use crate::{Node, Real, Scalar, Stepping};
+use crate::{Increment, Node, Real, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Part of a rounding that the iteration may leave in v and in h. It has a sign, and a million of them add up: with a quarter
@@ -57,39 +57,44 @@ impl<const N: usize, T: Real> Forecasts<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Forecasts<N, T> {
-    /// The root, where it was foretold.
-    #[inline]
+    /// The root and what is gained over it, where it was foretold.
+    #[inline(always)]
     pub(super) fn root<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         last: &Last<N, T>,
-    ) -> Option<Root<N, T>> {
+    ) -> Option<(Root<N, T>, Increment<N, T>)> {
         if !S::SMOOTH || self.is_learning() {
             return None;
         }
         let [h] = self.h.guess().into();
         let (mut trial, mut before) = (Trial { v: self.v.guess(), h }, None);
         for iterations in 1..=ATTEMPTS {
-            let equations = system.extended_system(node, trial.h, &trial.v);
-            let elimination = Elimination::of(&equations);
-            let step = elimination.step(&equations, &trial);
+            let mut newton = None;
+            let gain = system.extended_step(node, trial.h, &trial.v, |equations| {
+                let elimination = Elimination::of(equations);
+                let step = elimination.step(equations, &trial);
+                newton = Some((elimination, step));
+                (step.v, step.h)
+            });
+            let (elimination, step) = newton?;
             trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
             let lengths = (length_squared(&step.v), step.h * step.h);
-            if lengths.0 <= self.v.radius() && lengths.1 <= self.h.radius() {
-                let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
-                let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
-                // At the smallest root D has the sign that it had.
-                let forward = density * last.density > T::zero() && !elimination.is_degenerate();
-                let root = Root { v, h, density, iterations, residual: UNCONFIRMED, approach: None };
-                return (in_range && forward).then_some(root);
-            }
             // Steps that do not become much shorter lead to another root, or to none.
             let shorter = |now: T, before: T, radius: T| now <= (before * T::real(0.25)).max(radius);
             let contracts = before
                 .is_none_or(|(v, h)| shorter(lengths.0, v, self.v.radius()) && shorter(lengths.1, h, self.h.radius()));
             if !contracts {
                 return None;
+            }
+            if lengths.0 <= self.v.radius() && lengths.1 <= self.h.radius() {
+                let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
+                let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
+                // At the smallest root D has the sign that it had.
+                let forward = density * last.density > T::zero() && !elimination.is_degenerate();
+                let root = Root { v, h, density, iterations, residual: UNCONFIRMED, approach: None };
+                return (in_range && forward).then_some((root, gain));
             }
             before = Some(lengths);
         }

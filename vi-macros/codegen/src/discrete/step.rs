@@ -7,7 +7,7 @@
 //! e =  D1 L_d + g_d⁻ − E0            energy row
 //! c =  e − v·r                       combined row; its terms of order one have cancelled
 //! A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
-//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
+//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      and their derivatives
 //! ```
 
 use super::fields::changes;
@@ -36,6 +36,8 @@ pub struct Equations {
     pub momentum_increment: Vec<Expr>,
     /// E1 − E0.
     pub energy_increment: Expr,
+    /// The derivatives of p1 − p0 and, last, of E1 − E0: entry (i, j) by v_j, and by h where j is N.
+    pub increment_slopes: Vec<Vec<Expr>>,
 }
 
 /// Derives the equations of a step.
@@ -54,23 +56,28 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let energy = pool.sub(power, start);
     let energy_residual = combined(pool, energy, &velocities, &residual)?;
 
-    let rows = residual.iter().chain([&energy]).map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
-    let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
-    let mut energy_dv = Vec::with_capacity(dimension);
-    for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, &rows, &Symbol::StepVelocity(j))?;
-        energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
-        residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
-    }
-    let column = by_unknown(pool, fields, &points, &rows, &Symbol::Step)?;
-    let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
-
     let mut momentum_increment = Vec::with_capacity(dimension);
     for i in 0..dimension {
         let gain = pool.sum(&[slots.d2_ld[i], slots.d4_ld[i], slots.fd_minus[i], slots.fd_plus[i]]);
         momentum_increment.push(pool.expand(gain)?);
     }
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
+
+    let all = residual.iter().chain([&energy]).chain(&momentum_increment).chain([&energy_increment]);
+    let rows = all.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
+    let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
+    let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); dimension + 1];
+    let mut energy_dv = Vec::with_capacity(dimension);
+    for j in 0..dimension {
+        let column = by_unknown(pool, fields, &points, &rows, &Symbol::StepVelocity(j))?;
+        energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
+        residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
+        increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
+    }
+    let column = by_unknown(pool, fields, &points, &rows, &Symbol::Step)?;
+    let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
+    increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
+
     Ok(Equations {
         points,
         residual,
@@ -81,6 +88,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
         energy_dh,
         momentum_increment,
         energy_increment,
+        increment_slopes,
     })
 }
 
@@ -126,10 +134,11 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
     Point { time, coordinates, velocities }
 }
 
-/// The derivatives of all rows by one unknown: the energy row is the last one.
+/// The derivatives of all rows by one unknown: those of momentum, that of energy, the increments of both.
 struct Column {
     residual: Vec<Expr>,
     energy: Expr,
+    increments: Vec<Expr>,
 }
 
 fn by_unknown(
@@ -151,8 +160,9 @@ fn by_unknown(
         let slope = if varies { fields.derivative(pool, *row, &direct, &changes) } else { pool.zero() };
         column.push(pool.expand(slope)?);
     }
-    let energy = column.pop().unwrap_or(pool.zero());
-    Ok(Column { residual: column, energy })
+    let mut energy = column.split_off(rows.len() / 2 - 1);
+    let increments = energy.split_off(1);
+    Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), increments })
 }
 
 /// `row − v·column`, multiplied out.

@@ -6,7 +6,7 @@ use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
 use crate::symbol::Symbol;
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// Operations up to which a function is always inlined.
@@ -18,6 +18,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (constant, smooth) = (source.findings.constant_jacobian(), source.findings.smooth);
     let (form, equation) = momentum_equation(source);
     let functions = [equation, extended_system(source), magnitudes(source), increment(source)];
+    let steps = [momentum_step(source), extended_step(source)].into_iter().flatten();
     quote! {
         #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
@@ -25,6 +26,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             const CONSTANT_JACOBIAN: bool = #constant;
             const SMOOTH: bool = #smooth;
             #(#functions)*
+            #(#steps)*
         }
     }
 }
@@ -95,12 +97,7 @@ fn extended_system(source: &Source) -> TokenStream {
         return TokenStream::new();
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let (momentum, energy) = body.results.split_at(source.model.dimension() + 1);
-    let (_, momentum) = momentum_fields(source, momentum);
-    let [residual_dh, energy_residual, energy_dv, energy_dh] = energy else {
-        return TokenStream::new();
-    };
-    let (residual_dh, energy_dv) = (vector_of(residual_dh), vector_of(energy_dv));
+    let equations = extended_fields(source, &body.results);
     quote! {
         #documentation
         #[inline]
@@ -110,16 +107,109 @@ fn extended_system(source: &Source) -> TokenStream {
             h: T,
             v: &::vi_core::SVector<T, #dimension>,
         ) -> ::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian> {
-            #inputs #statements
-            ::vi_core::ExtendedSystem {
-                momentum: #momentum,
-                residual_dh: #residual_dh,
-                energy_residual: #(#energy_residual)*,
-                energy_dv: #energy_dv,
-                energy_dh: #(#energy_dh)*,
-            }
+            #inputs #statements #equations
         }
     }
+}
+
+/// Both rows, as `ExtendedSystem` holds them.
+fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> TokenStream {
+    let (momentum, energy) = results.split_at(source.model.dimension() + 1);
+    let (_, momentum) = momentum_fields(source, momentum);
+    let [residual_dh, energy_residual, energy_dv, energy_dh, ..] = energy else {
+        return TokenStream::new();
+    };
+    let (residual_dh, energy_dv) = (vector_of(residual_dh), vector_of(energy_dv));
+    quote! {
+        ::vi_core::ExtendedSystem {
+            momentum: #momentum,
+            residual_dh: #residual_dh,
+            energy_residual: #(#energy_residual)*,
+            energy_dv: #energy_dv,
+            energy_dh: #(#energy_dh)*,
+        }
+    }
+}
+
+/// The Newton step in v, and the gain at its end to first order; where that is cheaper than to evaluate it there.
+fn momentum_step(source: &Source) -> Option<TokenStream> {
+    let (dimension, of) = (source.dimension(), &source.system.equations);
+    let formula = format!("{}\n\nand to first order at `v + dv`.", source.formulas("p1 − p0", &of.momentum_increment));
+    let (body, documentation) = source.documented("momentum_step", &formula, Place::Argument)?;
+    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
+    let size = source.model.dimension();
+    let (equations, rest) = body.results.split_at(size + 1);
+    let (_, equation) = momentum_fields(source, equations);
+    let (gains, slopes) = rest.split_first()?;
+    let gains = gains.iter().zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
+    let inline = inline(source, "momentum_step");
+    Some(quote! {
+        #documentation
+        #inline
+        fn momentum_step(
+            &self,
+            node: &::vi_core::Node<#dimension, T>,
+            h: T,
+            v: &::vi_core::SVector<T, #dimension>,
+            solve: impl ::core::ops::FnOnce(
+                &::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>,
+            ) -> ::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::SVector<T, #dimension> {
+            #inputs #statements
+            let change: [T; #dimension] = solve(&#equation).into();
+            ::vi_core::SVector::from([#(#gains),*])
+        }
+    })
+}
+
+/// The Newton step in (v, h), and both gains at its end to first order.
+fn extended_step(source: &Source) -> Option<TokenStream> {
+    let (dimension, of) = (source.dimension(), &source.system.equations);
+    let momenta = source.formulas("p1 − p0", &of.momentum_increment);
+    let energy = source.formula("E1 − E0", of.energy_increment);
+    let formula = format!("{momenta}\n\n{energy}\n\nand to first order at `(v + dv, h + dh)`.");
+    let (body, documentation) = source.documented("extended_step", &formula, Place::Argument)?;
+    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
+    let size = source.model.dimension();
+    let (equations, rest) = body.results.split_at(size + 5);
+    let equations = extended_fields(source, equations);
+    let [momentum, energy, slopes @ ..] = rest else { return None };
+    let mut gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
+    let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
+    let inline = inline(source, "extended_step");
+    Some(quote! {
+        #documentation
+        #inline
+        fn extended_step(
+            &self,
+            node: &::vi_core::Node<#dimension, T>,
+            h: T,
+            v: &::vi_core::SVector<T, #dimension>,
+            solve: impl ::core::ops::FnOnce(
+                &::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>,
+            ) -> (::vi_core::SVector<T, #dimension>, T),
+        ) -> ::vi_core::Increment<#dimension, T> {
+            #inputs #statements
+            let (change, change_h) = solve(&#equations);
+            let change: [T; #dimension] = change.into();
+            ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #(#gains)* }
+        }
+    })
+}
+
+/// `gain + Σ slope_j change_j`, without what is zero; the slope after those by v is that by h.
+fn carried(gain: &Entry, slopes: &[Entry], dimension: usize) -> TokenStream {
+    let terms = slopes.iter().enumerate().filter(|(_, slope)| !slope.zero).map(|(j, slope)| {
+        let change = if j < dimension {
+            let j = Literal::usize_unsuffixed(j);
+            quote!(change[#j])
+        } else {
+            quote!(change_h)
+        };
+        quote!((#slope) * #change)
+    });
+    let sum = terms.reduce(|sum, term| quote!(#sum + #term));
+    sum.map_or_else(|| quote!(#gain), |sum| quote!(#gain + (#sum)))
 }
 
 fn magnitudes(source: &Source) -> TokenStream {

@@ -167,6 +167,7 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
 
 fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.equations;
+    let dimension = of.residual.len();
     let residual = assembly.open_all(&of.residual);
     let energy = assembly.open_all(&[of.energy_residual]);
     let magnitudes = vec![assembly.magnitudes(&residual), assembly.magnitudes(&energy)];
@@ -178,10 +179,36 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
     let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
-    Ok(vec![
+    let slopes: Vec<Vec<Expr>> = of.increment_slopes.iter().map(|row| assembly.open_all(row)).collect();
+    let momentum_slopes: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
+    let mut functions = vec![
         assembly.function("momentum_equation", &momentum)?,
         assembly.function("extended_system", &extended)?,
         assembly.function("magnitudes", &magnitudes)?,
         assembly.function("increment", &gains)?,
-    ])
+    ];
+    momentum.push(gains[0].clone());
+    extended.extend(gains);
+    let steps = [("momentum_step", 0, momentum, momentum_slopes), ("extended_step", 1, extended, slopes)];
+    for (name, equations, groups, slopes) in steps {
+        let evaluated = functions[equations].0.cost() + functions[3].0.cost();
+        functions.extend(carried(assembly, name, groups, slopes, evaluated)?);
+    }
+    Ok(functions)
+}
+
+/// A function of equations and gains, and of the slopes that carry the gains to the end of the step which the equations
+/// give; where this costs less than to evaluate the gains there.
+fn carried(
+    assembly: &mut Assembly,
+    name: &'static str,
+    mut groups: Vec<Vec<Expr>>,
+    slopes: Vec<Vec<Expr>>,
+    evaluated: usize,
+) -> core::result::Result<Option<(Function, Expressions)>, TooLarge> {
+    let zero = assembly.pool.zero();
+    let products = slopes.iter().flatten().filter(|slope| **slope != zero).count();
+    groups.extend(slopes);
+    let step = assembly.function(name, &groups)?;
+    Ok((step.0.cost() + 2 * products <= evaluated).then_some(step))
 }

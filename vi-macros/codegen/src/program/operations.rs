@@ -214,4 +214,15 @@ impl Operation {
     pub fn is_work(&self) -> bool {
         !matches!(self, Self::Constant(_) | Self::Input(_))
     }
+
+    /// What it costs, in additions: a quotient waits four times as long, and a sine is a polynomial.
+    #[must_use]
+    pub fn cost(&self) -> usize {
+        match self {
+            Self::Constant(_) | Self::Input(_) => 0,
+            Self::Negate(_) | Self::Add(..) | Self::Subtract(..) | Self::Multiply(..) => 1,
+            Self::Divide(..) | Self::SquareRoot(_) | Self::Reciprocal(_) => 4,
+            Self::Call(..) | Self::Call2(..) => 12,
+        }
+    }
 }

@@ -92,4 +92,11 @@ impl Function {
         let needed = self.operations.needed(&self.results);
         needed.into_iter().filter(|id| self.operations.get(*id).is_work()).count()
     }
+
+    /// What these operations cost, in additions.
+    #[must_use]
+    pub fn cost(&self) -> usize {
+        let needed = self.operations.needed(&self.results);
+        needed.into_iter().map(|id| self.operations.get(id).cost()).sum()
+    }
 }
