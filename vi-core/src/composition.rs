@@ -164,17 +164,18 @@ where
             if let Some(v) = known.filter(|_| stride.forecast.is_new()) {
                 *stride = Stride::new(stride.h, v);
             }
-            let found = if let Some(found) = stride.foretold(system, &node, inverse.as_ref()) {
-                stride.take::<S>(found.v);
+            let found = if let Some(found) = stride.foretold(system, &node, stride.place::<S>(&node), inverse.as_ref())
+            {
+                stride.take::<S>(&found);
                 found
             } else {
                 let guess = stride.forecast.newest();
                 let sought = stride.seek(system, &node, Branch::Nearest);
                 sought.map_err(|failure| failure.explained(system, &node, stride.h, &guess))?
             };
-            node.advance(stride.h, &found.v, &found.gain);
+            node.advance(stride.h, &found.v(), &found.gain);
             node.check_finite(self.node.t)?;
-            known = Some(found.v);
+            known = Some(found.v());
         }
         self.node = node;
         core::mem::swap(&mut self.strides, &mut self.following);

@@ -64,7 +64,8 @@ pub enum Branch {
 pub struct Checkpoint<const N: usize, T = f64> {
     node: Node<N, T>,
     stride: Stride<N, T>,
-    steps: u64,
+    /// Where the next stride evaluates L.
+    place: SVector<T, N>,
     iterations: u32,
     branch: Branch,
 }
@@ -88,7 +89,7 @@ where
         // any other start will do.
         let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p]).map_err(explained)?;
         let stride = Stride::new(h, v);
-        let run = Checkpoint { node, stride, steps: 0, iterations: 0, branch: Branch::Nearest };
+        let run = Checkpoint { node, stride, place: node.q, iterations: 0, branch: Branch::Nearest };
         Ok(Self { system, inverse: stride.inverse(&system, &node), run, failure: None })
     }
 
@@ -114,7 +115,7 @@ where
         check_step(stride.h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
-        if !stride.forecast.is_finite() {
+        if !(stride.forecast.is_finite() && checkpoint.place.iter().all(|entry| entry.is_finite())) {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None });
         }
         Ok(Self { system, inverse: stride.inverse(&system, node), run: checkpoint, failure: None })
@@ -132,8 +133,9 @@ where
         }
         let Self { system, inverse, run, .. } = self;
         if let Some(found) = run.foretold(system, inverse.as_ref()) {
-            if run.node.stays_finite(run.stride.h, &found.v, &found.gain) {
-                run.stride.take::<S>(found.v);
+            if run.node.stays_finite(run.stride.h, &found.v(), &found.gain) {
+                run.place = run.stride.place_after::<S>(&run.node, &found);
+                run.stride.take::<S>(&found);
                 run.take(&found);
                 return Ok(run.node.state());
             }
@@ -143,9 +145,9 @@ where
         match outcome {
             // The rest is as it was, and known to be.
             Ok(()) => {
-                self.run.node = run.node;
-                self.run.stride.forecast = run.stride.forecast;
-                (self.run.steps, self.run.iterations) = (run.steps, run.iterations);
+                let Checkpoint { node, stride, place, iterations, .. } = run;
+                (self.run.node, self.run.place, self.run.iterations) = (node, place, iterations);
+                self.run.stride.resume(stride);
             }
             Err(failure) => self.failure = Some(failure),
         }
@@ -189,7 +191,7 @@ where
     /// Evaluated from v inside the interval: from the stored nodes it would carry the cancellation of `(q1 − q0)/h`.
     pub fn discrete_energy(&self) -> Option<T> {
         let v = self.v();
-        (self.run.steps > 0).then(|| {
+        (!self.run.stride.forecast.is_new()).then(|| {
             let mut start = self.run.node;
             start.shift(-self.run.stride.h, &v);
             let start = start.leaving(&self.system, self.run.stride.h, &v);
@@ -202,15 +204,14 @@ impl<const N: usize, T: Scalar> Checkpoint<N, T> {
     /// The next step, where it has not to be sought.
     #[inline]
     fn foretold<S: Stepping<N, T>>(&self, system: &S, inverse: Option<&Inverse<S, N, T>>) -> Option<Found<N, T>> {
-        let Self { node, stride, branch, .. } = self;
-        if *branch == Branch::Nearest { stride.foretold(system, node, inverse) } else { None }
+        let Self { node, stride, place, branch, .. } = self;
+        if *branch == Branch::Nearest { stride.foretold(system, node, *place, inverse) } else { None }
     }
 
     /// Moves to the end of a step.
     #[inline]
     fn take(&mut self, found: &Found<N, T>) {
-        self.node.advance(self.stride.h, &found.v, &found.gain);
-        self.steps += 1;
+        self.node.advance(self.stride.h, &found.v(), &found.gain);
         self.iterations = found.iterations;
     }
 
@@ -219,6 +220,7 @@ impl<const N: usize, T: Scalar> Checkpoint<N, T> {
         let t = self.node.t;
         let found = self.stride.seek(system, &self.node, self.branch)?;
         self.take(&found);
+        self.place = self.stride.place::<S>(&self.node);
         self.node.check_finite(t)
     }
 }

@@ -1,23 +1,22 @@
 //! What the next step will be, foretold, and how far Newton's iteration may be trusted from there.
 //!
-//! In: the unknowns `u` of the last steps. Out: a guess of those of the next one, by a polynomial through the last m + 1
-//! of them, and a distance ρ: a Newton step shorter than ρ leaves less than a share of one rounding, and nothing need be
-//! evaluated to confirm it.
+//! In: the unknowns `u` of the last steps. Out: a guess of those of the next one, and a distance ρ: a Newton step shorter than
+//! ρ leaves less than a share of one rounding, and nothing need be evaluated to confirm it.
 //!
 //! ```text
-//! guess   Σ ∇^k u,  k = 0..m, with the backward differences ∇^0 u = u, ∇^k u = ∇^(k−1) u − ∇^(k−1) u_before; error O(h^(m+1))
+//! guess   Σ w_i u_i,  i = 0 the newest: w = 7, −21, 35, −35, 21, −7, 1, the polynomial of degree 6 through the last seven;
+//!         or the last u, where the steps are not smooth enough for that
 //! radius  after a step |δ| the next one is C |δ|²:  ρ² = share ε/C,  ε the length of a step that is all rounding
 //! ```
 //!
-//! A new u enters all differences at once, none waits for another: `∇^k u = u − Σ_(j<k) ∇^j u_before`, and the sums are
-//! there before u is.
+//! A step is short in time: what waits for its end should be little. A new u gives its part to all later guesses at once, and
+//! the next guess is there before the Newton step δ is, but for `w_0 δ`.
 //!
-//! C and the best m change slowly along a motion. They are learnt from one step in 64 to 256, which starts on purpose
-//! from the last u: its first two Newton steps are C, and which m would have guessed best is seen from the differences. A step
+//! C and whether to extrapolate change slowly along a motion. They are learnt from one step in 64 to 256, which starts on purpose
+//! from the last u: its first two Newton steps are C, and its solution shows which guess would have been better. A step
 //! whose Newton steps do not come below ρ is taken by the slow way, which measures every residual.
-//! Everything is one formula for one number or for lanes of them: conditions are indicators, 1 or 0 in each lane.
 
-use crate::Real;
+use crate::{Real, Scalar};
 use nalgebra::SVector;
 
 /// Steps between two that learn, at first.
@@ -26,8 +25,11 @@ const INTERVAL: u32 = 64;
 const LONG_INTERVAL: u32 = 256;
 /// The same after ρ has become less than a quarter of what it was.
 const ALERT: u32 = 8;
-/// Differences that are kept. The last one is the error of the highest order, 6.
-const DEPTH: usize = 8;
+/// What the extrapolation takes of the last step, and of those before it.
+const NEWEST: f64 = 7.0;
+const OLDER: [f64; 6] = [-21.0, 35.0, -35.0, 21.0, -7.0, 1.0];
+/// Steps after which all that is extrapolated from is known.
+const ENOUGH: u8 = 8;
 
 /// Guesses of the next M unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,19 +41,23 @@ const DEPTH: usize = 8;
 pub(crate) struct Forecast<const M: usize, T> {
     /// The guess of the next step.
     guess: SVector<T, M>,
-    /// Row k is ∇^k u of the last step.
-    differences: [SVector<T, M>; DEPTH],
-    /// 1 for each difference that the guess takes, 0 for those beyond its order.
-    taken: [T; DEPTH],
-    /// How many the guess takes.
-    order: T,
+    /// The extrapolation to the next step, whether it is the guess or not.
+    extrapolation: SVector<T, M>,
+    /// The unknowns of the last step.
+    newest: SVector<T, M>,
+    /// What the steps up to now give to the extrapolations after the next one, each used up in its turn.
+    parts: [SVector<T, M>; OLDER.len()],
+    /// Whether the guess is the extrapolation: 1, or 0 where it is the last step.
+    extrapolated: T,
+    /// What the guess takes of the last step.
+    weight: T,
     /// ρ²; zero where nothing is trusted.
     radius: T,
     /// Steps until the next one that learns.
     until: u32,
     /// Steps from the last one that learnt to the next.
     interval: u32,
-    /// How many differences are those of steps.
+    /// Steps that are known, up to [`ENOUGH`].
     known: u8,
 }
 
@@ -76,20 +82,22 @@ impl<T: Real> Lesson<T> {
     }
 }
 
-impl<const M: usize, T: Real> Forecast<M, T> {
+impl<const M: usize, T: Scalar> Forecast<M, T> {
     /// Before the first step, with a guess of it.
     pub(crate) fn new(guess: SVector<T, M>) -> Self {
         let mut constant = Self {
             guess,
-            differences: [SVector::zeros(); DEPTH],
-            taken: [T::zero(); DEPTH],
-            order: T::one(),
+            extrapolation: guess,
+            newest: guess,
+            parts: [SVector::zeros(); OLDER.len()],
+            extrapolated: T::zero(),
+            weight: T::one(),
             radius: T::zero(),
             until: 0,
             interval: INTERVAL,
             known: 0,
         };
-        (constant.differences[0], constant.taken[0]) = (guess, T::one());
+        OLDER.iter().for_each(|_| constant.enter(guess));
         constant
     }
 
@@ -101,13 +109,13 @@ impl<const M: usize, T: Real> Forecast<M, T> {
     /// The unknowns of the last step.
     #[inline]
     pub(crate) fn newest(&self) -> SVector<T, M> {
-        self.differences[0]
+        self.newest
     }
 
     /// Whether everything is a finite number.
     pub(crate) fn is_finite(&self) -> bool {
-        let numbers = self.differences.iter().chain([&self.guess]).flat_map(|u| u.iter()).chain(&self.taken);
-        numbers.chain([&self.order, &self.radius]).all(|number| number.is_finite())
+        let numbers = self.parts.iter().chain([&self.guess, &self.extrapolation, &self.newest]).flat_map(|u| u.iter());
+        numbers.chain([&self.extrapolated, &self.weight, &self.radius]).all(|number| number.is_finite())
     }
 
     /// The guess of the next step.
@@ -128,30 +136,42 @@ impl<const M: usize, T: Real> Forecast<M, T> {
         self.until == 0
     }
 
+    /// What the next guess takes of a change of the step before it.
+    #[inline]
+    pub(crate) fn weight(&self) -> T {
+        self.weight
+    }
+
+    /// The next guess, were the trial u the step.
+    #[inline]
+    pub(crate) fn after(&self, trial: &SVector<T, M>) -> SVector<T, M> {
+        self.parts[0] * self.extrapolated + trial * self.weight
+    }
+
     /// Takes the step `u` where no guess is needed.
     #[inline]
     pub(crate) fn replace(&mut self, u: SVector<T, M>) {
-        self.differences[0] = u;
+        self.newest = u;
+        self.known = 1;
     }
 
-    /// Takes the step `u`.
+    /// Takes the step `trial + δ`.
     #[inline]
-    pub(crate) fn push(&mut self, u: SVector<T, M>) {
+    pub(crate) fn push(&mut self, trial: &SVector<T, M>, step: &SVector<T, M>) {
+        let u = trial + step;
+        self.guess = self.after(trial) + step * self.weight;
+        self.extrapolation = self.parts[0] + u * T::real(NEWEST);
+        self.enter(u);
         self.until = self.until.saturating_sub(1);
-        for i in 0..M {
-            // `sum` is Σ ∇^j u_before over j < k, and `known` what the guess takes of these: neither waits for u.
-            let (mut sum, mut known) = (T::zero(), T::zero());
-            for (k, difference) in self.differences.iter_mut().enumerate() {
-                let before = difference[i];
-                if k == 0 {
-                    (difference[i], sum) = (u[i], before);
-                } else {
-                    difference[i] = u[i] - sum;
-                    known += sum * self.taken[k];
-                    sum += before;
-                }
-            }
-            self.guess[i] = u[i] * self.order - known;
+    }
+
+    /// Gives the step `u` to all extrapolations after the next one.
+    #[inline]
+    fn enter(&mut self, u: SVector<T, M>) {
+        self.newest = u;
+        for k in 0..OLDER.len() {
+            let before = self.parts.get(k + 1).copied().unwrap_or(SVector::zeros());
+            self.parts[k] = before + u * T::real(OLDER[k]);
         }
     }
 
@@ -160,42 +180,27 @@ impl<const M: usize, T: Real> Forecast<M, T> {
         if self.is_learning() {
             self.learn(u, T::zero());
         } else {
-            self.push(u);
+            self.push(&u, &SVector::zeros());
             self.until = 0;
         }
     }
 
     /// Takes the step `u` that started from the last one, and ρ² as it taught.
     pub(crate) fn learn(&mut self, u: SVector<T, M>, radius: T) {
-        let narrowed = !radius.is_above(self.radius * T::real(1.0 / 16.0)).holds();
-        let steady = !narrowed && radius.at_most(self.radius * T::real(16.0)).holds();
+        let narrowed = !(radius > self.radius * T::real(1.0 / 16.0));
+        let steady = !narrowed && radius <= self.radius * T::real(16.0);
         self.radius = radius;
-        self.push(u);
-        self.known = (self.known + 1).min(DEPTH as u8);
-        self.choose_order();
+        self.known = (self.known + 1).min(ENOUGH);
+        let better = length_squared(&(u - self.extrapolation)) <= length_squared(&(u - self.newest)) * T::real(0.25);
+        let (extrapolated, weight) = if better && self.known == ENOUGH { (1.0, NEWEST) } else { (0.0, 1.0) };
+        (self.extrapolated, self.weight) = (T::real(extrapolated), T::real(weight));
+        self.push(&u, &SVector::zeros());
         self.interval = match (narrowed, steady) {
             (true, _) => ALERT,
             (_, true) => (2 * self.interval).clamp(INTERVAL, LONG_INTERVAL),
             _ => INTERVAL,
         };
-        // The first steps know no higher order yet.
-        self.until = if usize::from(self.known) < DEPTH { 0 } else { self.interval - 1 };
-    }
-
-    /// The order that would have guessed the last step best: the highest up to which each order halves the error of the
-    /// one before, so that no order is chosen by chance where the steps are not smooth. The error of order m is the difference
-    /// of order m + 1.
-    fn choose_order(&mut self) {
-        let (mut least, mut climbing) = (length_squared(&self.differences[1]), T::one());
-        (self.guess, self.order) = (self.differences[0], T::one());
-        for k in 1..DEPTH {
-            let error = self.differences.get(k + 1).filter(|_| k + 1 < usize::from(self.known)).map(length_squared);
-            climbing = error.map_or(T::zero(), |error| climbing * error.at_most(least * T::real(0.25)));
-            least = error.unwrap_or(least);
-            self.taken[k] = climbing;
-            self.order += climbing;
-            self.guess += self.differences[k] * climbing;
-        }
+        self.until = if self.known < ENOUGH { 0 } else { self.interval - 1 };
     }
 }
 

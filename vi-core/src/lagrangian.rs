@@ -85,6 +85,8 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     const CONSTANT_JACOBIAN: bool;
     /// Whether L and f are made of functions without a kink or a jump, so that Newton's iteration is quadratic everywhere.
     const SMOOTH: bool;
+    /// The part of the step at whose end [`Stepping::momentum_step`] is told the coordinates: one half for the middle.
+    const PLACE: f64 = 0.5;
 
     /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the
     /// velocity that belongs to `p`.
@@ -96,13 +98,15 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     /// What momentum and energy gain over the solved step.
     fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T>;
 
-    /// What the momenta gain over the step of velocity `v + δv`, where `solve` gives δv from the momentum equation at `v`. The
+    /// What the momenta gain over the step of velocity `v + δv`, where `solve` gives δv from the momentum equation at `v`; the
+    /// coordinates after the part [`Stepping::PLACE`] of the step `v` are `place`. The
     /// generator writes it to first order in δv where that costs less than another evaluation: what it leaves
     /// out is of the second order, as Newton's iteration does.
     #[inline(always)]
     fn momentum_step(
         &self,
         node: &Node<N, T>,
+        _place: &SVector<T, N>,
         h: T,
         v: &SVector<T, N>,
         solve: impl FnOnce(&MomentumEquation<N, T, Self::Jacobian>) -> SVector<T, N>,
@@ -293,6 +297,7 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const SMOOTH: bool = S::SMOOTH;
+    const PLACE: f64 = S::PLACE;
 
     #[inline]
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, S::Jacobian> {
@@ -318,11 +323,12 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     fn momentum_step(
         &self,
         node: &Node<N, T>,
+        place: &SVector<T, N>,
         h: T,
         v: &SVector<T, N>,
         solve: impl FnOnce(&MomentumEquation<N, T, S::Jacobian>) -> SVector<T, N>,
     ) -> SVector<T, N> {
-        S::momentum_step(self, node, h, v, solve)
+        S::momentum_step(self, node, place, h, v, solve)
     }
 
     #[inline(always)]

@@ -33,6 +33,7 @@ pub mod linear;
 mod momentum;
 pub mod node;
 pub mod real;
+mod reciprocal;
 pub mod state;
 mod stride;
 

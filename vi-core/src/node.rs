@@ -50,7 +50,13 @@ impl<const N: usize, T: Real> Node<N, T> {
     #[inline]
     pub fn midpoint(&self, h: T, v: &SVector<T, N>) -> (T, SVector<T, N>) {
         let half = h * T::real(0.5);
-        (self.t + (self.t_low + half), self.q + (self.q_low + v * half))
+        (self.t + (self.t_low + half), self.place(half, v))
+    }
+
+    /// `q + way v`.
+    #[inline]
+    pub fn place(&self, way: T, v: &SVector<T, N>) -> SVector<T, N> {
+        self.q + (self.q_low + v * way)
     }
 
     /// Moves time by `h` and coordinates by `h v`; momenta and energy stay.

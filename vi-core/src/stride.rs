@@ -1,7 +1,7 @@
 //! Momentum steps of one length, one after the other.
 //!
-//! In: a node, the step h, and the velocities of the strides before. Out: the velocity v that solves the momentum equation,
-//! and the stride that follows. Three ways, the first that does:
+//! In: a node, the step h, and the velocities of the strides before. Out: the velocity v that solves the momentum equation, what
+//! the momenta gain, and the stride that follows. Three ways, the first that does:
 //!
 //! ```text
 //! A constant    v = −A⁻¹ r(0), the inverse computed once per run
@@ -10,12 +10,17 @@
 //! ```
 //!
 //! Every 64th stride is a lesson: it starts from the last velocity, to learn what may be trusted.
+//!
+//! One stride waits for the other, so what a foretold one does after it knows its Newton step δ is little. The next trial and the
+//! place where L is evaluated are there before δ, but for a multiple of it; the gain of the momenta is carried to the solution
+//! by its derivative (`Stepping::momentum_step`); and the one quotient of a small A is foretold too (`reciprocal`).
 
 use crate::continuation::{self, Pace};
 use crate::fixed_step::Branch;
 use crate::forecast::{Forecast, Lesson, length_squared};
 use crate::linear::Matrix;
 use crate::momentum::{self, Solution};
+use crate::reciprocal::Reciprocal;
 use crate::{Node, Real, Scalar, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -31,11 +36,24 @@ pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian
 /// A momentum step that was found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found<const N: usize, T> {
-    pub(crate) v: SVector<T, N>,
+    /// The velocity before the last Newton step,
+    pub(crate) trial: SVector<T, N>,
+    /// and that step.
+    pub(crate) step: SVector<T, N>,
     /// What the momenta gain.
     pub(crate) gain: SVector<T, N>,
+    /// 1/determinant of A there.
+    pub(crate) reciprocal: T,
     /// Newton iterations that it took.
     pub(crate) iterations: u32,
+}
+
+impl<const N: usize, T: Real> Found<N, T> {
+    /// The velocity.
+    #[inline]
+    pub(crate) fn v(&self) -> SVector<T, N> {
+        self.trial + self.step
+    }
 }
 
 /// A momentum step of a given length that is taken again and again.
@@ -48,55 +66,89 @@ pub(crate) struct Found<const N: usize, T> {
 pub(crate) struct Stride<const N: usize, T> {
     pub(crate) h: T,
     pub(crate) forecast: Forecast<N, T>,
-}
-
-impl<const N: usize, T: Real> Stride<N, T> {
-    /// The first stride, with a guess of its velocity.
-    pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
-        Self { h, forecast: Forecast::new(guess) }
-    }
+    reciprocal: Reciprocal<T>,
 }
 
 impl<const N: usize, T: Scalar> Stride<N, T> {
-    /// The step from the velocity foretold; `None` where it cannot be trusted. One loop, in line: a call that is lent
-    /// the node would keep a loop over steps from holding it in registers.
+    /// The first stride, with a guess of its velocity.
+    pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
+        Self { h, forecast: Forecast::new(guess), reciprocal: Reciprocal::new() }
+    }
+
+    /// Goes on as another stride of the same length has: a loop over steps sees that h stays.
+    #[inline]
+    pub(crate) fn resume(&mut self, other: Self) {
+        (self.forecast, self.reciprocal) = (other.forecast, other.reciprocal);
+    }
+
+    /// Where [`Stepping::momentum_step`] evaluates L in the stride from this node, as it is foretold.
+    #[inline]
+    pub(crate) fn place<S: Stepping<N, T>>(&self, node: &Node<N, T>) -> SVector<T, N> {
+        node.place(self.h * T::real(S::PLACE), &self.forecast.guess())
+    }
+
+    /// The same for the stride after the step `found` from this node.
+    #[inline]
+    pub(crate) fn place_after<S: Stepping<N, T>>(&self, node: &Node<N, T>, found: &Found<N, T>) -> SVector<T, N> {
+        let (h, part, weight) = (self.h, T::real(S::PLACE), self.forecast.weight());
+        let way = found.trial + self.forecast.after(&found.trial) * part;
+        node.place(h, &way) + found.step * (h * (T::one() + part * weight))
+    }
+
+    /// The step from the velocity foretold and its `place`; `None` where it cannot be trusted. One loop, in line: a call that
+    /// is lent the node would keep a loop over steps from holding it in registers.
     #[inline(always)]
-    fn attempt<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Option<Found<N, T>> {
-        let (mut v, mut before) = (self.forecast.guess(), None);
+    fn attempt<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        mut place: SVector<T, N>,
+    ) -> Option<Found<N, T>> {
+        let (mut trial, mut before) = (self.forecast.guess(), None);
         for iterations in 1..=ATTEMPTS {
-            let mut step = SVector::zeros();
-            let gain = system.momentum_step(node, self.h, &v, |equation| {
-                step = -equation.jacobian.solve(&equation.residual);
+            let (mut step, mut reciprocal, mut certain) = (SVector::zeros(), T::one(), true);
+            let gain = system.momentum_step(node, &place, self.h, &trial, |equation| {
+                let (numerators, determinant) = equation.jacobian.quotient(&equation.residual);
+                if S::Jacobian::QUOTIENT && iterations == 1 && self.reciprocal.is_foretold() {
+                    let foretold = self.reciprocal.next();
+                    step = numerators * -foretold;
+                    certain = self.reciprocal.is_trusted(foretold * determinant, length_squared(&step));
+                } else {
+                    // A quotient, lest this and the product be one way that waits for both.
+                    step = numerators.map(|numerator| -(numerator / determinant));
+                }
+                reciprocal = determinant.recip();
                 step
             });
-            v += step;
             let length = length_squared(&step);
             // A step that is not much shorter than the one before belongs to another root.
             if before.is_some_and(|before| length > before * T::real(0.25)) {
                 return None;
             }
-            if length <= self.forecast.radius() {
-                return Some(Found { v, gain, iterations });
+            if length <= self.forecast.radius() && certain {
+                return Some(Found { trial, step, gain, reciprocal, iterations });
             }
             before = Some(length);
+            trial += step;
+            place = node.place(self.h * T::real(S::PLACE), &trial);
         }
         None
     }
 
     /// The velocity from the last one, and ρ² from how the steps became shorter; `None` where they do not.
-    fn lesson<S: Stepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Option<(SVector<T, N>, T)> {
-        let Self { h, forecast } = self;
+    fn lesson<S: Stepping<N, T>>(&mut self, system: &S, node: &Node<N, T>) -> Option<(SVector<T, N>, T)> {
+        let h = self.h;
         let newton_step = |v: &SVector<T, N>| {
-            let equation = system.momentum_equation(node, *h, v);
+            let equation = system.momentum_equation(node, h, v);
             (equation.jacobian.solve(&equation.residual), equation.jacobian)
         };
-        let mut v = forecast.newest();
+        let mut v = self.forecast.newest();
         let (step, _) = newton_step(&v);
         let first = length_squared(&step);
         v -= step;
         let (step, jacobian) = newton_step(&v);
         let second = length_squared(&step);
-        let noise = system.magnitudes(node, *h, &v).residual * T::real(T::EPSILON);
+        let noise = system.magnitudes(node, h, &v).residual * T::real(T::EPSILON);
         let rounding = length_squared(&jacobian.solve(&noise));
         let radius = Lesson { first, second, rounding }.radius(SHARE);
         if !(radius > T::zero() && second <= first * T::real(0.25)) {
@@ -110,6 +162,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
                 return None;
             }
         }
+        self.reciprocal.learn(rounding);
         v.iter().all(|entry| entry.is_finite()).then_some((v, radius))
     }
 
@@ -124,29 +177,38 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         (momentum::residual(system, node, self.h, &v) <= momentum::FLOOR).then_some(inverse)
     }
 
-    /// The step by one product with the inverse of A, or from the velocity foretold; `None` where it has to be sought.
+    /// The step by one product with the inverse of A, or from the velocity foretold and its place; `None` where it has to be
+    /// sought.
     #[inline]
     pub(crate) fn foretold<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
+        place: SVector<T, N>,
         inverse: Option<&Inverse<S, N, T>>,
     ) -> Option<Found<N, T>> {
         if S::CONSTANT_JACOBIAN {
-            let rest = system.momentum_equation(node, self.h, &SVector::zeros());
+            let zeros = SVector::zeros();
+            let rest = system.momentum_equation(node, self.h, &zeros);
             let v = -S::Jacobian::apply(inverse?, &rest.residual);
-            return Some(Found { v, gain: system.increment(node, self.h, &v).momentum, iterations: 0 });
+            let gain = system.increment(node, self.h, &v).momentum;
+            return Some(Found { trial: v, step: zeros, gain, reciprocal: T::one(), iterations: 0 });
         }
         if !S::SMOOTH || self.forecast.is_learning() {
             return None;
         }
-        self.attempt(system, node)
+        self.attempt(system, node, place)
     }
 
-    /// Takes a velocity that was foretold.
+    /// Takes a step that was foretold.
     #[inline]
-    pub(crate) fn take<S: Stepping<N, T>>(&mut self, v: SVector<T, N>) {
-        if S::CONSTANT_JACOBIAN { self.forecast.replace(v) } else { self.forecast.push(v) }
+    pub(crate) fn take<S: Stepping<N, T>>(&mut self, found: &Found<N, T>) {
+        if S::CONSTANT_JACOBIAN {
+            self.forecast.replace(found.trial);
+        } else {
+            self.forecast.push(&found.trial, &found.step);
+            self.reciprocal.push(found.reciprocal, found.iterations == 1);
+        }
     }
 
     /// The step without the forecast, or by a lesson for it. The forecast takes it.
@@ -159,26 +221,37 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         node: &Node<N, T>,
         branch: Branch,
     ) -> Result<Found<N, T>, StepError> {
-        let h = self.h;
-        let found = |v, iterations| {
-            let gain = system.increment(node, h, &v).momentum;
-            Found { v, gain, iterations }
-        };
-        if S::SMOOTH && branch == Branch::Nearest && self.forecast.is_learning() {
-            if let Some((v, radius)) = self.lesson(system, node) {
+        let lesson = S::SMOOTH && branch == Branch::Nearest && self.forecast.is_learning();
+        let (v, iterations) = match lesson.then(|| self.lesson(system, node)).flatten() {
+            Some((v, radius)) => {
                 self.forecast.learn(v, radius);
-                return Ok(found(v, 2));
+                (v, 2)
             }
-        }
-        let Self { forecast, .. } = self;
+            None => {
+                let Solution { v, iterations } = self.searched(system, node, branch)?;
+                self.forecast.miss(v);
+                (v, iterations)
+            }
+        };
+        let (_, determinant) = system.momentum_equation(node, self.h, &v).jacobian.quotient(&v);
+        self.reciprocal.push(determinant.recip(), true);
+        let gain = system.increment(node, self.h, &v).momentum;
+        Ok(Found { trial: v, step: SVector::zeros(), gain, reciprocal: determinant.recip(), iterations })
+    }
+
+    fn searched<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        branch: Branch,
+    ) -> Result<Solution<N, T>, StepError> {
+        let Self { h, forecast, .. } = self;
         let start = forecast.newest();
         // Where a smooth motion was not foretold, what was foretold may be anywhere.
         let guess = if S::SMOOTH { start } else { forecast.guess() };
-        let Solution { v, iterations } = match branch {
-            Branch::Nearest => continuation::nearest(system, node, h, guess, start)?,
-            Branch::Connected => continuation::solve(system, node, h, start, Pace::CLOSE)?,
-        };
-        forecast.miss(v);
-        Ok(found(v, iterations))
+        match branch {
+            Branch::Nearest => continuation::nearest(system, node, *h, guess, start),
+            Branch::Connected => continuation::solve(system, node, *h, start, Pace::CLOSE),
+        }
     }
 }

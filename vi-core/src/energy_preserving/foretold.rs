@@ -7,7 +7,7 @@
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
 use crate::forecast::{Forecast, Lesson, length_squared};
-use crate::{Increment, Node, Real, Scalar, Stepping};
+use crate::{Increment, Node, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Part of a rounding that the iteration may leave in v and in h. It has a sign, and a million of them add up: with a quarter
@@ -31,7 +31,7 @@ pub(super) struct Forecasts<const N: usize, T> {
     h: Forecast<1, T>,
 }
 
-impl<const N: usize, T: Real> Forecasts<N, T> {
+impl<const N: usize, T: Scalar> Forecasts<N, T> {
     /// Before the first step, which follows the interval `(v, h)`.
     pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
         Self { v: Forecast::new(v), h: Forecast::new(SVector::repeat(h)) }
@@ -51,12 +51,10 @@ impl<const N: usize, T: Real> Forecasts<N, T> {
     /// Takes the step `(v, h)`.
     #[inline]
     pub(super) fn push(&mut self, v: SVector<T, N>, h: T) {
-        self.v.push(v);
-        self.h.push(SVector::repeat(h));
+        self.v.push(&v, &SVector::zeros());
+        self.h.push(&SVector::repeat(h), &SVector::zeros());
     }
-}
 
-impl<const N: usize, T: Scalar> Forecasts<N, T> {
     /// The root and what is gained over it, where it was foretold.
     #[inline(always)]
     pub(super) fn root<S: Stepping<N, T>>(

@@ -7,6 +7,16 @@ use nalgebra::{SMatrix, SVector};
 
 impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     type Inverse = Self;
+    const QUOTIENT: bool = N <= 2;
+
+    #[inline]
+    fn quotient(&self, rhs: &SVector<T, N>) -> (SVector<T, N>, T) {
+        match N {
+            1 => (*rhs, self[(0, 0)]),
+            2 => (numerators_2(self, rhs), determinant_2(self)),
+            _ => (self.solve(rhs), T::one()),
+        }
+    }
 
     #[inline]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
@@ -50,10 +60,23 @@ fn solve_1<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SM
 /// Cramer's rule for two unknowns.
 #[inline]
 fn solve_2<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-    let by_determinant = divisor(a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)]);
+    let by_determinant = divisor(determinant_2(a));
+    numerators_2(a, b).map(by_determinant)
+}
+
+#[inline]
+fn determinant_2<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> T {
+    a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)]
+}
+
+#[inline]
+fn numerators_2<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
     SMatrix::from_fn(|row, column| {
         let (b0, b1) = (b[(0, column)], b[(1, column)]);
-        by_determinant(if row == 0 { a[(1, 1)] * b0 - a[(0, 1)] * b1 } else { a[(0, 0)] * b1 - a[(1, 0)] * b0 })
+        if row == 0 { a[(1, 1)] * b0 - a[(0, 1)] * b1 } else { a[(0, 0)] * b1 - a[(1, 0)] * b0 }
     })
 }
 

@@ -33,9 +33,16 @@ use nalgebra::{SMatrix, SVector};
 pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     /// What is kept of A to solve with it many times.
     type Inverse: Copy + Debug;
+    /// Whether A is solved by one quotient, as [`Matrix::quotient`] gives it.
+    const QUOTIENT: bool = false;
 
     /// The X with `A X = rhs`; not finite where A is singular.
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M>;
+    /// The solution as numerators and one denominator, the determinant where A is solved by Cramer's rule, else 1.
+    #[inline]
+    fn quotient(&self, rhs: &SVector<T, N>) -> (SVector<T, N>, T) {
+        (self.solve(rhs), T::one())
+    }
     /// A, ready to solve with many times.
     fn inverse(&self) -> Self::Inverse;
     /// The x with `A x = rhs`, from the inverse of A.

@@ -20,6 +20,8 @@ use vi_expr::{Expr, Pool, Rational, TooLarge};
 pub struct Equations {
     /// Where L and f are evaluated, in the node and the unknowns.
     pub points: Vec<Point>,
+    /// The one point that moves with v, where there is one: its number, and c where its coordinates are q0 + c h v.
+    pub place: Option<(usize, Rational)>,
     /// r.
     pub residual: Vec<Expr>,
     /// A, row by row: entry (i, j) is ∂r_i/∂v_j.
@@ -79,6 +81,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
 
     Ok(Equations {
+        place: place(pool, &points),
         points,
         residual,
         residual_dv,
@@ -132,6 +135,30 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
     // (q0 + h v − q0)/h is v once multiplied out.
     let velocities = velocities.into_iter().map(|e| pool.expand(e).unwrap_or(e)).collect();
     Point { time, coordinates, velocities }
+}
+
+/// The point whose coordinates move with v, where there is only one and it lies on the way to the end.
+fn place(pool: &mut Pool<Symbol>, points: &[Point]) -> Option<(usize, Rational)> {
+    let moves = |pool: &Pool<Symbol>, expr: Expr| {
+        pool.symbols(expr).iter().any(|symbol| matches!(symbol, Symbol::Step | Symbol::StepVelocity(_)))
+    };
+    let mut moving = (0..points.len()).filter(|k| points[*k].coordinates.iter().any(|e| moves(pool, *e)));
+    let point = moving.next().filter(|_| moving.next().is_none())?;
+    let parts = [(1, 2), (1, 1)].map(|(over, under)| Rational::new(over.into(), under.into()));
+    parts.into_iter().find(|part| lies_at(pool, &points[point], part)).map(|part| (point, part))
+}
+
+/// Whether the coordinates of a point are q0 + c h v.
+fn lies_at(pool: &mut Pool<Symbol>, point: &Point, part: &Rational) -> bool {
+    let (step, zero) = (pool.symbol(Symbol::Step), pool.zero());
+    let factor = pool.number(part.clone());
+    point.coordinates.iter().enumerate().all(|(i, coordinate)| {
+        let (start, velocity) = (carried(pool, Symbol::Q0(i)), pool.symbol(Symbol::StepVelocity(i)));
+        let way = pool.product(&[factor, step, velocity]);
+        let there = pool.add(start, way);
+        let difference = pool.sub(*coordinate, there);
+        pool.expand(difference).is_ok_and(|difference| difference == zero)
+    })
 }
 
 /// The derivatives of all rows by one unknown: those of momentum, that of energy, the increments of both.

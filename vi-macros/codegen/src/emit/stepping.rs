@@ -5,7 +5,8 @@ use super::body::{Body, Entry, Place, part, parts};
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, Variable};
+use num_traits::ToPrimitive;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -19,12 +20,14 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (form, equation) = momentum_equation(source);
     let functions = [equation, extended_system(source), magnitudes(source), increment(source)];
     let steps = [momentum_step(source), extended_step(source)].into_iter().flatten();
+    let place = place(source);
     quote! {
         #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
             type Jacobian = #form;
             const CONSTANT_JACOBIAN: bool = #constant;
             const SMOOTH: bool = #smooth;
+            #place
             #(#functions)*
             #(#steps)*
         }
@@ -131,6 +134,13 @@ fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> TokenStream {
     }
 }
 
+/// The part of the step at whose end `momentum_step` is told the coordinates, where that is not the middle.
+fn place(source: &Source) -> Option<TokenStream> {
+    let (_, part) = source.system.equations.place.as_ref()?;
+    let part = part.to_f64().filter(|part| *part != 0.5)?;
+    Some(quote!(const PLACE: f64 = #part;))
+}
+
 /// The Newton step in v, and the gain at its end to first order; where that is cheaper than to evaluate it there.
 fn momentum_step(source: &Source) -> Option<TokenStream> {
     let (dimension, of) = (source.dimension(), &source.system.equations);
@@ -143,19 +153,23 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
     let (gains, slopes) = rest.split_first()?;
     let gains = gains.iter().zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
     let inline = inline(source, "momentum_step");
+    let place = of.place.as_ref().map(|(point, _)| {
+        parts(&body, source.model, |i| Symbol::AtPoint(*point, Variable::Coordinate(i)), &quote!((*place)))
+    });
     Some(quote! {
         #documentation
         #inline
         fn momentum_step(
             &self,
             node: &::vi_core::Node<#dimension, T>,
+            place: &::vi_core::SVector<T, #dimension>,
             h: T,
             v: &::vi_core::SVector<T, #dimension>,
             solve: impl ::core::ops::FnOnce(
                 &::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>,
             ) -> ::vi_core::SVector<T, #dimension>,
         ) -> ::vi_core::SVector<T, #dimension> {
-            #inputs #statements
+            #inputs #place #statements
             let change: [T; #dimension] = solve(&#equation).into();
             ::vi_core::SVector::from([#(#gains),*])
         }

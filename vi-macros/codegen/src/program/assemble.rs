@@ -189,9 +189,17 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     ];
     momentum.push(gains[0].clone());
     extended.extend(gains);
-    let steps = [("momentum_step", 0, momentum, momentum_slopes), ("extended_step", 1, extended, slopes)];
+    let steps = [("extended_step", 1, extended, slopes), ("momentum_step", 0, momentum, momentum_slopes)];
     for (name, equations, groups, slopes) in steps {
         let evaluated = functions[equations].0.cost() + functions[3].0.cost();
+        if name == "momentum_step"
+            && let Some((place, _)) = &of.place
+        {
+            // It is told where that is.
+            assembly
+                .arguments
+                .retain(|(point, variable), _| point != place || !matches!(variable, Variable::Coordinate(_)));
+        }
         functions.extend(carried(assembly, name, groups, slopes, evaluated)?);
     }
     Ok(functions)

@@ -48,7 +48,9 @@ pub(super) fn agrees(
     let at_points = pool.evaluate_all(&arguments, &mut input);
     let at_points: BTreeMap<_, _> = expressions.arguments.keys().zip(at_points).collect();
     let wanted = pool.evaluate_all(&expressions.results, &mut |symbol| match symbol {
-        Symbol::AtPoint(point, variable) => at_points.get(&(*point, *variable)).copied().unwrap_or(f64::NAN),
+        Symbol::AtPoint(point, variable) => {
+            at_points.get(&(*point, *variable)).copied().unwrap_or_else(|| input(symbol))
+        }
         _ => input(symbol),
     });
     let found = function.evaluate(&mut input);
