@@ -16,6 +16,7 @@
 use crate::stride::{Found, Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use crate::{continuation, momentum};
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// The variational integrator with a given step; see the [module](self).
@@ -141,7 +142,8 @@ where
             }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers.
-        let (run, outcome) = sought(self.system, self.run);
+        let (run, outcome) = sought(self.system, self.run.apart());
+        let run = run.apart();
         match outcome {
             // The rest is as it was, and known to be.
             Ok(()) => {
@@ -201,6 +203,12 @@ where
 }
 
 impl<const N: usize, T: Scalar> Checkpoint<N, T> {
+    /// The same, each quantity for itself: see [`crate::apart`].
+    fn apart(self) -> Self {
+        let Self { node, stride, place, iterations, branch } = self;
+        Self { node: node.apart(), stride: stride.apart(), place: black_box(place), iterations, branch }
+    }
+
     /// The next step, where it has not to be sought.
     #[inline]
     fn foretold<S: Stepping<N, T>>(&self, system: &S, inverse: Option<&Inverse<S, N, T>>) -> Option<Found<N, T>> {

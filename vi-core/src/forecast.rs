@@ -17,6 +17,7 @@
 //! whose Newton steps do not come below ρ is taken by the slow way, which measures every residual.
 
 use crate::{Real, Scalar};
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// Steps between two that learn, at first.
@@ -99,6 +100,18 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         };
         OLDER.iter().for_each(|_| constant.enter(guess));
         constant
+    }
+
+    /// The same, each quantity for itself: see [`crate::apart`].
+    pub(crate) fn apart(mut self) -> Self {
+        self.guess = black_box(self.guess);
+        self.extrapolation = black_box(self.extrapolation);
+        self.newest = black_box(self.newest);
+        self.parts = self.parts.map(black_box);
+        self.extrapolated = black_box(self.extrapolated);
+        self.weight = black_box(self.weight);
+        self.radius = black_box(self.radius);
+        self
     }
 
     /// Whether there was no step yet.

@@ -4,6 +4,7 @@
 //! compensated. AFTER A STEP each low part is below half an ulp of its number.
 
 use crate::{Increment, Real, Scalar, State, StepError, Stepping, compensated};
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// A node as the steppers carry it: each quantity as the unevaluated sum of a number and its low part, so that
@@ -39,6 +40,21 @@ impl<const N: usize, T: Real> Node<N, T> {
         let (zero, zeros) = (T::zero(), SVector::zeros());
         let State { t, q, p } = state;
         Self { t, t_low: zero, q, q_low: zeros, p, p_low: zeros, energy, energy_low: zero }
+    }
+
+    /// The same, each quantity for itself: see [`crate::apart`].
+    pub(crate) fn apart(self) -> Self {
+        let Self { t, t_low, q, q_low, p, p_low, energy, energy_low } = self;
+        Self {
+            t: black_box(t),
+            t_low: black_box(t_low),
+            q: black_box(q),
+            q_low: black_box(q_low),
+            p: black_box(p),
+            p_low: black_box(p_low),
+            energy: black_box(energy),
+            energy_low: black_box(energy_low),
+        }
     }
 
     /// Time, coordinates and momenta, low parts left out.

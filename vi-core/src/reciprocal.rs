@@ -9,6 +9,7 @@
 //! ```
 
 use crate::Scalar;
+use core::hint::black_box;
 
 /// Part of a rounding that a Newton step may be off by.
 const SHARE: f64 = 1.0 / 16.0;
@@ -28,6 +29,13 @@ impl<T: Scalar> Reciprocal<T> {
     /// Before the first step, when nothing is trusted.
     pub(crate) fn new() -> Self {
         Self { last: [T::zero(); 3], least: T::zero(), foretold: false }
+    }
+
+    /// The same, each quantity for itself: see [`crate::apart`].
+    pub(crate) fn apart(mut self) -> Self {
+        self.last = self.last.map(black_box);
+        self.least = black_box(self.least);
+        self
     }
 
     /// Whether the next one is worth a try.

@@ -75,6 +75,11 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         Self { h, forecast: Forecast::new(guess), reciprocal: Reciprocal::new() }
     }
 
+    /// The same, each quantity for itself: see [`crate::apart`].
+    pub(crate) fn apart(self) -> Self {
+        Self { h: self.h, forecast: self.forecast.apart(), reciprocal: self.reciprocal.apart() }
+    }
+
     /// Goes on as another stride of the same length has: a loop over steps sees that h stays.
     #[inline]
     pub(crate) fn resume(&mut self, other: Self) {
