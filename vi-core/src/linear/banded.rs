@@ -1,6 +1,6 @@
 //! Banded matrices, eliminated inside the band.
 
-use super::Matrix;
+use super::{Matrix, row_is_solved};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -77,5 +77,17 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
             let place = (j + Self::WIDTH).checked_sub(i);
             place.and_then(|place| self.rows[i].get(place)).copied().unwrap_or_else(T::zero)
         })
+    }
+
+    fn solves<const M: usize>(&self, solution: &SMatrix<T, N, M>, rhs: &SMatrix<T, N, M>) -> bool {
+        // Division alone loses nothing.
+        D == 1
+            || solution.column_iter().zip(rhs.column_iter()).all(|(x, b)| {
+                (0..N).all(|i| {
+                    let first = i.saturating_sub(Self::WIDTH);
+                    let places = first..N.min(i + Self::WIDTH + 1);
+                    row_is_solved(b[i], places.map(|j| self.rows[i][j + Self::WIDTH - i] * x[j]))
+                })
+            })
     }
 }

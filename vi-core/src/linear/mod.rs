@@ -11,8 +11,8 @@
 //! | [`Banded`] | up to a few places from the diagonal | elimination inside the band |
 //! | [`Blocks`] | blocks that do not touch each other | each block for itself |
 //!
-//! The last three eliminate without pivoting. Their matrices are mass matrices plus terms of order h: where a pivot is
-//! lost nevertheless, the iteration that asked does not converge by them, and the stepper solves the dense matrix instead.
+//! [`Tridiagonal`] and [`Banded`] eliminate without pivoting. Their matrices are mass matrices plus terms of order h: where
+//! a pivot is lost nevertheless, [`solve`] finds the solution wrong or not finite, and solves the dense matrix instead.
 
 mod banded;
 mod blocks;
@@ -49,9 +49,15 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N>;
     /// A with its zeros.
     fn dense(&self) -> SMatrix<T, N, N>;
+    /// Whether `A X = rhs` to rounding; forms that pivot where they must need not look.
+    #[inline]
+    fn solves<const M: usize>(&self, _solution: &SMatrix<T, N, M>, _rhs: &SMatrix<T, N, M>) -> bool {
+        true
+    }
 }
 
-/// The X with `matrix · X = rhs`; `None` where it is not finite.
+/// The X with `matrix · X = rhs`; `None` where it is not finite. Where elimination without pivoting loses a matrix that is
+/// regular, or digits of X, pivots are sought.
 #[inline]
 #[must_use]
 pub fn solve<T: Real, const N: usize, const M: usize>(
@@ -59,7 +65,27 @@ pub fn solve<T: Real, const N: usize, const M: usize>(
     rhs: &SMatrix<T, N, M>,
 ) -> Option<SMatrix<T, N, M>> {
     let solution = matrix.solve(rhs);
-    solution.iter().all(|entry| entry.is_finite()).then_some(solution)
+    if is_finite(&solution) && matrix.solves(&solution, rhs) { Some(solution) } else { pivoted(&matrix.dense(), rhs) }
+}
+
+#[cold]
+fn pivoted<T: Real, const N: usize, const M: usize>(
+    matrix: &SMatrix<T, N, N>,
+    rhs: &SMatrix<T, N, M>,
+) -> Option<SMatrix<T, N, M>> {
+    Some(Matrix::solve(matrix, rhs)).filter(is_finite)
+}
+
+fn is_finite<T: Real, const N: usize, const M: usize>(solution: &SMatrix<T, N, M>) -> bool {
+    solution.iter().all(|entry| entry.is_finite())
+}
+
+/// Whether these terms of a row, each an entry times an unknown, add up to its right-hand side within 64 roundings.
+#[inline]
+fn row_is_solved<T: Real>(rhs: T, terms: impl IntoIterator<Item = T>) -> bool {
+    let start = (rhs, rhs.abs());
+    let (defect, magnitude) = terms.into_iter().fold(start, |(defect, sum), term| (defect - term, sum + term.abs()));
+    magnitude.is_finite() && defect.abs().at_most(magnitude * T::real(64.0 * T::EPSILON)).holds()
 }
 
 /// The acceleration a with `mass · a = applied`, as generated code asks for it.
@@ -72,9 +98,7 @@ pub fn acceleration<T: Real, const N: usize>(
     mass: &impl Matrix<N, T>,
     applied: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
-    // Elimination without pivoting may lose a matrix that is not singular.
-    let solution = solve(mass, applied).or_else(|| solve(&mass.dense(), applied));
-    solution.ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
+    solve(mass, applied).ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
 }
 
 /// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 where an entry is not a number.

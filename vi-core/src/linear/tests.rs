@@ -1,3 +1,7 @@
+//! Dense matrices by their defect, and the sign of the determinant; the other forms in `forms`.
+
+mod forms;
+
 use super::{determinant_sign, solve};
 use nalgebra::{SMatrix, SVector};
 

@@ -4,7 +4,7 @@
 //! lower_i x_{i−1} + diagonal_i x_i + upper_i x_{i+1} = b_i        lower_0 = upper_{N−1} = 0
 //! ```
 
-use super::Matrix;
+use super::{Matrix, row_is_solved};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -125,6 +125,17 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
             } else {
                 T::zero()
             }
+        })
+    }
+
+    fn solves<const M: usize>(&self, solution: &SMatrix<T, N, M>, rhs: &SMatrix<T, N, M>) -> bool {
+        let Self { lower, diagonal, upper } = self;
+        solution.column_iter().zip(rhs.column_iter()).all(|(x, b)| {
+            (0..N).all(|i| {
+                let left = if i > 0 { lower[i] * x[i - 1] } else { T::zero() };
+                let right = if i + 1 < N { upper[i] * x[i + 1] } else { T::zero() };
+                row_is_solved(b[i], [left, diagonal[i] * x[i], right])
+            })
         })
     }
 }

@@ -40,26 +40,6 @@ fn what_the_jacobian_depends_on() {
 }
 
 #[test]
-fn patterns_of_systems() {
-    let of = |body: &str| (findings(body).pattern, findings(body).symmetric);
-    let chain = "const N = 6; coord q[N]; let e[i in 0..N - 1] = q[i + 1] - q[i];
-        L = sum(i in 0..N, dot(q[i])^2)/2 - sum(i in 0..N - 1, e[i]^2/2 + e[i]^4/4);";
-    assert_eq!(of(&format!("{chain} discretize midpoint;")), (Pattern::Tridiagonal, true));
-    assert_eq!(of(&format!("{chain} discretize trapezoidal;")), (Pattern::Diagonal, true));
-    let next = "const N = 12; coord q[N];
-        L = sum(i in 0..N, dot(q[i])^2)/2 - sum(i in 0..N - 2, q[i]*q[i + 1]*q[i + 2]); discretize midpoint;";
-    assert_eq!(of(next), (Pattern::Banded(2), true));
-    let pairs = "coord x, y, z; L = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - x*z^2 - y^4; discretize midpoint;";
-    assert_eq!(of(pairs), (Pattern::Blocks(vec![vec![0, 2], vec![1]]), true));
-    // A magnetic field: A = 1 ± (h/2) b beside the diagonal.
-    let turning = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2 + x*dot(y); discretize midpoint;";
-    assert_eq!(of(turning), (Pattern::Dense, false));
-    // A force in one row only.
-    let one = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2; force x = -x*y; discretize midpoint;";
-    assert_eq!(of(one), (Pattern::Dense, false));
-}
-
-#[test]
 fn findings_in_words() {
     let free = "coord x, y; L = (dot(x)^2 + dot(y)^2)/2 - t*y; discretize midpoint;";
     let wanted = [

@@ -1,0 +1,243 @@
+//! The forms against elimination with partial pivoting of the same matrices.
+
+use super::super::{Banded, Blocks, Matrix, Symmetric, Tridiagonal, acceleration, dense::eliminate, solve};
+use crate::StepError;
+use nalgebra::{SMatrix, SVector};
+
+/// Matrices of one size and form.
+const MATRICES: usize = 20;
+
+/// The next entry of a fixed sequence in [−1, 1) that looks random.
+fn next(seed: &mut u32) -> f64 {
+    *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    f64::from(*seed >> 8) / f64::from(1_u32 << 23) - 1.0
+}
+
+/// M + h² K: masses of 1 to 2, and entries of either sign beside the diagonal that it outweighs in each row; symmetric, it
+/// is positive definite.
+fn dominant<const N: usize>(
+    seed: &mut u32,
+    symmetric: bool,
+    touching: impl Fn(usize, usize) -> bool,
+) -> SMatrix<f64, N, N> {
+    let mut a = SMatrix::<f64, N, N>::from_fn(|i, j| if i != j && touching(i, j) { next(seed) } else { 0.0 });
+    if symmetric {
+        a += a.transpose();
+    }
+    for i in 0..N {
+        a[(i, i)] = 1.5 + next(seed) / 2.0 + a.row(i).iter().map(|entry| entry.abs()).sum::<f64>();
+    }
+    a
+}
+
+fn tridiagonal<const N: usize>(a: &SMatrix<f64, N, N>) -> Tridiagonal<N, f64> {
+    // What stands outside the matrix is not a number, so that whatever takes it shows.
+    let at = |i: usize, j: usize| a.get((i, j)).copied().unwrap_or(f64::NAN);
+    Tridiagonal {
+        lower: core::array::from_fn(|i| at(i, i.wrapping_sub(1))),
+        diagonal: core::array::from_fn(|i| at(i, i)),
+        upper: core::array::from_fn(|i| at(i, i + 1)),
+    }
+}
+
+fn banded<const N: usize, const D: usize>(a: &SMatrix<f64, N, N>) -> Banded<N, D, f64> {
+    let at = |i: usize, place: usize| a.get((i, (i + place).wrapping_sub(D / 2))).copied().unwrap_or(0.0);
+    Banded { rows: core::array::from_fn(|i| core::array::from_fn(|place| at(i, place))) }
+}
+
+fn blocks<const N: usize, const B: usize>(
+    a: &SMatrix<f64, N, N>,
+    members: &'static [&'static [usize]],
+) -> Blocks<N, B, f64> {
+    let block = |i: usize| members.iter().find(|members| members.contains(&i)).expect("every row is in a block");
+    let at = |i: usize, place: usize| block(i).get(place).map_or(0.0, |j| a[(i, *j)]);
+    Blocks { members, rows: core::array::from_fn(|i| core::array::from_fn(|place| at(i, place))) }
+}
+
+/// How far the solutions by a form of `a` are from those of `a` by elimination with pivoting, for one and for two
+/// right-hand sides and by the inverse.
+fn off<const N: usize, F: Matrix<N, f64>>(a: &SMatrix<f64, N, N>, form: &F, seed: &mut u32) -> f64 {
+    assert_eq!(form.dense(), *a);
+    let two = SMatrix::<f64, N, 2>::from_fn(|_, _| next(seed));
+    let one: SVector<f64, N> = two.column(1).into_owned();
+    let (by_two, by_one) = (form.solve(&two), form.solve(&one));
+    let by_inverse = F::apply(&form.inverse(), &one);
+    assert_eq!(by_two.column(1), by_one, "a right-hand side is solved for itself");
+    assert!(by_two.iter().chain(by_inverse.iter()).all(|entry| entry.is_finite()), "{form:?}");
+    let wanted = eliminate(*a, two);
+    // An error that both share would show here: A x is nalgebra's.
+    let defect = (a * by_two - two).amax();
+    [(by_two - wanted).amax(), (by_inverse - wanted.column(1)).amax(), defect].into_iter().fold(0.0, f64::max)
+}
+
+/// The worst of many matrices, each made into a form.
+fn worst<const N: usize, F: Matrix<N, f64>>(
+    touching: impl Fn(usize, usize) -> bool,
+    symmetric: bool,
+    form: impl Fn(&SMatrix<f64, N, N>) -> F,
+) -> f64 {
+    let mut seed = 1;
+    let worst = (0..MATRICES).fold(0.0_f64, |worst, _| {
+        let a = dominant::<N>(&mut seed, symmetric, &touching);
+        worst.max(off(&a, &form(&a), &mut seed))
+    });
+    println!("{} of {N} rows: off by {worst:.1e}", core::any::type_name::<F>());
+    worst
+}
+
+#[test]
+fn symmetric_matrices() {
+    fn of<const N: usize>() -> f64 {
+        worst::<N, _>(|_, _| true, true, |a| Symmetric(*a))
+    }
+    for off in [of::<1>(), of::<2>(), of::<4>(), of::<5>(), of::<16>()] {
+        // Measured: at most 5.6e-16.
+        assert!(off <= 1e-15, "{off:e}");
+    }
+}
+
+#[test]
+fn tridiagonal_matrices() {
+    fn of<const N: usize>() -> f64 {
+        worst::<N, _>(|i, j| i.abs_diff(j) == 1, false, tridiagonal)
+    }
+    for off in [of::<1>(), of::<2>(), of::<3>(), of::<4>(), of::<5>(), of::<16>(), of::<17>()] {
+        // Measured: at most 4.4e-16.
+        assert!(off <= 5e-16, "{off:e}");
+    }
+}
+
+#[test]
+fn banded_matrices() {
+    fn of<const N: usize, const D: usize>() -> f64 {
+        worst::<N, _>(|i, j| i.abs_diff(j) <= D / 2, false, banded::<N, D>)
+    }
+    let narrow = [of::<1, 1>(), of::<2, 1>(), of::<5, 1>(), of::<16, 1>(), of::<4, 3>(), of::<5, 3>()];
+    // Bands of 5 and 7 places that are wider than the matrix, too.
+    let wide = [of::<1, 3>(), of::<2, 5>(), of::<4, 5>(), of::<5, 5>(), of::<16, 5>(), of::<16, 7>()];
+    for off in narrow.into_iter().chain(wide) {
+        // Measured: at most 4.4e-16.
+        assert!(off <= 5e-16, "{off:e}");
+    }
+}
+
+#[test]
+fn block_diagonal_matrices() {
+    fn of<const N: usize, const B: usize>(members: &'static [&'static [usize]]) -> f64 {
+        let together = |i: usize, j: usize| members.iter().any(|block| block.contains(&i) && block.contains(&j));
+        worst::<N, _>(together, false, |a| blocks::<N, B>(a, members))
+    }
+    // Blocks in closed form and by elimination, filled up or not, of rows that stand together or do not.
+    for off in [
+        of::<1, 1>(&[&[0]]),
+        of::<2, 1>(&[&[0], &[1]]),
+        of::<4, 2>(&[&[0, 1], &[2, 3]]),
+        of::<4, 2>(&[&[0, 3], &[1], &[2]]),
+        of::<5, 3>(&[&[0, 2, 4], &[1, 3]]),
+        of::<5, 4>(&[&[0, 1, 3, 4], &[2]]),
+        of::<16, 5>(&[&[0, 3, 6, 9, 12], &[1, 2], &[4, 5, 7, 8], &[10], &[11, 13, 14, 15]]),
+    ] {
+        // Measured: at most 4.4e-16.
+        assert!(off <= 5e-16, "{off:e}");
+    }
+}
+
+/// No way of solving gives numbers only.
+fn lost<const N: usize, F: Matrix<N, f64>>(form: &F) {
+    let rhs = SVector::<f64, N>::repeat(1.0);
+    assert!(!form.solve(&rhs).iter().all(|entry| entry.is_finite()), "{form:?}");
+    assert_eq!(solve(form, &rhs), None, "{form:?}");
+    let by_inverse = F::apply(&form.inverse(), &rhs);
+    assert!(!by_inverse.iter().all(|entry| entry.is_finite()), "{form:?}: {by_inverse:?}");
+    let singular = StepError::Singular { t: 0.5, matrix: "mass matrix" };
+    assert_eq!(acceleration(0.5, form, &rhs), Err(singular), "{form:?}");
+}
+
+#[test]
+fn singular_matrices_have_no_solution() {
+    /// The unit matrix, one row of it zero.
+    fn without<const N: usize>(row: usize) -> SMatrix<f64, N, N> {
+        let mut a = SMatrix::identity();
+        a[(row, row)] = 0.0;
+        a
+    }
+    lost(&Symmetric(SMatrix::<f64, 5, 5>::repeat(1.0)));
+    lost(&Symmetric(SMatrix::<f64, 5, 5>::zeros()));
+    lost(&tridiagonal(&SMatrix::<f64, 2, 2>::repeat(1.0)));
+    for row in 0..5 {
+        lost(&Symmetric(without::<5>(row)));
+        lost(&tridiagonal(&without::<5>(row)));
+        lost(&banded::<5, 1>(&without::<5>(row)));
+        lost(&banded::<5, 5>(&without::<5>(row)));
+        lost(&blocks::<5, 3>(&without::<5>(row), &[&[0, 2, 4], &[1, 3]]));
+        lost(&blocks::<5, 4>(&without::<5>(row), &[&[0, 1, 3, 4], &[2]]));
+    }
+    // An end of a free chain: its rows add up to zero, and no pivot vanishes but the last.
+    let free = |i: usize, j: usize| match (i, j) {
+        (0, 0) | (5, 5) => 1.0,
+        _ if i == j => 2.0,
+        _ => -f64::from(u8::from(i.abs_diff(j) == 1)),
+    };
+    lost(&tridiagonal(&SMatrix::<f64, 6, 6>::from_fn(free)));
+    lost(&banded::<6, 3>(&SMatrix::from_fn(free)));
+    lost(&Symmetric(SMatrix::<f64, 6, 6>::from_fn(free)));
+}
+
+/// Each row's unknown is its neighbour's right-hand side: nothing on the diagonal, regular for an even N.
+fn swapping<const N: usize>() -> SMatrix<f64, N, N> {
+    SMatrix::from_fn(|i, j| f64::from(u8::from(i.abs_diff(j) == 1)))
+}
+
+#[test]
+fn what_is_lost_without_pivoting_is_found_with_it() {
+    fn found<const N: usize>(form: &impl Matrix<N, f64>, wanted: [f64; N]) {
+        let x = SVector::from(wanted);
+        let rhs = form.dense() * x;
+        assert!(!form.solve(&rhs).iter().all(|entry| entry.is_finite()), "{form:?}");
+        // Whole numbers: exact.
+        assert_eq!(solve(form, &rhs), Some(x), "{form:?}");
+        assert_eq!(acceleration(0.0, form, &rhs), Ok(x), "{form:?}");
+    }
+    let wanted = [3.0, -1.0, 4.0, 2.0];
+    found(&tridiagonal(&swapping::<4>()), wanted);
+    found(&banded::<4, 5>(&swapping::<4>()), wanted);
+    lost(&tridiagonal(&swapping::<5>()));
+    // Blocks are small dense matrices, which pivot or need not.
+    let swapped = blocks::<4, 2>(&SMatrix::from_fn(|i, j| f64::from(u8::from(i + j == 3))), &[&[0, 3], &[1, 2]]);
+    assert_eq!(swapped.solve(&(swapped.dense() * SVector::from(wanted))), SVector::from(wanted));
+    let swapped = blocks::<5, 4>(&SMatrix::from_fn(|i, j| f64::from(u8::from(i + j == 4))), &[&[0, 1, 3, 4], &[2]]);
+    assert_eq!(swapped.solve(&SVector::from([1.0, 2.0, 3.0, 4.0, 5.0])), SVector::from([5.0, 4.0, 3.0, 2.0, 1.0]));
+}
+
+#[test]
+fn an_indefinite_symmetric_matrix_is_solved_with_pivoting() {
+    let mut seed = 1;
+    let rhs = SMatrix::<f64, 5, 2>::from_fn(|_, _| next(&mut seed));
+    // Of no sign: rows that the pivots −1, 0 and 10⁻²⁰ begin, which without pivoting loses all digits.
+    for corner in [-1.0, 0.0, 1e-20] {
+        let mut a = SMatrix::<f64, 5, 5>::from_fn(|_, _| next(&mut seed));
+        a += a.transpose();
+        a[(0, 0)] = corner;
+        assert_eq!(Symmetric(a).solve(&rhs), eliminate(a, rhs));
+        let defect = (a * Symmetric(a).solve(&rhs) - rhs).amax();
+        println!("corner {corner:e}: off by {defect:.1e}");
+        // Measured: at most 4.4e-16.
+        assert!(defect <= 1e-15, "corner {corner:e}: {defect:e}");
+    }
+}
+
+#[test]
+fn digits_lost_without_pivoting_are_found_with_it() {
+    let x = SMatrix::<f64, 4, 2>::from_column_slice(&[4.0, -1.0, 4.0, 2.0, 3.0, -2.0, 1.0, 5.0]);
+    for corner in [1e-12, 1e-17, 1e-30] {
+        let mut a = swapping::<4>() + SMatrix::<f64, 4, 4>::identity() * 2.0;
+        (a[(0, 0)], a[(3, 3)]) = (corner, corner);
+        let off = |found: Option<SMatrix<f64, 4, 2>>| (found.expect("regular") - x).amax();
+        let (rhs, three, five) = (a * x, tridiagonal(&a), banded::<4, 5>(&a));
+        let alone = off(Some(three.solve(&rhs))).min(off(Some(five.solve(&rhs))));
+        let found = off(solve(&three, &rhs)).max(off(solve(&five, &rhs)));
+        println!("corner {corner:e}: off by {found:.1e}, without pivoting {alone:.1e}");
+        // Measured: at most 8.9e-16; without pivoting 4.5e-5 and more, up to the whole of an entry.
+        assert!(found <= 1e-15 && alone > 1e-5, "corner {corner:e}: {found:e}, {alone:e}");
+    }
+}
