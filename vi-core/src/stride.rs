@@ -27,8 +27,9 @@ use nalgebra::SVector;
 /// Newton steps that may follow a guess before every residual is measured.
 const ATTEMPTS: u32 = 3;
 
-/// Part of a rounding that Newton's iteration may leave.
-const SHARE: f64 = 1.0;
+/// Part of a rounding that Newton's iteration may leave. It has a sign, and adds up over the steps: with a whole one a sensitive
+/// motion of the double well is off by 3.3e-13 after 1000 steps, with this by 2.0e-14.
+const SHARE: f64 = 1.0 / 64.0;
 
 /// The inverse of a constant A.
 pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;

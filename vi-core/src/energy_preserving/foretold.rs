@@ -7,7 +7,7 @@
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
 use crate::forecast::{Forecast, Lesson, length_squared};
-use crate::{Increment, Node, Scalar, Stepping};
+use crate::{Increment, Node, Real, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Part of a rounding that the iteration may leave in v and in h. It has a sign, and a million of them add up: with a quarter
