@@ -120,7 +120,6 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
                     step = numerators * -foretold;
                     certain = self.reciprocal.is_trusted(foretold * determinant, length_squared(&step));
                 } else {
-                    certain = equation.jacobian.solves(&numerators, &equation.residual);
                     // A quotient, lest this and the product be one way that waits for both.
                     step = numerators.map(|numerator| -(numerator / determinant));
                 }
@@ -147,14 +146,13 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         let h = self.h;
         let newton_step = |v: &SVector<T, N>| {
             let equation = system.momentum_equation(node, h, v);
-            let step = equation.jacobian.solve(&equation.residual);
-            equation.jacobian.solves(&step, &equation.residual).then_some((step, equation.jacobian))
+            (equation.jacobian.solve(&equation.residual), equation.jacobian)
         };
         let mut v = self.forecast.newest();
-        let (step, _) = newton_step(&v)?;
+        let (step, _) = newton_step(&v);
         let first = length_squared(&step);
         v -= step;
-        let (step, jacobian) = newton_step(&v)?;
+        let (step, jacobian) = newton_step(&v);
         let second = length_squared(&step);
         let noise = system.magnitudes(node, h, &v).residual * T::real(T::EPSILON);
         let rounding = length_squared(&jacobian.solve(&noise));
@@ -164,7 +162,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         }
         v -= step;
         if second > radius {
-            let (step, _) = newton_step(&v)?;
+            let (step, _) = newton_step(&v);
             v -= step;
             if !(length_squared(&step) <= radius) {
                 return None;

@@ -7,7 +7,7 @@
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
 use crate::forecast::{Forecast, Lesson, length_squared};
-use crate::{Increment, Node, Real, Scalar, Stepping};
+use crate::{Increment, Node, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Part of a rounding that the iteration may leave in v and in h. It has a sign, and a million of them add up: with a quarter
@@ -24,7 +24,10 @@ const ATTEMPTS: u32 = 3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+    serde(bound(
+        serialize = "T: crate::Real + serde::Serialize",
+        deserialize = "T: crate::Real + serde::Deserialize<'de>"
+    ))
 )]
 pub(super) struct Forecasts<const N: usize, T> {
     v: Forecast<N, T>,

@@ -68,9 +68,7 @@ impl<const N: usize, T: Real> Elimination<N, T> {
     pub(super) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
         let momentum = &equations.momentum;
         let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
-        let solved = momentum.jacobian.solve(&both);
-        let solved = if momentum.jacobian.solves(&solved, &both) { solved } else { solved * T::real(f64::NAN) };
-        Self::from_solved(equations, &solved)
+        Self::from_solved(equations, &momentum.jacobian.solve(&both))
     }
 
     /// `None` where A is singular.

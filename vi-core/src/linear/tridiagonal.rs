@@ -4,7 +4,7 @@
 //! lower_i x_{i−1} + diagonal_i x_i + upper_i x_{i+1} = b_i        lower_0 = upper_{N−1} = 0
 //! ```
 
-use super::{Matrix, row_is_solved};
+use super::Matrix;
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -56,7 +56,25 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
             pivot -= upper[m] * lower[m + 1] * reciprocals[m + 1];
         }
         reciprocals[m] = pivot.recip();
+        // Everything passes through the middle.
+        if !self.is_kept_by(&reciprocals) {
+            reciprocals[m] = T::real(f64::NAN);
+        }
         reciprocals
+    }
+
+    /// Whether no pivot is so small beside its row that digits are lost.
+    #[inline]
+    fn is_kept_by(&self, reciprocals: &[T; N]) -> bool {
+        let Self { lower, diagonal, upper } = self;
+        let is_kept = |i: usize, beside: T| {
+            let row = diagonal[i].abs() + beside;
+            (row * reciprocals[i].abs()).at_most(T::real(super::GROWTH)).holds()
+        };
+        let inside = 1..N.max(1) - 1;
+        let kept = inside.fold(true, |kept, i| kept & is_kept(i, lower[i].abs() + upper[i].abs()));
+        // The ends of the diagonals that are not used may hold anything.
+        N < 2 || kept & is_kept(0, upper[0].abs()) & is_kept(N - 1, lower[N - 1].abs())
     }
 
     #[inline]
@@ -125,17 +143,6 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
             } else {
                 T::zero()
             }
-        })
-    }
-
-    fn solves<const M: usize>(&self, solution: &SMatrix<T, N, M>, rhs: &SMatrix<T, N, M>) -> bool {
-        let Self { lower, diagonal, upper } = self;
-        solution.column_iter().zip(rhs.column_iter()).all(|(x, b)| {
-            (0..N).all(|i| {
-                let left = if i > 0 { lower[i] * x[i - 1] } else { T::zero() };
-                let right = if i + 1 < N { upper[i] * x[i + 1] } else { T::zero() };
-                row_is_solved(b[i], [left, diagonal[i] * x[i], right])
-            })
         })
     }
 }
