@@ -98,7 +98,9 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
             interval: INTERVAL,
             known: 0,
         };
-        OLDER.iter().for_each(|_| constant.enter(guess));
+        for _ in OLDER {
+            (0..M).for_each(|i| constant.enter(i, guess[i]));
+        }
         constant
     }
 
@@ -155,10 +157,10 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         self.weight
     }
 
-    /// The next guess, were the trial u the step.
+    /// Entry i of the next guess, were the trial u the step.
     #[inline]
-    pub(crate) fn after(&self, trial: &SVector<T, M>) -> SVector<T, M> {
-        self.parts[0] * self.extrapolated + trial * self.weight
+    pub(crate) fn after(&self, i: usize, trial: T) -> T {
+        self.parts[0][i] * self.extrapolated + trial * self.weight
     }
 
     /// Takes the step `u` where no guess is needed.
@@ -171,21 +173,24 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     /// Takes the step `trial + δ`.
     #[inline]
     pub(crate) fn push(&mut self, trial: &SVector<T, M>, step: &SVector<T, M>) {
-        let u = trial + step;
-        self.guess = self.after(trial) + step * self.weight;
-        self.extrapolation = self.parts[0] + u * T::real(NEWEST);
-        self.enter(u);
+        // One loop: each entry is read and written once.
+        for i in 0..M {
+            let u = trial[i] + step[i];
+            self.guess[i] = self.after(i, trial[i]) + step[i] * self.weight;
+            self.extrapolation[i] = self.parts[0][i] + u * T::real(NEWEST);
+            self.enter(i, u);
+        }
         self.until = self.until.saturating_sub(1);
     }
 
-    /// Gives the step `u` to all extrapolations after the next one.
+    /// Gives entry i of the step `u` to all extrapolations after the next one.
     #[inline]
-    fn enter(&mut self, u: SVector<T, M>) {
-        self.newest = u;
-        for k in 0..OLDER.len() {
-            let before = self.parts.get(k + 1).copied().unwrap_or(SVector::zeros());
-            self.parts[k] = before + u * T::real(OLDER[k]);
+    fn enter(&mut self, i: usize, u: T) {
+        self.newest[i] = u;
+        for k in 0..OLDER.len() - 1 {
+            self.parts[k][i] = self.parts[k + 1][i] + u * T::real(OLDER[k]);
         }
+        self.parts[OLDER.len() - 1][i] = u * T::real(OLDER[OLDER.len() - 1]);
     }
 
     /// Takes a step `u` that was not come by from here: the next one learns, unless this one should have.

@@ -85,8 +85,11 @@ impl<const N: usize, T: Real> Node<N, T> {
     /// Moves to the end of the step `(v, h)`; the energy stays.
     #[inline]
     pub fn advance(&mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) {
-        self.shift(h, v);
-        compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
+        compensated::add_rounded(&mut self.t, &mut self.t_low, h);
+        for i in 0..N {
+            compensated::add_rounded(&mut self.q[i], &mut self.q_low[i], h * v[i]);
+            compensated::add_rounded(&mut self.p[i], &mut self.p_low[i], momentum_gain[i]);
+        }
     }
 
     /// The node at the end of the step `(v, h)`, its energy left as it was.

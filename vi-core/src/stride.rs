@@ -96,9 +96,15 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
     /// The same for the stride after the step `found` from this node.
     #[inline]
     pub(crate) fn place_after<S: Stepping<N, T>>(&self, node: &Node<N, T>, found: &Found<N, T>) -> SVector<T, N> {
-        let (h, part, weight) = (self.h, T::real(S::PLACE), self.forecast.weight());
-        let way = found.trial + self.forecast.after(&found.trial) * part;
-        node.place(h, &way) + found.step * (h * (T::one() + part * weight))
+        let (h, part) = (self.h, T::real(S::PLACE));
+        let change = h * (T::one() + part * self.forecast.weight());
+        let mut place = node.q;
+        for i in 0..N {
+            let trial = found.trial[i];
+            let way = trial + self.forecast.after(i, trial) * part;
+            place[i] = node.q[i] + (node.q_low[i] + h * way) + found.step[i] * change;
+        }
+        place
     }
 
     /// The step from the velocity foretold and its `place`; `None` where it cannot be trusted. One loop, in line: a call that
