@@ -89,10 +89,11 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        if let Some((root, gain)) = self.foretold() {
-            let (node, last, step) = self.run.reached(&self.run.node, &root, &gain, Method::EnergyPreserving);
+        if let Some(found) = self.foretold() {
+            let foretold::Found { root, gain, .. } = &found;
+            let (node, last, step) = self.run.reached(&self.run.node, root, gain, Method::EnergyPreserving);
             if node.is_finite() && node.energy.is_finite() {
-                self.run.forecasts.push(root.v, root.h);
+                self.run.forecasts.push(&found);
                 (self.run.node, self.run.last) = (node, last);
                 return Ok(step);
             }
@@ -105,15 +106,16 @@ where
 
     /// The next step, where it has not to be sought.
     #[inline]
-    fn foretold(&self) -> Option<(Root<N, T>, Increment<N, T>)> {
+    fn foretold(&self) -> Option<foretold::Found<N, T>> {
         let Self { system, run, .. } = self;
         let Checkpoint { node, last, forecasts, bounds, phase, .. } = run;
         if phase.is_some() {
             return None;
         }
-        let (root, gain) = forecasts.root(system, node, last)?;
-        let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(root.h)) && !self.runs_away(root.h);
-        allowed.then_some((root, gain))
+        let found = forecasts.root(system, node, last)?;
+        let h = found.root.h;
+        let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.runs_away(h);
+        allowed.then_some(found)
     }
 
     /// The state reached last.

@@ -34,6 +34,19 @@ pub(super) struct Forecasts<const N: usize, T> {
     h: Forecast<1, T>,
 }
 
+/// A step that was foretold.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<const N: usize, T> {
+    /// What solves the equations.
+    pub(super) root: Root<N, T>,
+    /// What is gained over it.
+    pub(super) gain: Increment<N, T>,
+    /// Where the last Newton step began,
+    trial: Trial<N, T>,
+    /// and that step.
+    step: newton::Step<N, T>,
+}
+
 impl<const N: usize, T: Scalar> Forecasts<N, T> {
     /// Before the first step, which follows the interval `(v, h)`.
     pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
@@ -51,11 +64,11 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         self.v.is_finite() && self.h.is_finite()
     }
 
-    /// Takes the step `(v, h)`.
+    /// Takes a step that was foretold.
     #[inline]
-    pub(super) fn push(&mut self, v: SVector<T, N>, h: T) {
-        self.v.push(&v, &SVector::zeros());
-        self.h.push(&SVector::repeat(h), &SVector::zeros());
+    pub(super) fn push(&mut self, Found { trial, step, .. }: &Found<N, T>) {
+        self.v.push(&trial.v, &step.v);
+        self.h.push(&SVector::repeat(trial.h), &SVector::repeat(step.h));
     }
 
     /// The root and what is gained over it, where it was foretold.
@@ -65,7 +78,7 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         system: &S,
         node: &Node<N, T>,
         last: &Last<N, T>,
-    ) -> Option<(Root<N, T>, Increment<N, T>)> {
+    ) -> Option<Found<N, T>> {
         if !S::SMOOTH || self.is_learning() {
             return None;
         }
@@ -80,7 +93,7 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
                 (step.v, step.h)
             });
             let (elimination, step) = newton?;
-            trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
+            let next = Trial { v: trial.v + step.v, h: trial.h + step.h };
             let lengths = (length_squared(&step.v), step.h * step.h);
             // Steps that do not become much shorter lead to another root, or to none.
             let shorter = |now: T, before: T, radius: T| now <= (before * T::real(0.25)).max(radius);
@@ -90,14 +103,14 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
                 return None;
             }
             if lengths.0 <= self.v.radius() && lengths.1 <= self.h.radius() {
-                let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
+                let (Trial { v, h }, density) = (next, elimination.density_or_infinite());
                 let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
                 // At the smallest root D has the sign that it had.
                 let forward = density * last.density > T::zero() && !elimination.is_degenerate();
                 let root = Root { v, h, density, iterations, residual: UNCONFIRMED, approach: None };
-                return (in_range && forward).then_some((root, gain));
+                return (in_range && forward).then_some(Found { root, gain, trial, step });
             }
-            before = Some(lengths);
+            (before, trial) = (Some(lengths), next);
         }
         None
     }

@@ -49,7 +49,8 @@ pub(super) enum Failure<T> {
     NoRoot,
 }
 
-/// The momentum rows eliminated from the energy row.
+/// The momentum rows eliminated from the energy row; everything times the determinant of A where that is solved by one
+/// quotient, so that the quotients of a step do not wait for each other, else times 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elimination<const N: usize, T> {
     /// `a = A⁻¹ r`.
@@ -57,9 +58,10 @@ pub(super) struct Elimination<const N: usize, T> {
     /// `b = A⁻¹ ∂r/∂h`.
     pub(super) residual_dh: SVector<T, N>,
     /// `S = energy_dh − energy_dv·b`.
-    schur: T,
+    pub(super) schur: T,
     /// Sum of the absolute values of the terms of S.
     schur_magnitude: T,
+    determinant: T,
 }
 
 impl<const N: usize, T: Real> Elimination<N, T> {
@@ -68,7 +70,7 @@ impl<const N: usize, T: Real> Elimination<N, T> {
     pub(super) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
         let momentum = &equations.momentum;
         let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
-        Self::from_solved(equations, &momentum.jacobian.solve(&both))
+        Self::from_solved(equations, momentum.jacobian.quotient(&both))
     }
 
     /// `None` where A is singular.
@@ -76,46 +78,48 @@ impl<const N: usize, T: Real> Elimination<N, T> {
     pub(super) fn finite(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Option<Self> {
         let momentum = &equations.momentum;
         let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
-        let solved = linear::solve(&momentum.jacobian, &both);
-        // Elimination without pivoting may lose a matrix that is not singular.
-        let solved = solved.or_else(|| linear::solve(&momentum.jacobian.dense(), &both))?;
-        Some(Self::from_solved(equations, &solved))
+        let solved = linear::solve(&momentum.jacobian, &both)?;
+        Some(Self::from_solved(equations, (solved, T::one())))
     }
 
     #[inline]
-    fn from_solved(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, solved: &SMatrix<T, N, 2>) -> Self {
+    fn from_solved(
+        equations: &ExtendedSystem<N, T, impl Matrix<N, T>>,
+        (solved, determinant): (SMatrix<T, N, 2>, T),
+    ) -> Self {
         let (residual, residual_dh) = (solved.column(0).into_owned(), solved.column(1).into_owned());
-        let (mut schur, mut schur_magnitude) = (equations.energy_dh, equations.energy_dh.abs());
+        let mut schur = equations.energy_dh * determinant;
+        let mut schur_magnitude = schur.abs();
         for (energy_dv, b) in equations.energy_dv.iter().zip(residual_dh.iter()) {
             let term = *energy_dv * *b;
             schur -= term;
             schur_magnitude += term.abs();
         }
-        Self { residual, residual_dh, schur, schur_magnitude }
+        Self { residual, residual_dh, schur, schur_magnitude, determinant }
     }
 
     /// The trial that follows, `(δv, δh)` taken.
     #[inline]
     pub(super) fn step(&self, equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, trial: &Trial<N, T>) -> Step<N, T> {
-        let h = trial.h;
-        let mut energy = equations.energy_residual / h;
+        let mut energy = (equations.energy_residual / trial.h) * self.determinant;
         for (energy_dv, a) in equations.energy_dv.iter().zip(self.residual.iter()) {
             energy -= *energy_dv * *a;
         }
         let dh = -(energy / self.schur);
-        Step { v: -(self.residual + self.residual_dh * dh), h: dh }
+        let reciprocal = self.determinant.recip();
+        Step { v: -(self.residual + self.residual_dh * dh) * reciprocal, h: dh }
     }
 
     /// −4 S, the step density D of the interval.
     #[inline]
     pub(super) fn density_or_infinite(&self) -> T {
-        self.schur * T::real(-4.0)
+        self.schur / self.determinant * T::real(-4.0)
     }
 
     /// Step density D of the interval; `None` where a term of it is not finite.
     #[inline]
     pub(super) fn density(&self) -> Option<T> {
-        (self.schur_magnitude * T::real(4.0)).is_finite().then(|| self.schur * T::real(-4.0))
+        (self.schur_magnitude * T::real(4.0)).is_finite().then(|| self.density_or_infinite())
     }
 
     /// Whether S is zero but for its rounding.

@@ -10,7 +10,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     const QUOTIENT: bool = N <= 2;
 
     #[inline]
-    fn quotient(&self, rhs: &SVector<T, N>) -> (SVector<T, N>, T) {
+    fn quotient<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> (SMatrix<T, N, M>, T) {
         match N {
             1 => (*rhs, self[(0, 0)]),
             2 => (numerators_2(self, rhs), determinant_2(self)),

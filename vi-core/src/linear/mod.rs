@@ -40,7 +40,7 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M>;
     /// The solution as numerators and one denominator, the determinant where A is solved by Cramer's rule, else 1.
     #[inline]
-    fn quotient(&self, rhs: &SVector<T, N>) -> (SVector<T, N>, T) {
+    fn quotient<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> (SMatrix<T, N, M>, T) {
         (self.solve(rhs), T::one())
     }
     /// A, ready to solve with many times.
