@@ -1,7 +1,7 @@
 //! Sums that keep what rounding takes from them.
 //!
 //! In: a number as the unevaluated sum of `value` and `low`, and an increment. Out: the new sum in the same form, by Knuth's
-//! two-sum. No branch, so it serves every [`Real`].
+//! two-sum or Kahan's. No branch, so it serves every [`Real`].
 
 use crate::Real;
 use nalgebra::SVector;
@@ -21,10 +21,12 @@ pub(crate) fn add<T: Real>(value: &mut T, low: &mut T, increment: T) {
     (*value, *low) = two_sum(sum, lost + *low);
 }
 
-/// Adds `increment`, exact to an ulp of it, as it is itself rounded: half the operations.
+/// Adds `increment`, exact to an ulp of it, as it is itself rounded: Kahan's sum, a third of the operations.
 #[inline]
 pub(crate) fn add_rounded<T: Real>(value: &mut T, low: &mut T, increment: T) {
-    (*value, *low) = two_sum(*value, increment + *low);
+    let increment = increment + *low;
+    let sum = *value + increment;
+    (*value, *low) = (sum, increment - (sum - *value));
 }
 
 /// The same, entry by entry.
