@@ -173,7 +173,7 @@ where
                 let sought = stride.seek(system, &node, Branch::Nearest);
                 sought.map_err(|failure| failure.explained(system, &node, stride.h, &guess))?
             };
-            node.advance(stride.h, &found.v(), &found.gain);
+            node.advance(stride.h, &(found.v() * stride.h), &found.gain);
             node.check_finite(self.node.t)?;
             known = Some(found.v());
         }

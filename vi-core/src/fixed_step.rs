@@ -13,6 +13,7 @@
 //! from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several roots: see
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
+use crate::closed_form::ClosedForm;
 use crate::stride::{Found, Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use crate::{continuation, momentum};
@@ -29,6 +30,8 @@ where
     system: S,
     /// The inverse of A, where it is the same in every step.
     inverse: Option<Inverse<S, N, T>>,
+    /// The step as one matrix, where it is that.
+    closed_form: Option<ClosedForm<N, T>>,
     run: Checkpoint<N, T>,
     failure: Option<StepError>,
 }
@@ -91,14 +94,14 @@ where
         let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p]).map_err(explained)?;
         let stride = Stride::new(h, v);
         let run = Checkpoint { node, stride, place: node.q, iterations: 0, branch: Branch::Nearest };
-        Ok(Self { system, inverse: stride.inverse(&system, &node), run, failure: None })
+        Ok(Self::prepared(system, run))
     }
 
     /// Which root to take where there are several; [`Branch::Nearest`] unless this is called.
     #[must_use]
     pub fn with_branch(mut self, branch: Branch) -> Self {
         self.run.branch = branch;
-        self
+        Self::prepared(self.system, self.run)
     }
 
     /// Everything that the run carries: the node with its low parts, the step, and what the next guess is made of.
@@ -119,7 +122,15 @@ where
         if !(stride.forecast.is_finite() && checkpoint.place.iter().all(|entry| entry.is_finite())) {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None });
         }
-        Ok(Self { system, inverse: stride.inverse(&system, node), run: checkpoint, failure: None })
+        Ok(Self::prepared(system, checkpoint))
+    }
+
+    /// With what is the same in every step.
+    fn prepared(system: S, run: Checkpoint<N, T>) -> Self {
+        let Checkpoint { node, stride, branch, .. } = &run;
+        let inverse = stride.inverse(&system, node).filter(|_| *branch == Branch::Nearest);
+        let closed_form = ClosedForm::of(&system, node, stride.h, inverse.as_ref());
+        Self { system, inverse, closed_form, run, failure: None }
     }
 
     /// Takes one step and returns the state reached.
@@ -132,9 +143,16 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        let Self { system, inverse, run, .. } = self;
-        if let Some(found) = run.foretold(system, inverse.as_ref()) {
-            if run.node.stays_finite(run.stride.h, &found.v(), &found.gain) {
+        let Self { system, inverse, closed_form, run, .. } = self;
+        if let Some(closed_form) = closed_form {
+            let (h, (way, gain)) = (run.stride.h, closed_form.step(&run.node));
+            if run.node.stays_finite(h, &way, &gain) {
+                run.stride.forecast.replace(way * h.recip());
+                run.node.advance(h, &way, &gain);
+                return Ok(run.node.state());
+            }
+        } else if let Some(found) = run.foretold(system, inverse.as_ref()) {
+            if run.node.stays_finite(run.stride.h, &(found.v() * run.stride.h), &found.gain) {
                 run.place = run.stride.place_after::<S>(&run.node, &found);
                 run.stride.take::<S>(&found);
                 run.take(&found);
@@ -219,7 +237,7 @@ impl<const N: usize, T: Scalar> Checkpoint<N, T> {
     /// Moves to the end of a step.
     #[inline]
     fn take(&mut self, found: &Found<N, T>) {
-        self.node.advance(self.stride.h, &found.v(), &found.gain);
+        self.node.advance(self.stride.h, &(found.v() * self.stride.h), &found.gain);
         self.iterations = found.iterations;
     }
 

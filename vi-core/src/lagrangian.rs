@@ -83,6 +83,9 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     type Jacobian: Matrix<N, T>;
     /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
     const CONSTANT_JACOBIAN: bool;
+    /// Whether what a step adds to q and p is a constant matrix times (q, p), but for a constant: A is constant, so are the
+    /// derivatives of the gain, and nothing depends on the time. Worth it for a few coordinates only.
+    const CLOSED_FORM: bool = false;
     /// Whether L and f are made of functions without a kink or a jump, so that Newton's iteration is quadratic everywhere.
     const SMOOTH: bool;
     /// The part of the step at whose end [`Stepping::momentum_step`] is told the coordinates: one half for the middle.
@@ -296,6 +299,7 @@ impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N,
 impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
+    const CLOSED_FORM: bool = S::CLOSED_FORM;
     const SMOOTH: bool = S::SMOOTH;
     const PLACE: f64 = S::PLACE;
 

@@ -20,6 +20,7 @@
 //! Nothing here panics, allocates in a step, or prints.
 
 pub mod check;
+mod closed_form;
 mod compensated;
 pub mod composition;
 pub mod condition;

@@ -82,12 +82,12 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
     }
 
-    /// Moves to the end of the step `(v, h)`; the energy stays.
+    /// Moves to the end of the step of length h that adds `way = h v` to q; the energy stays.
     #[inline]
-    pub fn advance(&mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) {
+    pub fn advance(&mut self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) {
         compensated::add_rounded(&mut self.t, &mut self.t_low, h);
         for i in 0..N {
-            compensated::add_rounded(&mut self.q[i], &mut self.q_low[i], h * v[i]);
+            compensated::add_rounded(&mut self.q[i], &mut self.q_low[i], way[i]);
             compensated::add_rounded(&mut self.p[i], &mut self.p_low[i], momentum_gain[i]);
         }
     }
@@ -96,7 +96,7 @@ impl<const N: usize, T: Real> Node<N, T> {
     #[inline]
     #[must_use]
     pub fn moved(mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> Self {
-        self.advance(h, v, momentum_gain);
+        self.advance(h, &(v * h), momentum_gain);
         self
     }
 
@@ -128,12 +128,12 @@ impl<const N: usize, T: Scalar> Node<N, T> {
         self.t.is_finite() & all(&self.q) & all(&self.p)
     }
 
-    /// Whether time, coordinates and momenta stay finite over the step `(v, h)`.
+    /// Whether time, coordinates and momenta stay finite over the step that [`Node::advance`] is told.
     #[inline]
-    pub(crate) fn stays_finite(&self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
+    pub(crate) fn stays_finite(&self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
         let mut finite = (self.t + (h + self.t_low)).is_finite();
         for i in 0..N {
-            finite &= (self.q[i] + (h * v[i] + self.q_low[i])).is_finite();
+            finite &= (self.q[i] + (way[i] + self.q_low[i])).is_finite();
             finite &= (self.p[i] + (momentum_gain[i] + self.p_low[i])).is_finite();
         }
         finite

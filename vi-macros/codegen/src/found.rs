@@ -52,6 +52,8 @@ pub struct Findings {
     pub pattern: Pattern,
     /// A is its own transpose.
     pub symmetric: bool,
+    /// The derivatives of what the momenta gain depend on parameters and h only.
+    pub constant_gain: bool,
     /// Operations of each function, in the order in which they are emitted.
     pub operations: Vec<(&'static str, usize)>,
 }
@@ -93,6 +95,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         jacobian: equation.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
         pattern: equation.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         symmetric: equation.is_some_and(|(_, rows)| symmetric(rows)),
+        constant_gain: rows("momentum_step").is_some_and(|(step, rows)| dependence(step, rows) <= Dependence::Step),
         operations: program.functions().map(|function| (function.name, function.operation_count())).collect(),
     }
 }
@@ -153,6 +156,12 @@ impl Findings {
         self.smooth && self.jacobian <= Dependence::Step
     }
 
+    /// What a step adds to q and p is a constant matrix times (q, p) but for a constant, computed once per run.
+    #[must_use]
+    pub fn closed_form(&self) -> bool {
+        self.constant_jacobian() && self.constant_gain && self.autonomous && self.size <= CLOSED
+    }
+
     /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
     #[must_use]
     pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
@@ -180,6 +189,7 @@ impl Findings {
             "The step's equation in `v` is {}",
             match self.jacobian {
                 _ if !self.smooth => "not smooth: each residual is measured before a step is taken",
+                _ if self.closed_form() => "linear, and the whole step one constant matrix, computed once per run",
                 Dependence::Parameters =>
                     "explicit: its Jacobian `A` depends on parameters only and is inverted once per run",
                 Dependence::Step =>

@@ -21,12 +21,18 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let functions = [equation, extended_system(source), magnitudes(source), increment(source)];
     let steps = [momentum_step(source), extended_step(source)].into_iter().flatten();
     let place = place(source);
+    let closed = source.findings.closed_form().then(|| {
+        quote!(
+            const CLOSED_FORM: bool = true;
+        )
+    });
     quote! {
         #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
             type Jacobian = #form;
             const CONSTANT_JACOBIAN: bool = #constant;
             const SMOOTH: bool = #smooth;
+            #closed
             #place
             #(#functions)*
             #(#steps)*
