@@ -21,10 +21,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn compare<S: Batch<N>, const N: usize>(name: &str, system: S, q: [f64; N], v: [f64; N]) -> Result<(), StepError> {
-    let start = State::at(&system, 0.0, q, v);
     let count = TRAJECTORIES as usize;
-    let mut ensemble = Ensemble::new(vec![system; count], vec![start; count], 0.01)?;
-    let mut alone = FixedStep::new(system, start, 0.01)?;
+    // Spread, so that the trajectories are not all at the same place.
+    let start =
+        |i: u32| State::at(&system, 0.0, q.map(|q| q * (1.0 - 0.2 * f64::from(i) / f64::from(TRAJECTORIES))), v);
+    let mut ensemble = Ensemble::new(vec![system; count], (0..TRAJECTORIES).map(start).collect(), 0.01)?;
+    let mut alone = FixedStep::new(system, start(0), 0.01)?;
     let (mut together, mut single) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
         let begun = Instant::now();

@@ -5,8 +5,8 @@
 //! and its place is filled with what no one looks at.
 
 use crate::dispatch::{self, Instructions};
-use crate::ensemble::{Ended, WIDTH};
-use crate::rows::{Nodes, Row, Rows};
+use crate::ensemble::{Ended, HALF, WIDTH};
+use crate::rows::{Nodes, Place, Row, Rows};
 use crate::sweep::{Clock, DEPTH, Fixed, Verdict};
 use nalgebra::SVector;
 use vi_core::{Batch, FixedStep, Node, State, StepError, fixed_step};
@@ -17,7 +17,7 @@ const INTERVAL: u64 = 64;
 /// Trajectories side by side; see the [module](self).
 #[derive(Clone, Debug)]
 pub(crate) struct Block<S: Batch<N>, const N: usize> {
-    fixed: Fixed<S::Rows<WIDTH>>,
+    fixed: Fixed<[S::Rows<HALF>; 2]>,
     h: f64,
     steps: u64,
     instructions: Instructions,
@@ -26,8 +26,8 @@ pub(crate) struct Block<S: Batch<N>, const N: usize> {
     /// The velocities of the last steps, the newest first.
     velocities: [Box<Rows<N>>; DEPTH],
     verdict: Box<Verdict>,
-    /// All bits one where there is a trajectory that has not ended.
-    running: Row<u64>,
+    /// How many trajectories have not ended.
+    running: usize,
     ended: Vec<Option<Ended<N>>>,
 }
 
@@ -37,9 +37,16 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let count = trajectories.len();
         // The last trajectory stands in for those that are not there.
         let all: [(S, State<N>); WIDTH] = core::array::from_fn(|lane| trajectories[lane.min(count - 1)]);
-        let fixed = Fixed { systems: S::rows(&all.map(|(system, _)| system)), t: Row(all.map(|(_, state)| state.t)) };
-        let zeros = || Row([0.0; WIDTH]);
-        let verdict = Verdict { radius: zeros(), length: zeros(), refused: Row([0; WIDTH]) };
+        let fixed = Fixed {
+            systems: [0, HALF].map(|first| S::rows(&core::array::from_fn(|index| all[first + index].0))),
+            t: Row::filled(0.0),
+        };
+        let verdict = Verdict {
+            radius: Row::filled(0.0),
+            length: Row::filled(0.0),
+            refused: Row::filled(0),
+            running: Row::filled(0),
+        };
         let mut block = Self {
             fixed,
             h,
@@ -48,13 +55,16 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             nodes: core::array::from_fn(|_| Box::new(Nodes::zeros())),
             velocities: core::array::from_fn(|_| Box::new(Rows::zeros())),
             verdict: Box::new(verdict),
-            running: Row(core::array::from_fn(|lane| if lane < count { u64::MAX } else { 0 })),
+            running: count,
             ended: vec![None; count],
         };
         for (lane, (system, state)) in all.iter().enumerate() {
-            block.nodes[0].set(lane, &Node::new(*state, 0.0));
+            let place = Place::of(lane);
+            block.fixed.t.set(place, state.t);
+            block.verdict.running.set(place, if lane < count { u64::MAX } else { 0 });
+            block.nodes[0].set(place, &Node::new(*state, 0.0));
             match FixedStep::new(system, *state, h) {
-                Ok(start) => block.velocities.iter_mut().for_each(|v| v.set(lane, &start.v())),
+                Ok(start) => block.velocities.iter_mut().for_each(|v| v.set(place, &start.v())),
                 Err(error) => block.end(lane, *state, error),
             }
         }
@@ -65,8 +75,9 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     fn end(&mut self, lane: usize, state: State<N>, error: StepError) {
         if let Some(ended) = self.ended.get_mut(lane) {
             *ended = Some(Ended { state, steps: self.steps, error });
+            self.running -= 1;
         }
-        self.running.0[lane] = 0;
+        self.verdict.running.set(Place::of(lane), 0);
     }
 
     /// How many trajectories there are, ended or not.
@@ -76,7 +87,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     /// How many have not ended.
     pub(crate) fn running(&self) -> usize {
-        self.ended.iter().filter(|ended| ended.is_none()).count()
+        self.running
     }
 
     /// The state of a trajectory.
@@ -86,7 +97,10 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     /// The last node of a trajectory.
     fn node(&self, lane: usize) -> Node<N> {
-        self.nodes[0].get(lane, self.fixed.t.0[lane] + self.elapsed())
+        {
+            let place = Place::of(lane);
+            self.nodes[0].get(place, self.fixed.t.get(place) + self.elapsed())
+        }
     }
 
     /// Time since the start.
@@ -98,7 +112,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     /// Takes `steps` steps, or as many as there are trajectories for.
     pub(crate) fn run(&mut self, steps: u64) {
         for _ in 0..steps {
-            if self.running() == 0 {
+            if self.running == 0 {
                 return;
             }
             self.step();
@@ -109,17 +123,32 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let instructions = self.instructions;
         let clock = Clock { elapsed: self.elapsed(), h: self.h };
         let Self { fixed, nodes: [start, end], velocities, verdict, .. } = self;
-        let [v1, v2, v3, v4, v5, v6, oldest] = velocities;
+        let [v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, oldest] = velocities;
         // Before there are enough velocities, every step starts from the last one.
-        if self.steps < DEPTH as u64 || self.steps.is_multiple_of(INTERVAL) {
-            dispatch::lesson::<S, N>(instructions, fixed, clock, start, end, oldest, verdict, v1);
+        let refused = if self.steps < DEPTH as u64 || self.steps.is_multiple_of(INTERVAL) {
+            dispatch::lesson::<S, N>(instructions, fixed, clock, start, end, oldest, verdict, v1)
         } else {
-            dispatch::foretold::<S, N>(instructions, fixed, clock, start, end, oldest, verdict, v1, v2, v3, v4, v5, v6);
-            if any(&verdict.refused, &self.running) {
-                dispatch::again::<S, N>(instructions, fixed, clock, start, end, oldest, verdict);
-            }
-        }
-        if any(&self.verdict.refused, &self.running) {
+            dispatch::foretold::<S, N>(
+                instructions,
+                fixed,
+                clock,
+                start,
+                end,
+                oldest,
+                verdict,
+                v1,
+                v2,
+                v3,
+                v4,
+                v5,
+                v6,
+                v7,
+                v8,
+                v9,
+                v10,
+            ) && dispatch::again::<S, N>(instructions, fixed, clock, start, end, oldest, verdict)
+        };
+        if refused {
             self.take_alone();
         }
         self.nodes.swap(0, 1);
@@ -131,14 +160,15 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     #[cold]
     fn take_alone(&mut self) {
         for lane in 0..WIDTH {
-            if self.verdict.refused.0[lane] & self.running.0[lane] == 0 {
+            let place = Place::of(lane);
+            if self.verdict.refused.get(place) & self.verdict.running.get(place) == 0 {
                 continue;
             }
             let node = self.node(lane);
             match self.alone(&node, lane) {
                 Ok((next, v)) => {
-                    self.nodes[1].set(lane, &next);
-                    self.velocities[DEPTH - 1].set(lane, &v);
+                    self.nodes[1].set(place, &next);
+                    self.velocities[DEPTH - 1].set(place, &v);
                 }
                 Err(error) => self.end(lane, node.state(), error),
             }
@@ -147,17 +177,13 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     /// The next node of one trajectory and the velocity that leads there.
     fn alone(&self, node: &Node<N>, lane: usize) -> Result<(Node<N>, SVector<f64, N>), StepError> {
-        let system = S::pick::<f64, WIDTH>(&self.fixed.systems, lane);
-        let [last, before, ..] = [0, 1].map(|index| self.velocities[index].get(lane));
+        let place = Place::of(lane);
+        let system = S::pick::<f64, HALF>(&self.fixed.systems[place.half], place.index);
+        let [last, before, ..] = [0, 1].map(|index| self.velocities[index].get(place));
         let v = fixed_step::velocity(&system, node, self.h, last * 2.0 - before, last)?;
         let gain = vi_core::Stepping::increment(&system, node, self.h, &v);
         let next = node.moved(self.h, &v, &gain.momentum);
         next.check_finite(node.t)?;
         Ok((next, v))
     }
-}
-
-/// Whether a running trajectory was refused.
-fn any(refused: &Row<u64>, running: &Row<u64>) -> bool {
-    refused.0.iter().zip(&running.0).fold(0, |any, (refused, running)| any | (refused & running)) != 0
 }

@@ -3,7 +3,7 @@
 //! In: what a sweep takes. Out: the same, by the widest vector instructions that this processor has. The compiler makes
 //! each copy of the same source; a build for one processor (`-C target-cpu=native`) needs none of them.
 
-use crate::ensemble::WIDTH;
+use crate::ensemble::HALF;
 use crate::rows::{Nodes, Rows};
 use crate::sweep::{self, Clock, Fixed, Verdict};
 use vi_core::Batch;
@@ -44,16 +44,16 @@ macro_rules! copies {
     ($($name:ident($($argument:ident: $kind:ty),*);)*) => {$(
         #[doc = concat!("`sweep::", stringify!($name), "` by the instructions of this processor.")]
         #[allow(unsafe_code, clippy::too_many_arguments)]
-        pub(crate) fn $name<S: Batch<N>, const N: usize>(instructions: Instructions, $($argument: $kind),*) {
+        pub(crate) fn $name<S: Batch<N>, const N: usize>(instructions: Instructions, $($argument: $kind),*) -> bool {
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2,fma")]
-            fn avx2<S: Batch<N>, const N: usize>($($argument: $kind),*) {
-                sweep::$name::<S, N, true>($($argument),*);
+            fn avx2<S: Batch<N>, const N: usize>($($argument: $kind),*) -> bool {
+                sweep::$name::<S, N, true>($($argument),*)
             }
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
-            fn avx512<S: Batch<N>, const N: usize>($($argument: $kind),*) {
-                sweep::$name::<S, N, true>($($argument),*);
+            fn avx512<S: Batch<N>, const N: usize>($($argument: $kind),*) -> bool {
+                sweep::$name::<S, N, true>($($argument),*)
             }
             match instructions {
                 Instructions::Baseline => sweep::$name::<S, N, { cfg!(target_feature = "fma") }>($($argument),*),
@@ -69,10 +69,11 @@ macro_rules! copies {
 }
 
 copies! {
-    foretold(fixed: &Fixed<S::Rows<WIDTH>>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
-        verdict: &mut Verdict, v1: &Rows<N>, v2: &Rows<N>, v3: &Rows<N>, v4: &Rows<N>, v5: &Rows<N>, v6: &Rows<N>);
-    again(fixed: &Fixed<S::Rows<WIDTH>>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
+    foretold(fixed: &Fixed<[S::Rows<HALF>; 2]>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
+        verdict: &mut Verdict, v1: &Rows<N>, v2: &Rows<N>, v3: &Rows<N>, v4: &Rows<N>, v5: &Rows<N>, v6: &Rows<N>,
+        v7: &Rows<N>, v8: &Rows<N>, v9: &Rows<N>, v10: &Rows<N>);
+    again(fixed: &Fixed<[S::Rows<HALF>; 2]>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
         verdict: &mut Verdict);
-    lesson(fixed: &Fixed<S::Rows<WIDTH>>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
+    lesson(fixed: &Fixed<[S::Rows<HALF>; 2]>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
         verdict: &mut Verdict, v1: &Rows<N>);
 }

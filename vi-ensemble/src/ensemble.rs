@@ -10,7 +10,10 @@ use rayon::prelude::*;
 use vi_core::{Batch, State, StepError};
 
 /// Trajectories in a block: several vectors, so that one is computed while another waits.
-pub const WIDTH: usize = 64;
+pub const WIDTH: usize = 2 * HALF;
+
+/// Trajectories in half of a block.
+pub(crate) const HALF: usize = 32;
 
 /// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
 const WORTHWHILE: u64 = 1 << 14;
@@ -88,10 +91,13 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
 
     /// Takes `steps` steps of every trajectory that has not ended.
     pub fn run(&mut self, steps: u64) {
+        self.steps += steps;
+        if let [block] = &mut self.blocks[..] {
+            return block.run(steps);
+        }
         let together = WORTHWHILE / (WIDTH as u64 * steps.max(1));
         let together = usize::try_from(together).unwrap_or(usize::MAX).max(1);
         self.blocks.par_iter_mut().with_min_len(together).for_each(|block| block.run(steps));
-        self.steps += steps;
     }
 
     /// Takes `steps` steps, `every` at a time (at least one), and lets `observe` look after each part.

@@ -3,67 +3,124 @@
 //! In: formulas generic over [`Real`]. Out: the same in `f64`, one trajectory at a time, without a branch or a call in
 //! what can do without, so that the compiler widens the loop around it to as many lanes as the processor has. An explicit
 //! vector type would choose its instructions when it is compiled, before the processor is known.
+//!
+//! The compiler may not round once where the formula rounds twice. So a product is kept as its two factors until it is known what
+//! it is added to, and `a b + c` is one instruction where the processor has it. What is a product and what is not is known when
+//! the formula is compiled: nothing of it is left in the program.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use vi_core::real::{Real, sine};
 
 /// One lane: a number whose sine and cosine have no slow path. `FUSED`: whether products are added in one instruction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Lane<const FUSED: bool>(pub(crate) f64);
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lane<const FUSED: bool> {
+    /// The number, or its first factor.
+    value: f64,
+    /// Its second factor: 1 where it is no product, so that reading it asks nothing.
+    factor: f64,
+    product: bool,
+}
 
-macro_rules! operators {
-    ($($operator:ident $function:ident),*) => {$(
-        impl<const FUSED: bool> $operator for Lane<FUSED> {
-            type Output = Self;
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self { Self(self.0.$function(other.0)) }
+impl<const FUSED: bool> Lane<FUSED> {
+    /// The lane of a number.
+    #[inline(always)]
+    pub(crate) fn new(value: f64) -> Self {
+        Self { value, factor: 1.0, product: false }
+    }
+
+    /// The number.
+    #[inline(always)]
+    pub(crate) fn get(self) -> f64 {
+        self.value * self.factor
+    }
+}
+
+impl<const FUSED: bool> PartialEq for Lane<FUSED> {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        self.get() == other.get()
+    }
+}
+
+impl<const FUSED: bool> Add for Lane<FUSED> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        if !FUSED {
+            return Self::new(self.value + other.value);
         }
-    )*};
+        let (fused, added) = if self.product { (self, other) } else { (other, self) };
+        Self::new(fused.value.mul_add(fused.factor, added.get()))
+    }
 }
 
-macro_rules! assignments {
-    ($($operator:ident $function:ident),*) => {$(
-        impl<const FUSED: bool> $operator for Lane<FUSED> {
-            #[inline(always)]
-            fn $function(&mut self, other: Self) { self.0.$function(other.0); }
-        }
-    )*};
+impl<const FUSED: bool> Sub for Lane<FUSED> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
 }
 
-macro_rules! functions {
-    ($($function:ident($($argument:ident),*)),*) => {$(
-        #[inline(always)]
-        fn $function(self, $($argument: Self),*) -> Self { Self(Real::$function(self.0, $($argument.0),*)) }
-    )*};
+impl<const FUSED: bool> Mul for Lane<FUSED> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (value, factor) = (self.get(), other.get());
+        if FUSED { Self { value, factor, product: true } } else { Self::new(value * factor) }
+    }
 }
 
-operators!(Add add, Sub sub, Mul mul, Div div);
-assignments!(AddAssign add_assign, SubAssign sub_assign, MulAssign mul_assign);
+impl<const FUSED: bool> Div for Lane<FUSED> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self::new(self.get() / other.get())
+    }
+}
 
 impl<const FUSED: bool> Neg for Lane<FUSED> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(-self.0)
+        Self { value: -self.value, ..self }
     }
 }
+
+macro_rules! assignments {
+    ($($operator:ident $function:ident $operation:ident),*) => {$(
+        impl<const FUSED: bool> $operator for Lane<FUSED> {
+            #[inline(always)]
+            fn $function(&mut self, other: Self) { *self = (*self).$operation(other); }
+        }
+    )*};
+}
+
+assignments!(AddAssign add_assign add, SubAssign sub_assign sub, MulAssign mul_assign mul);
 
 impl<const FUSED: bool> num_traits::Zero for Lane<FUSED> {
     #[inline(always)]
     fn zero() -> Self {
-        Self(0.0)
+        Self::new(0.0)
     }
     #[inline(always)]
     fn is_zero(&self) -> bool {
-        self.0 == 0.0
+        self.get() == 0.0
     }
 }
 
 impl<const FUSED: bool> num_traits::One for Lane<FUSED> {
     #[inline(always)]
     fn one() -> Self {
-        Self(1.0)
+        Self::new(1.0)
     }
+}
+
+macro_rules! functions {
+    ($($function:ident($($argument:ident),*)),*) => {$(
+        #[inline(always)]
+        fn $function(self, $($argument: Self),*) -> Self { Self::new(Real::$function(self.get(), $($argument.get()),*)) }
+    )*};
 }
 
 impl<const FUSED: bool> Real for Lane<FUSED> {
@@ -73,10 +130,10 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
 
     #[inline(always)]
     fn real(value: f64) -> Self {
-        Self(value)
+        Self::new(value)
     }
     functions!(recip(), sqrt(), exp(), ln(), tan(), asin(), acos(), atan(), sinh(), cosh(), tanh(), abs(), sign());
-    functions!(atan2(other), hypot(other), pow(exponent), max(other));
+    functions!(atan2(other), hypot(other), pow(exponent), max(other), at_most(bound), is_above(bound));
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
@@ -88,36 +145,30 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     /// Not a number for angles that only the library reduces: the trajectory takes that step by itself.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let near = self.0.abs() <= sine::LARGEST;
-        let (s, c) = sine::sin_cos::<FUSED>(self.0);
-        if near { (Self(s), Self(c)) } else { (Self(f64::NAN), Self(f64::NAN)) }
+        let angle = self.get();
+        let near = angle.abs() <= sine::LARGEST;
+        let (s, c) = sine::sin_cos::<FUSED>(angle);
+        let (s, c) = if near { (s, c) } else { (f64::NAN, f64::NAN) };
+        (Self::new(s), Self::new(c))
     }
     #[inline(always)]
     fn is_finite(self) -> bool {
-        self.0.is_finite()
+        self.get().is_finite()
     }
     #[inline(always)]
     fn is_positive(self) -> bool {
-        self.0 > 0.0
-    }
-    #[inline(always)]
-    fn at_most(self, bound: Self) -> Self {
-        Self(Real::at_most(self.0, bound.0))
-    }
-    #[inline(always)]
-    fn is_above(self, bound: Self) -> Self {
-        Self(Real::is_above(self.0, bound.0))
+        self.get() > 0.0
     }
     #[inline(always)]
     fn holds(self) -> bool {
-        self.0 != 0.0
+        self.get() != 0.0
     }
     #[inline(always)]
     fn to_f64(self) -> f64 {
-        self.0
+        self.get()
     }
     #[inline(always)]
     fn least_magnitude(self) -> f64 {
-        self.0.abs()
+        self.get().abs()
     }
 }

@@ -1,21 +1,28 @@
 //! Many trajectories of one system, each with its own parameters and its own start.
 //!
 //! In: systems of one kind, a state for each, one step h. Out: for each trajectory the state reached, or the typed error
-//! that it ended with and the step at which it did. The step is that of [`vi_core::FixedStep`], to rounding.
+//! that it ended with and the step at which it did. The equations of a step are those of [`vi_core::FixedStep`].
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`ensemble`] | the trajectories of a caller, in blocks, over threads |
 //! | `block` | [`WIDTH`](ensemble::WIDTH) trajectories side by side, and what becomes of one that the common path refuses |
 //! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
+//! | `cramer` | small linear systems, in line |
 //! | `dispatch` | copies of these loops for the instruction sets of a processor, chosen at run time |
-//! | `lane` | the number that the loops compute with |
+//! | `lane` | the number that the loops compute with: products are added in one instruction |
 //! | `rows` | nodes and velocities of a block, one row per coordinate |
 //!
 //! A trajectory depends neither on its neighbours nor on the number of threads, bit for bit; on processors with and
 //! without fused multiply-add it differs by rounding.
+//!
+//! Where the momentum equation has one root only, a trajectory agrees with [`vi_core::FixedStep`] and with steps converged
+//! each by itself, to a few roundings, which the motion may enlarge. Where it has several (see
+//! [`Branch`](vi_core::fixed_step::Branch)), the root taken depends on the guess, and an ensemble guesses otherwise: there
+//! it need not agree.
 
 mod block;
+mod cramer;
 mod dispatch;
 pub mod ensemble;
 mod lane;

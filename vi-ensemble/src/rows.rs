@@ -1,17 +1,50 @@
 //! Nodes and velocities of a block, side by side.
 //!
-//! In: vectors of N entries, one per trajectory. Out: N rows of [`WIDTH`] numbers each, in which one vector instruction
+//! In: vectors of N entries, one per trajectory. Out: N rows of `WIDTH` numbers each, in which one vector instruction
 //! meets the same coordinate of neighbouring trajectories.
 
-use crate::ensemble::WIDTH;
+use crate::ensemble::HALF;
 use crate::lane::Lane;
+use crate::sweep::Vector;
 use nalgebra::SVector;
-use vi_core::{Node, State};
+use vi_core::{Node, Real, State};
 
 /// One number of each trajectory of a block.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(crate) struct Row<U = f64>(pub(crate) [U; WIDTH]);
+#[repr(align(512))]
+pub(crate) struct Row<U = f64>([[U; HALF]; 2]);
+
+/// Where a trajectory stands in a row: its half, and its place there. Both are known to be inside, one as a constant and
+/// the other as the counter of a loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) half: usize,
+    pub(crate) index: usize,
+}
+
+impl Place {
+    /// The place of a trajectory by its number.
+    pub(crate) fn of(lane: usize) -> Self {
+        Self { half: lane / HALF, index: lane % HALF }
+    }
+}
+
+impl<U: Copy> Row<U> {
+    /// The row of one number.
+    pub(crate) fn filled(value: U) -> Self {
+        Self([[value; HALF]; 2])
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self, place: Place) -> U {
+        self.0[place.half][place.index]
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&mut self, place: Place, value: U) {
+        self.0[place.half][place.index] = value;
+    }
+}
 
 /// One vector of each trajectory of a block, row by row.
 #[derive(Clone, Debug)]
@@ -28,32 +61,47 @@ pub(crate) struct Nodes<const N: usize> {
 
 impl<const N: usize> Rows<N> {
     pub(crate) fn zeros() -> Self {
-        Self([Row([0.0; WIDTH]); N])
+        Self([Row::filled(0.0); N])
     }
 
     /// The vector of one trajectory.
     #[inline(always)]
-    pub(crate) fn get(&self, lane: usize) -> SVector<f64, N> {
-        SVector::from(core::array::from_fn(|k| self.0[k].0[lane]))
+    pub(crate) fn get(&self, place: Place) -> SVector<f64, N> {
+        SVector::from(core::array::from_fn(|k| self.0[k].get(place)))
     }
 
     /// Sets the vector of one trajectory.
     #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, vector: &SVector<f64, N>) {
+    pub(crate) fn set(&mut self, place: Place, vector: &SVector<f64, N>) {
         for k in 0..N {
-            self.0[k].0[lane] = vector[k];
+            self.0[k].set(place, vector[k]);
         }
     }
 
+    /// One entry of it.
     #[inline(always)]
-    pub(crate) fn lane<const FUSED: bool>(&self, lane: usize) -> SVector<Lane<FUSED>, N> {
-        SVector::from(core::array::from_fn(|k| Lane(self.0[k].0[lane])))
+    pub(crate) fn entry<const FUSED: bool>(&self, k: usize, place: Place) -> Lane<FUSED> {
+        Lane::new(self.0[k].get(place))
     }
 
     #[inline(always)]
-    pub(crate) fn set_lane<const FUSED: bool>(&mut self, lane: usize, vector: &SVector<Lane<FUSED>, N>) {
+    pub(crate) fn lane<T: Real>(&self, place: Place) -> SVector<T, N> {
+        SVector::from(core::array::from_fn(|k| T::real(self.0[k].get(place))))
+    }
+
+    #[inline(always)]
+    pub(crate) fn set_lane<const FUSED: bool>(&mut self, place: Place, vector: &Vector<N, FUSED>) {
         for k in 0..N {
-            self.0[k].0[lane] = vector[k].0;
+            self.0[k].set(place, vector[k].get());
+        }
+    }
+
+    /// Sets it where it is not `kept`.
+    #[inline(always)]
+    pub(crate) fn set_lane_unless<const FUSED: bool>(&mut self, kept: bool, place: Place, vector: &Vector<N, FUSED>) {
+        for k in 0..N {
+            let (old, new) = (self.0[k].get(place), vector[k].get());
+            self.0[k].set(place, if kept { old } else { new });
         }
     }
 }
@@ -65,38 +113,47 @@ impl<const N: usize> Nodes<N> {
 
     /// The node of one trajectory, at the time t. Its energy has no meaning.
     #[inline(always)]
-    pub(crate) fn get(&self, lane: usize, t: f64) -> Node<N> {
-        let state = State { t, q: self.q.get(lane), p: self.p.get(lane) };
-        Node { q_low: self.q_low.get(lane), p_low: self.p_low.get(lane), ..Node::new(state, 0.0) }
+    pub(crate) fn get(&self, place: Place, t: f64) -> Node<N> {
+        let state = State { t, q: self.q.get(place), p: self.p.get(place) };
+        Node { q_low: self.q_low.get(place), p_low: self.p_low.get(place), ..Node::new(state, 0.0) }
     }
 
-    pub(crate) fn set(&mut self, lane: usize, node: &Node<N>) {
-        self.q.set(lane, &node.q);
-        self.q_low.set(lane, &node.q_low);
-        self.p.set(lane, &node.p);
-        self.p_low.set(lane, &node.p_low);
+    pub(crate) fn set(&mut self, place: Place, node: &Node<N>) {
+        self.q.set(place, &node.q);
+        self.q_low.set(place, &node.q_low);
+        self.p.set(place, &node.p);
+        self.p_low.set(place, &node.p_low);
     }
 
     #[inline(always)]
-    pub(crate) fn lane<const FUSED: bool>(&self, lane: usize, t: f64) -> Node<N, Lane<FUSED>> {
-        let zero = Lane(0.0);
+    pub(crate) fn lane<T: Real>(&self, place: Place, t: f64) -> Node<N, T> {
+        let zero = T::zero();
         Node {
-            t: Lane(t),
+            t: T::real(t),
             t_low: zero,
-            q: self.q.lane(lane),
-            q_low: self.q_low.lane(lane),
-            p: self.p.lane(lane),
-            p_low: self.p_low.lane(lane),
+            q: self.q.lane(place),
+            q_low: self.q_low.lane(place),
+            p: self.p.lane(place),
+            p_low: self.p_low.lane(place),
             energy: zero,
             energy_low: zero,
         }
     }
 
     #[inline(always)]
-    pub(crate) fn set_lane<const FUSED: bool>(&mut self, lane: usize, node: &Node<N, Lane<FUSED>>) {
-        self.q.set_lane(lane, &node.q);
-        self.q_low.set_lane(lane, &node.q_low);
-        self.p.set_lane(lane, &node.p);
-        self.p_low.set_lane(lane, &node.p_low);
+    pub(crate) fn set_lane<const FUSED: bool>(&mut self, place: Place, node: &Node<N, Lane<FUSED>>) {
+        self.q.set_lane(place, &node.q);
+        self.q_low.set_lane(place, &node.q_low);
+        self.p.set_lane(place, &node.p);
+        self.p_low.set_lane(place, &node.p_low);
+    }
+
+    /// Sets it where it is not `kept`.
+    #[inline(always)]
+    pub(crate) fn set_lane_unless<const FUSED: bool>(&mut self, kept: bool, place: Place, node: &Node<N, Lane<FUSED>>) {
+        self.q.set_lane_unless(kept, place, &node.q);
+        self.q_low.set_lane_unless(kept, place, &node.q_low);
+        self.p.set_lane_unless(kept, place, &node.p);
+        self.p_low.set_lane_unless(kept, place, &node.p_low);
     }
 }
