@@ -12,6 +12,8 @@ pub enum Target {
     AtMost(f64),
     /// Faster than the rival by this factor.
     Faster(f64),
+    /// Slower than the rival by this factor: one trajectory against many.
+    Slower(f64),
     /// Shown, not judged.
     None,
 }

@@ -62,6 +62,7 @@ fn judged(target: Target, ratio: f64) -> (String, &'static str) {
     let (text, reached) = match target {
         Target::AtMost(factor) => (format!("≤ {factor}"), ratio <= factor),
         Target::Faster(factor) => (format!("≤ 1/{factor}"), ratio * factor <= 1.0),
+        Target::Slower(factor) => (format!("≥ {factor}"), ratio >= factor),
         Target::None => return (String::new(), ""),
     };
     (text, if reached { "yes" } else { "no" })
@@ -98,6 +99,7 @@ mod tests {
     fn targets_are_judged() {
         assert_eq!(judged(Target::AtMost(1.05), 1.06), ("≤ 1.05".to_owned(), "no"));
         assert_eq!(judged(Target::Faster(3.0), 0.33), ("≤ 1/3".to_owned(), "yes"));
+        assert_eq!(judged(Target::Slower(8.0), 7.9), ("≥ 8".to_owned(), "no"));
         assert_eq!([ratio(1.5), ratio(0.25)], ["1.50", "1/4.00"]);
     }
 }

@@ -3,7 +3,8 @@
 //! In: anything that takes steps. Out: [`Run`], behind which a table of unlike steppers is one list. The loop over the steps is
 //! inside, so that a step is inlined into it as in a user's program.
 
-use vi_core::{EnergyPreserving, FixedStep, Stepping};
+use vi_core::{Batch, EnergyPreserving, FixedStep, Stepping};
+use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.
 pub trait Stepper: Clone {
@@ -61,5 +62,17 @@ impl<S: Stepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<S, N> 
 
     fn state(&self) -> Vec<f64> {
         flat(EnergyPreserving::state(self))
+    }
+}
+
+/// One block of trajectories or less, which the thread that asks moves by itself.
+impl<S: Batch<N>, const N: usize> Run for Ensemble<S, N> {
+    fn run(&self, steps: usize) -> Vec<f64> {
+        let mut ensemble = self.clone();
+        Ensemble::run(&mut ensemble, steps as u64);
+        match ensemble.results().next() {
+            Some(Ok(state)) => flat(state),
+            outcome => panic!("no state, but {outcome:?}"),
+        }
     }
 }
