@@ -1,15 +1,15 @@
 //! The trajectories of a caller.
 //!
 //! In: systems, states, a step h; then how many steps to take. Out: for each trajectory, in the order given, the state
-//! reached or how it [`Ended`]. Blocks of [`WIDTH`] trajectories are shared among the threads of rayon's current pool.
+//! reached or how it [`Ended`]. Groups of [`WIDTH`] trajectories are shared among the threads of rayon's current pool.
 
-use crate::block::Block;
 use crate::dispatch::Instructions;
+use crate::group::Group;
 use core::fmt;
 use rayon::prelude::*;
 use vi_core::{Batch, State, StepError};
 
-/// Trajectories in a block: several vectors, so that one is computed while another waits.
+/// Trajectories in a group: several vectors, so that one is computed while another waits.
 pub const WIDTH: usize = 2 * HALF;
 
 /// Trajectories in half of a block.
@@ -39,7 +39,7 @@ const WORTHWHILE: u64 = 1 << 14;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Ensemble<S: Batch<N>, const N: usize> {
-    blocks: Vec<Block<S, N>>,
+    groups: Vec<Group<S, N>>,
     h: f64,
     steps: u64,
 }
@@ -85,19 +85,19 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
         }
         let instructions = Instructions::detected();
         let trajectories: Vec<(S, State<N>)> = systems.into_iter().zip(states).collect();
-        let blocks = trajectories.par_chunks(WIDTH).map(|chunk| Block::new(chunk, h, instructions)).collect();
-        Ok(Self { blocks, h, steps: 0 })
+        let groups = trajectories.par_chunks(WIDTH).map(|chunk| Group::new(chunk, h, instructions)).collect();
+        Ok(Self { groups, h, steps: 0 })
     }
 
     /// Takes `steps` steps of every trajectory that has not ended.
     pub fn run(&mut self, steps: u64) {
         self.steps += steps;
-        if let [block] = &mut self.blocks[..] {
-            return block.run(steps);
+        if let [group] = &mut self.groups[..] {
+            return group.run(steps);
         }
         let together = WORTHWHILE / (WIDTH as u64 * steps.max(1));
         let together = usize::try_from(together).unwrap_or(usize::MAX).max(1);
-        self.blocks.par_iter_mut().with_min_len(together).for_each(|block| block.run(steps));
+        self.groups.par_iter_mut().with_min_len(together).for_each(|group| group.run(steps));
     }
 
     /// Takes `steps` steps, `every` at a time (at least one), and lets `observe` look after each part.
@@ -113,13 +113,13 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
 
     /// The state of each trajectory, in the order given; of one that has ended, how.
     pub fn results(&self) -> impl Iterator<Item = Result<State<N>, Ended<N>>> + '_ {
-        self.blocks.iter().flat_map(|block| (0..block.len()).map(|lane| block.result(lane)))
+        self.groups.iter().flat_map(|group| (0..group.len()).map(|index| group.result(index)))
     }
 
     /// How many trajectories have not ended.
     #[must_use]
     pub fn running(&self) -> usize {
-        self.blocks.iter().map(Block::running).sum()
+        self.groups.iter().map(Group::running).sum()
     }
 
     /// Steps taken by those that have not ended.

@@ -5,7 +5,8 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`ensemble`] | the trajectories of a caller, in blocks, over threads |
+//! | [`ensemble`] | the trajectories of a caller, in groups, over threads |
+//! | `group` | whether trajectories go side by side or one after the other |
 //! | `block` | [`WIDTH`](ensemble::WIDTH) trajectories side by side, and what becomes of one that the common path refuses |
 //! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
 //! | `cramer` | small linear systems, in line |
@@ -25,6 +26,7 @@ mod block;
 mod cramer;
 mod dispatch;
 pub mod ensemble;
+mod group;
 mod lane;
 mod rows;
 mod sweep;

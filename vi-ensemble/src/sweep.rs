@@ -13,8 +13,7 @@
 //! ```
 //!
 //! After a Newton step δ the next one is C |δ|², so that one shorter than ρ leaves a quarter of a rounding or less; and so
-//! do the gains of the momenta, which are carried from the guess to the solution by their derivatives. Across a kink C means
-//! nothing: there, a step is accepted when it is itself a rounding.
+//! do the gains of the momenta, which are carried from the guess to the solution by their derivatives.
 //!
 //! The order of the guess is the same for all. Of coupled pendula (h = 0.01, amplitude 1) order 6 is refused in 22 steps of
 //! 100, order 8 in 4 and order 10 in 0.1, and a second Newton step is one for the whole block. Rounding, 2000 times
@@ -106,10 +105,26 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
         (v - step, length_squared(&step))
     }
 
-    /// The same with the gain of the momenta: carried there by its derivatives, but for equations that are linear, of
-    /// which no C tells what that leaves out.
+    /// The same with the gain of the momenta: at the solution, where the equations are linear and no C tells what
+    /// else would be left out; else carried there from v by its derivatives.
     #[inline(always)]
     fn reached(&self, v: &Vector<N, FUSED>) -> Reached<N, FUSED> {
+        let (v, gain, length) = if S::CONSTANT_JACOBIAN {
+            let (v, length) = self.corrected(v);
+            (v, self.system.increment(&self.node, self.h, &v).momentum, length)
+        } else {
+            self.carried(v)
+        };
+        let mut finite = Lane::<FUSED>::new(length);
+        for k in 0..N {
+            finite += gain[k] * Lane::new(0.0);
+        }
+        Reached { v, gain, length: finite.get() }
+    }
+
+    /// The velocity after a Newton step from v, the gain of the momenta there, and |δ|².
+    #[inline(always)]
+    fn carried(&self, v: &Vector<N, FUSED>) -> (Vector<N, FUSED>, Vector<N, FUSED>, f64) {
         let place = self.node.place(self.h * Lane::new(S::PLACE), v);
         let mut step = *v;
         let gain = self.system.momentum_step(
@@ -124,13 +139,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
                 step
             },
         );
-        let v = v + step;
-        let gain = if S::CONSTANT_JACOBIAN { self.system.increment(&self.node, self.h, &v).momentum } else { gain };
-        let mut length = Lane::<FUSED>::new(length_squared(&step));
-        for k in 0..N {
-            length += gain[k] * Lane::new(0.0);
-        }
-        Reached { v, gain, length: length.get() }
+        (v + step, gain, length_squared(&step))
     }
 
     /// The node at the end of the step.
@@ -213,7 +222,10 @@ pub(crate) fn foretold<S: Batch<N>, const N: usize, const FUSED: bool>(
     let mut any = 0;
     for index in 0..HALF {
         let [a, b] = [Place { half: 0, index }, Place { half: 1, index }];
-        let [guess_a, guess_b]: [Vector<N, FUSED>; 2] = if N == 1 {
+        // A linear equation is solved by one step from anywhere.
+        let [guess_a, guess_b]: [Vector<N, FUSED>; 2] = if S::CONSTANT_JACOBIAN {
+            [v1.lane(a), v1.lane(b)]
+        } else if N == 1 {
             [extrapolated(a, few, v7), extrapolated(b, few, v7)]
         } else {
             [extrapolated(a, many, velocity), extrapolated(b, many, velocity)]
@@ -298,7 +310,7 @@ pub(crate) fn lesson<S: Batch<N>, const N: usize, const FUSED: bool>(
             velocity.set_lane(place, &reached.v);
             // Two steps that are both rounding say nothing but that rounding is all that is left.
             let measured = rounding.sqrt() * first * SHARE / second.max(rounding).sqrt();
-            let learnt = S::SMOOTH && second <= 0.25 * first && measured >= rounding;
+            let learnt = second <= 0.25 * first && measured >= rounding;
             let radius = if learnt { measured } else { rounding };
             let radius = if S::CONSTANT_JACOBIAN { f64::MAX } else { radius };
             verdict.radius.set(place, radius);

@@ -80,38 +80,25 @@ fn every_trajectory_is_that_of_the_fixed_step() -> Result<(), StepError> {
     let orbits: Vec<_> = spread(70, 0.3, 1.0)
         .map(|x| (Kepler::default(), State::at(&Kepler::default(), 0.0, [x, 0.0], [0.0, (2.0 / x - 1.0).sqrt()])))
         .collect();
-    let chains: Vec<_> = spread(3, 0.2, 1.0)
-        .map(|x| {
-            let chain = FpuChain::default();
-            (chain, State::at(&chain, 0.0, core::array::from_fn(|k| if k == 0 { x } else { 0.0 }), [0.0; 16]))
-        })
-        .collect();
     let driven = ParametricPendulum::default();
     let driven: Vec<_> = spread(5, 0.1, 0.5).map(|q| (driven, State::at(&driven, 0.25, [q], [0.0]))).collect();
     let linear = HarmonicOscillator::default();
-    let stop = Stop::default();
-    let stops: Vec<_> = spread(9, 0.1, 0.9).map(|x| (stop, State::at(&stop, 0.0, [x], [0.0]))).collect();
     let linear: Vec<_> = spread(5, 0.1, 0.5).map(|q| (linear, State::at(&linear, 0.0, [q], [0.0]))).collect();
     let particle = ChargedParticle::default();
     let particles: Vec<_> =
         spread(65, 0.2, 0.6).map(|x| (particle, State::at(&particle, 0.0, [x, 0.1, -0.2], [0.1, 0.5, 0.3]))).collect();
-    let links = NPendulum::default();
-    let links: Vec<_> = spread(3, 0.1, 0.5).map(|q| (links, State::at(&links, 0.0, [q; 4], [0.0; 4]))).collect();
     for (name, [alone, converged]) in [
         ("double well", differences(&wells(130), 0.01, 1000)?),
         ("Kepler", differences(&orbits, 0.01, 1000)?),
         ("double pendulum", differences(&pendulums(65), 0.01, 1000)?),
-        ("chain", differences(&chains, 0.1, 1000)?),
         ("parametric pendulum", differences(&driven, 0.01, 1000)?),
         ("harmonic oscillator", differences(&linear, 0.01, 1000)?),
         ("charged particle", differences(&particles, 0.01, 1000)?),
-        ("four pendulums", differences(&links, 0.01, 1000)?),
-        ("stop", differences(&stops, 0.01, 1000)?),
     ] {
-        // Measured: at most 4.9e-15, that of four pendulums, from the converged steps. The fixed step is farther, 4.7e-14 for
+        // Measured: at most 3.4e-15, Kepler's, from the converged steps. The fixed step is farther, 4.7e-14 for
         // Kepler's orbit of eccentricity 0.7: by the exact steps, in 40 digits, the ensemble is 2.0e-15 off there and the fixed
         // step 4.9e-14, because it trusts longer Newton steps.
-        assert!(alone < 5e-14 && converged < 5e-15, "{name}: {alone:e}, {converged:e}");
+        assert!(alone < 5e-14 && converged < 4e-15, "{name}: {alone:e}, {converged:e}");
     }
     Ok(())
 }
@@ -157,12 +144,44 @@ fn a_trajectory_that_ends_ends_alone() -> Result<(), StepError> {
 }
 
 lagrangian! {
-    /// A spring that is stiffer on one side: the force has a kink at x = 0.
+    /// A spring that pushes from one side, in a potential that ends: the force has a kink at x = 0, and no number beyond
+    /// x = 1.
     pub struct Stop {
+        param a = 1.0;
         coord x;
-        L = dot(x)^2 / 2 - x^2 / 2 - x * abs(x) / 4;
+        L = dot(x)^2 / 2 + a * x - x * abs(x) / 4 - sqrt(1 - x) / 10;
         discretize midpoint;
     }
+}
+
+/// Bit for bit, where each ends and how.
+fn is_that_of_the_fixed_step<S: Batch<N>, const N: usize>(starts: &[Start<S, N>], h: f64) -> Result<usize, StepError> {
+    let (systems, states) = starts.iter().copied().unzip();
+    let mut ensemble = Ensemble::new(systems, states, h)?;
+    ensemble.run_observed(300, 100, |_| ());
+    for (&(system, start), outcome) in starts.iter().zip(ensemble.results()) {
+        let mut alone = FixedStep::new(system, start, h)?;
+        let failure = (0..300_u64).find_map(|steps| alone.step().err().map(|error| (steps, error)));
+        let state = alone.state();
+        assert_eq!(outcome, failure.map_or(Ok(state), |(steps, error)| Err(Ended { state, steps, error })));
+    }
+    Ok(ensemble.running())
+}
+
+#[test]
+fn long_formulas_and_kinks_are_taken_apart() -> Result<(), StepError> {
+    let chain = FpuChain::default();
+    let first = |x| core::array::from_fn(|k| if k == 0 { x } else { 0.0 });
+    let chains: Vec<_> = spread(3, 0.2, 1.0).map(|x| (chain, State::at(&chain, 0.0, first(x), [0.0; 16]))).collect();
+    assert_eq!(is_that_of_the_fixed_step(&chains, 0.1)?, 3);
+    let links = NPendulum::default();
+    let links: Vec<_> = spread(70, 0.1, 0.5).map(|q| (links, State::at(&links, 0.0, [q; 4], [0.0; 4]))).collect();
+    assert_eq!(is_that_of_the_fixed_step(&links, 0.01)?, 70);
+    let stop = |a| Stop { a };
+    let stops: Vec<_> = spread(80, -0.2, 2.0).map(|a| (stop(a), State::at(&stop(a), 0.0, [-0.1], [0.0]))).collect();
+    // Some go on and some end.
+    assert!((10..70).contains(&is_that_of_the_fixed_step(&stops, 0.01)?));
+    Ok(())
 }
 
 lagrangian! {
