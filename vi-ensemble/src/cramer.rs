@@ -3,8 +3,8 @@
 //! In: A in any of the forms of [`vi_core::linear`], and r. Out: the x with `A x = r`, by Cramer's rule; by the form of A
 //! where there are more equations. Not finite where A is singular.
 //!
-//! `vi_core` has the same formulas for every kind of number, too long for the compiler to write them into the loops, which become
-//! vector instructions only without a call.
+//! `vi_core` has the same formulas for every kind of number, too long for the compiler to write them into the loops, which
+//! become vector instructions only without a call.
 
 use crate::lane::Lane;
 use crate::sweep::Vector;

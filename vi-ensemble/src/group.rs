@@ -1,6 +1,7 @@
 //! Trajectories that one thread takes on: side by side where that pays, else one after the other.
 //!
-//! In: systems and states, at most [`WIDTH`](crate::ensemble::WIDTH). Out: where each is after so many steps, or how it ended.
+//! In: systems and states, at most [`WIDTH`](crate::ensemble::WIDTH). Out: where each is after so many steps, or how it
+//! ended.
 //!
 //! Beyond three degrees of freedom the formulas are too long to be written into a loop over trajectories, and their
 //! matrices are solved by loops themselves: nothing would become a vector instruction. And Newton's iteration across a kink

@@ -4,9 +4,9 @@
 //! what can do without, so that the compiler widens the loop around it to as many lanes as the processor has. An explicit
 //! vector type would choose its instructions when it is compiled, before the processor is known.
 //!
-//! The compiler may not round once where the formula rounds twice. So a product is kept as its two factors until it is known what
-//! it is added to, and `a b + c` is one instruction where the processor has it. What is a product and what is not is known when
-//! the formula is compiled: nothing of it is left in the program.
+//! The compiler may not round once where the formula rounds twice. So a product is kept as its two factors until it is
+//! known what it is added to, and `a b + c` is one instruction where the processor has it. What is a product and what is
+//! not is known when the formula is compiled: nothing of it is left in the program.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use vi_core::real::{Real, sine};

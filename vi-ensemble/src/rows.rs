@@ -11,7 +11,7 @@ use vi_core::{Node, Real, State};
 
 /// One number of each trajectory of a block.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(512))]
+#[repr(align(64))]
 pub(crate) struct Row<U = f64>([[U; HALF]; 2]);
 
 /// Where a trajectory stands in a row: its half, and its place there. Both are known to be inside, one as a constant and
