@@ -185,7 +185,7 @@ where
         match method {
             // A length that was given foretells none.
             Method::FixedStep => self.run.forecasts = foretold::Forecasts::new(root.v, root.h),
-            _ => self.run.forecasts.learn(&self.system, &start, &root),
+            _ => self.run.forecasts.learn(&self.system, &start, &self.run.last, (&root, &gain)),
         }
         (self.run.node, self.run.last) = (node, last);
         Ok(step)

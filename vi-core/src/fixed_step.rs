@@ -221,7 +221,7 @@ where
 }
 
 impl<const N: usize, T: Scalar> Checkpoint<N, T> {
-    /// The same, each quantity for itself: see [`crate::apart`].
+    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
     fn apart(self) -> Self {
         let Self { node, stride, place, iterations, branch } = self;
         Self { node: node.apart(), stride: stride.apart(), place: black_box(place), iterations, branch }

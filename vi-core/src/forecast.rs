@@ -104,7 +104,7 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         constant
     }
 
-    /// The same, each quantity for itself: see [`crate::apart`].
+    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(mut self) -> Self {
         self.guess = black_box(self.guess);
         self.extrapolation = black_box(self.extrapolation);

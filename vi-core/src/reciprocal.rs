@@ -19,8 +19,6 @@ const SHARE: f64 = 1.0 / 16.0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Reciprocal<T> {
     last: [T; 3],
-    /// |δ|² of a step that is all rounding, less the share.
-    least: T,
     /// Whether it was good enough since the last lesson.
     foretold: bool,
 }
@@ -28,13 +26,12 @@ pub(crate) struct Reciprocal<T> {
 impl<T: Scalar> Reciprocal<T> {
     /// Before the first step, when nothing is trusted.
     pub(crate) fn new() -> Self {
-        Self { last: [T::zero(); 3], least: T::zero(), foretold: false }
+        Self { last: [T::zero(); 3], foretold: false }
     }
 
-    /// The same, each quantity for itself: see [`crate::apart`].
+    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(mut self) -> Self {
         self.last = self.last.map(black_box);
-        self.least = black_box(self.least);
         self
     }
 
@@ -51,16 +48,16 @@ impl<T: Scalar> Reciprocal<T> {
         (a - b) * T::real(3.0) + c
     }
 
-    /// Whether a Newton step of |δ|² = `length` is good, where `product` is the foretold reciprocal times the determinant.
+    /// Whether a Newton step of |δ|² = `length` is good, where `product` is the foretold reciprocal times the determinant and
+    /// `rounding` is |δ|² of a step that is all rounding.
     #[inline]
-    pub(crate) fn is_trusted(&self, product: T, length: T) -> bool {
+    pub(crate) fn is_good(product: T, length: T, rounding: T) -> bool {
         let error = product - T::one();
-        error * error * length <= self.least
+        error * error * length <= rounding * T::real(SHARE * SHARE)
     }
 
-    /// Takes |δ|² of a step that is all rounding.
-    pub(crate) fn learn(&mut self, rounding: T) {
-        self.least = rounding * T::real(SHARE * SHARE);
+    /// Tries again.
+    pub(crate) fn hope(&mut self) {
         self.foretold = true;
     }
 

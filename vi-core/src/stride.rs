@@ -22,6 +22,7 @@ use crate::linear::Matrix;
 use crate::momentum::{self, Solution};
 use crate::reciprocal::Reciprocal;
 use crate::{Node, Real, Scalar, StepError, Stepping};
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// Newton steps that may follow a guess before every residual is measured.
@@ -68,23 +69,30 @@ pub(crate) struct Stride<const N: usize, T> {
     pub(crate) h: T,
     pub(crate) forecast: Forecast<N, T>,
     reciprocal: Reciprocal<T>,
+    /// |δ|² of a Newton step that is all rounding.
+    rounding: T,
 }
 
 impl<const N: usize, T: Scalar> Stride<N, T> {
     /// The first stride, with a guess of its velocity.
     pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
-        Self { h, forecast: Forecast::new(guess), reciprocal: Reciprocal::new() }
+        Self { h, forecast: Forecast::new(guess), reciprocal: Reciprocal::new(), rounding: T::zero() }
     }
 
-    /// The same, each quantity for itself: see [`crate::apart`].
+    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(self) -> Self {
-        Self { h: self.h, forecast: self.forecast.apart(), reciprocal: self.reciprocal.apart() }
+        Self {
+            h: self.h,
+            forecast: self.forecast.apart(),
+            reciprocal: self.reciprocal.apart(),
+            rounding: black_box(self.rounding),
+        }
     }
 
     /// Goes on as another stride of the same length has: a loop over steps sees that h stays.
     #[inline]
     pub(crate) fn resume(&mut self, other: Self) {
-        (self.forecast, self.reciprocal) = (other.forecast, other.reciprocal);
+        Self { forecast: self.forecast, reciprocal: self.reciprocal, rounding: self.rounding, .. } = other;
     }
 
     /// Where [`Stepping::momentum_step`] evaluates L in the stride from this node, as it is foretold.
@@ -117,25 +125,38 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         mut place: SVector<T, N>,
     ) -> Option<Found<N, T>> {
         let (mut trial, mut before) = (self.forecast.guess(), None);
+        let quarter = T::real(0.25);
         for iterations in 1..=ATTEMPTS {
             let (mut step, mut reciprocal, mut certain) = (SVector::zeros(), T::one(), true);
-            let gain = system.momentum_step(node, &place, self.h, &trial, |equation| {
-                let (numerators, determinant) = equation.jacobian.quotient(&equation.residual);
-                if S::Jacobian::QUOTIENT && iterations == 1 && self.reciprocal.is_foretold() {
-                    let foretold = self.reciprocal.next();
-                    step = numerators * -foretold;
-                    certain = self.reciprocal.is_trusted(foretold * determinant, length_squared(&step));
-                } else {
-                    // A quotient, lest this and the product be one way that waits for both.
-                    step = numerators.map(|numerator| -(numerator / determinant));
-                }
-                reciprocal = determinant.recip();
-                step
-            });
+            let gain = system.momentum_step(
+                node,
+                &place,
+                self.h,
+                &trial,
+                #[inline(always)]
+                |equation| {
+                    let (numerators, determinant) = equation.jacobian.quotient(&equation.residual);
+                    if S::Jacobian::QUOTIENT && iterations == 1 && self.reciprocal.is_foretold() {
+                        let foretold = self.reciprocal.next();
+                        step = numerators * -foretold;
+                        certain = Reciprocal::is_good(foretold * determinant, length_squared(&step), self.rounding);
+                    } else {
+                        // A quotient, lest this and the product be one way that waits for both.
+                        step = numerators.map(|numerator| -(numerator / determinant));
+                    }
+                    reciprocal = determinant.recip();
+                    step
+                },
+            );
             let length = length_squared(&step);
-            // A step that is not much shorter than the one before belongs to another root.
-            if before.is_some_and(|before| length > before * T::real(0.25)) {
-                return None;
+            if let Some(before) = before {
+                // A step that is not much shorter than the one before belongs to another root.
+                if length > before * quarter {
+                    return None;
+                }
+                // What these two show of the convergence counts more than what was learnt elsewhere.
+                let ratio = length / before;
+                certain = length * ratio * ratio <= self.rounding * T::real(SHARE * SHARE) || length <= self.rounding;
             }
             if length <= self.forecast.radius() && certain {
                 return Some(Found { trial, step, gain, reciprocal, iterations });
@@ -152,29 +173,37 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         let h = self.h;
         let newton_step = |v: &SVector<T, N>| {
             let equation = system.momentum_equation(node, h, v);
-            (equation.jacobian.solve(&equation.residual), equation.jacobian)
+            (-equation.jacobian.solve(&equation.residual), equation.jacobian)
         };
-        let mut v = self.forecast.newest();
-        let (step, _) = newton_step(&v);
-        let first = length_squared(&step);
-        v -= step;
+        let start = self.forecast.newest();
+        let (mut step, place) = (start, node.place(h * T::real(S::PLACE), &start));
+        let carried = system.momentum_step(node, &place, h, &start, |equation| {
+            step = -equation.jacobian.solve(&equation.residual);
+            step
+        });
+        let (first, mut v) = (length_squared(&step), start + step);
+        // What the gain is off by that was carried to the first order only: of the second order too, but not always by A.
+        let beyond = length_squared(&(carried - system.increment(node, h, &v).momentum));
         let (step, jacobian) = newton_step(&v);
         let second = length_squared(&step);
         let noise = system.magnitudes(node, h, &v).residual * T::real(T::EPSILON);
         let rounding = length_squared(&jacobian.solve(&noise));
-        let radius = Lesson { first, second, rounding }.radius(SHARE);
+        let by_v = Lesson { first, second, rounding }.radius(SHARE);
+        let by_gain = Lesson { first, second: beyond, rounding: length_squared(&noise) }.radius(SHARE);
+        let radius = if by_v < by_gain { by_v } else { by_gain };
         if !(radius > T::zero() && second <= first * T::real(0.25)) {
             return None;
         }
-        v -= step;
+        v += step;
         if second > radius {
             let (step, _) = newton_step(&v);
-            v -= step;
+            v += step;
             if !(length_squared(&step) <= radius) {
                 return None;
             }
         }
-        self.reciprocal.learn(rounding);
+        self.rounding = rounding;
+        self.reciprocal.hope();
         v.iter().all(|entry| entry.is_finite()).then_some((v, radius))
     }
 

@@ -115,15 +115,36 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         None
     }
 
-    /// Takes a step that was not foretold, and what it taught.
-    pub(super) fn learn<S: Stepping<N, T>>(&mut self, system: &S, node: &Node<N, T>, root: &Root<N, T>) {
-        let radius = |(lesson, rounding): (Lesson<T>, T)| {
-            let radius = lesson.radius(SHARE) * rounding;
-            if radius.is_finite() { radius } else { T::zero() }
-        };
+    /// Takes a step that was not foretold, after the interval `last`, and what it taught.
+    pub(super) fn learn<S: Stepping<N, T>>(
+        &mut self,
+        system: &S,
+        node: &Node<N, T>,
+        last: &Last<N, T>,
+        (root, gain): (&Root<N, T>, &Increment<N, T>),
+    ) {
         let lessons = newton::lessons(system, node, root).filter(|_| S::SMOOTH);
-        let [by_v, by_h] = lessons.map_or([T::zero(); 2], |lessons| lessons.map(radius));
+        let [by_v, by_h] = lessons.map_or([T::zero(); 2], |lessons| {
+            let radii = lessons.map(|(lesson, rounding)| lesson.radius(SHARE) * rounding);
+            // What gains are off by that are carried to the first order only: of the second order too, but another one.
+            let (dv, dh) = (root.v - last.v, root.h - last.h);
+            let carried = system.extended_step(node, last.h, &last.v, |_| (dv, dh));
+            let noise = system.magnitudes(node, root.h, &root.v);
+            let epsilon = T::real(T::EPSILON);
+            let momentum =
+                (length_squared(&(carried.momentum - gain.momentum)), length_squared(&(noise.residual * epsilon)));
+            let energy = (carried.energy - gain.energy, noise.energy_residual * epsilon);
+            let part = |(second, rounding)| Lesson { first: T::one(), second, rounding }.radius(SHARE);
+            let part = lesser(part(momentum), part((energy.0 * energy.0, energy.1 * energy.1)));
+            [lesser(radii[0], length_squared(&dv) * part), lesser(radii[1], dh * dh * part)]
+        });
         self.v.learn(root.v, by_v);
         self.h.learn(SVector::repeat(root.h), by_h);
     }
+}
+
+/// The lesser of two numbers, zero where it is none.
+fn lesser<T: Scalar>(a: T, b: T) -> T {
+    let lesser = if a < b { a } else { b };
+    if lesser.is_finite() { lesser } else { T::zero() }
 }
