@@ -13,6 +13,8 @@ use nalgebra::SVector;
 /// Part of a rounding that the iteration may leave in v and in h. It has a sign, and a million of them add up: with a quarter
 /// the angular momentum of Kepler's problem drifts by 1.3e-12 in a million steps, with this by less than 1e-13.
 const SHARE: f64 = 1.0 / 256.0;
+/// The same of what is left out of a gain.
+const SHARE_OF_GAIN: f64 = 1.0 / 16.0;
 /// Residual where nothing was evaluated to confirm it, in roundings: that of the evaluation before.
 const UNCONFIRMED: f64 = 1.0;
 
@@ -134,7 +136,7 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
             let momentum =
                 (length_squared(&(carried.momentum - gain.momentum)), length_squared(&(noise.residual * epsilon)));
             let energy = (carried.energy - gain.energy, noise.energy_residual * epsilon);
-            let part = |(second, rounding)| Lesson { first: T::one(), second, rounding }.radius(SHARE);
+            let part = |(second, rounding)| Lesson { first: T::one(), second, rounding }.radius(SHARE_OF_GAIN);
             let part = lesser(part(momentum), part((energy.0 * energy.0, energy.1 * energy.1)));
             [lesser(radii[0], length_squared(&dv) * part), lesser(radii[1], dh * dh * part)]
         });
