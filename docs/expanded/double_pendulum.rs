@@ -699,6 +699,192 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
             energy: real(0.0),
         }
     }
+
+    /// `p1 − p0_θ1 = h*L_θ1`
+    ///
+    /// `p1 − p0_θ2 = h*L_θ2`
+    ///
+    /// and to first order at `v + dv`.
+    ///
+    /// 107 operations.
+    #[inline(always)]
+    fn momentum_step(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        place: &::vi_core::SVector<T, 2>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
+        ) -> ::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let (sin2, cos2) = θ1_mid.sin_cos();
+        let (sin3, cos3) = θ2_mid.sin_cos();
+        let s4 = cos2 * cos3 + sin2 * sin3;
+        let s5 = self.m2 * self.l1 * self.l2;
+        let s6 = self.m2 * self.l2;
+        let s7 = sin2 * cos3 - cos2 * sin3;
+        let s8 = s6 * θ1_dot * θ2_dot;
+        let s9 = self.g * s1;
+        let s10 = (s8 * s7 + s9 * sin2) * self.l1;
+        let s11 = self.l1 * θ1_dot;
+        let s12 = s11 * θ2_dot;
+        let s13 = (s12 * s7 - self.g * sin3) * self.l2 * self.m2;
+        let s14 = h * real(0.5);
+        let s15 = (s9 * cos2 + s8 * s4) * self.l1;
+        let s16 = (s12 * s4 + self.g * cos3) * self.l2 * self.m2;
+        let s17 = h * h * real(0.25);
+        let s18 = s5 * h;
+        let s19 = s5 * s4;
+        let s20 = (θ1_dot + θ2_dot) * real(0.5) * s7 * self.l2 * self.l1 * self.m2;
+        let s21 = s18 * real(0.25) * θ1_dot * θ2_dot * s4;
+        let s22 = s5 * θ2_dot * s7;
+        let s23 = s5 * θ1_dot * s7;
+        let s24 = s18 * real(0.5) * θ1_dot * θ2_dot * s4;
+        let change: [T; 2] = solve(
+                &::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        (self.l1 * s1 * θ1_dot + s6 * θ2_dot * s4) * self.l1 - p0_θ1
+                            - (p0_θ1_low - s14 * s10),
+                        (self.l2 * θ2_dot + s11 * s4) * self.l2 * self.m2 - p0_θ2
+                            - (p0_θ2_low + s14 * s13),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[
+                            s1 * (self.l1 * self.l1) + s17 * s15,
+                            s19 + (s20 - s21) * h,
+                            s19 - (s20 + s21) * h,
+                            self.m2 * (self.l2 * self.l2) + s17 * s16,
+                        ],
+                    ),
+                },
+            )
+            .into();
+        ::vi_core::SVector::from([
+            -(h * s10)
+                + (((-s22 - s14 * s15) * h) * change[0] + ((s24 - s23) * h) * change[1]),
+            h * s13
+                + (((s22 + s24) * h) * change[0] + ((s23 - s14 * s16) * h) * change[1]),
+        ])
+    }
+
+    /// `p1 − p0_θ1 = h*L_θ1`
+    ///
+    /// `p1 − p0_θ2 = h*L_θ2`
+    ///
+    /// `E1 − E0 = 0`
+    ///
+    /// and to first order at `(v + dv, h + dh)`.
+    ///
+    /// 190 operations.
+    #[inline(always)]
+    fn extended_step(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
+        ) -> (::vi_core::SVector<T, 2>, T),
+    ) -> ::vi_core::Increment<2, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = self.m1 + self.m2;
+        let s2 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
+        let s3 = θ1_dot * θ1_dot;
+        let s4 = θ2_dot * θ2_dot;
+        let (sin5, cos5) = θ1_mid.sin_cos();
+        let (sin6, cos6) = θ2_mid.sin_cos();
+        let s7 = cos5 * cos6 + sin5 * sin6;
+        let s8 = self.m2 * self.l1 * self.l2;
+        let s9 = s8 * θ1_dot;
+        let s10 = self.m2 * self.l2;
+        let s11 = sin5 * cos6 - cos5 * sin6;
+        let s12 = s10 * θ1_dot * θ2_dot;
+        let s13 = self.g * s1;
+        let s14 = s13 * sin5;
+        let s15 = (s12 * s11 + s14) * self.l1;
+        let s16 = self.l1 * θ1_dot;
+        let s17 = s16 * θ2_dot;
+        let s18 = self.g * sin6;
+        let s19 = (s17 * s11 - s18) * self.l2 * self.m2;
+        let s20 = s16 * s7;
+        let s21 = self.g * cos6;
+        let s22 = θ1_dot * p0_θ1 + θ2_dot * p0_θ2 - energy0
+            - (self.l1 * real(0.5) * s3 + self.g * cos5) * s1 * self.l1;
+        let s23 = (s13 * cos5 + s12 * s7) * self.l1;
+        let s24 = (s17 * s7 + s21) * self.l2 * self.m2;
+        let s25 = s8 * h;
+        let s26 = h * h * real(0.25);
+        let s27 = s8 * s7;
+        let s28 = (θ1_dot + θ2_dot) * real(0.5) * s11 * self.l2 * self.l1 * self.m2;
+        let s29 = s25 * real(0.25) * θ1_dot * θ2_dot * s7;
+        let s30 = (s14 + s10 * s4 * s11) * real(0.5) * self.l1;
+        let s31 = s9 * s4 * s7 - θ1_dot * s23;
+        let s32 = s31 * real(0.25) * h;
+        let s33 = (s18 - self.l1 * s3 * s11) * real(0.5) * self.l2 * self.m2;
+        let s34 = s8 * s3 * θ2_dot * s7 - θ2_dot * s24;
+        let s35 = s34 * real(0.25) * h;
+        let s36 = s8 * θ2_dot * s11;
+        let s37 = s9 * s11;
+        let s38 = s25 * real(0.5) * θ1_dot * θ2_dot * s7;
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        (self.l1 * s1 * θ1_dot + s10 * θ2_dot * s7) * self.l1 - p0_θ1
+                            - (p0_θ1_low - s2 * s15),
+                        (self.l2 * θ2_dot + s20) * self.l2 * self.m2 - p0_θ2
+                            - (p0_θ2_low + s2 * s19),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[
+                            s1 * (self.l1 * self.l1) + s26 * s23,
+                            s27 + (s28 - s29) * h,
+                            s27 - (s28 + s29) * h,
+                            self.m2 * (self.l2 * self.l2) + s26 * s24,
+                        ],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s30 - s32, s33 - s35]),
+                energy_residual: s22
+                    + (-((self.l2 * real(0.5) * θ2_dot + s20) * θ2_dot) - s21)
+                        * self.l2 * self.m2
+                    + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
+                        + (θ2_dot * s19 - θ1_dot * s15) * real(0.5) * h),
+                energy_dv: ::vi_core::SVector::from([s30 + s32, s33 + s35]),
+                energy_dh: s8 * real(0.5) * s3 * s4 * s7 - s3 * s23 * real(0.25)
+                    - s4 * s24 * real(0.25),
+            },
+        );
+        let change: [T; 2] = change.into();
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([
+                -(h * s15)
+                    + (((-s36 - s2 * s23) * h) * change[0]
+                        + ((s38 - s37) * h) * change[1]
+                        + (s31 * real(0.5) * h - s15) * change_h),
+                h * s19
+                    + (((s36 + s38) * h) * change[0] + ((s37 - s2 * s24) * h) * change[1]
+                        + (s19 + s34 * real(0.5) * h) * change_h),
+            ]),
+            energy: real(0.0),
+        }
+    }
 }
 
 #[allow(clippy::all, clippy::pedantic, unused_variables)]

@@ -535,6 +535,63 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
             energy: real(0.0),
         }
     }
+
+    /// `p1 − p0_x = h*L_x`
+    ///
+    /// `p1 − p0_y = h*L_y`
+    ///
+    /// and to first order at `v + dv`.
+    ///
+    /// 54 operations.
+    #[inline(always)]
+    fn momentum_step(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        place: &::vi_core::SVector<T, 2>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
+        ) -> ::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x_mid, y_mid]: [T; 2] = (*place).into();
+        let real = T::real;
+        let s1 = x_mid * x_mid;
+        let s2 = y_mid * y_mid;
+        let s3 = (s1 + s2).sqrt().recip();
+        let s4 = s3 * s3;
+        let s5 = s4 * s3;
+        let s6 = self.mu * h;
+        let s7 = s6 * real(0.5);
+        let s8 = s4 * s4 * s3;
+        let s9 = (s1 * s8 * real(3.0) - s5) * self.mu;
+        let s10 = h * h;
+        let s11 = s10 * real(0.25);
+        let s12 = self.mu * s10;
+        let s13 = -(s12 * real(0.75) * x_mid * y_mid * s8);
+        let s14 = (s2 * s8 * real(3.0) - s5) * self.mu;
+        let s15 = s10 * real(0.5);
+        let s16 = s12 * real(1.5) * x_mid * y_mid * s8;
+        let change: [T; 2] = solve(
+                &::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        x_dot - p0_x + (s7 * x_mid * s5 - p0_x_low),
+                        y_dot - p0_y + (s7 * y_mid * s5 - p0_y_low),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[real(1.0) - s11 * s9, s13, s13, real(1.0) - s11 * s14],
+                    ),
+                },
+            )
+            .into();
+        ::vi_core::SVector::from([
+            -(s6 * x_mid * s5) + ((s15 * s9) * change[0] + (s16) * change[1]),
+            -(s6 * y_mid * s5) + ((s16) * change[0] + (s15 * s14) * change[1]),
+        ])
+    }
 }
 
 #[allow(clippy::all, clippy::pedantic, unused_variables)]

@@ -543,7 +543,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     /// `residual_q[1] = L_v_q[1] - h*f_q[1]/2 - h*L_q[1]/2 - p0_q[1]_low - p0_q[1]`
     ///
     /// 83 operations.
-    #[inline]
+    #[inline(always)]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -1252,7 +1252,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
     ///
     /// 48 operations.
-    #[inline]
+    #[inline(always)]
     fn increment(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -1283,6 +1283,656 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             ]),
             energy: (-((q_0_dot * q_0_dot + q_1_dot * q_1_dot) * self.b)
                 - (cos5 + cos6) * cos3 * real(0.3333333333333333)) * h,
+        }
+    }
+
+    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+    ///
+    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+    ///
+    /// and to first order at `v + dv`.
+    ///
+    /// 102 operations.
+    #[inline(always)]
+    fn momentum_step(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        place: &::vi_core::SVector<T, 2>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
+        ) -> ::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::SVector<T, 2> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0_mid, q_1_mid]: [T; 2] = (*place).into();
+        let real = T::real;
+        /// Part 1 of `momentum_step`: 37 operations.
+        #[inline(never)]
+        fn momentum_step_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 11],
+            values: &mut [T; 30],
+        ) {
+            let real = T::real;
+            let h = inputs[1];
+            let t0 = inputs[0];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
+            let t0_low = inputs[6];
+            let p0_q_0_low = inputs[7];
+            let p0_q_0 = inputs[4];
+            let q_0_mid = inputs[9];
+            let q_1_mid = inputs[10];
+            let s1 = system.m * real(2.0);
+            let (sin2, cos2) = q_0_mid.sin_cos();
+            let (sin3, cos3) = q_1_mid.sin_cos();
+            let s4 = cos2 * cos3 + sin2 * sin3;
+            let s5 = system.b * h;
+            let s6 = s5 * real(0.5);
+            let s7 = h * real(0.5);
+            let s8 = q_0_dot * q_1_dot;
+            let s9 = sin2 * cos3 - cos2 * sin3;
+            let s10 = s8 * s9 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let t_mid = t0 + (s7 + t0_low);
+            let s11 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
+            let s12 = s10 + s11 * sin2;
+            let s13 = s1 * q_0_dot + q_1_dot * s4 * real(0.25) - p0_q_0
+                + (s6 * q_0_dot - p0_q_0_low + s7 * s12);
+            values[12] = s7;
+            values[13] = s5;
+            values[14] = cos2;
+            values[15] = cos3;
+            values[16] = sin3;
+            values[17] = s4;
+            values[18] = s8;
+            values[19] = s11;
+            values[20] = s9;
+            values[21] = s10;
+            values[22] = s12;
+            values[24] = s1;
+            values[25] = s6;
+            values[0] = s13;
+        }
+        /// Part 2 of `momentum_step`: 50 operations.
+        #[inline(never)]
+        fn momentum_step_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 11],
+            values: &mut [T; 30],
+        ) {
+            let real = T::real;
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
+            let s7 = values[12];
+            let p0_q_1_low = inputs[8];
+            let p0_q_1 = inputs[5];
+            let s5 = values[13];
+            let cos2 = values[14];
+            let cos3 = values[15];
+            let sin3 = values[16];
+            let s4 = values[17];
+            let s8 = values[18];
+            let s11 = values[19];
+            let s9 = values[20];
+            let s10 = values[21];
+            let s12 = values[22];
+            let s1 = values[24];
+            let s6 = values[25];
+            let s14 = system.b * real(0.5);
+            let s15 = h * real(0.25);
+            let s16 = system.k + s8 * s4 * real(0.25);
+            let s17 = s16 + s11 * cos2;
+            let s18 = s1 + (s14 + s15 * s17) * h;
+            let s19 = s4 * real(0.25);
+            let s20 = (q_0_dot + q_1_dot) * real(0.125) * s9;
+            let s21 = s15 * s16;
+            let s22 = s19 - (s20 + s21) * h;
+            let s23 = -(h * s12) - s5 * q_0_dot;
+            let s24 = q_1_dot * s9 * real(0.25);
+            let s25 = (-(system.b + s24) - s7 * s17) * h;
+            let s26 = s7 * s16;
+            let s27 = (s24 + s26) * h;
+            let s28 = s10 - s11 * sin3;
+            let s29 = s1 * q_1_dot + q_0_dot * s4 * real(0.25) - p0_q_1
+                + (s6 * q_1_dot - p0_q_1_low - s7 * s28);
+            let s30 = s19 + (s20 - s21) * h;
+            let s31 = s16 + s11 * cos3;
+            values[23] = s28;
+            values[1] = s29;
+            values[26] = s31;
+            values[27] = s14;
+            values[28] = s15;
+            values[2] = s18;
+            values[3] = s30;
+            values[4] = s22;
+            values[6] = s23;
+            values[8] = s25;
+            values[29] = s26;
+            values[10] = s27;
+        }
+        /// Part 3 of `momentum_step`: 15 operations.
+        #[inline(never)]
+        fn momentum_step_part_3<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 11],
+            values: &mut [T; 30],
+        ) {
+            let real = T::real;
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
+            let s7 = values[12];
+            let s5 = values[13];
+            let s9 = values[20];
+            let s28 = values[23];
+            let s1 = values[24];
+            let s31 = values[26];
+            let s14 = values[27];
+            let s15 = values[28];
+            let s26 = values[29];
+            let s32 = s1 + (s14 + s15 * s31) * h;
+            let s33 = h * s28 - s5 * q_1_dot;
+            let s34 = q_0_dot * s9 * real(0.25);
+            let s35 = (s26 - s34) * h;
+            let s36 = (s34 - system.b - s7 * s31) * h;
+            values[5] = s32;
+            values[7] = s33;
+            values[9] = s35;
+            values[11] = s36;
+        }
+        let system = self;
+        let inputs = [
+            t0,
+            h,
+            q_0_dot,
+            q_1_dot,
+            p0_q_0,
+            p0_q_1,
+            t0_low,
+            p0_q_0_low,
+            p0_q_1_low,
+            q_0_mid,
+            q_1_mid,
+        ];
+        let mut values = [T::real(0.0); 30];
+        momentum_step_part_1(system, &inputs, &mut values);
+        momentum_step_part_2(system, &inputs, &mut values);
+        momentum_step_part_3(system, &inputs, &mut values);
+        let change: [T; 2] = solve(
+                &::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([values[0], values[1]]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[values[2], values[3], values[4], values[5]],
+                    ),
+                },
+            )
+            .into();
+        ::vi_core::SVector::from([
+            values[6] + ((values[8]) * change[0] + (values[9]) * change[1]),
+            values[7] + ((values[10]) * change[0] + (values[11]) * change[1]),
+        ])
+    }
+
+    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+    ///
+    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+    ///
+    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
+    ///
+    /// and to first order at `(v + dv, h + dh)`.
+    ///
+    /// 241 operations.
+    #[inline(always)]
+    fn extended_step(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
+        ) -> (::vi_core::SVector<T, 2>, T),
+    ) -> ::vi_core::Increment<2, T> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        /// Part 1 of `extended_step`: 25 operations.
+        #[inline(never)]
+        fn extended_step_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let q_0_0_low = inputs[10];
+            let q_1_0_low = inputs[11];
+            let s1 = system.m * real(2.0);
+            let s2 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
+            let (sin3, cos3) = q_0_mid.sin_cos();
+            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
+            let (sin4, cos4) = q_1_mid.sin_cos();
+            let s5 = cos3 * cos4 + sin3 * sin4;
+            let s6 = q_1_dot * s5 * real(0.25);
+            let s7 = system.b * h;
+            let s8 = s7 * real(0.5);
+            let s9 = q_0_dot * q_1_dot;
+            let s10 = sin3 * cos4 - cos3 * sin4;
+            let s11 = q_0_mid - q_1_mid;
+            let s12 = system.k * s11;
+            values[24] = s2;
+            values[25] = s7;
+            values[26] = s11;
+            values[27] = cos3;
+            values[28] = cos4;
+            values[29] = sin3;
+            values[30] = sin4;
+            values[31] = s5;
+            values[32] = s9;
+            values[38] = s10;
+            values[39] = s12;
+            values[45] = s1;
+            values[46] = s6;
+            values[47] = s8;
+        }
+        /// Part 2 of `extended_step`: 30 operations.
+        #[inline(never)]
+        fn extended_step_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let t0 = inputs[0];
+            let q_0_dot = inputs[4];
+            let t0_low = inputs[9];
+            let s2 = values[24];
+            let p0_q_0_low = inputs[12];
+            let p0_q_0 = inputs[6];
+            let cos3 = values[27];
+            let sin3 = values[29];
+            let s5 = values[31];
+            let s9 = values[32];
+            let s10 = values[38];
+            let s12 = values[39];
+            let s1 = values[45];
+            let s6 = values[46];
+            let s8 = values[47];
+            let s13 = s9 * s10 * real(0.25) + s12;
+            let t_mid = t0 + (s2 + t0_low);
+            let (sin14, cos14) = t_mid.sin_cos();
+            let s15 = sin14 * real(0.3333333333333333) + real(1.0);
+            let s16 = s15 * sin3;
+            let s17 = s13 + s16;
+            let s18 = s1 * q_0_dot + s6 - p0_q_0
+                + (s8 * q_0_dot - p0_q_0_low + s2 * s17);
+            let s19 = system.b * real(0.5);
+            let s20 = h * real(0.25);
+            let s21 = system.k + s9 * s5 * real(0.25);
+            let s22 = s21 + s15 * cos3;
+            let s23 = s1 + (s19 + s20 * s22) * h;
+            values[35] = sin14;
+            values[36] = s15;
+            values[37] = cos14;
+            values[40] = s16;
+            values[41] = s13;
+            values[42] = s17;
+            values[0] = s18;
+            values[49] = s21;
+            values[50] = s22;
+            values[52] = s19;
+            values[53] = s20;
+            values[2] = s23;
+        }
+        /// Part 3 of `extended_step`: 36 operations.
+        #[inline(never)]
+        fn extended_step_part_3<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s7 = values[25];
+            let s11 = values[26];
+            let sin3 = values[29];
+            let s5 = values[31];
+            let cos14 = values[37];
+            let s10 = values[38];
+            let s16 = values[40];
+            let s17 = values[42];
+            let s21 = values[49];
+            let s22 = values[50];
+            let s19 = values[52];
+            let s20 = values[53];
+            let s24 = s5 * real(0.25);
+            let s25 = (q_0_dot + q_1_dot) * real(0.125) * s10;
+            let s26 = s20 * s21;
+            let s27 = s24 - (s25 + s26) * h;
+            let s28 = system.k * real(0.5);
+            let s29 = s28 * s11;
+            let s30 = q_1_dot * q_1_dot;
+            let s31 = s29 + s16 * real(0.5) + s19 * q_0_dot + s30 * s10 * real(0.125);
+            let s32 = sin3 * cos14;
+            let s33 = s32 * real(0.08333333333333333);
+            let s34 = q_0_dot * s22;
+            let s35 = s34 * real(0.25);
+            let s36 = q_1_dot * s21;
+            let s37 = s36 * real(0.25);
+            let s38 = s31 + (s33 + s35 - s37) * h;
+            let s39 = s31 + (s37 - s35 - s33) * h;
+            let s40 = -(h * s17) - s7 * q_0_dot;
+            values[34] = s30;
+            values[48] = s28;
+            values[54] = s24;
+            values[55] = s25;
+            values[56] = s26;
+            values[4] = s27;
+            values[57] = s29;
+            values[58] = s32;
+            values[59] = s34;
+            values[60] = s35;
+            values[61] = s36;
+            values[6] = s38;
+            values[9] = s39;
+            values[12] = s40;
+        }
+        /// Part 4 of `extended_step`: 47 operations.
+        #[inline(never)]
+        fn extended_step_part_4<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s2 = values[24];
+            let p0_q_1_low = inputs[13];
+            let p0_q_1 = inputs[7];
+            let cos4 = values[28];
+            let sin3 = values[29];
+            let sin4 = values[30];
+            let s5 = values[31];
+            let s15 = values[36];
+            let cos14 = values[37];
+            let s10 = values[38];
+            let s13 = values[41];
+            let s1 = values[45];
+            let s8 = values[47];
+            let s21 = values[49];
+            let s22 = values[50];
+            let s24 = values[54];
+            let s25 = values[55];
+            let s26 = values[56];
+            let s41 = q_1_dot * s10 * real(0.25);
+            let s42 = system.b + s41;
+            let s43 = (-s42 - s2 * s22) * h;
+            let s44 = s2 * s21;
+            let s45 = (s41 + s44) * h;
+            let s46 = h * real(0.16666666666666666);
+            let s47 = system.b * real(2.0);
+            let s48 = (s46 * sin3 * cos14 - s47 * q_0_dot) * h;
+            let s49 = q_0_dot * s10 * real(0.25);
+            let s50 = (s44 - s49) * h;
+            let s51 = s49 - system.b;
+            let s52 = s21 + s15 * cos4;
+            let s53 = (s51 - s2 * s52) * h;
+            let s54 = (s46 * sin4 * cos14 - s47 * q_1_dot) * h;
+            let s55 = s15 * sin4;
+            let s56 = s13 - s55;
+            let s57 = s1 * q_1_dot + q_0_dot * s5 * real(0.25) - p0_q_1
+                + (s8 * q_1_dot - p0_q_1_low - s2 * s56);
+            let s58 = s24 + (s25 - s26) * h;
+            values[43] = s55;
+            values[44] = s56;
+            values[1] = s57;
+            values[51] = s52;
+            values[3] = s58;
+            values[68] = s42;
+            values[15] = s43;
+            values[16] = s50;
+            values[18] = s45;
+            values[69] = s51;
+            values[19] = s53;
+            values[21] = s48;
+            values[22] = s54;
+        }
+        /// Part 5 of `extended_step`: 50 operations.
+        #[inline(never)]
+        fn extended_step_part_5<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s7 = values[25];
+            let sin4 = values[30];
+            let cos14 = values[37];
+            let s10 = values[38];
+            let s12 = values[39];
+            let s16 = values[40];
+            let s55 = values[43];
+            let s56 = values[44];
+            let s1 = values[45];
+            let s21 = values[49];
+            let s52 = values[51];
+            let s19 = values[52];
+            let s20 = values[53];
+            let s29 = values[57];
+            let s32 = values[58];
+            let s34 = values[59];
+            let s36 = values[61];
+            let s42 = values[68];
+            let s51 = values[69];
+            let s59 = s1 + (s19 + s20 * s52) * h;
+            let s60 = q_0_dot * q_0_dot;
+            let s61 = s55 * real(0.5) + s19 * q_1_dot - s29 - s60 * s10 * real(0.125);
+            let s62 = sin4 * cos14;
+            let s63 = s62 * real(0.08333333333333333);
+            let s64 = q_0_dot * s21;
+            let s65 = s64 * real(0.25);
+            let s66 = q_1_dot * s52;
+            let s67 = s66 * real(0.25);
+            let s68 = s61 + (s63 - s65 + s67) * h;
+            let s69 = s61 + (s65 - s67 - s63) * h;
+            let s70 = h * s56 - s7 * q_1_dot;
+            let s71 = s36 * real(0.5);
+            let s72 = s32 * real(0.16666666666666666);
+            let s73 = -(s42 * q_0_dot) - (s12 + s16) + (s71 - s34 * real(0.5) - s72) * h;
+            let s74 = s62 * real(0.16666666666666666);
+            let s75 = s12 - s55 + s51 * q_1_dot
+                + (s64 * real(0.5) - s66 * real(0.5) - s74) * h;
+            values[33] = s60;
+            values[5] = s59;
+            values[62] = s67;
+            values[7] = s68;
+            values[10] = s69;
+            values[64] = s72;
+            values[65] = s71;
+            values[66] = s74;
+            values[13] = s70;
+            values[17] = s73;
+            values[20] = s75;
+        }
+        /// Part 6 of `extended_step`: 44 operations.
+        #[inline(never)]
+        fn extended_step_part_6<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let p0_q_0_low = inputs[12];
+            let p0_q_0 = inputs[6];
+            let p0_q_1_low = inputs[13];
+            let p0_q_1 = inputs[7];
+            let energy0_low = inputs[14];
+            let energy0 = inputs[8];
+            let s11 = values[26];
+            let cos3 = values[27];
+            let cos4 = values[28];
+            let s60 = values[33];
+            let s30 = values[34];
+            let sin14 = values[35];
+            let s15 = values[36];
+            let cos14 = values[37];
+            let s17 = values[42];
+            let s56 = values[44];
+            let s6 = values[46];
+            let s28 = values[48];
+            let s35 = values[60];
+            let s67 = values[62];
+            let s72 = values[64];
+            let s71 = values[65];
+            let s74 = values[66];
+            let s76 = s60 + s30;
+            let s77 = cos3 + cos4;
+            let s78 = q_1_dot * p0_q_1 + s28 * (s11 * s11) - energy0 - system.m * s76
+                - s15 * s77 + (p0_q_0 - s6) * q_0_dot;
+            let s79 = s77 * cos14;
+            let s80 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
+                + (s79 * real(0.16666666666666666) - q_0_dot * s17 * real(0.5)
+                    + q_1_dot * s56 * real(0.5)) * h;
+            let s81 = s78 + s80;
+            let s82 = -(s76 * system.b) - s79 * real(0.3333333333333333);
+            let s83 = s82 * h;
+            let s84 = sin14 * s77;
+            let s85 = (-s67 - s74) * q_1_dot - s84 * real(0.08333333333333333)
+                + (s71 - s35 - s72) * q_0_dot;
+            values[8] = s81;
+            values[63] = s84;
+            values[11] = s85;
+            values[67] = s82;
+            values[14] = s83;
+        }
+        /// Part 7 of `extended_step`: 9 operations.
+        #[inline(never)]
+        fn extended_step_part_7<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 70],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let sin3 = values[29];
+            let sin4 = values[30];
+            let cos14 = values[37];
+            let s84 = values[63];
+            let s82 = values[67];
+            let s86 = s82
+                + (s84 * real(0.16666666666666666)
+                    + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666)
+                        * cos14) * h;
+            values[23] = s86;
+        }
+        let system = self;
+        let inputs = [
+            t0,
+            q_0_0,
+            q_1_0,
+            h,
+            q_0_dot,
+            q_1_dot,
+            p0_q_0,
+            p0_q_1,
+            energy0,
+            t0_low,
+            q_0_0_low,
+            q_1_0_low,
+            p0_q_0_low,
+            p0_q_1_low,
+            energy0_low,
+        ];
+        let mut values = [T::real(0.0); 70];
+        extended_step_part_1(system, &inputs, &mut values);
+        extended_step_part_2(system, &inputs, &mut values);
+        extended_step_part_3(system, &inputs, &mut values);
+        extended_step_part_4(system, &inputs, &mut values);
+        extended_step_part_5(system, &inputs, &mut values);
+        extended_step_part_6(system, &inputs, &mut values);
+        extended_step_part_7(system, &inputs, &mut values);
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([values[0], values[1]]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[values[2], values[3], values[4], values[5]],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([values[6], values[7]]),
+                energy_residual: values[8],
+                energy_dv: ::vi_core::SVector::from([values[9], values[10]]),
+                energy_dh: values[11],
+            },
+        );
+        let change: [T; 2] = change.into();
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([
+                values[12]
+                    + ((values[15]) * change[0] + (values[16]) * change[1]
+                        + (values[17]) * change_h),
+                values[13]
+                    + ((values[18]) * change[0] + (values[19]) * change[1]
+                        + (values[20]) * change_h),
+            ]),
+            energy: values[14]
+                + ((values[21]) * change[0] + (values[22]) * change[1]
+                    + (values[23]) * change_h),
+        }
+    }
+}
+
+#[allow(clippy::all, clippy::pedantic, unused_variables)]
+impl ::vi_core::Batch<2> for Pendula<f64> {
+    type Rows<const W: usize> = Pendula<[f64; W]>;
+    type In<T: ::vi_core::Real> = Pendula<T>;
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+        Pendula {
+            m: ::core::array::from_fn(|index| systems[index].m),
+            k: ::core::array::from_fn(|index| systems[index].k),
+            b: ::core::array::from_fn(|index| systems[index].b),
+        }
+    }
+
+    #[inline(always)]
+    fn pick<T: ::vi_core::Real, const W: usize>(
+        rows: &Self::Rows<W>,
+        index: usize,
+    ) -> Self::In<T> {
+        Pendula {
+            m: T::real(rows.m[index]),
+            k: T::real(rows.k[index]),
+            b: T::real(rows.b[index]),
         }
     }
 }
