@@ -324,6 +324,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     const CONSTANT_JACOBIAN: bool = true;
     const SMOOTH: bool = true;
     const CLOSED_FORM: bool = true;
+    const PLACE: f64 = 0.5f64;
 
     /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
     ///

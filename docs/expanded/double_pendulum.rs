@@ -454,6 +454,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
+    const PLACE: f64 = 0.5f64;
 
     /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
     ///

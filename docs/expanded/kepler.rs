@@ -343,6 +343,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
+    const PLACE: f64 = 0.5f64;
 
     /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
     ///

@@ -24,6 +24,9 @@ pub(crate) struct ClosedForm<const N: usize, T> {
     gain: Affine<N, T>,
 }
 
+/// What a step adds to q and to p.
+type Answer<const N: usize, T> = (SVector<T, N>, SVector<T, N>);
+
 /// `Q q + P p + c`.
 #[derive(Clone, Copy, Debug)]
 struct Affine<const N: usize, T> {
@@ -59,7 +62,7 @@ impl<const N: usize, T: Scalar> ClosedForm<N, T> {
         let constant = at(zeros, zeros);
         // So large that the constant is below the rounding of the rest, and a power of two.
         let large = T::real(f64::from(1_u32 << 30)) * T::real(f64::from(1_u32 << 30));
-        let affine = |part: fn(&(SVector<T, N>, SVector<T, N>)) -> SVector<T, N>| {
+        let affine = |part: fn(&Answer<N, T>) -> SVector<T, N>| {
             let column = |(q, p)| (part(&at(q, p)) - part(&constant)) * large.recip();
             let by_q: [SVector<T, N>; N] = core::array::from_fn(|j| column((unit(j) * large, zeros)));
             let by_p: [SVector<T, N>; N] = core::array::from_fn(|j| column((zeros, unit(j) * large)));
@@ -80,7 +83,7 @@ impl<const N: usize, T: Scalar> ClosedForm<N, T> {
 
     /// What the step from this node adds to q and p.
     #[inline]
-    pub(crate) fn step(&self, node: &Node<N, T>) -> (SVector<T, N>, SVector<T, N>) {
+    pub(crate) fn step(&self, node: &Node<N, T>) -> Answer<N, T> {
         (self.way.at(node), self.gain.at(node))
     }
 }

@@ -7,9 +7,9 @@
 //!  p1 = D4 L_d + f_d⁺       as p0 plus its gain; for the midpoint rule p1 = p0 + h (L_q + f)
 //! ```
 //!
-//! Where A does not change, v comes by one product with its inverse. Else v is foretold from the last steps and one Newton
-//! step follows, trusted by what earlier steps taught of its convergence (`forecast`); sums are compensated. Where that
-//! does not do, Newton's iteration goes on to the rounding floor, every residual measured; and where it fails, v is followed
+//! A linear step of a few degrees of freedom is one matrix (`closed_form`); where A does not change, v comes by one product with
+//! its inverse. Else v is foretold from the last steps and one Newton step follows, trusted by what earlier steps taught
+//! of its convergence (`stride`, `forecast`); sums are compensated. Where that does not do, Newton's iteration goes on to the rounding floor, every residual measured; and where it fails, v is followed
 //! from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several roots: see
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
@@ -151,15 +151,16 @@ where
                 run.node.advance(h, &way, &gain);
                 return Ok(run.node.state());
             }
-        } else if let Some(found) = run.foretold(system, inverse.as_ref()) {
-            if run.node.stays_finite(run.stride.h, &(found.v() * run.stride.h), &found.gain) {
-                run.place = run.stride.place_after::<S>(&run.node, &found);
-                run.stride.take::<S>(&found);
-                run.take(&found);
-                return Ok(run.node.state());
-            }
+        } else if let Some(found) = run.foretold(system, inverse.as_ref())
+            && run.node.stays_finite(run.stride.h, &(found.v() * run.stride.h), &found.gain)
+        {
+            run.place = run.stride.place_after::<S>(&run.node, &found);
+            run.stride.take::<S>(&found);
+            run.take(&found);
+            return Ok(run.node.state());
         }
-        // The rare path gets copies, so that a loop over steps may keep the run in registers.
+        // The rare path gets copies, so that a loop over steps may keep the run in registers; and each number for itself, since
+        // the compiler joins those that it stores side by side, and then one waits for the other.
         let (run, outcome) = sought(self.system, self.run.apart());
         let run = run.apart();
         match outcome {
@@ -221,7 +222,7 @@ where
 }
 
 impl<const N: usize, T: Scalar> Checkpoint<N, T> {
-    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
+    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
     fn apart(self) -> Self {
         let Self { node, stride, place, iterations, branch } = self;
         Self { node: node.apart(), stride: stride.apart(), place: black_box(place), iterations, branch }

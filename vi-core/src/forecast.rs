@@ -104,7 +104,7 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         constant
     }
 
-    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
+    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(mut self) -> Self {
         self.guess = black_box(self.guess);
         self.extrapolation = black_box(self.extrapolation);
@@ -187,10 +187,10 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     #[inline]
     fn enter(&mut self, i: usize, u: T) {
         self.newest[i] = u;
-        for k in 0..OLDER.len() - 1 {
-            self.parts[k][i] = self.parts[k + 1][i] + u * T::real(OLDER[k]);
+        for (k, weight) in OLDER.iter().enumerate() {
+            let before = self.parts.get(k + 1).map_or(T::zero(), |part| part[i]);
+            self.parts[k][i] = before + u * T::real(*weight);
         }
-        self.parts[OLDER.len() - 1][i] = u * T::real(OLDER[OLDER.len() - 1]);
     }
 
     /// Takes a step `u` that was not come by from here: the next one learns, unless this one should have.
@@ -205,16 +205,16 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
 
     /// Takes the step `u` that started from the last one, and ρ² as it taught.
     pub(crate) fn learn(&mut self, u: SVector<T, M>, radius: T) {
-        let narrowed = !(radius > self.radius * T::real(1.0 / 16.0));
-        let steady = !narrowed && radius <= self.radius * T::real(16.0);
+        let kept = radius > self.radius * T::real(1.0 / 16.0);
+        let steady = kept && radius <= self.radius * T::real(16.0);
         self.radius = radius;
         self.known = (self.known + 1).min(ENOUGH);
         let better = length_squared(&(u - self.extrapolation)) <= length_squared(&(u - self.newest)) * T::real(0.25);
         let (extrapolated, weight) = if better && self.known == ENOUGH { (1.0, NEWEST) } else { (0.0, 1.0) };
         (self.extrapolated, self.weight) = (T::real(extrapolated), T::real(weight));
         self.push(&u, &SVector::zeros());
-        self.interval = match (narrowed, steady) {
-            (true, _) => ALERT,
+        self.interval = match (kept, steady) {
+            (false, _) => ALERT,
             (_, true) => (2 * self.interval).clamp(INTERVAL, LONG_INTERVAL),
             _ => INTERVAL,
         };

@@ -42,7 +42,7 @@ impl<const N: usize, T: Real> Node<N, T> {
         Self { t, t_low: zero, q, q_low: zeros, p, p_low: zeros, energy, energy_low: zero }
     }
 
-    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
+    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(self) -> Self {
         let Self { t, t_low, q, q_low, p, p_low, energy, energy_low } = self;
         Self {

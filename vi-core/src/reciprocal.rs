@@ -29,7 +29,7 @@ impl<T: Scalar> Reciprocal<T> {
         Self { last: [T::zero(); 3], foretold: false }
     }
 
-    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
+    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(mut self) -> Self {
         self.last = self.last.map(black_box);
         self

@@ -79,7 +79,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         Self { h, forecast: Forecast::new(guess), reciprocal: Reciprocal::new(), rounding: T::zero() }
     }
 
-    /// The same, each quantity for itself: see [`FixedStep::step`](crate::FixedStep::step).
+    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(self) -> Self {
         Self {
             h: self.h,
@@ -198,7 +198,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         if second > radius {
             let (step, _) = newton_step(&v);
             v += step;
-            if !(length_squared(&step) <= radius) {
+            if length_squared(&step) > radius {
                 return None;
             }
         }
@@ -248,7 +248,9 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
             self.forecast.replace(found.trial);
         } else {
             self.forecast.push(&found.trial, &found.step);
-            self.reciprocal.push(found.reciprocal, found.iterations == 1);
+            if S::Jacobian::QUOTIENT {
+                self.reciprocal.push(found.reciprocal, found.iterations == 1);
+            }
         }
     }
 
@@ -263,21 +265,22 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         branch: Branch,
     ) -> Result<Found<N, T>, StepError> {
         let lesson = S::SMOOTH && branch == Branch::Nearest && self.forecast.is_learning();
-        let (v, iterations) = match lesson.then(|| self.lesson(system, node)).flatten() {
-            Some((v, radius)) => {
-                self.forecast.learn(v, radius);
-                (v, 2)
-            }
-            None => {
-                let Solution { v, iterations } = self.searched(system, node, branch)?;
-                self.forecast.miss(v);
-                (v, iterations)
-            }
+        let (v, iterations) = if let Some((v, radius)) = lesson.then(|| self.lesson(system, node)).flatten() {
+            self.forecast.learn(v, radius);
+            (v, 2)
+        } else {
+            let Solution { v, iterations } = self.searched(system, node, branch)?;
+            self.forecast.miss(v);
+            (v, iterations)
         };
-        let (_, determinant) = system.momentum_equation(node, self.h, &v).jacobian.quotient(&v);
-        self.reciprocal.push(determinant.recip(), true);
+        let mut reciprocal = T::one();
+        if S::Jacobian::QUOTIENT {
+            let (_, determinant) = system.momentum_equation(node, self.h, &v).jacobian.quotient(&v);
+            reciprocal = determinant.recip();
+            self.reciprocal.push(reciprocal, true);
+        }
         let gain = system.increment(node, self.h, &v).momentum;
-        Ok(Found { trial: v, step: SVector::zeros(), gain, reciprocal: determinant.recip(), iterations })
+        Ok(Found { trial: v, step: SVector::zeros(), gain, reciprocal, iterations })
     }
 
     fn searched<S: Stepping<N, T>>(

@@ -10,9 +10,6 @@
 //! and n mod 4 says which of the two is which, and their signs. π/2 is subtracted in three parts (Cody and Waite), the
 //! first two of 33 bits, so that their products with n are exact; the polynomials are those of fdlibm.
 
-// A call would keep the loop around it from becoming vector instructions.
-#![allow(clippy::inline_always)]
-
 /// Largest angle that is reduced here, in radians: up to it n has 16 bits. Beyond, and for what is not a number, ask the
 /// library.
 pub const LARGEST: f64 = 1.0e5;

@@ -537,6 +537,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
+    const PLACE: f64 = 0.5f64;
 
     /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
     ///

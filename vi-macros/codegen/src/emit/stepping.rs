@@ -140,10 +140,10 @@ fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> TokenStream {
     }
 }
 
-/// The part of the step at whose end `momentum_step` is told the coordinates, where that is not the middle.
+/// The part of the step at whose end `momentum_step` is told the coordinates.
 fn place(source: &Source) -> Option<TokenStream> {
     let (_, part) = source.system.equations.place.as_ref()?;
-    let part = part.to_f64().filter(|part| *part != 0.5)?;
+    let part = part.to_f64()?;
     Some(quote!(const PLACE: f64 = #part;))
 }
 

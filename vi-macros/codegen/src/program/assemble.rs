@@ -205,6 +205,9 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     Ok(functions)
 }
 
+/// Operations up to which gains are carried: measured, a chain of 64 gains nothing by it, and takes longer to compile.
+const CARRIED: usize = 1000;
+
 /// A function of equations and gains, and of the slopes that carry the gains to the end of the step which the equations
 /// give; where this costs less than to evaluate the gains there.
 fn carried(
@@ -218,5 +221,6 @@ fn carried(
     let products = slopes.iter().flatten().filter(|slope| **slope != zero).count();
     groups.extend(slopes);
     let step = assembly.function(name, &groups)?;
-    Ok((step.0.cost() + 2 * products <= evaluated).then_some(step))
+    let worthwhile = step.0.operation_count() <= CARRIED && step.0.cost() + 2 * products <= evaluated;
+    Ok(worthwhile.then_some(step))
 }
