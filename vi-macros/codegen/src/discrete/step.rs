@@ -38,9 +38,13 @@ pub struct Equations {
     pub momentum_increment: Vec<Expr>,
     /// E1 − E0.
     pub energy_increment: Expr,
-    /// The derivatives of p1 − p0 and, last, of E1 − E0: entry (i, j) by v_j, and by h where j is N.
+    /// The derivatives of p1 − p0 and, last, of E1 − E0: entry (i, j) by v_j, and by h where j is N. None for systems so large
+    /// that no function would use them.
     pub increment_slopes: Vec<Vec<Expr>>,
 }
+
+/// Coordinates up to which the derivatives of the increments may be used.
+const CARRIED: usize = 32;
 
 /// Derives the equations of a step.
 pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Slots) -> Result<Equations, TooLarge> {
@@ -65,18 +69,20 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     }
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
 
-    let all = residual.iter().chain([&energy]).chain(&momentum_increment).chain([&energy_increment]);
-    let rows = all.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
+    let (equations, increments) =
+        (residual.iter().chain([&energy]), momentum_increment.iter().chain([&energy_increment]));
+    let carried = if dimension <= CARRIED { dimension + 1 } else { 0 };
+    let rows = equations.chain(increments.take(carried)).map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
-    let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); dimension + 1];
+    let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, &rows, &Symbol::StepVelocity(j))?;
+        let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
         increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
     }
-    let column = by_unknown(pool, fields, &points, &rows, &Symbol::Step)?;
+    let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
     increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
 
@@ -172,7 +178,7 @@ fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
     points: &[Point],
-    rows: &[(Expr, BTreeSet<Symbol>)],
+    (rows, dimension): (&[(Expr, BTreeSet<Symbol>)], usize),
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
     bounded(pool)?;
@@ -187,7 +193,7 @@ fn by_unknown(
         let slope = if varies { fields.derivative(pool, *row, &direct, &changes) } else { pool.zero() };
         column.push(pool.expand(slope)?);
     }
-    let mut energy = column.split_off(rows.len() / 2 - 1);
+    let mut energy = column.split_off(dimension);
     let increments = energy.split_off(1);
     Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), increments })
 }

@@ -179,29 +179,26 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
     let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
-    let slopes: Vec<Vec<Expr>> = of.increment_slopes.iter().map(|row| assembly.open_all(row)).collect();
-    let momentum_slopes: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
     let mut functions = vec![
         assembly.function("momentum_equation", &momentum)?,
         assembly.function("extended_system", &extended)?,
         assembly.function("magnitudes", &magnitudes)?,
         assembly.function("increment", &gains)?,
     ];
+    let gain = functions[3].0.cost();
+    let momentum_slopes: Vec<&[Expr]> =
+        of.increment_slopes.iter().take(dimension).map(|row| &row[..dimension]).collect();
     momentum.push(gains[0].clone());
     extended.extend(gains);
-    let steps = [("extended_step", 1, extended, slopes), ("momentum_step", 0, momentum, momentum_slopes)];
-    for (name, equations, groups, slopes) in steps {
-        let evaluated = functions[equations].0.cost() + functions[3].0.cost();
-        if name == "momentum_step"
-            && let Some((place, _)) = &of.place
-        {
-            // It is told where that is.
-            assembly
-                .arguments
-                .retain(|(point, variable), _| point != place || !matches!(variable, Variable::Coordinate(_)));
-        }
-        functions.extend(carried(assembly, name, groups, slopes, evaluated)?);
+    let slopes: Vec<&[Expr]> = of.increment_slopes.iter().map(Vec::as_slice).collect();
+    let extended_step = carried(assembly, "extended_step", (extended, &slopes), (&functions[1].0, gain))?;
+    if let Some((place, _)) = &of.place {
+        // It is told where that is.
+        let told = |point: &usize, variable: &Variable| point == place && matches!(variable, Variable::Coordinate(_));
+        assembly.arguments.retain(|(point, variable), _| !told(point, variable));
     }
+    let momentum_step = carried(assembly, "momentum_step", (momentum, &momentum_slopes), (&functions[0].0, gain))?;
+    functions.extend([extended_step, momentum_step].into_iter().flatten());
     Ok(functions)
 }
 
@@ -209,18 +206,22 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
 const CARRIED: usize = 1000;
 
 /// A function of equations and gains, and of the slopes that carry the gains to the end of the step which the equations
-/// give; where this costs less than to evaluate the gains there.
+/// give; where this costs less than the function of the equations and, at that end, the gains.
 fn carried(
     assembly: &mut Assembly,
     name: &'static str,
-    mut groups: Vec<Vec<Expr>>,
-    slopes: Vec<Vec<Expr>>,
-    evaluated: usize,
+    (mut groups, slopes): (Vec<Vec<Expr>>, &[&[Expr]]),
+    (equations, gain): (&Function, usize),
 ) -> core::result::Result<Option<(Function, Expressions)>, TooLarge> {
+    if slopes.is_empty() || equations.operation_count() > CARRIED {
+        return Ok(None);
+    }
     let zero = assembly.pool.zero();
-    let products = slopes.iter().flatten().filter(|slope| **slope != zero).count();
-    groups.extend(slopes);
+    let products = slopes.iter().flat_map(|row| row.iter()).filter(|slope| **slope != zero).count();
+    for row in slopes {
+        groups.push(assembly.open_all(row));
+    }
     let step = assembly.function(name, &groups)?;
-    let worthwhile = step.0.operation_count() <= CARRIED && step.0.cost() + 2 * products <= evaluated;
+    let worthwhile = step.0.operation_count() <= CARRIED && step.0.cost() + 2 * products <= equations.cost() + gain;
     Ok(worthwhile.then_some(step))
 }
