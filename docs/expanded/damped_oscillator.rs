@@ -357,7 +357,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
     ///
     /// 41 operations.
-    #[inline]
+    #[inline(always)]
     fn extended_system(
         &self,
         node: &::vi_core::Node<1, T>,

@@ -515,7 +515,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
     ///
     /// 163 operations.
-    #[inline]
+    #[inline(always)]
     fn extended_system(
         &self,
         node: &::vi_core::Node<2, T>,

@@ -395,7 +395,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
     ///
     /// 109 operations.
-    #[inline]
+    #[inline(always)]
     fn extended_system(
         &self,
         node: &::vi_core::Node<2, T>,

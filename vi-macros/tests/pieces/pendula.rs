@@ -678,7 +678,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
     ///
     /// 172 operations.
-    #[inline]
+    #[inline(always)]
     fn extended_system(
         &self,
         node: &::vi_core::Node<2, T>,

@@ -5,6 +5,7 @@ use super::body::{Body, Entry, Place, part, parts};
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
+use crate::program::Function;
 use crate::symbol::{Symbol, Variable};
 use num_traits::ToPrimitive;
 use proc_macro2::{Literal, TokenStream};
@@ -69,10 +70,13 @@ fn momentum_fields(source: &Source, results: &[Vec<Entry>]) -> (TokenStream, Tok
 }
 
 /// In a loop over trajectories a call is a wall: short functions are inlined whatever the compiler thinks of it. Long ones
-/// stand in several places of a stepper, and would be compiled in each.
+/// stand in several places of a stepper, and would be compiled in each, even if it is only the copying from and to pieces.
 fn inline(source: &Source, name: &str) -> TokenStream {
-    let short = source.function(name).is_some_and(|function| function.operation_count() <= INLINED);
-    if short { quote!(#[inline(always)]) } else { quote!(#[inline]) }
+    match source.function(name).map_or(0, Function::operation_count) {
+        0..=INLINED => quote!(#[inline(always)]),
+        count if count <= source.limit => quote!(#[inline]),
+        _ => quote!(#[inline(never)]),
+    }
 }
 
 fn momentum_equation(source: &Source) -> (TokenStream, TokenStream) {
@@ -107,9 +111,10 @@ fn extended_system(source: &Source) -> TokenStream {
     };
     let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
     let equations = extended_fields(source, &body.results);
+    let inline = inline(source, "extended_system");
     quote! {
         #documentation
-        #[inline]
+        #inline
         fn extended_system(
             &self,
             node: &::vi_core::Node<#dimension, T>,

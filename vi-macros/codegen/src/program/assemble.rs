@@ -167,7 +167,6 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
 
 fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.equations;
-    let dimension = of.residual.len();
     let residual = assembly.open_all(&of.residual);
     let energy = assembly.open_all(&[of.energy_residual]);
     let magnitudes = vec![assembly.magnitudes(&residual), assembly.magnitudes(&energy)];
@@ -185,43 +184,55 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function("magnitudes", &magnitudes)?,
         assembly.function("increment", &gains)?,
     ];
-    let gain = functions[3].0.cost();
-    let momentum_slopes: Vec<&[Expr]> =
-        of.increment_slopes.iter().take(dimension).map(|row| &row[..dimension]).collect();
     momentum.push(gains[0].clone());
     extended.extend(gains);
-    let slopes: Vec<&[Expr]> = of.increment_slopes.iter().map(Vec::as_slice).collect();
-    let extended_step = carried(assembly, "extended_step", (extended, &slopes), (&functions[1].0, gain))?;
+    functions.extend(steps(assembly, system, &functions, [momentum, extended])?);
+    Ok(functions)
+}
+
+/// The functions that carry the gains: those of the equations in the order of `functions`, with the gains after them.
+fn steps(
+    assembly: &mut Assembly,
+    system: &DiscreteSystem,
+    functions: &[(Function, Expressions)],
+    [mut momentum, mut extended]: [Vec<Vec<Expr>>; 2],
+) -> Assembled {
+    let of = &system.equations;
+    let (dimension, slopes) = (of.residual.len(), &of.increment_slopes);
+    if slopes.is_empty() || functions[0].0.operation_count() > CARRIED {
+        return Ok(Vec::new());
+    }
+    let slopes: Vec<Vec<Expr>> = slopes.iter().map(|row| assembly.open_all(row)).collect();
+    let of_momentum: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
+    // What the equations and, at the end of the step, the gains cost, less the products with the slopes.
+    let zero = assembly.pool.zero();
+    let allowed = [(0, &of_momentum), (1, &slopes)].map(|(equations, slopes)| {
+        let products = slopes.iter().flatten().filter(|slope| **slope != zero).count();
+        (functions[equations].0.cost() + functions[3].0.cost()).saturating_sub(2 * products)
+    });
+    momentum.extend(of_momentum);
+    extended.extend(slopes);
+    let extended = carried(assembly, "extended_step", &extended, allowed[1])?;
     if let Some((place, _)) = &of.place {
         // It is told where that is.
         let told = |point: &usize, variable: &Variable| point == place && matches!(variable, Variable::Coordinate(_));
         assembly.arguments.retain(|(point, variable), _| !told(point, variable));
     }
-    let momentum_step = carried(assembly, "momentum_step", (momentum, &momentum_slopes), (&functions[0].0, gain))?;
-    functions.extend([extended_step, momentum_step].into_iter().flatten());
-    Ok(functions)
+    let momentum = carried(assembly, "momentum_step", &momentum, allowed[0])?;
+    Ok([extended, momentum].into_iter().flatten().collect())
 }
 
 /// Operations up to which gains are carried: measured, a chain of 64 gains nothing by it, and takes longer to compile.
 const CARRIED: usize = 1000;
 
 /// A function of equations and gains, and of the slopes that carry the gains to the end of the step which the equations
-/// give; where this costs less than the function of the equations and, at that end, the gains.
+/// give; where it costs no more than `allowed`.
 fn carried(
     assembly: &mut Assembly,
     name: &'static str,
-    (mut groups, slopes): (Vec<Vec<Expr>>, &[&[Expr]]),
-    (equations, gain): (&Function, usize),
+    groups: &[Vec<Expr>],
+    allowed: usize,
 ) -> core::result::Result<Option<(Function, Expressions)>, TooLarge> {
-    if slopes.is_empty() || equations.operation_count() > CARRIED {
-        return Ok(None);
-    }
-    let zero = assembly.pool.zero();
-    let products = slopes.iter().flat_map(|row| row.iter()).filter(|slope| **slope != zero).count();
-    for row in slopes {
-        groups.push(assembly.open_all(row));
-    }
-    let step = assembly.function(name, &groups)?;
-    let worthwhile = step.0.operation_count() <= CARRIED && step.0.cost() + 2 * products <= equations.cost() + gain;
-    Ok(worthwhile.then_some(step))
+    let step = assembly.function(name, groups)?;
+    Ok((step.0.operation_count() <= CARRIED && step.0.cost() <= allowed).then_some(step))
 }
