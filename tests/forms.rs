@@ -283,8 +283,8 @@ fn every_form_steps_as_the_dense_matrix_does() {
         apart(Alone::default(), 0.02, "Banded<5, 1"),
     ];
     for [fixed, preserving] in all {
-        // Measured: 4.0e-15 and 2.1e-12 at most.
-        assert!(fixed.0 <= 5e-15 && preserving.0 <= 3e-12, "{fixed:?}, {preserving:?}");
+        // Measured: 4.0e-15 and 4.0e-12 at most.
+        assert!(fixed.0 <= 5e-15 && preserving.0 <= 5e-12, "{fixed:?}, {preserving:?}");
         // Newton's iteration finds its root by a wrong matrix, too, though not as fast. Measured: 2 more of 667.
         for (_, own, dense) in [fixed, preserving] {
             assert!(own.abs_diff(dense) * 50 <= dense, "{own} iterations for {dense}");
