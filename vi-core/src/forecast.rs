@@ -234,3 +234,67 @@ pub(crate) fn length_squared<const M: usize, T: Real>(u: &SVector<T, M>) -> T {
     let [a, b, c, d] = sums;
     (a + b) + (c + d)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Forecast, Lesson};
+    use nalgebra::SVector;
+
+    /// A forecast that has learnt from the first steps of a sequence, with a radius that stays.
+    fn learnt(sequence: impl Fn(f64) -> f64) -> Forecast<1, f64> {
+        let mut forecast = Forecast::new(SVector::from([sequence(0.0)]));
+        for step in 1..=12 {
+            forecast.learn(SVector::from([sequence(f64::from(step))]), 1.0);
+        }
+        forecast
+    }
+
+    #[test]
+    fn a_polynomial_of_degree_six_is_foretold() {
+        let sequence = |t: f64| t.powi(6) - 3.0 * t.powi(5) + t;
+        let mut forecast = learnt(sequence);
+        for step in 13..40 {
+            let (guess, u) = (forecast.guess()[0], sequence(f64::from(step)));
+            // Integers below 2⁵³: no rounding.
+            assert_eq!(guess.to_bits(), u.to_bits(), "step {step}");
+            // From another trial, the Newton step leads to the same.
+            forecast.push(&SVector::from([u + 8.0]), &SVector::from([-8.0]));
+            assert_eq!(forecast.newest()[0].to_bits(), u.to_bits());
+        }
+    }
+
+    #[test]
+    fn what_is_not_smooth_is_foretold_by_the_last_step() {
+        let mut forecast = learnt(|t| if t % 3.0 < 1.5 { 1.0 } else { -1.0 });
+        forecast.push(&SVector::from([0.25]), &SVector::from([0.5]));
+        assert_eq!(forecast.guess()[0].to_bits(), 0.75_f64.to_bits());
+    }
+
+    #[test]
+    fn lessons_are_rarer_where_the_radius_stays_and_frequent_where_it_falls() {
+        let until = |mut forecast: Forecast<1, f64>| {
+            let mut steps = 0;
+            while !forecast.is_learning() {
+                forecast.push(&forecast.guess(), &SVector::zeros());
+                steps += 1;
+            }
+            steps
+        };
+        let mut forecast = learnt(f64::sin);
+        assert_eq!(until(forecast), 255);
+        forecast.learn(SVector::from([0.5]), 1e-3);
+        assert_eq!(until(forecast), 7);
+        forecast.miss(SVector::from([0.5]));
+        assert!(forecast.is_learning());
+    }
+
+    #[test]
+    fn the_radius_leaves_a_share_of_a_rounding() {
+        // |δ2| = C |δ1|² with C = 10: after |δ|² = ρ² the next one is share ε.
+        let (delta, epsilon, share) = (1e-4_f64, 1e-16_f64, 0.25);
+        let second = 10.0 * delta * delta;
+        let lesson = Lesson { first: delta * delta, second: second * second, rounding: epsilon * epsilon };
+        assert!((10.0 * lesson.radius(share) / (share * epsilon) - 1.0).abs() < 1e-14);
+        assert!(Lesson { first: 0.0, second: 0.0, rounding: 1e-32 }.radius(1.0) <= 0.0);
+    }
+}
