@@ -53,7 +53,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
 
     /// `L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)`
     ///
-    /// 12 operations.
+    /// 13 operations.
     #[inline]
     fn lagrangian(
         &self,
@@ -64,13 +64,14 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let [x_dot, y_dot]: [T; 2] = (*v).into();
         let [x, y]: [T; 2] = (*q).into();
         let real = T::real;
+        let s1 = x * x + y * y;
         x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            + self.mu * (x * x + y * y).sqrt().recip()
+            + self.mu * (s1.recip() * s1.sqrt())
     }
 
     /// `v·L_v − L = dot(x)^2/2 + dot(y)^2/2 - mu/sqrt(x^2 + y^2)`
     ///
-    /// 12 operations.
+    /// 13 operations.
     #[inline]
     fn energy(
         &self,
@@ -81,8 +82,9 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let [x_dot, y_dot]: [T; 2] = (*v).into();
         let [x, y]: [T; 2] = (*q).into();
         let real = T::real;
+        let s1 = x * x + y * y;
         x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            - self.mu * (x * x + y * y).sqrt().recip()
+            - self.mu * (s1.recip() * s1.sqrt())
     }
 
     /// `p_x = dot(x)`
@@ -130,14 +132,15 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let time = t;
         let [x, y]: [T; 2] = (*q).into();
         let real = T::real;
-        let s1 = (x * x + y * y).sqrt().recip();
-        let s2 = s1 * s1 * s1;
+        let s1 = x * x + y * y;
+        let s2 = s1.recip();
+        let s3 = s2 * s2 * s1.sqrt();
         let mass: ::vi_core::linear::Banded<2, 1, T> = ::vi_core::linear::Banded {
             rows: [[real(1.0)], [real(1.0)]],
         };
         let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
-            -(self.mu * x * s2),
-            -(self.mu * y * s2),
+            -(self.mu * x * s3),
+            -(self.mu * y * s3),
         ]);
         ::vi_core::linear::acceleration(time, &mass, &applied)
     }
@@ -158,19 +161,21 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let s1 = x * x;
         let s2 = y * y;
-        let s3 = (s1 + s2).sqrt().recip();
-        let s4 = s3 * s3;
-        let s5 = s4 * s3;
-        let s6 = s4 * s4 * s3;
-        let s7 = self.mu * real(3.0) * x * y * s6;
-        let s8 = x_dot * (x_dot * ((s1 * s6 * real(3.0) - s5) * self.mu) + s7 * y_dot)
-            + y_dot * (s7 * x_dot + y_dot * ((s2 * s6 * real(3.0) - s5) * self.mu));
-        Ok(-((x * s5 * x_ddot + y * s5 * y_ddot) * self.mu) - s8)
+        let s3 = s1 + s2;
+        let s4 = s3.recip();
+        let s5 = s4 * s4;
+        let s6 = s3.sqrt();
+        let s7 = s5 * s6;
+        let s8 = s5 * s4 * s6;
+        let s9 = self.mu * real(3.0) * x * y * s8;
+        let s10 = x_dot * (x_dot * ((s1 * s8 * real(3.0) - s7) * self.mu) + s9 * y_dot)
+            + y_dot * (s9 * x_dot + y_dot * ((s2 * s8 * real(3.0) - s7) * self.mu));
+        Ok(-((x * s7 * x_ddot + y * s7 * y_ddot) * self.mu) - s10)
     }
 
     /// The first of what L and f are made of that is not finite here.
     ///
-    /// 12 operations.
+    /// 13 operations.
     #[cold]
     fn non_finite(
         &self,
@@ -181,17 +186,18 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let [x_dot, y_dot]: [T; 2] = (*v).into();
         let [x, y]: [T; 2] = (*q).into();
         let real = T::real;
-        let s1 = self.mu * (x * x + y * y).sqrt().recip();
+        let s1 = x * x + y * y;
+        let s2 = self.mu * (s1.recip() * s1.sqrt());
         let values = [
             ("mu", self.mu),
             ("x", x),
             ("y", y),
             ("dot(x)", x_dot),
             ("dot(y)", y_dot),
-            ("mu/sqrt(x^2 + y^2)", s1),
+            ("mu/sqrt(x^2 + y^2)", s2),
             (
                 "dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)",
-                x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + s1,
+                x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + s2,
             ),
         ];
         values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
@@ -202,7 +208,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
 impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
     /// `ld = h*L`
     ///
-    /// 17 operations.
+    /// 18 operations.
     #[inline]
     fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -213,14 +219,15 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
         let y_mid = (y0 + y1) * real(0.5);
-        let s1 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            + self.mu * (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
-        h * s1
+        let s1 = x_mid * x_mid + y_mid * y_mid;
+        h
+            * (x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                + self.mu * (s1.recip() * s1.sqrt()))
     }
 
     /// `d1_ld = L_v_x*v_x - L + L_v_y*v_y`
     ///
-    /// 16 operations.
+    /// 17 operations.
     #[inline]
     fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -231,8 +238,9 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
         let y_mid = (y0 + y1) * real(0.5);
+        let s1 = x_mid * x_mid + y_mid * y_mid;
         x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            - self.mu * (x_mid * x_mid + y_mid * y_mid).sqrt().recip()
+            - self.mu * (s1.recip() * s1.sqrt())
     }
 
     /// `d2_ld_x = h*L_x/2 - L_v_x`
@@ -250,15 +258,16 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
         let y_mid = (y0 + y1) * real(0.5);
-        let s1 = (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
-        let s2 = s1 * s1 * s1;
-        let s3 = self.mu * h * real(0.5);
-        ::vi_core::SVector::from([-x_dot - s3 * x_mid * s2, -y_dot - s3 * y_mid * s2])
+        let s1 = x_mid * x_mid + y_mid * y_mid;
+        let s2 = s1.recip();
+        let s3 = s2 * s2 * s1.sqrt();
+        let s4 = self.mu * h * real(0.5);
+        ::vi_core::SVector::from([-x_dot - s4 * x_mid * s3, -y_dot - s4 * y_mid * s3])
     }
 
     /// `d3_ld = L - L_v_x*v_x - L_v_y*v_y`
     ///
-    /// 16 operations.
+    /// 17 operations.
     #[inline]
     fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -269,8 +278,9 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
         let y_mid = (y0 + y1) * real(0.5);
-        self.mu * (x_mid * x_mid + y_mid * y_mid).sqrt().recip()
-            - x_dot * x_dot * real(0.5) - y_dot * y_dot * real(0.5)
+        let s1 = x_mid * x_mid + y_mid * y_mid;
+        self.mu * (s1.recip() * s1.sqrt()) - x_dot * x_dot * real(0.5)
+            - y_dot * y_dot * real(0.5)
     }
 
     /// `d4_ld_x = L_v_x + h*L_x/2`
@@ -288,10 +298,11 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
         let y_mid = (y0 + y1) * real(0.5);
-        let s1 = (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
-        let s2 = s1 * s1 * s1;
-        let s3 = self.mu * h * real(0.5);
-        ::vi_core::SVector::from([x_dot - s3 * x_mid * s2, y_dot - s3 * y_mid * s2])
+        let s1 = x_mid * x_mid + y_mid * y_mid;
+        let s2 = s1.recip();
+        let s3 = s2 * s2 * s1.sqrt();
+        let s4 = self.mu * h * real(0.5);
+        ::vi_core::SVector::from([x_dot - s4 * x_mid * s3, y_dot - s4 * y_mid * s3])
     }
 
     /// `fd_minus_x = 0`
@@ -368,25 +379,27 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let y_mid = y0 + (s1 * y_dot + y0_low);
         let s2 = x_mid * x_mid;
         let s3 = y_mid * y_mid;
-        let s4 = (s2 + s3).sqrt().recip();
-        let s5 = s4 * s4;
-        let s6 = s5 * s4;
-        let s7 = self.mu * h * real(0.5);
-        let s8 = s5 * s5 * s4;
-        let s9 = h * h;
-        let s10 = s9 * real(0.25);
-        let s11 = -(self.mu * s9 * real(0.75) * x_mid * y_mid * s8);
+        let s4 = s2 + s3;
+        let s5 = s4.recip();
+        let s6 = s5 * s5;
+        let s7 = s4.sqrt();
+        let s8 = s6 * s7;
+        let s9 = self.mu * h * real(0.5);
+        let s10 = s6 * s5 * s7;
+        let s11 = h * h;
+        let s12 = s11 * real(0.25);
+        let s13 = -(self.mu * s11 * real(0.75) * x_mid * y_mid * s10);
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s7 * x_mid * s6 - p0_x_low),
-                y_dot - p0_y + (s7 * y_mid * s6 - p0_y_low),
+                x_dot - p0_x + (s9 * x_mid * s8 - p0_x_low),
+                y_dot - p0_y + (s9 * y_mid * s8 - p0_y_low),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    real(1.0) - s10 * ((s2 * s8 * real(3.0) - s6) * self.mu),
-                    s11,
-                    s11,
-                    real(1.0) - s10 * ((s3 * s8 * real(3.0) - s6) * self.mu),
+                    real(1.0) - s12 * ((s2 * s10 * real(3.0) - s8) * self.mu),
+                    s13,
+                    s13,
+                    real(1.0) - s12 * ((s3 * s10 * real(3.0) - s8) * self.mu),
                 ],
             ),
         }
@@ -394,7 +407,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
 
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
     ///
-    /// 109 operations.
+    /// 110 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -415,47 +428,50 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let y_mid = y0 + (s1 * y_dot + y0_low);
         let s2 = x_mid * x_mid;
         let s3 = y_mid * y_mid;
-        let s4 = (s2 + s3).sqrt().recip();
-        let s5 = s4 * s4;
-        let s6 = s5 * s4;
-        let s7 = self.mu * h * real(0.5);
-        let s8 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - (x_dot * x_mid * s6 + y_dot * y_mid * s6) * real(0.5) * self.mu * h;
-        let s9 = s5 * s5 * s4;
-        let s10 = (s2 * s9 * real(3.0) - s6) * self.mu;
-        let s11 = h * h;
-        let s12 = s11 * real(0.25);
-        let s13 = -(self.mu * s11 * real(0.75) * x_mid * y_mid * s9);
-        let s14 = (s3 * s9 * real(3.0) - s6) * self.mu;
-        let s15 = self.mu * real(0.5);
-        let s16 = s15 * x_mid * s6;
-        let s17 = self.mu * real(0.75);
-        let s18 = x_dot * s10 * real(0.25);
-        let s19 = (s17 * y_dot * x_mid * y_mid * s9 + s18) * h;
-        let s20 = s15 * y_mid * s6;
-        let s21 = (s17 * x_dot * x_mid * y_mid * s9 + y_dot * s14 * real(0.25)) * h;
+        let s4 = s2 + s3;
+        let s5 = s4.recip();
+        let s6 = s4.sqrt();
+        let s7 = s5 * s5;
+        let s8 = s7 * s6;
+        let s9 = self.mu * h * real(0.5);
+        let s10 = (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + self.mu * (s5 * s6))
+            + (p0_x - x_dot * real(0.5)) * x_dot;
+        let s11 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+            - (x_dot * x_mid * s8 + y_dot * y_mid * s8) * real(0.5) * self.mu * h;
+        let s12 = s7 * s5 * s6;
+        let s13 = (s2 * s12 * real(3.0) - s8) * self.mu;
+        let s14 = h * h;
+        let s15 = s14 * real(0.25);
+        let s16 = -(self.mu * s14 * real(0.75) * x_mid * y_mid * s12);
+        let s17 = (s3 * s12 * real(3.0) - s8) * self.mu;
+        let s18 = self.mu * real(0.5);
+        let s19 = s18 * x_mid * s8;
+        let s20 = self.mu * real(0.75);
+        let s21 = x_dot * s13 * real(0.25);
+        let s22 = (s20 * y_dot * x_mid * y_mid * s12 + s21) * h;
+        let s23 = s18 * y_mid * s8;
+        let s24 = (s20 * x_dot * x_mid * y_mid * s12 + y_dot * s17 * real(0.25)) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    x_dot - p0_x + (s7 * x_mid * s6 - p0_x_low),
-                    y_dot - p0_y + (s7 * y_mid * s6 - p0_y_low),
+                    x_dot - p0_x + (s9 * x_mid * s8 - p0_x_low),
+                    y_dot - p0_y + (s9 * y_mid * s8 - p0_y_low),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[real(1.0) - s12 * s10, s13, s13, real(1.0) - s12 * s14],
+                    &[real(1.0) - s15 * s13, s16, s16, real(1.0) - s15 * s17],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s16 - s19, s20 - s21]),
-            energy_residual: (p0_y - y_dot * real(0.5)) * y_dot
-                - (energy0 + self.mu * s4) + (p0_x - x_dot * real(0.5)) * x_dot + s8,
-            energy_dv: ::vi_core::SVector::from([s16 + s19, s20 + s21]),
-            energy_dh: y_dot * y_dot * s14 * real(0.25)
-                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s9 + s18) * x_dot,
+            residual_dh: ::vi_core::SVector::from([s19 - s22, s23 - s24]),
+            energy_residual: s10 + s11,
+            energy_dv: ::vi_core::SVector::from([s19 + s22, s23 + s24]),
+            energy_dh: y_dot * y_dot * s17 * real(0.25)
+                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s12 + s21) * x_dot,
         }
     }
 
     /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
     ///
-    /// 119 operations.
+    /// 120 operations.
     #[cold]
     fn magnitudes(
         &self,
@@ -474,36 +490,38 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let y_mid = y0 + (s1 * y_dot + y0_low);
         let s2 = x_mid * x_mid;
         let s3 = y_mid * y_mid;
-        let s4 = (s2 + s3).sqrt().recip();
-        let s5 = s4 * s4;
-        let s6 = s5 * s4;
-        let s7 = self.mu * h;
-        let s8 = s7 * x_mid;
-        let s9 = s5 * s5 * s4;
-        let s10 = s6 * real(0.5);
-        let s11 = s2 * s9 * real(1.5);
-        let s12 = x_dot.abs() + p0_x.abs() + (s8 * s6).abs() * real(0.5)
-            + (x_mid * ((s10 - s11) * self.mu * h)).abs();
-        let s13 = s3 * s9 * real(1.5);
-        let s14 = y_dot.abs() + p0_y.abs() + (s7 * y_mid * s6).abs() * real(0.5)
-            + (s7 * s2 * y_mid * s9).abs() * real(1.5);
-        let s15 = self.mu * x_mid * s6
-            + (y_dot * x_mid * y_mid * s9 * real(1.5) + (s11 - s10) * x_dot) * self.mu
+        let s4 = s2 + s3;
+        let s5 = s4.recip();
+        let s6 = s4.sqrt();
+        let s7 = s5 * s5;
+        let s8 = s7 * s6;
+        let s9 = self.mu * h;
+        let s10 = s9 * x_mid;
+        let s11 = s7 * s5 * s6;
+        let s12 = s8 * real(0.5);
+        let s13 = s2 * s11 * real(1.5);
+        let s14 = x_dot.abs() + p0_x.abs() + (s10 * s8).abs() * real(0.5)
+            + (x_mid * ((s12 - s13) * self.mu * h)).abs();
+        let s15 = s3 * s11 * real(1.5);
+        let s16 = y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5)
+            + (s9 * s2 * y_mid * s11).abs() * real(1.5);
+        let s17 = self.mu * x_mid * s8
+            + (y_dot * x_mid * y_mid * s11 * real(1.5) + (s13 - s12) * x_dot) * self.mu
                 * h;
-        let s16 = self.mu * y_mid * s6
-            + (x_dot * x_mid * y_mid * s9 * real(1.5) + (s13 - s10) * y_dot) * self.mu
+        let s18 = self.mu * y_mid * s8
+            + (x_dot * x_mid * y_mid * s11 * real(1.5) + (s15 - s12) * y_dot) * self.mu
                 * h;
-        let s17 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
+        let s19 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
             + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
-        let s18 = s17 + (self.mu * s4).abs()
-            + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
-            + (s7 * y_dot * y_mid * s6).abs() * real(0.5);
+        let s20 = s19 + (self.mu * (s5 * s6)).abs()
+            + (s9 * x_dot * x_mid * s8).abs() * real(0.5)
+            + (s9 * y_dot * y_mid * s8).abs() * real(0.5);
         ::vi_core::Magnitudes {
             residual: ::vi_core::SVector::from([
-                s12 + (s8 * s3 * s9).abs() * real(1.5),
-                s14 + (y_mid * ((s10 - s13) * self.mu * h)).abs(),
+                s14 + (s10 * s3 * s11).abs() * real(1.5),
+                s16 + (y_mid * ((s12 - s15) * self.mu * h)).abs(),
             ]),
-            energy_residual: s18 + (x_mid * s15).abs() + (y_mid * s16).abs(),
+            energy_residual: s20 + (x_mid * s17).abs() + (y_mid * s18).abs(),
         }
     }
 
@@ -528,11 +546,12 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s1 = h * real(0.5);
         let x_mid = x0 + (s1 * x_dot + x0_low);
         let y_mid = y0 + (s1 * y_dot + y0_low);
-        let s2 = (x_mid * x_mid + y_mid * y_mid).sqrt().recip();
-        let s3 = s2 * s2 * s2;
-        let s4 = self.mu * h;
+        let s2 = x_mid * x_mid + y_mid * y_mid;
+        let s3 = s2.recip();
+        let s4 = s3 * s3 * s2.sqrt();
+        let s5 = self.mu * h;
         ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([-(s4 * x_mid * s3), -(s4 * y_mid * s3)]),
+            momentum: ::vi_core::SVector::from([-(s5 * x_mid * s4), -(s5 * y_mid * s4)]),
             energy: real(0.0),
         }
     }
@@ -562,35 +581,37 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let real = T::real;
         let s1 = x_mid * x_mid;
         let s2 = y_mid * y_mid;
-        let s3 = (s1 + s2).sqrt().recip();
-        let s4 = s3 * s3;
-        let s5 = s4 * s3;
-        let s6 = self.mu * h;
-        let s7 = s6 * real(0.5);
-        let s8 = s4 * s4 * s3;
-        let s9 = (s1 * s8 * real(3.0) - s5) * self.mu;
-        let s10 = h * h;
-        let s11 = s10 * real(0.25);
-        let s12 = self.mu * s10;
-        let s13 = -(s12 * real(0.75) * x_mid * y_mid * s8);
-        let s14 = (s2 * s8 * real(3.0) - s5) * self.mu;
-        let s15 = s10 * real(0.5);
-        let s16 = s12 * real(1.5) * x_mid * y_mid * s8;
+        let s3 = s1 + s2;
+        let s4 = s3.recip();
+        let s5 = s4 * s4;
+        let s6 = s3.sqrt();
+        let s7 = s5 * s6;
+        let s8 = self.mu * h;
+        let s9 = s8 * real(0.5);
+        let s10 = s5 * s4 * s6;
+        let s11 = (s1 * s10 * real(3.0) - s7) * self.mu;
+        let s12 = h * h;
+        let s13 = s12 * real(0.25);
+        let s14 = self.mu * s12;
+        let s15 = -(s14 * real(0.75) * x_mid * y_mid * s10);
+        let s16 = (s2 * s10 * real(3.0) - s7) * self.mu;
+        let s17 = s12 * real(0.5);
+        let s18 = s14 * real(1.5) * x_mid * y_mid * s10;
         let change: [T; 2] = solve(
                 &::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        x_dot - p0_x + (s7 * x_mid * s5 - p0_x_low),
-                        y_dot - p0_y + (s7 * y_mid * s5 - p0_y_low),
+                        x_dot - p0_x + (s9 * x_mid * s7 - p0_x_low),
+                        y_dot - p0_y + (s9 * y_mid * s7 - p0_y_low),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[real(1.0) - s11 * s9, s13, s13, real(1.0) - s11 * s14],
+                        &[real(1.0) - s13 * s11, s15, s15, real(1.0) - s13 * s16],
                     ),
                 },
             )
             .into();
         ::vi_core::SVector::from([
-            -(s6 * x_mid * s5) + ((s15 * s9) * change[0] + (s16) * change[1]),
-            -(s6 * y_mid * s5) + ((s16) * change[0] + (s15 * s14) * change[1]),
+            -(s8 * x_mid * s7) + ((s17 * s11) * change[0] + (s18) * change[1]),
+            -(s8 * y_mid * s7) + ((s18) * change[0] + (s17 * s16) * change[1]),
         ])
     }
 }

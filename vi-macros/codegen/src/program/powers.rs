@@ -1,8 +1,8 @@
 //! Powers as products, roots and one division.
 //!
 //! In: the exponents with which each base occurs in one function. Out: operations. Integer powers are products of
-//! squares; half-integer ones are powers of one root; where a base is divided by more than once, its reciprocal is
-//! computed once.
+//! squares; half-integer ones are these times one root; where a base is divided by more than once, its reciprocal is
+//! computed once. A root below is a root above and a reciprocal, `x^(−3/2) = (1/x)² √x`: the two do not wait for each other.
 
 use super::lower::Lowering;
 use super::operations::{Operation, OperationId};
@@ -58,9 +58,13 @@ impl Lowering<'_> {
         };
         let count = halves.unsigned_abs();
         if halves < 0 && occurrence.has_root() {
+            let inverse = self.operations.add(Operation::Reciprocal(value));
+            let power = self.integer_power(inverse, count.div_ceil(2));
+            if count.is_multiple_of(2) {
+                return Factor::Above(power);
+            }
             let root = self.operations.add(Operation::SquareRoot(value));
-            let inverse = self.operations.add(Operation::Reciprocal(root));
-            return Factor::Above(self.integer_power(inverse, count));
+            return Factor::Above(self.operations.add(Operation::Multiply(power, root)));
         }
         let whole = |lowering: &mut Self, value| {
             let even = (count > 1).then(|| lowering.integer_power(value, count / 2));
