@@ -72,7 +72,7 @@ fn by_one_newton_step() {
         apart(Surface::default(), ([0.5, 0.4], [0.3, 0.2]), 0.02, 1),
     ];
     for (off, foretold) in all {
-        // Measured: 3.5e-14 at most, Kepler after 20 units of time, where a rounding of p moves q by 40 of it; else 6.1e-15;
+        // Measured: 3.5e-14 at most, Kepler: roundings of p add up along the orbit; else 6.1e-15;
         // and 0.88 at least.
         assert!(off <= 5e-14 && foretold > 0.85, "{off:e}, {foretold}");
     }
