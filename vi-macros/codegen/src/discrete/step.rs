@@ -44,7 +44,7 @@ pub struct Equations {
 }
 
 /// Coordinates up to which the derivatives of the increments may be used.
-const CARRIED: usize = 32;
+const CARRIED_COORDINATES: usize = 32;
 
 /// Derives the equations of a step.
 pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Slots) -> Result<Equations, TooLarge> {
@@ -71,7 +71,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
 
     let (equations, increments) =
         (residual.iter().chain([&energy]), momentum_increment.iter().chain([&energy_increment]));
-    let carried = if dimension <= CARRIED { dimension + 1 } else { 0 };
+    let carried = if dimension <= CARRIED_COORDINATES { dimension + 1 } else { 0 };
     let rows = equations.chain(increments.take(carried)).map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];

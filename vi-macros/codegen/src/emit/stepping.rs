@@ -9,7 +9,7 @@ use crate::program::Function;
 use crate::symbol::{Symbol, Variable};
 use num_traits::ToPrimitive;
 use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 /// Operations up to which a function is always inlined.
 const INLINED: usize = 250;
@@ -20,7 +20,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (constant, smooth) = (source.findings.constant_jacobian(), source.findings.smooth);
     let (form, equation) = momentum_equation(source);
     let functions = [equation, extended_system(source), magnitudes(source), increment(source)];
-    let steps = [momentum_step(source), extended_step(source)].into_iter().flatten();
+    let functions = functions.into_iter().chain([momentum_step(source), extended_step(source)]).flatten();
     let place = place(source);
     let closed = source.findings.closed_form().then(|| {
         quote!(
@@ -36,7 +36,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
             #closed
             #place
             #(#functions)*
-            #(#steps)*
         }
     }
 }
@@ -71,7 +70,11 @@ fn momentum_fields(source: &Source, results: &[Vec<Entry>]) -> (TokenStream, Tok
 
 /// In a loop over trajectories a call is a wall: short functions are inlined whatever the compiler thinks of it. Long ones
 /// stand in several places of a stepper, and would be compiled in each, even if it is only the copying from and to pieces.
-fn inline(source: &Source, name: &str) -> TokenStream {
+/// Magnitudes are for the rare path.
+fn attribute(source: &Source, name: &str) -> TokenStream {
+    if name == "magnitudes" {
+        return quote!(#[cold]);
+    }
     match source.function(name).map_or(0, Function::operation_count) {
         0..=INLINED => quote!(#[inline(always)]),
         count if count <= source.limit => quote!(#[inline]),
@@ -79,62 +82,80 @@ fn inline(source: &Source, name: &str) -> TokenStream {
     }
 }
 
-fn momentum_equation(source: &Source) -> (TokenStream, TokenStream) {
-    let (dimension, of) = (source.dimension(), &source.system.equations);
-    let formula = source.formulas("residual", &of.residual);
-    let Some((body, documentation)) = source.documented("momentum_equation", &formula, Place::Argument) else {
-        return (TokenStream::new(), TokenStream::new());
-    };
-    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let (form, equation) = momentum_fields(source, &body.results);
-    let inline = inline(source, "momentum_equation");
-    let function = quote! {
-        #documentation
-        #inline
-        fn momentum_equation(
-            &self,
-            node: &::vi_core::Node<#dimension, T>,
-            h: T,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::MomentumEquation<#dimension, T, Self::Jacobian> {
-            #inputs #statements #equation
-        }
-    };
-    (form, function)
+/// A function of `Stepping`: of the node, the step and the velocity, of what `solve` makes of the equations where it has
+/// that, and told the place where it has that.
+struct Method {
+    name: &'static str,
+    formula: String,
+    solve: Option<TokenStream>,
+    told: bool,
+    output: TokenStream,
 }
 
-fn extended_system(source: &Source) -> TokenStream {
-    let (dimension, of) = (source.dimension(), &source.system.equations);
-    let formula = source.formula("energy_residual", of.energy_residual);
-    let Some((body, documentation)) = source.documented("extended_system", &formula, Place::Argument) else {
-        return TokenStream::new();
-    };
-    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let equations = extended_fields(source, &body.results);
-    let inline = inline(source, "extended_system");
-    quote! {
-        #documentation
-        #inline
-        fn extended_system(
-            &self,
-            node: &::vi_core::Node<#dimension, T>,
-            h: T,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian> {
-            #inputs #statements #equations
-        }
+impl Method {
+    /// One of a node, the step and the velocity only.
+    fn new(name: &'static str, formula: String, output: TokenStream) -> Self {
+        Self { name, formula, solve: None, told: false, output }
+    }
+
+    /// Its tokens, with the value that `value` makes of its body; `None` where the program does not have it.
+    fn tokens(self, source: &Source, value: impl FnOnce(&Body) -> Option<TokenStream>) -> Option<TokenStream> {
+        let Self { name, formula, solve, told, output } = self;
+        let (dimension, model) = (source.dimension(), source.model);
+        let (body, documentation) = source.documented(name, &formula, Place::Argument)?;
+        let (inputs, statements, value) = (node_parts(&body, model), &body.statements, value(&body)?);
+        let places = source.system.equations.place.as_ref().filter(|_| told).map(|(point, _)| {
+            parts(&body, model, |i| Symbol::AtPoint(*point, Variable::Coordinate(i)), &quote!((*place)))
+        });
+        let place = told.then(|| quote!(place: &::vi_core::SVector<T, #dimension>,));
+        let (attribute, name) = (attribute(source, name), format_ident!("{name}"));
+        Some(quote! {
+            #documentation
+            #attribute
+            fn #name(
+                &self,
+                node: &::vi_core::Node<#dimension, T>,
+                #place
+                h: T,
+                v: &::vi_core::SVector<T, #dimension>,
+                #solve
+            ) -> #output {
+                #inputs #places #statements
+                #value
+            }
+        })
     }
 }
 
+fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
+    let dimension = source.dimension();
+    let formula = source.formulas("residual", &source.system.equations.residual);
+    let output = quote!(::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>);
+    let mut form = TokenStream::new();
+    let function = Method::new("momentum_equation", formula, output).tokens(source, |body| {
+        let (of, equation) = momentum_fields(source, &body.results);
+        form = of;
+        Some(equation)
+    });
+    (form, function)
+}
+
+fn extended_system(source: &Source) -> Option<TokenStream> {
+    let dimension = source.dimension();
+    let formula = source.formula("energy_residual", source.system.equations.energy_residual);
+    let output = quote!(::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>);
+    Method::new("extended_system", formula, output).tokens(source, |body| extended_fields(source, &body.results))
+}
+
 /// Both rows, as `ExtendedSystem` holds them.
-fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> TokenStream {
+fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> Option<TokenStream> {
     let (momentum, energy) = results.split_at(source.model.dimension() + 1);
     let (_, momentum) = momentum_fields(source, momentum);
     let [residual_dh, energy_residual, energy_dv, energy_dh, ..] = energy else {
-        return TokenStream::new();
+        return None;
     };
     let (residual_dh, energy_dv) = (vector_of(residual_dh), vector_of(energy_dv));
-    quote! {
+    Some(quote! {
         ::vi_core::ExtendedSystem {
             momentum: #momentum,
             residual_dh: #residual_dh,
@@ -142,7 +163,7 @@ fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> TokenStream {
             energy_dv: #energy_dv,
             energy_dh: #(#energy_dh)*,
         }
-    }
+    })
 }
 
 /// The part of the step at whose end `momentum_step` is told the coordinates.
@@ -152,73 +173,67 @@ fn place(source: &Source) -> Option<TokenStream> {
     Some(quote!(const PLACE: f64 = #part;))
 }
 
+/// The formulas of both gains.
+fn gains(source: &Source) -> String {
+    let of = &source.system.equations;
+    let momenta = source.formulas("p1 − p0", &of.momentum_increment);
+    format!("{momenta}\n\n{}", source.formula("E1 − E0", of.energy_increment))
+}
+
 /// The Newton step in v, and the gain at its end to first order; where that is cheaper than to evaluate it there.
 fn momentum_step(source: &Source) -> Option<TokenStream> {
-    let (dimension, of) = (source.dimension(), &source.system.equations);
-    let formula = format!("{}\n\nand to first order at `v + dv`.", source.formulas("p1 − p0", &of.momentum_increment));
-    let (body, documentation) = source.documented("momentum_step", &formula, Place::Argument)?;
-    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let size = source.model.dimension();
-    let (equations, rest) = body.results.split_at(size + 1);
-    let (_, equation) = momentum_fields(source, equations);
-    let (gains, slopes) = rest.split_first()?;
-    let gains = gains.iter().zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
-    let inline = inline(source, "momentum_step");
-    let place = of.place.as_ref().map(|(point, _)| {
-        parts(&body, source.model, |i| Symbol::AtPoint(*point, Variable::Coordinate(i)), &quote!((*place)))
-    });
-    Some(quote! {
-        #documentation
-        #inline
-        fn momentum_step(
-            &self,
-            node: &::vi_core::Node<#dimension, T>,
-            place: &::vi_core::SVector<T, #dimension>,
-            h: T,
-            v: &::vi_core::SVector<T, #dimension>,
-            solve: impl ::core::ops::FnOnce(
-                &::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>,
-            ) -> ::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::SVector<T, #dimension> {
-            #inputs #place #statements
+    let (dimension, size) = (source.dimension(), source.model.dimension());
+    let momenta = source.formulas("p1 − p0", &source.system.equations.momentum_increment);
+    let solve = quote! {
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>,
+        ) -> ::vi_core::SVector<T, #dimension>,
+    };
+    let method = Method {
+        name: "momentum_step",
+        formula: format!("{momenta}\n\nand to first order at `v + dv`."),
+        solve: Some(solve),
+        told: true,
+        output: quote!(::vi_core::SVector<T, #dimension>),
+    };
+    method.tokens(source, |body| {
+        let (equations, rest) = body.results.split_at(size + 1);
+        let (_, equation) = momentum_fields(source, equations);
+        let (gains, slopes) = rest.split_first()?;
+        let gains = gains.iter().zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
+        Some(quote! {
             let change: [T; #dimension] = solve(&#equation).into();
             ::vi_core::SVector::from([#(#gains),*])
-        }
+        })
     })
 }
 
 /// The Newton step in (v, h), and both gains at its end to first order.
 fn extended_step(source: &Source) -> Option<TokenStream> {
-    let (dimension, of) = (source.dimension(), &source.system.equations);
-    let momenta = source.formulas("p1 − p0", &of.momentum_increment);
-    let energy = source.formula("E1 − E0", of.energy_increment);
-    let formula = format!("{momenta}\n\n{energy}\n\nand to first order at `(v + dv, h + dh)`.");
-    let (body, documentation) = source.documented("extended_step", &formula, Place::Argument)?;
-    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let size = source.model.dimension();
-    let (equations, rest) = body.results.split_at(size + 5);
-    let equations = extended_fields(source, equations);
-    let [momentum, energy, slopes @ ..] = rest else { return None };
-    let mut gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
-    let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
-    let inline = inline(source, "extended_step");
-    Some(quote! {
-        #documentation
-        #inline
-        fn extended_step(
-            &self,
-            node: &::vi_core::Node<#dimension, T>,
-            h: T,
-            v: &::vi_core::SVector<T, #dimension>,
-            solve: impl ::core::ops::FnOnce(
-                &::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>,
-            ) -> (::vi_core::SVector<T, #dimension>, T),
-        ) -> ::vi_core::Increment<#dimension, T> {
-            #inputs #statements
+    let (dimension, size) = (source.dimension(), source.model.dimension());
+    let solve = quote! {
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>,
+        ) -> (::vi_core::SVector<T, #dimension>, T),
+    };
+    let method = Method {
+        name: "extended_step",
+        formula: format!("{}\n\nand to first order at `(v + dv, h + dh)`.", gains(source)),
+        solve: Some(solve),
+        told: false,
+        output: quote!(::vi_core::Increment<#dimension, T>),
+    };
+    method.tokens(source, |body| {
+        let (equations, rest) = body.results.split_at(size + 5);
+        let equations = extended_fields(source, equations)?;
+        let [momentum, energy, slopes @ ..] = rest else { return None };
+        let mut gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
+        let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
+        Some(quote! {
             let (change, change_h) = solve(&#equations);
             let change: [T; #dimension] = change.into();
             ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #(#gains)* }
-        }
+        })
     })
 }
 
@@ -237,50 +252,19 @@ fn carried(gain: &Entry, slopes: &[Entry], dimension: usize) -> TokenStream {
     sum.map_or_else(|| quote!(#gain), |sum| quote!(#gain + (#sum)))
 }
 
-fn magnitudes(source: &Source) -> TokenStream {
+fn magnitudes(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
-    let formula = "Sums of the absolute values of the terms of `residual` and `energy_residual`.";
-    let Some((body, documentation)) = source.documented("magnitudes", formula, Place::Argument) else {
-        return TokenStream::new();
-    };
-    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let (residual, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
-    quote! {
-        #documentation
-        #[cold]
-        fn magnitudes(
-            &self,
-            node: &::vi_core::Node<#dimension, T>,
-            h: T,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::Magnitudes<#dimension, T> {
-            #inputs #statements
-            ::vi_core::Magnitudes { residual: #residual, energy_residual: #energy }
-        }
-    }
+    let formula = "Sums of the absolute values of the terms of `residual` and `energy_residual`.".to_owned();
+    Method::new("magnitudes", formula, quote!(::vi_core::Magnitudes<#dimension, T>)).tokens(source, |body| {
+        let (residual, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
+        Some(quote!(::vi_core::Magnitudes { residual: #residual, energy_residual: #energy }))
+    })
 }
 
-fn increment(source: &Source) -> TokenStream {
-    let (dimension, of) = (source.dimension(), &source.system.equations);
-    let momenta = source.formulas("p1 − p0", &of.momentum_increment);
-    let formula = format!("{momenta}\n\n{}", source.formula("E1 − E0", of.energy_increment));
-    let Some((body, documentation)) = source.documented("increment", &formula, Place::Argument) else {
-        return TokenStream::new();
-    };
-    let (inputs, statements) = (node_parts(&body, source.model), &body.statements);
-    let (momentum, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
-    let inline = inline(source, "increment");
-    quote! {
-        #documentation
-        #inline
-        fn increment(
-            &self,
-            node: &::vi_core::Node<#dimension, T>,
-            h: T,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> ::vi_core::Increment<#dimension, T> {
-            #inputs #statements
-            ::vi_core::Increment { momentum: #momentum, energy: #energy }
-        }
-    }
+fn increment(source: &Source) -> Option<TokenStream> {
+    let dimension = source.dimension();
+    Method::new("increment", gains(source), quote!(::vi_core::Increment<#dimension, T>)).tokens(source, |body| {
+        let (momentum, energy) = (vector_of(&body.results[0]), &body.results[1][0]);
+        Some(quote!(::vi_core::Increment { momentum: #momentum, energy: #energy }))
+    })
 }

@@ -7,7 +7,7 @@ use super::lower::Lowering;
 use super::magnitude::magnitude;
 use super::verify;
 use super::{Function, Program};
-use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
+use crate::discrete::{DiscreteSystem, Equations, Fields, Point, bounded};
 use crate::messages::{Message, error};
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
@@ -178,38 +178,37 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
     let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
-    let mut functions = vec![
-        assembly.function("momentum_equation", &momentum)?,
-        assembly.function("extended_system", &extended)?,
-        assembly.function("magnitudes", &magnitudes)?,
-        assembly.function("increment", &gains)?,
-    ];
+    let equation = assembly.function("momentum_equation", &momentum)?;
+    let system_of_both = assembly.function("extended_system", &extended)?;
+    let magnitudes = assembly.function("magnitudes", &magnitudes)?;
+    let increment = assembly.function("increment", &gains)?;
     momentum.push(gains[0].clone());
     extended.extend(gains);
-    functions.extend(steps(assembly, system, &functions, [momentum, extended])?);
-    Ok(functions)
+    let evaluated = [&equation, &system_of_both].map(|(function, _)| function.cost() + increment.0.cost());
+    let short = equation.0.operation_count() <= CARRIED;
+    let steps = if short { steps(assembly, of, [momentum, extended], evaluated)? } else { Vec::new() };
+    Ok([equation, system_of_both, magnitudes, increment].into_iter().chain(steps).collect())
 }
 
-/// The functions that carry the gains: those of the equations in the order of `functions`, with the gains after them.
+/// The functions that carry the gains, where that costs less than `evaluated`: of the momentum equation and of both, each with
+/// the gains after it, and of what the equations and, at the end of the step, the gains cost by themselves.
 fn steps(
     assembly: &mut Assembly,
-    system: &DiscreteSystem,
-    functions: &[(Function, Expressions)],
+    of: &Equations,
     [mut momentum, mut extended]: [Vec<Vec<Expr>>; 2],
+    evaluated: [usize; 2],
 ) -> Assembled {
-    let of = &system.equations;
     let (dimension, slopes) = (of.residual.len(), &of.increment_slopes);
-    if slopes.is_empty() || functions[0].0.operation_count() > CARRIED {
+    if slopes.is_empty() {
         return Ok(Vec::new());
     }
     let slopes: Vec<Vec<Expr>> = slopes.iter().map(|row| assembly.open_all(row)).collect();
     let of_momentum: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
-    // What the equations and, at the end of the step, the gains cost, less the products with the slopes.
+    // Carrying costs the products with the slopes besides.
     let zero = assembly.pool.zero();
-    let allowed = [(0, &of_momentum), (1, &slopes)].map(|(equations, slopes)| {
-        let products = slopes.iter().flatten().filter(|slope| **slope != zero).count();
-        (functions[equations].0.cost() + functions[3].0.cost()).saturating_sub(2 * products)
-    });
+    let products = |slopes: &[Vec<Expr>]| slopes.iter().flatten().filter(|slope| **slope != zero).count();
+    let allowed =
+        [evaluated[0].saturating_sub(2 * products(&of_momentum)), evaluated[1].saturating_sub(2 * products(&slopes))];
     momentum.extend(of_momentum);
     extended.extend(slopes);
     let extended = carried(assembly, "extended_step", &extended, allowed[1])?;
