@@ -10,7 +10,7 @@
 //!
 //! two products that wait for nothing, instead of an evaluation, a solution and another evaluation one after the other.
 
-use crate::linear::Matrix;
+use crate::stride::{Inverse, linear_velocity};
 use crate::{Node, Scalar, State, Stepping};
 use nalgebra::{SMatrix, SVector};
 
@@ -48,12 +48,11 @@ impl<const N: usize, T: Scalar> ClosedForm<N, T> {
         system: &S,
         node: &Node<N, T>,
         h: T,
-        inverse: Option<&<S::Jacobian as Matrix<N, T>>::Inverse>,
+        inverse: Option<&Inverse<S, N, T>>,
     ) -> Option<Self> {
         let inverse = inverse.filter(|_| S::CLOSED_FORM)?;
         let answer = |node: &Node<N, T>| {
-            let rest = system.momentum_equation(node, h, &SVector::zeros());
-            let v = -S::Jacobian::apply(inverse, &rest.residual);
+            let v = linear_velocity(system, node, h, inverse);
             (v * h, system.increment(node, h, &v).momentum)
         };
         let at = |q: SVector<T, N>, p: SVector<T, N>| answer(&Node::new(State { t: node.t, q, p }, T::zero()));

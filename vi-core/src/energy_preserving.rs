@@ -161,7 +161,7 @@ where
     pub fn condition(&self) -> Condition {
         let Last { v, h, previous, .. } = &self.run.last;
         let mut start = self.run.node;
-        start.shift(-*h, v);
+        start.shift(-*h, &(v * -*h));
         Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
     }
 

@@ -73,13 +73,12 @@ pub(crate) struct Lesson<T> {
     pub(crate) rounding: T,
 }
 
-impl<T: Real> Lesson<T> {
+impl<T: Scalar> Lesson<T> {
     /// ρ² = share ε/C with C = |δ2|/|δ1|², or less where that is below rounding.
     pub(crate) fn radius(&self, share: f64) -> T {
         let second = self.second.max(self.rounding).sqrt();
-        let radius = self.rounding.sqrt() * self.first * T::real(share) / second;
-        // 0/0: the first step had no length, and nothing was learnt.
-        radius * self.first.is_above(T::zero())
+        // A first step that had no length taught nothing.
+        if self.first > T::zero() { self.rounding.sqrt() * self.first * T::real(share) / second } else { T::zero() }
     }
 }
 

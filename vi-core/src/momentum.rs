@@ -91,7 +91,7 @@ impl<const N: usize, T: Scalar, J: Matrix<N, T>> Trial<N, T, J> {
 
     /// The Newton step that would follow from `residual`.
     fn step(&self, residual: &SVector<T, N>) -> Option<SVector<T, N>> {
-        linear::solve(&self.equation.jacobian, residual).or_else(|| self.pivoted(residual))
+        linear::solve(&self.equation.jacobian, residual)
     }
 
     /// The same with pivoting.

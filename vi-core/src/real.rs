@@ -28,8 +28,6 @@ pub trait Real:
     + num_traits::Zero
     + num_traits::One
 {
-    /// How many numbers this is.
-    const LANES: usize;
     /// Distance from 1 to the next larger number.
     const EPSILON: f64;
 
@@ -98,14 +96,8 @@ pub trait Real:
     fn is_finite(self) -> bool;
     /// Whether every lane is above zero.
     fn is_positive(self) -> bool;
-    /// 1 where `self ≤ bound`, 0 elsewhere: an indicator, lane by lane. A lane that is not a number is not below anything.
-    #[must_use]
-    fn at_most(self, bound: Self) -> Self;
-    /// 1 where `self > bound`, 0 elsewhere.
-    #[must_use]
-    fn is_above(self, bound: Self) -> Self;
-    /// Whether an indicator is 1 in every lane.
-    fn holds(self) -> bool;
+    /// Whether `self ≤ bound` in every lane. A lane that is not a number is not below anything.
+    fn is_at_most(self, bound: Self) -> bool;
     /// The value, of several lanes the first, as it stands in errors and tables.
     fn to_f64(self) -> f64;
     /// The smallest absolute value among the lanes: what a pivot is chosen by.
@@ -130,7 +122,6 @@ fn large_sin_cos(x: f64) -> (f64, f64) {
 macro_rules! impl_real {
     ($($float:ident),*) => {$(
         impl Real for $float {
-            const LANES: usize = 1;
             #[allow(clippy::cast_lossless)]
             const EPSILON: f64 = $float::EPSILON as f64;
 
@@ -188,11 +179,7 @@ macro_rules! impl_real {
             #[inline]
             fn is_positive(self) -> bool { self > 0.0 }
             #[inline]
-            fn at_most(self, bound: Self) -> Self { if self <= bound { 1.0 } else { 0.0 } }
-            #[inline]
-            fn is_above(self, bound: Self) -> Self { if self > bound { 1.0 } else { 0.0 } }
-            #[inline]
-            fn holds(self) -> bool { self != 0.0 }
+            fn is_at_most(self, bound: Self) -> bool { self <= bound }
             #[allow(clippy::cast_lossless)]
             #[inline]
             fn to_f64(self) -> f64 { self as f64 }

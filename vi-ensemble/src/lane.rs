@@ -124,8 +124,6 @@ macro_rules! functions {
 }
 
 impl<const FUSED: bool> Real for Lane<FUSED> {
-    /// The compiler widens one to so many, or half: formulas that choose by this choose what suits a vector.
-    const LANES: usize = 8;
     const EPSILON: f64 = f64::EPSILON;
 
     #[inline(always)]
@@ -133,7 +131,7 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
         Self::new(value)
     }
     functions!(recip(), sqrt(), exp(), ln(), tan(), asin(), acos(), atan(), sinh(), cosh(), tanh(), abs(), sign());
-    functions!(atan2(other), hypot(other), pow(exponent), max(other), at_most(bound), is_above(bound));
+    functions!(atan2(other), hypot(other), pow(exponent), max(other));
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
@@ -160,8 +158,8 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
         self.get() > 0.0
     }
     #[inline(always)]
-    fn holds(self) -> bool {
-        self.get() != 0.0
+    fn is_at_most(self, bound: Self) -> bool {
+        self.get() <= bound.get()
     }
     #[inline(always)]
     fn to_f64(self) -> f64 {

@@ -135,7 +135,6 @@ impl<T: Real> num_traits::One for Dual<T> {
 }
 
 impl<T: Real> Real for Dual<T> {
-    const LANES: usize = T::LANES;
     const EPSILON: f64 = T::EPSILON;
 
     fn real(value: f64) -> Self {
@@ -215,19 +214,9 @@ impl<T: Real> Real for Dual<T> {
     fn is_positive(self) -> bool {
         self.value.is_positive()
     }
-
-    fn at_most(self, bound: Self) -> Self {
-        Self::fixed(self.value.at_most(bound.value))
+    fn is_at_most(self, bound: Self) -> bool {
+        self.value.is_at_most(bound.value)
     }
-
-    fn is_above(self, bound: Self) -> Self {
-        Self::fixed(self.value.is_above(bound.value))
-    }
-
-    fn holds(self) -> bool {
-        self.value.holds()
-    }
-
     fn is_finite(self) -> bool {
         self.value.is_finite() && self.slope.is_finite()
     }

@@ -14,7 +14,8 @@
 use crate::forecast::{Lesson, length_squared};
 use crate::linear::{self, Matrix};
 use crate::momentum;
-use crate::{ExtendedSystem, Node, Real, Scalar, Stepping};
+use crate::{ExtendedSystem, Node, Scalar, Stepping};
+use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
 
 const ITERATIONS: u32 = 20;
@@ -64,7 +65,7 @@ pub(super) struct Elimination<const N: usize, T> {
     determinant: T,
 }
 
-impl<const N: usize, T: Real> Elimination<N, T> {
+impl<const N: usize, T: Scalar> Elimination<N, T> {
     /// Not finite where A is singular.
     #[inline]
     pub(super) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
@@ -125,7 +126,9 @@ impl<const N: usize, T: Real> Elimination<N, T> {
     /// Whether S is zero but for its rounding.
     #[inline]
     pub(super) fn is_degenerate(&self) -> bool {
-        !self.schur.abs().is_above(self.schur_magnitude * T::real(VANISHING * T::EPSILON)).holds()
+        // Where it is not a number, too.
+        let rounding = self.schur_magnitude * T::real(VANISHING * T::EPSILON);
+        self.schur.abs().partial_cmp(&rounding) != Some(Ordering::Greater)
     }
 }
 

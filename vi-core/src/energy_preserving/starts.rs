@@ -34,7 +34,7 @@ where
         check_step("the step h0", h0)?;
         let (q, v) = (q0.into(), v0.into());
         let mut start = Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero());
-        start.shift(h0 * T::real(-0.5), &v);
+        start.shift(h0 * T::real(-0.5), &(v * (h0 * T::real(-0.5))));
         Self::after(system, start, h0, v)
     }
 
@@ -74,7 +74,7 @@ where
         check_step("the step h", h)?;
         let (node, v) = (Node::new(state, energy), v.into());
         let mut start = node;
-        start.shift(-h, &v);
+        start.shift(-h, &(v * -h));
         let mut integrator = Self::after(system, start, h, v)?;
         integrator.run.node = node;
         Ok(integrator)

@@ -22,7 +22,7 @@ impl<const N: usize, const D: usize, T: Real> Banded<N, D, T> {
             let row = rows[i][w..].iter().fold(T::zero(), |sum, entry| sum + entry.abs());
             // The last unknown passes on to all others.
             let mut reciprocal = rows[i][w].recip();
-            kept &= (row * reciprocal.abs()).at_most(T::real(super::GROWTH)).holds();
+            kept &= (row * reciprocal.abs()).is_at_most(T::real(super::GROWTH));
             if i + 1 == N && !kept {
                 reciprocal = T::real(f64::NAN);
             }

@@ -43,25 +43,16 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     }
 }
 
-/// How to divide by one number many times: a division is short for one trajectory, which waits for it, and a reciprocal
-/// for many, which wait for the divider.
-#[inline]
-fn divisor<T: Real>(number: T) -> impl Fn(T) -> T {
-    let reciprocal = number.recip();
-    move |numerator| if T::LANES == 1 { numerator / number } else { numerator * reciprocal }
-}
-
 #[inline]
 fn solve_1<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-    let by_pivot = divisor(a[(0, 0)]);
-    SMatrix::from_fn(|_, column| by_pivot(b[(0, column)]))
+    SMatrix::from_fn(|_, column| b[(0, column)] / a[(0, 0)])
 }
 
 /// Cramer's rule for two unknowns.
 #[inline]
 fn solve_2<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-    let by_determinant = divisor(determinant_2(a));
-    numerators_2(a, b).map(by_determinant)
+    let determinant = determinant_2(a);
+    numerators_2(a, b).map(|numerator| numerator / determinant)
 }
 
 #[inline]
@@ -89,11 +80,10 @@ fn solve_3<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SM
         a[(i1, j1)] * a[(i2, j2)] - a[(i1, j2)] * a[(i2, j1)]
     };
     let determinant = a[(0, 0)] * cofactor(0, 0) + a[(0, 1)] * cofactor(0, 1) + a[(0, 2)] * cofactor(0, 2);
-    let by_determinant = divisor(determinant);
     SMatrix::from_fn(|row, column| {
-        by_determinant(
-            cofactor(0, row) * b[(0, column)] + cofactor(1, row) * b[(1, column)] + cofactor(2, row) * b[(2, column)],
-        )
+        let numerator =
+            cofactor(0, row) * b[(0, column)] + cofactor(1, row) * b[(1, column)] + cofactor(2, row) * b[(2, column)];
+        numerator / determinant
     })
 }
 

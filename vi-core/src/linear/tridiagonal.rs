@@ -69,7 +69,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         let Self { lower, diagonal, upper } = self;
         let is_kept = |i: usize, beside: T| {
             let row = diagonal[i].abs() + beside;
-            (row * reciprocals[i].abs()).at_most(T::real(super::GROWTH)).holds()
+            (row * reciprocals[i].abs()).is_at_most(T::real(super::GROWTH))
         };
         let inside = 1..N.max(1) - 1;
         let kept = inside.fold(true, |kept, i| kept & is_kept(i, lower[i].abs() + upper[i].abs()));
