@@ -22,7 +22,7 @@ pub(crate) fn add<T: Real>(value: &mut T, low: &mut T, increment: T) {
 }
 
 /// Adds `increment`, exact to an ulp of it, as it is itself rounded: Kahan's sum, a third of the operations.
-#[inline]
+#[inline(always)]
 pub(crate) fn add_rounded<T: Real>(value: &mut T, low: &mut T, increment: T) {
     let increment = increment + *low;
     let sum = *value + increment;
@@ -30,7 +30,7 @@ pub(crate) fn add_rounded<T: Real>(value: &mut T, low: &mut T, increment: T) {
 }
 
 /// The same, entry by entry.
-#[inline]
+#[inline(always)]
 pub(crate) fn add_vector<T: Real, const N: usize>(
     value: &mut SVector<T, N>,
     low: &mut SVector<T, N>,

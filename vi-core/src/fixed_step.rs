@@ -214,7 +214,7 @@ where
         let v = self.v();
         (!self.run.stride.forecast.is_new()).then(|| {
             let mut start = self.run.node;
-            start.shift(-self.run.stride.h, &v);
+            start.shift(-self.run.stride.h, &(v * -self.run.stride.h));
             let start = start.leaving(&self.system, self.run.stride.h, &v);
             start.energy + self.system.increment(&start, self.run.stride.h, &v).energy
         })

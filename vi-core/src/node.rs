@@ -75,37 +75,26 @@ impl<const N: usize, T: Real> Node<N, T> {
         self.q + (self.q_low + v * way)
     }
 
-    /// Moves time by `h` and coordinates by `h v`; momenta and energy stay.
-    #[inline]
-    pub(crate) fn shift(&mut self, h: T, v: &SVector<T, N>) {
+    /// Moves time by `h` and coordinates by `way = h v`; momenta and energy stay.
+    #[inline(always)]
+    pub(crate) fn shift(&mut self, h: T, way: &SVector<T, N>) {
         compensated::add_rounded(&mut self.t, &mut self.t_low, h);
-        compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
+        compensated::add_vector(&mut self.q, &mut self.q_low, way);
     }
 
     /// Moves to the end of the step of length h that adds `way = h v` to q; the energy stays.
-    #[inline]
+    #[inline(always)]
     pub fn advance(&mut self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) {
-        compensated::add_rounded(&mut self.t, &mut self.t_low, h);
-        for i in 0..N {
-            compensated::add_rounded(&mut self.q[i], &mut self.q_low[i], way[i]);
-            compensated::add_rounded(&mut self.p[i], &mut self.p_low[i], momentum_gain[i]);
-        }
-    }
-
-    /// The node at the end of the step `(v, h)`, its energy left as it was.
-    #[inline]
-    #[must_use]
-    pub fn moved(mut self, h: T, v: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> Self {
-        self.advance(h, &(v * h), momentum_gain);
-        self
+        self.shift(h, way);
+        compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
     }
 
     /// The node at the end of the step `(v, h)`.
     #[inline]
-    pub(crate) fn advanced(self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
-        let mut node = self.moved(h, v, &gain.momentum);
-        compensated::add(&mut node.energy, &mut node.energy_low, gain.energy);
-        node
+    pub(crate) fn advanced(mut self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
+        self.advance(h, &(v * h), &gain.momentum);
+        compensated::add(&mut self.energy, &mut self.energy_low, gain.energy);
+        self
     }
 
     /// The same place with the momenta and the energy that make `(v, h)` the step from here:

@@ -35,6 +35,17 @@ const SHARE: f64 = 1.0 / 64.0;
 /// The inverse of a constant A.
 pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
 
+/// The velocity where A does not change, `v = −A⁻¹ r(0)`.
+#[inline]
+pub(crate) fn linear_velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    inverse: &Inverse<S, N, T>,
+) -> SVector<T, N> {
+    -S::Jacobian::apply(inverse, &system.momentum_equation(node, h, &SVector::zeros()).residual)
+}
+
 /// A momentum step that was found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found<const N: usize, T> {
@@ -212,9 +223,8 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         if !S::CONSTANT_JACOBIAN {
             return None;
         }
-        let equation = system.momentum_equation(node, self.h, &SVector::zeros());
-        let inverse = equation.jacobian.inverse();
-        let v = -S::Jacobian::apply(&inverse, &equation.residual);
+        let inverse = system.momentum_equation(node, self.h, &SVector::zeros()).jacobian.inverse();
+        let v = linear_velocity(system, node, self.h, &inverse);
         (momentum::residual(system, node, self.h, &v) <= momentum::FLOOR).then_some(inverse)
     }
 
@@ -229,11 +239,9 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         inverse: Option<&Inverse<S, N, T>>,
     ) -> Option<Found<N, T>> {
         if S::CONSTANT_JACOBIAN {
-            let zeros = SVector::zeros();
-            let rest = system.momentum_equation(node, self.h, &zeros);
-            let v = -S::Jacobian::apply(inverse?, &rest.residual);
+            let v = linear_velocity(system, node, self.h, inverse?);
             let gain = system.increment(node, self.h, &v).momentum;
-            return Some(Found { trial: v, step: zeros, gain, reciprocal: T::one(), iterations: 0 });
+            return Some(Found { trial: v, step: SVector::zeros(), gain, reciprocal: T::one(), iterations: 0 });
         }
         if !S::SMOOTH || self.forecast.is_learning() {
             return None;

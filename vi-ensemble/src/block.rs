@@ -97,10 +97,8 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     /// The last node of a trajectory.
     fn node(&self, lane: usize) -> Node<N> {
-        {
-            let place = Place::of(lane);
-            self.nodes[0].get(place, self.fixed.t.get(place) + self.elapsed())
-        }
+        let place = Place::of(lane);
+        self.nodes[0].get(place, self.fixed.t.get(place) + self.elapsed())
     }
 
     /// Time since the start.
@@ -182,7 +180,8 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let [last, before, ..] = [0, 1].map(|index| self.velocities[index].get(place));
         let v = fixed_step::velocity(&system, node, self.h, last * 2.0 - before, last)?;
         let gain = vi_core::Stepping::increment(&system, node, self.h, &v);
-        let next = node.moved(self.h, &v, &gain.momentum);
+        let mut next = *node;
+        next.advance(self.h, &(v * self.h), &gain.momentum);
         next.check_finite(node.t)?;
         Ok((next, v))
     }

@@ -146,21 +146,9 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     #[inline(always)]
     fn end(&self, step: &Reached<N, FUSED>) -> Node<N, Lane<FUSED>> {
         let mut node = self.node;
-        for k in 0..N {
-            add(&mut node.q[k], &mut node.q_low[k], self.h * step.v[k]);
-            add(&mut node.p[k], &mut node.p_low[k], step.gain[k]);
-        }
+        node.advance(self.h, &(step.v * self.h), &step.gain);
         node
     }
-}
-
-/// Adds `increment`, exact to an ulp of it, as it is itself rounded. Half the operations of Knuth's two-sum: where the
-/// increment is the larger of the two, what is lost is a rounding of the increment.
-#[inline(always)]
-fn add<const FUSED: bool>(value: &mut Lane<FUSED>, low: &mut Lane<FUSED>, increment: Lane<FUSED>) {
-    let increment = (increment + *low).get();
-    let sum = value.get() + increment;
-    (*value, *low) = (Lane::new(sum), Lane::new(increment - (sum - value.get())));
 }
 
 #[inline(always)]

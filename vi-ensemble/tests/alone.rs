@@ -33,7 +33,8 @@ fn converged<S: Batch<N>, const N: usize>(
     let mut node = Node::new(start, 0.0);
     for _ in 0..steps {
         v = velocity(&system, &node, h, v, v)?;
-        node = node.moved(h, &v, &system.increment(&node, h, &v).momentum);
+        let gain = system.increment(&node, h, &v).momentum;
+        node.advance(h, &(v * h), &gain);
     }
     Ok(node.state())
 }
