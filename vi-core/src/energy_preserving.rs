@@ -92,7 +92,7 @@ where
         if let Some(found) = self.foretold() {
             let foretold::Found { root, gain, .. } = &found;
             let (node, last, step) = self.run.reached(&self.run.node, root, gain, Method::EnergyPreserving);
-            if node.is_finite() && node.energy.is_finite() {
+            if node.is_finite() {
                 self.run.forecasts.push(&found);
                 (self.run.node, self.run.last) = (node, last);
                 return Ok(step);

@@ -53,6 +53,16 @@ pub trait Real:
     fn cos(self) -> Self;
     /// Sine and cosine of one angle in radians, in this order.
     fn sin_cos(self) -> (Self, Self);
+    /// The same of angles that do not wait for each other: at once, where that is faster.
+    #[inline(always)]
+    fn sin_cos_each<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
+        // A loop: `map` is a call where K is large.
+        let mut pairs = [(Self::zero(), Self::zero()); K];
+        for (pair, angle) in pairs.iter_mut().zip(angles) {
+            *pair = angle.sin_cos();
+        }
+        pairs
+    }
     /// Tangent of an angle in radians.
     #[must_use]
     fn tan(self) -> Self;
@@ -107,16 +117,21 @@ pub trait Real:
 /// One number: what the control flow of a stepper needs beside the formulas.
 pub trait Scalar: Real + PartialOrd {}
 
-/// Sine and cosine, in this order, without a branch for angles that one meets.
+/// Sine and cosine, in this order, with one branch for all, which angles that one meets do not take: between branches the
+/// compiler makes vectors of them.
 #[inline]
-fn sin_cos(x: f64) -> (f64, f64) {
-    if x.abs() <= sine::LARGEST { sine::sin_cos::<{ cfg!(target_feature = "fma") }>(x) } else { large_sin_cos(x) }
+fn sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
+    if angles.iter().fold(true, |all, x| all & (x.abs() <= sine::LARGEST)) {
+        sine::sin_cos_each::<K, { cfg!(target_feature = "fma") }>(angles)
+    } else {
+        large_sin_cos(angles)
+    }
 }
 
-/// Sine and cosine of an angle of many turns, or of what is not a number.
+/// Sine and cosine of angles of many turns, or of what is not a number, among others.
 #[cold]
-fn large_sin_cos(x: f64) -> (f64, f64) {
-    x.sin_cos()
+fn large_sin_cos<const K: usize>(angles: [f64; K]) -> [(f64, f64); K] {
+    angles.map(f64::sin_cos)
 }
 
 macro_rules! impl_real {
@@ -141,12 +156,16 @@ macro_rules! impl_real {
             fn sin(self) -> Self { Real::sin_cos(self).0 }
             #[inline]
             fn cos(self) -> Self { Real::sin_cos(self).1 }
+            #[inline]
+            fn sin_cos(self) -> (Self, Self) {
+                let [pair] = Real::sin_cos_each([self]);
+                pair
+            }
             // In double precision, whatever the type: it costs less than the library's call.
             #[allow(clippy::cast_possible_truncation, clippy::cast_lossless)]
             #[inline]
-            fn sin_cos(self) -> (Self, Self) {
-                let (sine, cosine) = sin_cos(self as f64);
-                (sine as $float, cosine as $float)
+            fn sin_cos_each<const K: usize>(angles: [Self; K]) -> [(Self, Self); K] {
+                sin_cos(angles.map(|angle| angle as f64)).map(|(sine, cosine)| (sine as $float, cosine as $float))
             }
             #[inline]
             fn tan(self) -> Self { $float::tan(self) }

@@ -145,7 +145,7 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     fn sin_cos(self) -> (Self, Self) {
         let angle = self.get();
         let near = angle.abs() <= sine::LARGEST;
-        let (s, c) = sine::sin_cos::<FUSED>(angle);
+        let (s, c) = sine::sin_cos::<f64, FUSED>(angle);
         let (s, c) = if near { (s, c) } else { (f64::NAN, f64::NAN) };
         (Self::new(s), Self::new(c))
     }

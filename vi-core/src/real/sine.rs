@@ -10,6 +10,9 @@
 //! and n mod 4 says which of the two is which, and their signs. π/2 is subtracted in three parts (Cody and Waite), the
 //! first two of 33 bits, so that their products with n are exact; the polynomials are those of fdlibm.
 
+use core::ops::{Add, BitXor, Mul, Neg, Shl, Sub};
+use wide::{f64x2, f64x4, u64x2, u64x4};
+
 /// Largest angle that is reduced here, in radians: up to it n has 16 bits. Beyond, and for what is not a number, ask the
 /// library.
 pub const LARGEST: f64 = 1.0e5;
@@ -36,65 +39,133 @@ const C: [f64; 6] = [
     -1.135_964_755_778_819_5e-11,
 ];
 
+/// A number, or several side by side.
+pub trait Vector: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
+    /// Their bits.
+    type Bits: Copy + Shl<u32, Output = Self::Bits> + BitXor<Output = Self::Bits>;
+
+    /// The same number everywhere.
+    fn splat(value: f64) -> Self;
+    /// `self · b + c` in one operation.
+    #[must_use]
+    fn fused(self, b: Self, c: Self) -> Self;
+    /// The bits.
+    fn bits(self) -> Self::Bits;
+    /// The numbers whose bits are these.
+    fn from_bits(bits: Self::Bits) -> Self;
+    /// The highest bit, as it is.
+    fn highest(bits: Self::Bits) -> Self::Bits;
+    /// `bits` where `odd` is an odd number, else none.
+    fn where_odd(odd: Self::Bits, bits: Self::Bits) -> Self::Bits;
+}
+
+macro_rules! impl_vector {
+    ($($vector:ty, $bits:ty, $splat:expr, $wrapping_sub:expr;)*) => {$(
+        impl Vector for $vector {
+            type Bits = $bits;
+            #[inline(always)]
+            fn splat(value: f64) -> Self { $splat(value) }
+            #[inline(always)]
+            fn fused(self, b: Self, c: Self) -> Self { self.mul_add(b, c) }
+            #[inline(always)]
+            fn bits(self) -> $bits { self.to_bits() }
+            #[inline(always)]
+            fn from_bits(bits: $bits) -> Self { <$vector>::from_bits(bits) }
+            #[inline(always)]
+            fn highest(bits: $bits) -> $bits { bits & <$bits>::from(1_u64 << 63) }
+            #[inline(always)]
+            fn where_odd(odd: $bits, bits: $bits) -> $bits {
+                bits & $wrapping_sub(<$bits>::from(0_u64), odd & <$bits>::from(1_u64))
+            }
+        }
+    )*};
+}
+
+impl_vector! {
+    f64, u64, core::convert::identity, u64::wrapping_sub;
+    f64x2, u64x2, f64x2::splat, core::ops::Sub::sub;
+    f64x4, u64x4, f64x4::splat, core::ops::Sub::sub;
+}
+
 /// Sine and cosine of x, in this order, for |x| ≤ [`LARGEST`]. `FUSED` where the code is compiled for a processor that
 /// multiplies and adds in one instruction; elsewhere that would be a call.
 #[inline(always)]
 #[must_use]
-pub fn sin_cos<const FUSED: bool>(x: f64) -> (f64, f64) {
-    let shifted = multiply_add::<FUSED>(x, core::f64::consts::FRAC_2_PI, ROUNDING);
-    let (quarter, n) = (shifted.to_bits(), shifted - ROUNDING);
-    let (y, y_low) = reduced::<FUSED>(x, n);
-    let (s, c) = (sine::<FUSED>(y, y_low), cosine::<FUSED>(y, y_low));
+pub fn sin_cos<V: Vector, const FUSED: bool>(x: V) -> (V, V) {
+    let shifted = multiply_add::<V, FUSED>(x, V::splat(core::f64::consts::FRAC_2_PI), V::splat(ROUNDING));
+    let (quarter, n) = (shifted.bits(), shifted - V::splat(ROUNDING));
+    let (y, y_low) = reduced::<V, FUSED>(x, n);
+    let (s, c) = (sine::<V, FUSED>(y, y_low).bits(), cosine::<V, FUSED>(y, y_low).bits());
     // An exchange written with `if` becomes a jump, and angles of any size make that a gamble.
-    let exchange = (s.to_bits() ^ c.to_bits()) & 0_u64.wrapping_sub(quarter & 1);
-    // The second bit of n and of n + 1, moved to where the sign of a number is.
-    let sign = |quarter: u64| (quarter << 62) & (1 << 63);
-    let s = f64::from_bits(s.to_bits() ^ exchange ^ sign(quarter));
-    let c = f64::from_bits(c.to_bits() ^ exchange ^ sign(quarter.wrapping_add(1)));
-    (s, c)
+    let exchange = V::where_odd(quarter, s ^ c);
+    // The second bit of n, and of n + 1, moved to where the sign of a number is.
+    let second = quarter << 62;
+    (V::from_bits(s ^ exchange ^ V::highest(second)), V::from_bits(c ^ exchange ^ V::highest(second ^ (quarter << 63))))
+}
+
+/// The same of several angles, up to four at a time.
+#[inline(always)]
+pub fn sin_cos_each<const K: usize, const FUSED: bool>(angles: [f64; K]) -> [(f64, f64); K] {
+    let mut pairs = [(0.0, 0.0); K];
+    for (pairs, angles) in pairs.chunks_mut(4).zip(angles.chunks(4)) {
+        match (pairs, angles) {
+            ([pair], &[x]) => *pair = sin_cos::<f64, FUSED>(x),
+            ([first, second], &[x, y]) => {
+                let (sines, cosines) = sin_cos::<f64x2, FUSED>(f64x2::new([x, y]));
+                let ([s, t], [c, d]) = (sines.to_array(), cosines.to_array());
+                (*first, *second) = ((s, c), (t, d));
+            }
+            (pairs, angles) => {
+                let (sines, cosines) = sin_cos::<f64x4, FUSED>(f64x4::from(angles));
+                let both = sines.to_array().into_iter().zip(cosines.to_array());
+                pairs.iter_mut().zip(both).for_each(|(pair, both)| *pair = both);
+            }
+        }
+    }
+    pairs
 }
 
 /// `a b + c`.
 #[inline(always)]
-fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+fn multiply_add<V: Vector, const FUSED: bool>(a: V, b: V, c: V) -> V {
+    if FUSED { a.fused(b, c) } else { a * b + c }
 }
 
 /// The polynomial of degree 5 in z; terms are paired, so that they do not wait for each other.
 #[inline(always)]
-fn polynomial<const FUSED: bool>(c: &[f64; 6], z: f64) -> f64 {
+fn polynomial<V: Vector, const FUSED: bool>(c: &[f64; 6], z: V) -> V {
     let square = z * z;
-    let pair = |low: f64, high: f64| multiply_add::<FUSED>(z, high, low);
-    let upper = multiply_add::<FUSED>(square, pair(c[4], c[5]), pair(c[2], c[3]));
-    multiply_add::<FUSED>(square, upper, pair(c[0], c[1]))
+    let pair = |low: f64, high: f64| multiply_add::<V, FUSED>(z, V::splat(high), V::splat(low));
+    let upper = multiply_add::<V, FUSED>(square, pair(c[4], c[5]), pair(c[2], c[3]));
+    multiply_add::<V, FUSED>(square, upper, pair(c[0], c[1]))
 }
 
 /// `x − n π/2` as a number and its low part.
 #[inline(always)]
-fn reduced<const FUSED: bool>(x: f64, n: f64) -> (f64, f64) {
+fn reduced<V: Vector, const FUSED: bool>(x: V, n: V) -> (V, V) {
     let [first, second, third] = HALF_PI;
-    let (rest, part) = (multiply_add::<FUSED>(n, -first, x), n * second);
-    let (most, last) = (rest - part, n * third);
+    let (rest, part) = (multiply_add::<V, FUSED>(n, V::splat(-first), x), n * V::splat(second));
+    let (most, last) = (rest - part, n * V::splat(third));
     let y = most - last;
     // What rounding took from both differences, beside the path that the result waits for.
     (y, ((most - y) - last) + ((rest - most) - part))
 }
 
 #[inline(always)]
-fn sine<const FUSED: bool>(y: f64, y_low: f64) -> f64 {
+fn sine<V: Vector, const FUSED: bool>(y: V, y_low: V) -> V {
     let z = y * y;
-    let low = multiply_add::<FUSED>(0.5 * z, y_low, -y_low);
+    let low = multiply_add::<V, FUSED>(V::splat(0.5) * z, y_low, -y_low);
     // Subtracted, because then sin(−0) = −0.
-    y - multiply_add::<FUSED>(z * y, polynomial::<FUSED>(&S, z), low)
+    y - multiply_add::<V, FUSED>(z * y, polynomial::<V, FUSED>(&S, z), low)
 }
 
 #[inline(always)]
-fn cosine<const FUSED: bool>(y: f64, y_low: f64) -> f64 {
+fn cosine<V: Vector, const FUSED: bool>(y: V, y_low: V) -> V {
     let z = y * y;
-    let half = 0.5 * z;
-    let most = 1.0 - half;
-    let low = multiply_add::<FUSED>(-y, y_low, (1.0 - most) - half);
-    most + multiply_add::<FUSED>(z * z, polynomial::<FUSED>(&C, z), low)
+    let half = V::splat(0.5) * z;
+    let most = V::splat(1.0) - half;
+    let low = multiply_add::<V, FUSED>(-y, y_low, (V::splat(1.0) - most) - half);
+    most + multiply_add::<V, FUSED>(z * z, polynomial::<V, FUSED>(&C, z), low)
 }
 
 #[cfg(test)]
@@ -126,7 +197,7 @@ mod tests {
     }
 
     fn worst<const FUSED: bool>(x: f64, (sine, cosine): (f64, f64)) -> u64 {
-        let (s, c) = sin_cos::<FUSED>(x);
+        let (s, c) = sin_cos::<f64, FUSED>(x);
         distance(s, sine).max(distance(c, cosine))
     }
 
@@ -158,8 +229,8 @@ mod tests {
 
     #[test]
     fn zero_keeps_its_sign() {
-        assert_eq!(sin_cos::<false>(-0.0).0.to_bits(), (-0.0_f64).to_bits());
-        assert_eq!(sin_cos::<true>(-0.0).0.to_bits(), (-0.0_f64).to_bits());
-        assert_eq!(sin_cos::<false>(0.0), (0.0, 1.0));
+        assert_eq!(sin_cos::<f64, false>(-0.0).0.to_bits(), (-0.0_f64).to_bits());
+        assert_eq!(sin_cos::<f64, true>(-0.0).0.to_bits(), (-0.0_f64).to_bits());
+        assert_eq!(sin_cos::<f64, false>(0.0), (0.0, 1.0));
     }
 }

@@ -4,6 +4,7 @@
 //! of the rule, or makes a line too long, gets a name; everything else is written where it is used. In a function that is
 //! too long for one body all results have names, and [`pieces`] compute them.
 
+use super::angles::Angles;
 use super::formula::Formula;
 use super::names::Names;
 use super::pieces::{Statement, Writing, pieces};
@@ -61,12 +62,15 @@ struct Printer<'a> {
     inputs: BTreeMap<Symbol, Ident>,
     statements: Vec<Statement>,
     in_pieces: bool,
+    angles: Angles,
 }
 
 /// Prints a function of a system whose rule has so many points, in pieces if it has more operations than `limit`.
 pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place, limit: usize) -> Body {
     let in_pieces = function.operation_count() > limit;
     let needed = if in_pieces { function.local_order() } else { function.operations.needed(&function.results) };
+    let angles = Angles::of(function, &needed);
+    let needed = angles.first(function, needed);
     let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
     for id in function.results.iter().flatten() {
         *uses.entry(*id).or_default() += 1;
@@ -87,6 +91,7 @@ pub(super) fn body(model: &Model, function: &Function, points: usize, place: Pla
         inputs: BTreeMap::new(),
         statements: Vec::new(),
         in_pieces,
+        angles,
     };
     printer.name_inputs(&needed, place);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
@@ -158,8 +163,8 @@ impl Printer<'_> {
         };
         let formula = match name {
             Some(name) => {
-                let tokens = formula.tokens();
-                self.state(&[(id, &name)], &operation, formula.operations, quote!(let #name = #tokens;));
+                let (tokens, operands) = (formula.tokens(), operation.operands().collect::<Vec<_>>());
+                self.state(&[(id, name.clone())], &operands, formula.operations, quote!(let #name = #tokens;));
                 Formula::name(&name)
             }
             None => formula,
@@ -167,37 +172,57 @@ impl Printer<'_> {
         self.written.insert(id, formula);
     }
 
-    /// Sine and cosine of one angle are computed together.
+    /// Sine and cosine of one angle are computed together, and those of angles that do not wait for each other.
     fn sine(&mut self, id: OperationId, function: Elementary, angle: OperationId) -> Option<Formula> {
         if let Some(written) = self.written.get(&id) {
             return Some(written.clone());
         }
+        let angles = self.angles.with(angle);
+        let needed = |this: &Self, function, angle| {
+            let call = this.function.operations.find(&Operation::Call(function, angle));
+            call.filter(|call| this.uses.contains_key(call))
+        };
         let other = if function == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
-        let wanted = Operation::Call(other, angle);
-        let partner = self.function.operations.find(&wanted)?;
-        self.uses.get(&partner)?;
-        let (sine, cosine) = self.names.next_sine();
-        let argument = self.operand(angle);
-        let (receiver, operations) = (argument.receiver(), argument.operations + 2);
-        let tokens = quote!(let (#sine, #cosine) = #receiver.sin_cos(););
-        let (own, partners) = if function == Elementary::Sin { (sine, cosine) } else { (cosine, sine) };
-        self.state(&[(id, &own), (partner, &partners)], &Operation::Call(function, angle), operations, tokens);
-        self.written.insert(partner, Formula::name(&partners));
-        self.written.insert(id, Formula::name(&own));
-        Some(Formula::name(&own))
+        if angles.len() == 1 && needed(self, other, angle).is_none() {
+            return None;
+        }
+        let (mut binds, mut pairs, mut operations) = (Vec::new(), Vec::new(), 0);
+        for angle in &angles {
+            let (sine, cosine) = self.names.next_sine();
+            let pair = [(Elementary::Sin, sine), (Elementary::Cos, cosine)].map(|(function, name)| {
+                let Some(call) = needed(self, function, *angle) else { return quote!(_) };
+                operations += 1;
+                binds.push((call, name.clone()));
+                quote!(#name)
+            });
+            let [sine, cosine] = pair;
+            pairs.push(quote!((#sine, #cosine)));
+        }
+        let arguments: Vec<Formula> = angles.iter().map(|angle| self.operand(*angle)).collect();
+        operations += arguments.iter().map(|argument| argument.operations).sum::<usize>();
+        let tokens = if let ([argument], [pair]) = (&arguments[..], &pairs[..]) {
+            let receiver = argument.receiver();
+            quote!(let #pair = #receiver.sin_cos();)
+        } else {
+            let arguments = arguments.iter().map(Formula::tokens);
+            quote!(let [#(#pairs),*] = T::sin_cos_each([#(#arguments),*]);)
+        };
+        self.state(&binds, &angles, operations, tokens);
+        self.written.extend(binds.iter().map(|(call, name)| (*call, Formula::name(name))));
+        self.written.get(&id).cloned()
     }
 
-    /// A statement that binds the operation, and its partner if it has one.
+    /// A statement that binds operations, computed from these operands.
     fn state(
         &mut self,
-        binds: &[(OperationId, &Ident)],
-        operation: &Operation,
+        binds: &[(OperationId, Ident)],
+        operands: &[OperationId],
         operations: usize,
         tokens: TokenStream,
     ) {
         let mut reads = Vec::new();
         if self.in_pieces {
-            let mut open: Vec<OperationId> = operation.operands().collect();
+            let mut open = operands.to_vec();
             while let Some(operand) = open.pop() {
                 if self.named.contains_key(&operand) {
                     reads.push(operand);
@@ -206,7 +231,7 @@ impl Printer<'_> {
                 }
             }
         }
-        self.named.extend(binds.iter().map(|(id, name)| (*id, (*name).clone())));
+        self.named.extend(binds.iter().cloned());
         self.statements.push(Statement { binds: binds.iter().map(|(id, _)| *id).collect(), reads, operations, tokens });
     }
 

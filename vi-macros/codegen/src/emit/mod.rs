@@ -5,6 +5,7 @@
 //! One file per kind of item: the struct, the continuous system, the discrete one, the stepper, the
 //! checks.
 
+mod angles;
 mod body;
 mod check;
 mod discrete;
