@@ -65,7 +65,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
 
     /// `L = m*dot(x)^2/2 - k*x^2/2`
     ///
-    /// 6 operations.
+    /// 7 operations.
     #[inline]
     fn lagrangian(
         &self,
@@ -76,12 +76,12 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
         let [x_dot]: [T; 1] = (*v).into();
         let [x]: [T; 1] = (*q).into();
         let real = T::real;
-        (self.m * (x_dot * x_dot) - self.k * (x * x)) * real(0.5)
+        self.m * real(0.5) * (x_dot * x_dot) - self.k * real(0.5) * (x * x)
     }
 
     /// `v·L_v − L = m*dot(x)^2/2 + k*x^2/2`
     ///
-    /// 6 operations.
+    /// 7 operations.
     #[inline]
     fn energy(
         &self,
@@ -92,7 +92,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
         let [x_dot]: [T; 1] = (*v).into();
         let [x]: [T; 1] = (*q).into();
         let real = T::real;
-        (self.m * (x_dot * x_dot) + self.k * (x * x)) * real(0.5)
+        self.m * real(0.5) * (x_dot * x_dot) + self.k * real(0.5) * (x * x)
     }
 
     /// `p_x = m*dot(x)`
@@ -163,7 +163,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
 
     /// The first of what L and f are made of that is not finite here.
     ///
-    /// 8 operations.
+    /// 9 operations.
     #[cold]
     fn non_finite(
         &self,
@@ -182,7 +182,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
             ("x", x),
             (
                 "m*dot(x)^2/2 - k*x^2/2",
-                (self.m * (x_dot * x_dot) - self.k * (x * x)) * real(0.5),
+                self.m * real(0.5) * (x_dot * x_dot) - self.k * real(0.5) * (x * x),
             ),
             ("-c*dot(x)", -(self.c * x_dot)),
         ];
@@ -194,7 +194,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
 impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillator<T> {
     /// `ld = h*L`
     ///
-    /// 9 operations.
+    /// 10 operations.
     #[inline]
     fn ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -203,12 +203,12 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillato
         let x_dot = (x1 - x0) / h;
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
-        h * ((self.m * (x_dot * x_dot) - self.k * (x_mid * x_mid)) * real(0.5))
+        h * (self.m * real(0.5) * (x_dot * x_dot) - self.k * real(0.5) * (x_mid * x_mid))
     }
 
     /// `d1_ld = L_v_x*v_x - L`
     ///
-    /// 8 operations.
+    /// 9 operations.
     #[inline]
     fn d1_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -217,7 +217,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillato
         let x_dot = (x1 - x0) / h;
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
-        (self.m * (x_dot * x_dot) + self.k * (x_mid * x_mid)) * real(0.5)
+        self.m * real(0.5) * (x_dot * x_dot) + self.k * real(0.5) * (x_mid * x_mid)
     }
 
     /// `d2_ld_x = h*L_x/2 - L_v_x`
@@ -236,7 +236,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillato
 
     /// `d3_ld = L - L_v_x*v_x`
     ///
-    /// 9 operations.
+    /// 10 operations.
     #[inline]
     fn d3_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -245,7 +245,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillato
         let x_dot = (x1 - x0) / h;
         let real = T::real;
         let x_mid = (x0 + x1) * real(0.5);
-        -((self.m * (x_dot * x_dot) + self.k * (x_mid * x_mid)) * real(0.5))
+        -(self.m * real(0.5) * (x_dot * x_dot) + self.k * real(0.5) * (x_mid * x_mid))
     }
 
     /// `d4_ld_x = L_v_x + h*L_x/2`
@@ -343,20 +343,21 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         let [x_dot]: [T; 1] = (*v).into();
         let real = T::real;
         let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+        let s1 = self.c * real(0.5);
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
                 self.m * x_dot - p0_x
-                    + ((self.k * x_mid + self.c * x_dot) * real(0.5) * h - p0_x_low),
+                    + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[self.m + (self.c * real(0.5) + self.k * h * real(0.25)) * h],
+                &[self.m + (s1 + self.k * h * real(0.25)) * h],
             ),
         }
     }
 
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
     ///
-    /// 41 operations.
+    /// 40 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -373,24 +374,24 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         let [x_dot]: [T; 1] = (*v).into();
         let real = T::real;
         let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
-        let s1 = self.k * h;
-        let s2 = s1 * real(0.25);
-        let s3 = (self.k * x_mid + self.c * x_dot) * real(0.5);
-        let s4 = s2 * x_dot;
+        let s1 = self.c * real(0.5);
+        let s2 = self.k * h;
+        let s3 = s2 * real(0.25);
+        let s4 = self.k * real(0.5);
+        let s5 = s4 * x_mid + s1 * x_dot;
+        let s6 = s3 * x_dot;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    self.m * x_dot - p0_x + (s3 * h - p0_x_low),
+                    self.m * x_dot - p0_x + (s5 * h - p0_x_low),
                 ]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[self.m + (self.c * real(0.5) + s2) * h],
-                ),
+                jacobian: ::vi_core::SMatrix::from_row_slice(&[self.m + (s1 + s3) * h]),
             },
-            residual_dh: ::vi_core::SVector::from([s3 + s4]),
-            energy_residual: self.k * real(0.5) * (x_mid * x_mid) - energy0
+            residual_dh: ::vi_core::SVector::from([s5 + s6]),
+            energy_residual: s4 * (x_mid * x_mid) - energy0
                 + (p0_x - self.m * real(0.5) * x_dot) * x_dot
-                + ((p0_x_low - s1 * real(0.5) * x_mid) * x_dot - energy0_low),
-            energy_dv: ::vi_core::SVector::from([s3 - s4]),
+                + ((p0_x_low - s2 * real(0.5) * x_mid) * x_dot - energy0_low),
+            energy_dv: ::vi_core::SVector::from([s5 - s6]),
             energy_dh: -(self.k * real(0.25) * (x_dot * x_dot)),
         }
     }
@@ -455,7 +456,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     ///
     /// and to first order at `v + dv`.
     ///
-    /// 21 operations.
+    /// 24 operations.
     #[inline(always)]
     fn momentum_step(
         &self,
@@ -472,21 +473,23 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         let [x_dot]: [T; 1] = (*v).into();
         let [x_mid]: [T; 1] = (*place).into();
         let real = T::real;
-        let s1 = self.k * h;
-        let s2 = self.k * x_mid + self.c * x_dot;
+        let s1 = self.c * real(0.5);
+        let s2 = self.k * h;
         let change: [T; 1] = solve(
                 &::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        self.m * x_dot - p0_x + (s2 * real(0.5) * h - p0_x_low),
+                        self.m * x_dot - p0_x
+                            + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[self.m + (self.c * real(0.5) + s1 * real(0.25)) * h],
+                        &[self.m + (s1 + s2 * real(0.25)) * h],
                     ),
                 },
             )
             .into();
         ::vi_core::SVector::from([
-            -(s2 * h) + (((-self.c - s1 * real(0.5)) * h) * change[0]),
+            -((self.k * x_mid + self.c * x_dot) * h)
+                + (((-self.c - s2 * real(0.5)) * h) * change[0]),
         ])
     }
 }

@@ -84,7 +84,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
 
     /// `L = l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)`
     ///
-    /// 26 operations.
+    /// 32 operations.
     #[inline]
     fn lagrangian(
         &self,
@@ -95,18 +95,18 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let [θ1, θ2]: [T; 2] = (*q).into();
         let real = T::real;
-        let (sin1, cos1) = θ1.sin_cos();
-        let (sin2, cos2) = θ2.sin_cos();
-        let s3 = self.g * cos2
-            + (self.l2 * real(0.5) * θ2_dot
-                + self.l1 * θ1_dot * (cos1 * cos2 + sin1 * sin2)) * θ2_dot;
-        (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * cos1) * (self.m1 + self.m2)
-            * self.l1 + s3 * self.l2 * self.m2
+        let s1 = self.m1 + self.m2;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+        let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
+            + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
+        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+            + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
+        s5 + s4 * θ1_dot
     }
 
     /// `v·L_v − L = m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1) - m2*l2*g*cos(θ2) + m1*l1^2*dot(θ1)^2/2 + m2*l1^2*dot(θ1)^2/2`
     ///
-    /// 31 operations.
+    /// 32 operations.
     #[inline]
     fn energy(
         &self,
@@ -117,20 +117,20 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let [θ1, θ2]: [T; 2] = (*q).into();
         let real = T::real;
-        let (sin1, cos1) = θ1.sin_cos();
-        let (sin2, cos2) = θ2.sin_cos();
-        let s3 = θ1_dot * θ1_dot;
-        let s4 = (self.l2 * real(0.5) * θ2_dot
-            + self.l1 * θ1_dot * (cos1 * cos2 + sin1 * sin2)) * θ2_dot - self.g * cos2;
-        (self.m1 * self.l1 * real(0.5) * s3 - self.g * (self.m1 + self.m2) * cos1)
-            * self.l1 + (self.l1 * self.l1 * real(0.5) * s3 + s4 * self.l2) * self.m2
+        let s1 = self.m1 + self.m2;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+        let s4 = self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3)
+            + s1 * real(0.5) * (self.l1 * self.l1) * θ1_dot;
+        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+            - self.l1 * self.g * s1 * cos2 - self.m2 * self.l2 * self.g * cos3;
+        s5 + s4 * θ1_dot
     }
 
     /// `p_θ1 = l1^2*(m1 + m2)*dot(θ1) + m2*l1*l2*dot(θ2)*cos(θ1 - θ2)`
     ///
     /// `p_θ2 = m2*l2^2*dot(θ2) + m2*l1*l2*dot(θ1)*cos(θ1 - θ2)`
     ///
-    /// 16 operations.
+    /// 17 operations.
     #[inline]
     fn momentum(
         &self,
@@ -141,10 +141,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let [θ1, θ2]: [T; 2] = (*q).into();
         let s1 = (θ1 - θ2).cos();
+        let s2 = self.m2 * self.l1 * self.l2;
         ::vi_core::SVector::from([
-            (self.l1 * (self.m1 + self.m2) * θ1_dot + self.m2 * self.l2 * θ2_dot * s1)
-                * self.l1,
-            (self.l2 * θ2_dot + self.l1 * θ1_dot * s1) * self.l2 * self.m2,
+            self.l1 * self.l1 * (self.m1 + self.m2) * θ1_dot + s2 * θ2_dot * s1,
+            self.m2 * (self.l2 * self.l2) * θ2_dot + s2 * θ1_dot * s1,
         ])
     }
 
@@ -166,7 +166,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
 
     /// Solves `M a = L_q + f − L_vt − L_vq v`.
     ///
-    /// 34 operations.
+    /// 33 operations.
     #[inline]
     fn acceleration(
         &self,
@@ -178,24 +178,23 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let [θ1, θ2]: [T; 2] = (*q).into();
         let s1 = self.m1 + self.m2;
-        let (sin2, cos2) = θ1.sin_cos();
-        let (sin3, cos3) = θ2.sin_cos();
-        let s4 = self.m2 * self.l1 * self.l2 * (cos2 * cos3 + sin2 * sin3);
-        let s5 = sin2 * cos3 - cos2 * sin3;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+        let s4 = self.m2 * self.l1 * self.l2;
+        let s5 = s4 * (cos2 * cos3 + sin2 * sin3);
+        let s6 = sin2 * cos3 - cos2 * sin3;
         let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
-            &[self.l1 * self.l1 * s1, s4, s4, self.m2 * (self.l2 * self.l2)],
+            &[self.l1 * self.l1 * s1, s5, s5, self.m2 * (self.l2 * self.l2)],
         );
         let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
-            -((self.g * s1 * sin2 + self.m2 * self.l2 * (θ2_dot * θ2_dot) * s5)
-                * self.l1),
-            (self.l1 * (θ1_dot * θ1_dot) * s5 - self.g * sin3) * self.l2 * self.m2,
+            -(self.l1 * self.g * s1 * sin2 + s4 * (θ2_dot * θ2_dot) * s6),
+            s4 * (θ1_dot * θ1_dot) * s6 - self.m2 * self.l2 * self.g * sin3,
         ]);
         ::vi_core::linear::acceleration(time, &mass, &applied)
     }
 
     /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - …`
     ///
-    /// 65 operations.
+    /// 56 operations.
     #[inline]
     fn step_density(
         &self,
@@ -206,27 +205,31 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1_ddot, θ2_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let [θ1, θ2]: [T; 2] = (*q).into();
-        let (sin1, cos1) = θ1.sin_cos();
-        let (sin2, cos2) = θ2.sin_cos();
+        let [(sin1, cos1), (sin2, cos2)] = T::sin_cos_each([θ1, θ2]);
         let s3 = cos1 * cos2 + sin1 * sin2;
-        let s4 = sin1 * cos2 - cos1 * sin2;
-        let s5 = self.g * (self.m1 + self.m2);
-        let s6 = self.m2 * self.l2 * θ1_dot * θ2_dot;
-        let s7 = self.l1 * θ1_dot * θ2_dot;
-        let s8 = s4 * θ2_ddot;
-        let s9 = θ2_dot * s4 * θ1_ddot;
-        let s10 = ((θ2_dot * θ2_dot * s3 - s8) * θ1_dot - s9) * self.l2 * self.l1
-            * self.m2 - θ1_dot * ((s5 * cos1 + s6 * s3) * self.l1);
-        let s11 = (s9 + (s8 + θ1_dot * θ2_dot * s3) * θ1_dot) * self.l2 * self.l1
-            * self.m2 - θ2_dot * ((s7 * s3 + self.g * cos2) * self.l2 * self.m2);
-        let s12 = θ2_ddot * ((s7 * s4 - self.g * sin2) * self.l2 * self.m2)
-            - (s5 * sin1 + s6 * s4) * self.l1 * θ1_ddot;
-        Ok(s12 - θ1_dot * s10 - θ2_dot * s11)
+        let s4 = self.m2 * self.l1 * self.l2;
+        let s5 = s4 * θ1_dot;
+        let s6 = s5 * θ2_dot;
+        let s7 = s6 * s3;
+        let s8 = self.l1 * self.g * (self.m1 + self.m2);
+        let s9 = self.m2 * self.l2 * self.g;
+        let s10 = sin1 * cos2 - cos1 * sin2;
+        let s11 = s6 * s10;
+        let s12 = s4 * θ2_dot * s10 * θ1_ddot;
+        let s13 = s5 * s10 * θ2_ddot;
+        let s14 = θ2_dot
+            * (s12 + s13 + s4 * (θ1_dot * θ1_dot) * θ2_dot * s3
+                - θ2_dot * (s7 + s9 * cos2));
+        let s15 = θ2_ddot * (s11 - s9 * sin2) - (s11 + s8 * sin1) * θ1_ddot
+            - θ1_dot
+                * (s5 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s7 + s8 * cos1) - s12
+                    - s13);
+        Ok(s15 - s14)
     }
 
     /// The first of what L and f are made of that is not finite here.
     ///
-    /// 26 operations.
+    /// 32 operations.
     #[cold]
     fn non_finite(
         &self,
@@ -237,9 +240,11 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let [θ1, θ2]: [T; 2] = (*q).into();
         let real = T::real;
-        let (sin1, cos1) = θ1.sin_cos();
-        let (sin2, cos2) = θ2.sin_cos();
-        let s3 = cos1 * cos2 + sin1 * sin2;
+        let s1 = self.m1 + self.m2;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+        let s4 = cos2 * cos3 + sin2 * sin3;
+        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+            + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
         let values = [
             ("m1", self.m1),
             ("m2", self.m2),
@@ -250,16 +255,14 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
             ("dot(θ2)", θ2_dot),
             ("θ1", θ1),
             ("θ2", θ2),
-            ("cos(θ1 - θ2)", s3),
-            ("cos(θ1)", cos1),
-            ("cos(θ2)", cos2),
+            ("cos(θ1 - θ2)", s4),
+            ("cos(θ1)", cos2),
+            ("cos(θ2)", cos3),
             (
                 "l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)",
-                (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * cos1)
-                    * (self.m1 + self.m2) * self.l1
-                    + (self.g * cos2
-                        + (self.l2 * real(0.5) * θ2_dot + self.l1 * θ1_dot * s3)
-                            * θ2_dot) * self.l2 * self.m2,
+                s5
+                    + (self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
+                        + self.m2 * self.l1 * self.l2 * θ2_dot * s4) * θ1_dot,
             ),
         ];
         values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
@@ -270,7 +273,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
 impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
     /// `ld = h*L`
     ///
-    /// 31 operations.
+    /// 37 operations.
     #[inline]
     fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -281,19 +284,18 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let real = T::real;
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let (sin1, cos1) = θ1_mid.sin_cos();
-        let (sin2, cos2) = θ2_mid.sin_cos();
-        let s3 = self.g * cos2
-            + (self.l2 * real(0.5) * θ2_dot
-                + self.l1 * θ1_dot * (cos1 * cos2 + sin1 * sin2)) * θ2_dot;
-        let s4 = (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * cos1)
-            * (self.m1 + self.m2) * self.l1 + s3 * self.l2 * self.m2;
-        h * s4
+        let s1 = self.m1 + self.m2;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
+            + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
+        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+            + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
+        h * (s5 + s4 * θ1_dot)
     }
 
     /// `d1_ld = L_v_θ1*v_θ1 - L + L_v_θ2*v_θ2`
     ///
-    /// 46 operations.
+    /// 48 operations.
     #[inline]
     fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -302,26 +304,27 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let θ1_dot = (θ1_1 - θ1_0) / h;
         let θ2_dot = (θ2_1 - θ2_0) / h;
         let real = T::real;
-        let s1 = self.m1 + self.m2;
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let (sin2, cos2) = θ1_mid.sin_cos();
-        let (sin3, cos3) = θ2_mid.sin_cos();
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.l1 * θ1_dot * s4;
-        let s6 = θ1_dot
-            * ((self.l1 * s1 * θ1_dot + self.m2 * self.l2 * θ2_dot * s4) * self.l1)
-            + θ2_dot * ((self.l2 * θ2_dot + s5) * self.l2 * self.m2);
-        s6 - (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * cos2) * s1 * self.l1
-            + (-((self.l2 * real(0.5) * θ2_dot + s5) * θ2_dot) - self.g * cos3)
-                * self.l2 * self.m2
+        let s1 = self.m1 + self.m2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1 * s1;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
+            + θ2_dot * (s2 * θ2_dot + s8 * s6) - s3 * real(0.5) * (θ1_dot * θ1_dot);
+        let s10 = s9 - s2 * real(0.5) * (θ2_dot * θ2_dot) - s8 * θ2_dot * s6
+            - self.l1 * self.g * s1 * cos4;
+        s10 - self.m2 * self.l2 * self.g * cos5
     }
 
     /// `d2_ld_θ1 = h*L_θ1/2 - L_v_θ1`
     ///
     /// `d2_ld_θ2 = h*L_θ2/2 - L_v_θ2`
     ///
-    /// 47 operations.
+    /// 45 operations.
     #[inline]
     fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
         let h = interval.t1 - interval.t0;
@@ -330,27 +333,26 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let θ1_dot = (θ1_1 - θ1_0) / h;
         let θ2_dot = (θ2_1 - θ2_0) / h;
         let real = T::real;
-        let s1 = self.m1 + self.m2;
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let (sin2, cos2) = θ1_mid.sin_cos();
-        let (sin3, cos3) = θ2_mid.sin_cos();
+        let s1 = self.m1 + self.m2;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
         let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = sin2 * cos3 - cos2 * sin3;
-        let s6 = self.m2 * self.l2;
-        let s7 = h * real(0.5);
-        let s8 = self.l1 * θ1_dot;
+        let s5 = self.m2 * self.l1 * self.l2;
+        let s6 = s5 * θ1_dot;
+        let s7 = s6 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
+        let s8 = h * real(0.5);
         ::vi_core::SVector::from([
-            -((self.l1 * s1 * θ1_dot + s6 * θ2_dot * s4) * self.l1)
-                - s7 * ((s6 * θ1_dot * θ2_dot * s5 + self.g * s1 * sin2) * self.l1),
-            s7 * ((s8 * θ2_dot * s5 - self.g * sin3) * self.l2 * self.m2)
-                - (self.l2 * θ2_dot + s8 * s4) * self.l2 * self.m2,
+            -(self.l1 * self.l1 * s1 * θ1_dot + s5 * θ2_dot * s4)
+                - s8 * (s7 + self.l1 * self.g * s1 * sin2),
+            s8 * (s7 - self.m2 * self.l2 * self.g * sin3)
+                - (self.m2 * (self.l2 * self.l2) * θ2_dot + s6 * s4),
         ])
     }
 
     /// `d3_ld = L - L_v_θ1*v_θ1 - L_v_θ2*v_θ2`
     ///
-    /// 45 operations.
+    /// 48 operations.
     #[inline]
     fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let h = interval.t1 - interval.t0;
@@ -359,26 +361,28 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let θ1_dot = (θ1_1 - θ1_0) / h;
         let θ2_dot = (θ2_1 - θ2_0) / h;
         let real = T::real;
-        let s1 = self.m1 + self.m2;
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let (sin2, cos2) = θ1_mid.sin_cos();
-        let (sin3, cos3) = θ2_mid.sin_cos();
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.l1 * θ1_dot * s4;
-        let s6 = θ1_dot
-            * ((self.l1 * s1 * θ1_dot + self.m2 * self.l2 * θ2_dot * s4) * self.l1)
-            + θ2_dot * ((self.l2 * θ2_dot + s5) * self.l2 * self.m2);
-        (self.l1 * real(0.5) * (θ1_dot * θ1_dot) + self.g * cos2) * s1 * self.l1 - s6
-            + (self.g * cos3 + (self.l2 * real(0.5) * θ2_dot + s5) * θ2_dot) * self.l2
-                * self.m2
+        let s1 = self.m1 + self.m2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1 * s1;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = s3 * real(0.5) * (θ1_dot * θ1_dot)
+            + s2 * real(0.5) * (θ2_dot * θ2_dot) + s8 * θ2_dot * s6
+            + self.l1 * self.g * s1 * cos4;
+        s9 + self.m2 * self.l2 * self.g * cos5
+            - θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
+            - θ2_dot * (s2 * θ2_dot + s8 * s6)
     }
 
     /// `d4_ld_θ1 = L_v_θ1 + h*L_θ1/2`
     ///
     /// `d4_ld_θ2 = L_v_θ2 + h*L_θ2/2`
     ///
-    /// 46 operations.
+    /// 44 operations.
     #[inline]
     fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
         let h = interval.t1 - interval.t0;
@@ -387,21 +391,20 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let θ1_dot = (θ1_1 - θ1_0) / h;
         let θ2_dot = (θ2_1 - θ2_0) / h;
         let real = T::real;
-        let s1 = self.m1 + self.m2;
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let (sin2, cos2) = θ1_mid.sin_cos();
-        let (sin3, cos3) = θ2_mid.sin_cos();
+        let s1 = self.m1 + self.m2;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
         let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = sin2 * cos3 - cos2 * sin3;
-        let s6 = self.m2 * self.l2;
-        let s7 = self.l1 * θ1_dot;
+        let s5 = self.m2 * self.l1 * self.l2;
+        let s6 = s5 * θ1_dot;
+        let s7 = s6 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
         let s8 = h * real(0.5);
         ::vi_core::SVector::from([
-            (self.l1 * s1 * θ1_dot + s6 * θ2_dot * s4) * self.l1
-                - s8 * ((s6 * θ1_dot * θ2_dot * s5 + self.g * s1 * sin2) * self.l1),
-            (self.l2 * θ2_dot + s7 * s4) * self.l2 * self.m2
-                + s8 * ((s7 * θ2_dot * s5 - self.g * sin3) * self.l2 * self.m2),
+            self.l1 * self.l1 * s1 * θ1_dot + s5 * θ2_dot * s4
+                - s8 * (s7 + self.l1 * self.g * s1 * sin2),
+            self.m2 * (self.l2 * self.l2) * θ2_dot + s6 * s4
+                + s8 * (s7 - self.m2 * self.l2 * self.g * sin3),
         ])
     }
 
@@ -460,7 +463,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
     ///
-    /// 91 operations.
+    /// 78 operations.
     #[inline(always)]
     fn momentum_equation(
         &self,
@@ -474,39 +477,38 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
-        let (sin3, cos3) = θ1_mid.sin_cos();
-        let (sin4, cos4) = θ2_mid.sin_cos();
-        let s5 = cos3 * cos4 + sin3 * sin4;
-        let s6 = self.m2 * self.l1 * self.l2;
-        let s7 = self.m2 * self.l2;
-        let s8 = sin3 * cos4 - cos3 * sin4;
-        let s9 = s7 * θ1_dot * θ2_dot;
-        let s10 = self.g * s1;
-        let s11 = self.l1 * θ1_dot;
-        let s12 = s11 * θ2_dot;
-        let s13 = h * h * real(0.25);
-        let s14 = s6 * s5;
-        let s15 = (θ1_dot + θ2_dot) * real(0.5) * s8 * self.l2 * self.l1 * self.m2;
-        let s16 = s6 * h * real(0.25) * θ1_dot * θ2_dot * s5;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = self.m1 + self.m2;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = self.l1 * self.l1;
+        let [(sin5, cos5), (sin6, cos6)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s7 = cos5 * cos6 + sin5 * sin6;
+        let s8 = self.m2 * self.l1 * self.l2;
+        let s9 = s8 * θ1_dot;
+        let s10 = s9 * θ2_dot;
+        let s11 = s10 * s7;
+        let s12 = self.l1 * self.g * s2;
+        let s13 = self.m2 * self.l2 * self.g;
+        let s14 = sin5 * cos6 - cos5 * sin6;
+        let s15 = s10 * s14;
+        let s16 = h * h * real(0.25);
+        let s17 = s8 * s7;
+        let s18 = (θ1_dot + θ2_dot) * (s8 * real(0.5)) * s14;
+        let s19 = s8 * h * real(0.25) * θ1_dot * θ2_dot * s7;
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
-                (self.l1 * s1 * θ1_dot + s7 * θ2_dot * s5) * self.l1 - p0_θ1
-                    - (p0_θ1_low - s2 * ((s9 * s8 + s10 * sin3) * self.l1)),
-                (self.l2 * θ2_dot + s11 * s5) * self.l2 * self.m2 - p0_θ2
-                    - (p0_θ2_low
-                        + s2 * ((s12 * s8 - self.g * sin4) * self.l2 * self.m2)),
+                s4 * s2 * θ1_dot + s8 * θ2_dot * s7 - p0_θ1
+                    - (p0_θ1_low - s1 * (s15 + s12 * sin5)),
+                s3 * θ2_dot + s9 * s7 - p0_θ2 - (p0_θ2_low + s1 * (s15 - s13 * sin6)),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    s1 * (self.l1 * self.l1) + s13 * ((s10 * cos3 + s9 * s5) * self.l1),
-                    s14 + (s15 - s16) * h,
-                    s14 - (s15 + s16) * h,
-                    self.m2 * (self.l2 * self.l2)
-                        + s13 * ((s12 * s5 + self.g * cos4) * self.l2 * self.m2),
+                    s2 * s4 + s16 * (s11 + s12 * cos5),
+                    s17 + (s18 - s19) * h,
+                    s17 - (s18 + s19) * h,
+                    s3 + s16 * (s11 + s13 * cos6),
                 ],
             ),
         }
@@ -514,7 +516,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
 
     /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
     ///
-    /// 163 operations.
+    /// 141 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -530,72 +532,72 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
-        let s3 = θ1_dot * θ1_dot;
-        let s4 = θ2_dot * θ2_dot;
-        let (sin5, cos5) = θ1_mid.sin_cos();
-        let (sin6, cos6) = θ2_mid.sin_cos();
-        let s7 = cos5 * cos6 + sin5 * sin6;
-        let s8 = self.m2 * self.l1 * self.l2;
-        let s9 = self.m2 * self.l2;
-        let s10 = sin5 * cos6 - cos5 * sin6;
-        let s11 = s9 * θ1_dot * θ2_dot;
-        let s12 = self.g * s1;
-        let s13 = s12 * sin5;
-        let s14 = (s11 * s10 + s13) * self.l1;
-        let s15 = self.l1 * θ1_dot;
-        let s16 = s15 * θ2_dot;
-        let s17 = self.g * sin6;
-        let s18 = (s16 * s10 - s17) * self.l2 * self.m2;
-        let s19 = s15 * s7;
-        let s20 = self.g * cos6;
-        let s21 = θ1_dot * p0_θ1 + θ2_dot * p0_θ2 - energy0
-            - (self.l1 * real(0.5) * s3 + self.g * cos5) * s1 * self.l1;
-        let s22 = (s12 * cos5 + s11 * s7) * self.l1;
-        let s23 = (s16 * s7 + s20) * self.l2 * self.m2;
-        let s24 = h * h * real(0.25);
-        let s25 = s8 * s7;
-        let s26 = (θ1_dot + θ2_dot) * real(0.5) * s10 * self.l2 * self.l1 * self.m2;
-        let s27 = s8 * h * real(0.25) * θ1_dot * θ2_dot * s7;
-        let s28 = (s13 + s9 * s4 * s10) * real(0.5) * self.l1;
-        let s29 = (s8 * θ1_dot * s4 * s7 - θ1_dot * s22) * real(0.25) * h;
-        let s30 = (s17 - self.l1 * s3 * s10) * real(0.5) * self.l2 * self.m2;
-        let s31 = (s8 * s3 * θ2_dot * s7 - θ2_dot * s23) * real(0.25) * h;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = self.m1 + self.m2;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = self.l1 * self.l1;
+        let s5 = θ1_dot * θ1_dot;
+        let s6 = s4 * s2;
+        let s7 = θ2_dot * θ2_dot;
+        let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s10 = cos8 * cos9 + sin8 * sin9;
+        let s11 = self.m2 * self.l1 * self.l2;
+        let s12 = s11 * θ1_dot;
+        let s13 = s12 * θ2_dot;
+        let s14 = s13 * s10;
+        let s15 = self.l1 * self.g * s2;
+        let s16 = s15 * cos8;
+        let s17 = self.m2 * self.l2 * self.g;
+        let s18 = s17 * cos9;
+        let s19 = s11 * θ2_dot * s10;
+        let s20 = sin8 * cos9 - cos8 * sin9;
+        let s21 = s13 * s20;
+        let s22 = s21 + s15 * sin8;
+        let s23 = s21 - s17 * sin9;
+        let s24 = (p0_θ2 - s3 * real(0.5) * θ2_dot) * θ2_dot - (energy0 + s16 + s18)
+            + (p0_θ1 - s6 * real(0.5) * θ1_dot - s19) * θ1_dot;
+        let s25 = s14 + s16;
+        let s26 = s14 + s18;
+        let s27 = h * h * real(0.25);
+        let s28 = s11 * s10;
+        let s29 = s11 * real(0.5);
+        let s30 = (θ1_dot + θ2_dot) * s29 * s20;
+        let s31 = s11 * h * real(0.25) * θ1_dot * θ2_dot * s10;
+        let s32 = s15 * real(0.5) * sin8 + s29 * s7 * s20;
+        let s33 = s11 * real(0.25);
+        let s34 = (s33 * θ1_dot * s7 * s10 - θ1_dot * s25 * real(0.25)) * h;
+        let s35 = s29 * s5;
+        let s36 = s17 * real(0.5) * sin9 - s35 * s20;
+        let s37 = (s33 * s5 * θ2_dot * s10 - θ2_dot * s26 * real(0.25)) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    (self.l1 * s1 * θ1_dot + s9 * θ2_dot * s7) * self.l1 - p0_θ1
-                        - (p0_θ1_low - s2 * s14),
-                    (self.l2 * θ2_dot + s19) * self.l2 * self.m2 - p0_θ2
-                        - (p0_θ2_low + s2 * s18),
+                    s6 * θ1_dot + s19 - p0_θ1 - (p0_θ1_low - s1 * s22),
+                    s3 * θ2_dot + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s23),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
                     &[
-                        s1 * (self.l1 * self.l1) + s24 * s22,
-                        s25 + (s26 - s27) * h,
-                        s25 - (s26 + s27) * h,
-                        self.m2 * (self.l2 * self.l2) + s24 * s23,
+                        s2 * s4 + s27 * s25,
+                        s28 + (s30 - s31) * h,
+                        s28 - (s30 + s31) * h,
+                        s3 + s27 * s26,
                     ],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s28 - s29, s30 - s31]),
-            energy_residual: s21
-                + (-((self.l2 * real(0.5) * θ2_dot + s19) * θ2_dot) - s20) * self.l2
-                    * self.m2
+            residual_dh: ::vi_core::SVector::from([s32 - s34, s36 - s37]),
+            energy_residual: s24
                 + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                    + (θ2_dot * s18 - θ1_dot * s14) * real(0.5) * h),
-            energy_dv: ::vi_core::SVector::from([s28 + s29, s30 + s31]),
-            energy_dh: s8 * real(0.5) * s3 * s4 * s7 - s3 * s22 * real(0.25)
-                - s4 * s23 * real(0.25),
+                    + (θ2_dot * s23 - θ1_dot * s22) * real(0.5) * h),
+            energy_dv: ::vi_core::SVector::from([s32 + s34, s36 + s37]),
+            energy_dh: s35 * s7 * s10 - s5 * s25 * real(0.25) - s7 * s26 * real(0.25),
         }
     }
 
     /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
     ///
-    /// 167 operations.
+    /// 152 operations.
     #[cold]
     fn magnitudes(
         &self,
@@ -609,58 +611,61 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
-        let s3 = self.m2 * (self.l2 * self.l2);
-        let s4 = θ2_dot * θ2_dot;
-        let (sin5, cos5) = θ1_mid.sin_cos();
-        let (sin6, cos6) = θ2_mid.sin_cos();
-        let s7 = cos5 * cos6 + sin5 * sin6;
-        let s8 = self.m2 * self.l1 * self.l2;
-        let s9 = s8 * θ1_dot;
-        let s10 = s9 * θ2_dot;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = θ2_dot * θ2_dot;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = s8 * θ2_dot;
+        let s10 = s9 * s6;
         let s11 = self.l1 * self.g;
-        let s12 = self.m2 * self.l2;
-        let s13 = s12 * self.g;
-        let s14 = s8 * θ2_dot;
-        let s15 = sin5 * cos6 - cos5 * sin6;
-        let s16 = self.m1.abs() + self.m2.abs();
-        let s17 = self.l1 * self.l1;
-        let s18 = (s10 * s15).abs();
-        let s19 = s18 + (s11 * s1 * sin5).abs();
-        let s20 = s14 * s15;
-        let s21 = self.g * s1;
-        let s22 = s12 * θ1_dot * θ2_dot;
-        let s23 = (s21 * cos5 + s22 * s7) * self.l1;
-        let s24 = s8 * h * real(0.5) * θ1_dot * θ2_dot * s7;
-        let s25 = h.abs() * real(0.5);
-        let s26 = p0_θ1.abs() + s16 * (s17 * θ1_dot).abs() + (s14 * s7).abs()
-            + s25 * s19 + (θ1_mid * (s20 - s2 * s23)).abs();
-        let s27 = s18 + (s13 * sin6).abs();
-        let s28 = s9 * s15;
-        let s29 = self.l1 * θ1_dot * θ2_dot;
-        let s30 = (s29 * s7 + self.g * cos6) * self.l2 * self.m2;
-        let s31 = p0_θ2.abs() + (s3 * θ2_dot).abs() + (s9 * s7).abs() + s25 * s27
-            + (θ1_mid * (s28 + s24)).abs();
-        let s32 = θ1_dot * θ1_dot;
-        let s33 = (s22 * s15 + s21 * sin5) * self.l1
-            + (s9 * s4 * s7 - θ1_dot * s23) * real(0.5) * h;
-        let s34 = (s29 * s15 - self.g * sin6) * self.l2 * self.m2
-            - (s8 * s32 * θ2_dot * s7 - θ2_dot * s30) * real(0.5) * h;
-        let s35 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
-            + (s3 * s4).abs() * real(0.5);
-        let s36 = s35 + (s10 * s7).abs() + (s13 * cos6).abs()
-            + s19 * (h * θ1_dot).abs() * real(0.5);
-        let s37 = s36 + s27 * (h * θ2_dot).abs() * real(0.5) + (θ1_mid * s33).abs()
-            + (θ2_mid * s34).abs();
+        let s12 = s11 * (self.m1 + self.m2);
+        let s13 = self.m2 * self.l2 * self.g;
+        let s14 = s13 * cos5;
+        let s15 = s7 * θ2_dot;
+        let s16 = sin4 * cos5 - cos4 * sin5;
+        let s17 = s9 * s16;
+        let s18 = s12 * sin4;
+        let s19 = s13 * sin5;
+        let s20 = self.m1.abs() + self.m2.abs();
+        let s21 = self.l1 * self.l1;
+        let s22 = s17.abs();
+        let s23 = s22 + s18.abs();
+        let s24 = s15 * s16;
+        let s25 = s10 + s12 * cos4;
+        let s26 = s7 * h * real(0.5) * θ1_dot * θ2_dot * s6;
+        let s27 = h.abs() * real(0.5);
+        let s28 = p0_θ1.abs() + s20 * (s21 * θ1_dot).abs() + (s15 * s6).abs()
+            + s27 * s23 + (θ1_mid * (s24 - s1 * s25)).abs();
+        let s29 = s22 + s19.abs();
+        let s30 = s8 * s16;
+        let s31 = s10 + s14;
+        let s32 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * s6).abs() + s27 * s29
+            + (θ1_mid * (s30 + s26)).abs();
+        let s33 = θ1_dot * θ1_dot;
+        let s34 = s7 * real(0.5);
+        let s35 = (θ1_mid
+            * (s17 + s18 + (s34 * θ1_dot * s3 * s6 - θ1_dot * s25 * real(0.5)) * h))
+            .abs();
+        let s36 = (θ2_mid
+            * (s17 - s19 - (s34 * s33 * θ2_dot * s6 - θ2_dot * s31 * real(0.5)) * h))
+            .abs();
+        let s37 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
+            + s21 * s20 * real(0.5) * s33;
+        let s38 = s37 + (s2 * s3).abs() * real(0.5) + s10.abs()
+            + s20 * (s11 * cos4).abs() + s14.abs();
+        let s39 = s38 + s23 * (h * θ1_dot).abs() * real(0.5)
+            + s29 * (h * θ2_dot).abs() * real(0.5) + s35;
         ::vi_core::Magnitudes {
             residual: ::vi_core::SVector::from([
-                s26 + (θ2_mid * (s20 - s24)).abs(),
-                s31 + (θ2_mid * (s28 + s2 * s30)).abs(),
+                s28 + (θ2_mid * (s24 - s26)).abs(),
+                s32 + (θ2_mid * (s30 + s1 * s31)).abs(),
             ]),
-            energy_residual: s37 + (s17 * real(0.5) * s32 + (s11 * cos5).abs()) * s16,
+            energy_residual: s39 + s36,
         }
     }
 
@@ -670,7 +675,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// `E1 − E0 = 0`
     ///
-    /// 33 operations.
+    /// 31 operations.
     #[inline(always)]
     fn increment(
         &self,
@@ -685,17 +690,13 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let s1 = h * real(0.5);
         let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
         let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let (sin2, cos2) = θ1_mid.sin_cos();
-        let (sin3, cos3) = θ2_mid.sin_cos();
-        let s4 = sin2 * cos3 - cos2 * sin3;
+        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s4 = self.m2 * self.l1 * self.l2 * θ1_dot * θ2_dot
+            * (sin2 * cos3 - cos2 * sin3);
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
-                -(h
-                    * ((self.m2 * self.l2 * θ1_dot * θ2_dot * s4
-                        + self.g * (self.m1 + self.m2) * sin2) * self.l1)),
-                h
-                    * ((self.l1 * θ1_dot * θ2_dot * s4 - self.g * sin3) * self.l2
-                        * self.m2),
+                -(h * (s4 + self.l1 * self.g * (self.m1 + self.m2) * sin2)),
+                h * (s4 - self.m2 * self.l2 * self.g * sin3),
             ]),
             energy: real(0.0),
         }
@@ -707,7 +708,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// and to first order at `v + dv`.
     ///
-    /// 107 operations.
+    /// 92 operations.
     #[inline(always)]
     fn momentum_step(
         &self,
@@ -725,53 +726,54 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
         let real = T::real;
         let s1 = self.m1 + self.m2;
-        let (sin2, cos2) = θ1_mid.sin_cos();
-        let (sin3, cos3) = θ2_mid.sin_cos();
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.m2 * self.l1 * self.l2;
-        let s6 = self.m2 * self.l2;
-        let s7 = sin2 * cos3 - cos2 * sin3;
-        let s8 = s6 * θ1_dot * θ2_dot;
-        let s9 = self.g * s1;
-        let s10 = (s8 * s7 + s9 * sin2) * self.l1;
-        let s11 = self.l1 * θ1_dot;
-        let s12 = s11 * θ2_dot;
-        let s13 = (s12 * s7 - self.g * sin3) * self.l2 * self.m2;
-        let s14 = h * real(0.5);
-        let s15 = (s9 * cos2 + s8 * s4) * self.l1;
-        let s16 = (s12 * s4 + self.g * cos3) * self.l2 * self.m2;
-        let s17 = h * h * real(0.25);
-        let s18 = s5 * h;
-        let s19 = s5 * s4;
-        let s20 = (θ1_dot + θ2_dot) * real(0.5) * s7 * self.l2 * self.l1 * self.m2;
-        let s21 = s18 * real(0.25) * θ1_dot * θ2_dot * s4;
-        let s22 = s5 * θ2_dot * s7;
-        let s23 = s5 * θ1_dot * s7;
-        let s24 = s18 * real(0.5) * θ1_dot * θ2_dot * s4;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = s8 * θ2_dot;
+        let s10 = s9 * s6;
+        let s11 = self.l1 * self.g * s1;
+        let s12 = self.m2 * self.l2 * self.g;
+        let s13 = s7 * θ2_dot;
+        let s14 = sin4 * cos5 - cos4 * sin5;
+        let s15 = s9 * s14;
+        let s16 = s15 + s11 * sin4;
+        let s17 = s15 - s12 * sin5;
+        let s18 = h * real(0.5);
+        let s19 = s10 + s11 * cos4;
+        let s20 = s10 + s12 * cos5;
+        let s21 = h * h * real(0.25);
+        let s22 = s7 * h;
+        let s23 = s7 * s6;
+        let s24 = (θ1_dot + θ2_dot) * (s7 * real(0.5)) * s14;
+        let s25 = s22 * real(0.25) * θ1_dot * θ2_dot * s6;
+        let s26 = s13 * s14;
+        let s27 = s8 * s14;
+        let s28 = s22 * real(0.5) * θ1_dot * θ2_dot * s6;
         let change: [T; 2] = solve(
                 &::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        (self.l1 * s1 * θ1_dot + s6 * θ2_dot * s4) * self.l1 - p0_θ1
-                            - (p0_θ1_low - s14 * s10),
-                        (self.l2 * θ2_dot + s11 * s4) * self.l2 * self.m2 - p0_θ2
-                            - (p0_θ2_low + s14 * s13),
+                        s3 * s1 * θ1_dot + s13 * s6 - p0_θ1 - (p0_θ1_low - s18 * s16),
+                        s2 * θ2_dot + s8 * s6 - p0_θ2 - (p0_θ2_low + s18 * s17),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
                         &[
-                            s1 * (self.l1 * self.l1) + s17 * s15,
-                            s19 + (s20 - s21) * h,
-                            s19 - (s20 + s21) * h,
-                            self.m2 * (self.l2 * self.l2) + s17 * s16,
+                            s1 * s3 + s21 * s19,
+                            s23 + (s24 - s25) * h,
+                            s23 - (s24 + s25) * h,
+                            s2 + s21 * s20,
                         ],
                     ),
                 },
             )
             .into();
         ::vi_core::SVector::from([
-            -(h * s10)
-                + (((-s22 - s14 * s15) * h) * change[0] + ((s24 - s23) * h) * change[1]),
-            h * s13
-                + (((s22 + s24) * h) * change[0] + ((s23 - s14 * s16) * h) * change[1]),
+            -(h * s16)
+                + (((-s26 - s18 * s19) * h) * change[0] + ((s28 - s27) * h) * change[1]),
+            h * s17
+                + (((s26 + s28) * h) * change[0] + ((s27 - s18 * s20) * h) * change[1]),
         ])
     }
 
@@ -783,7 +785,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// and to first order at `(v + dv, h + dh)`.
     ///
-    /// 190 operations.
+    /// 174 operations.
     #[inline(always)]
     fn extended_step(
         &self,
@@ -802,86 +804,87 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s2 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s2 * θ2_dot + θ2_0_low);
-        let s3 = θ1_dot * θ1_dot;
-        let s4 = θ2_dot * θ2_dot;
-        let (sin5, cos5) = θ1_mid.sin_cos();
-        let (sin6, cos6) = θ2_mid.sin_cos();
-        let s7 = cos5 * cos6 + sin5 * sin6;
-        let s8 = self.m2 * self.l1 * self.l2;
-        let s9 = s8 * θ1_dot;
-        let s10 = self.m2 * self.l2;
-        let s11 = sin5 * cos6 - cos5 * sin6;
-        let s12 = s10 * θ1_dot * θ2_dot;
-        let s13 = self.g * s1;
-        let s14 = s13 * sin5;
-        let s15 = (s12 * s11 + s14) * self.l1;
-        let s16 = self.l1 * θ1_dot;
-        let s17 = s16 * θ2_dot;
-        let s18 = self.g * sin6;
-        let s19 = (s17 * s11 - s18) * self.l2 * self.m2;
-        let s20 = s16 * s7;
-        let s21 = self.g * cos6;
-        let s22 = θ1_dot * p0_θ1 + θ2_dot * p0_θ2 - energy0
-            - (self.l1 * real(0.5) * s3 + self.g * cos5) * s1 * self.l1;
-        let s23 = (s13 * cos5 + s12 * s7) * self.l1;
-        let s24 = (s17 * s7 + s21) * self.l2 * self.m2;
-        let s25 = s8 * h;
-        let s26 = h * h * real(0.25);
-        let s27 = s8 * s7;
-        let s28 = (θ1_dot + θ2_dot) * real(0.5) * s11 * self.l2 * self.l1 * self.m2;
-        let s29 = s25 * real(0.25) * θ1_dot * θ2_dot * s7;
-        let s30 = (s14 + s10 * s4 * s11) * real(0.5) * self.l1;
-        let s31 = s9 * s4 * s7 - θ1_dot * s23;
-        let s32 = s31 * real(0.25) * h;
-        let s33 = (s18 - self.l1 * s3 * s11) * real(0.5) * self.l2 * self.m2;
-        let s34 = s8 * s3 * θ2_dot * s7 - θ2_dot * s24;
-        let s35 = s34 * real(0.25) * h;
-        let s36 = s8 * θ2_dot * s11;
-        let s37 = s9 * s11;
-        let s38 = s25 * real(0.5) * θ1_dot * θ2_dot * s7;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = self.m1 + self.m2;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = self.l1 * self.l1;
+        let s5 = θ1_dot * θ1_dot;
+        let s6 = s4 * s2;
+        let s7 = θ2_dot * θ2_dot;
+        let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s10 = cos8 * cos9 + sin8 * sin9;
+        let s11 = self.m2 * self.l1 * self.l2;
+        let s12 = s11 * θ1_dot;
+        let s13 = s12 * θ2_dot;
+        let s14 = s13 * s10;
+        let s15 = self.l1 * self.g * s2;
+        let s16 = s15 * cos8;
+        let s17 = self.m2 * self.l2 * self.g;
+        let s18 = s17 * cos9;
+        let s19 = s11 * θ2_dot;
+        let s20 = s19 * s10;
+        let s21 = sin8 * cos9 - cos8 * sin9;
+        let s22 = s13 * s21;
+        let s23 = s22 + s15 * sin8;
+        let s24 = s22 - s17 * sin9;
+        let s25 = (p0_θ2 - s3 * real(0.5) * θ2_dot) * θ2_dot - (energy0 + s16 + s18)
+            + (p0_θ1 - s6 * real(0.5) * θ1_dot - s20) * θ1_dot;
+        let s26 = s14 + s16;
+        let s27 = s14 + s18;
+        let s28 = s11 * h;
+        let s29 = h * h * real(0.25);
+        let s30 = s11 * s10;
+        let s31 = s11 * real(0.5);
+        let s32 = (θ1_dot + θ2_dot) * s31 * s21;
+        let s33 = s28 * real(0.25) * θ1_dot * θ2_dot * s10;
+        let s34 = s15 * real(0.5) * sin8 + s31 * s7 * s21;
+        let s35 = θ1_dot * s26;
+        let s36 = s11 * real(0.25);
+        let s37 = (s36 * θ1_dot * s7 * s10 - s35 * real(0.25)) * h;
+        let s38 = s31 * s5;
+        let s39 = s17 * real(0.5) * sin9 - s38 * s21;
+        let s40 = θ2_dot * s27;
+        let s41 = (s36 * s5 * θ2_dot * s10 - s40 * real(0.25)) * h;
+        let s42 = s19 * s21;
+        let s43 = s12 * s21;
+        let s44 = s28 * real(0.5) * θ1_dot * θ2_dot * s10;
         let (change, change_h) = solve(
             &::vi_core::ExtendedSystem {
                 momentum: ::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        (self.l1 * s1 * θ1_dot + s10 * θ2_dot * s7) * self.l1 - p0_θ1
-                            - (p0_θ1_low - s2 * s15),
-                        (self.l2 * θ2_dot + s20) * self.l2 * self.m2 - p0_θ2
-                            - (p0_θ2_low + s2 * s19),
+                        s6 * θ1_dot + s20 - p0_θ1 - (p0_θ1_low - s1 * s23),
+                        s3 * θ2_dot + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s24),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
                         &[
-                            s1 * (self.l1 * self.l1) + s26 * s23,
-                            s27 + (s28 - s29) * h,
-                            s27 - (s28 + s29) * h,
-                            self.m2 * (self.l2 * self.l2) + s26 * s24,
+                            s2 * s4 + s29 * s26,
+                            s30 + (s32 - s33) * h,
+                            s30 - (s32 + s33) * h,
+                            s3 + s29 * s27,
                         ],
                     ),
                 },
-                residual_dh: ::vi_core::SVector::from([s30 - s32, s33 - s35]),
-                energy_residual: s22
-                    + (-((self.l2 * real(0.5) * θ2_dot + s20) * θ2_dot) - s21)
-                        * self.l2 * self.m2
+                residual_dh: ::vi_core::SVector::from([s34 - s37, s39 - s41]),
+                energy_residual: s25
                     + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                        + (θ2_dot * s19 - θ1_dot * s15) * real(0.5) * h),
-                energy_dv: ::vi_core::SVector::from([s30 + s32, s33 + s35]),
-                energy_dh: s8 * real(0.5) * s3 * s4 * s7 - s3 * s23 * real(0.25)
-                    - s4 * s24 * real(0.25),
+                        + (θ2_dot * s24 - θ1_dot * s23) * real(0.5) * h),
+                energy_dv: ::vi_core::SVector::from([s34 + s37, s39 + s41]),
+                energy_dh: s38 * s7 * s10 - s5 * s26 * real(0.25) - s7 * s27 * real(0.25),
             },
         );
         let change: [T; 2] = change.into();
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
-                -(h * s15)
-                    + (((-s36 - s2 * s23) * h) * change[0]
-                        + ((s38 - s37) * h) * change[1]
-                        + (s31 * real(0.5) * h - s15) * change_h),
-                h * s19
-                    + (((s36 + s38) * h) * change[0] + ((s37 - s2 * s24) * h) * change[1]
-                        + (s19 + s34 * real(0.5) * h) * change_h),
+                -(h * s23)
+                    + (((-s42 - s1 * s26) * h) * change[0]
+                        + ((s44 - s43) * h) * change[1]
+                        + ((s31 * θ1_dot * s7 * s10 - s35 * real(0.5)) * h - s23)
+                            * change_h),
+                h * s24
+                    + (((s42 + s44) * h) * change[0] + ((s43 - s1 * s27) * h) * change[1]
+                        + (s24 + (s38 * θ2_dot * s10 - s40 * real(0.5)) * h) * change_h),
             ]),
             energy: real(0.0),
         }

@@ -105,6 +105,7 @@ pub fn sin_cos<V: Vector, const FUSED: bool>(x: V) -> (V, V) {
 
 /// The same of several angles, up to four at a time.
 #[inline(always)]
+#[must_use]
 pub fn sin_cos_each<const K: usize, const FUSED: bool>(angles: [f64; K]) -> [(f64, f64); K] {
     let mut pairs = [(0.0, 0.0); K];
     for (pairs, angles) in pairs.chunks_mut(4).zip(angles.chunks(4)) {
@@ -170,7 +171,7 @@ fn cosine<V: Vector, const FUSED: bool>(y: V, y_low: V) -> V {
 
 #[cfg(test)]
 mod tests {
-    use super::{LARGEST, sin_cos};
+    use super::{LARGEST, sin_cos, sin_cos_each};
     use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
     /// The numbers next to multiples of π/2, where most of an angle is subtracted, with their sine and cosine, from 60
@@ -225,6 +226,23 @@ mod tests {
             assert!(worst::<false>(x, (sine, cosine)) <= 1 && worst::<true>(x, (sine, cosine)) <= 1, "{x:e}");
             assert!(worst::<false>(-x, (-sine, cosine)) <= 1 && worst::<true>(-x, (-sine, cosine)) <= 1, "-{x:e}");
         }
+    }
+
+    #[test]
+    fn angles_at_once_are_angles_one_by_one() {
+        fn agree<const K: usize, const FUSED: bool>(angles: [f64; K]) {
+            let bits = |pairs: [(f64, f64); K]| pairs.map(|(s, c)| (s.to_bits(), c.to_bits()));
+            assert_eq!(bits(sin_cos_each::<K, FUSED>(angles)), bits(angles.map(sin_cos::<f64, FUSED>)), "{angles:?}");
+        }
+        let all: Vec<f64> = angles().step_by(97).chain(HARD.map(|(x, ..)| x)).chain([0.0, -0.0]).collect();
+        for x in all.windows(5) {
+            agree::<2, false>([x[0], x[1]]);
+            agree::<3, false>([x[0], x[1], x[2]]);
+            agree::<5, false>([x[0], x[1], x[2], x[3], x[4]]);
+        }
+        // Without the instruction vectors are not fused, whatever they are told.
+        #[cfg(target_feature = "fma")]
+        all.windows(4).for_each(|x| agree::<4, true>([x[0], x[1], x[2], x[3]]));
     }
 
     #[test]

@@ -69,11 +69,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let [q_0, q_1]: [T; 2] = (*q).into();
         let real = T::real;
         let s1 = q_0 - q_1;
-        let (sin2, cos2) = q_0.sin_cos();
-        let (sin3, cos3) = q_1.sin_cos();
-        let s4 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
+        let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([q_0, q_1, t]);
+        let s5 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
             + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot);
-        s4 + (t.sin() * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
+        s5 + (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
             - self.k * real(0.5) * (s1 * s1)
     }
 
@@ -91,12 +90,12 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let [q_0, q_1]: [T; 2] = (*q).into();
         let real = T::real;
         let s1 = q_0 - q_1;
-        let (sin2, cos2) = q_0.sin_cos();
-        let (sin3, cos3) = q_1.sin_cos();
-        let s4 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
-            + self.k * real(0.5) * (s1 * s1)
-            - (t.sin() * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
-        s4 + (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * self.m
+        let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([q_0, q_1, t]);
+        let s5 = self.k * real(0.5) * (s1 * s1) + self.m * (q_1_dot * q_1_dot)
+            - (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
+        s5
+            + (q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25) + self.m * q_0_dot)
+                * q_0_dot
     }
 
     /// `p_q[0] = dot(q[1])*cos(q[0] - q[1])/4 + 2*m*dot(q[0])`
@@ -152,19 +151,18 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let [q_0, q_1]: [T; 2] = (*q).into();
         let real = T::real;
-        let (sin1, cos1) = q_0.sin_cos();
-        let (sin2, cos2) = q_1.sin_cos();
-        let s3 = t.sin() * real(0.3333333333333333) + real(1.0);
-        let s4 = self.m * real(2.0);
-        let s5 = (cos1 * cos2 + sin1 * sin2) * real(0.25);
-        let s6 = sin1 * cos2 - cos1 * sin2;
-        let s7 = self.k * (q_0 - q_1);
+        let [(sin1, cos1), (sin2, cos2), (sin3, _)] = T::sin_cos_each([q_0, q_1, t]);
+        let s4 = sin3 * real(0.3333333333333333) + real(1.0);
+        let s5 = self.m * real(2.0);
+        let s6 = (cos1 * cos2 + sin1 * sin2) * real(0.25);
+        let s7 = sin1 * cos2 - cos1 * sin2;
+        let s8 = self.k * (q_0 - q_1);
         let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
-            &[s4, s5, s5, s4],
+            &[s5, s6, s6, s5],
         );
         let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
-            -(self.b * q_0_dot + s7 + s3 * sin1 + q_1_dot * q_1_dot * s6 * real(0.25)),
-            s7 + q_0_dot * q_0_dot * s6 * real(0.25) - self.b * q_1_dot - s3 * sin2,
+            -(self.b * q_0_dot + s8 + s4 * sin1 + q_1_dot * q_1_dot * s7 * real(0.25)),
+            s8 + q_0_dot * q_0_dot * s7 * real(0.25) - self.b * q_1_dot - s4 * sin2,
         ]);
         ::vi_core::linear::acceleration(time, &mass, &applied)
     }
@@ -198,27 +196,29 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
             let t = inputs[0];
             let q_0_ddot = inputs[5];
             let q_1_ddot = inputs[6];
-            let (sin1, cos1) = q_0.sin_cos();
-            let (sin2, cos2) = q_1.sin_cos();
-            let s3 = sin1 * cos2 - cos1 * sin2;
-            let s4 = q_1_dot * s3;
-            let s5 = system.k * (q_0 - q_1);
-            let (sin6, cos6) = t.sin_cos();
-            let s7 = sin6 * real(0.3333333333333333) + real(1.0);
-            let s8 = (-((system.b + s4 * real(0.25)) * q_0_dot) - (s5 + s7 * sin1))
-                * q_0_ddot + q_0_dot * sin1 * cos6 * real(0.3333333333333333);
-            let s9 = q_0_dot * s3;
+            let [(sin1, cos1), (sin2, cos2), (sin3, cos3)] = T::sin_cos_each([
+                q_0,
+                q_1,
+                t,
+            ]);
+            let s4 = sin1 * cos2 - cos1 * sin2;
+            let s5 = q_1_dot * s4;
+            let s6 = system.k * (q_0 - q_1);
+            let s7 = sin3 * real(0.3333333333333333) + real(1.0);
+            let s8 = (-((system.b + s5 * real(0.25)) * q_0_dot) - (s6 + s7 * sin1))
+                * q_0_ddot + q_0_dot * sin1 * cos3 * real(0.3333333333333333);
+            let s9 = q_0_dot * s4;
             let s10 = s8
-                + q_1_ddot * (s5 - s7 * sin2 + (s9 * real(0.25) - system.b) * q_1_dot)
-                + q_1_dot * cos6 * sin2 * real(0.3333333333333333);
+                + q_1_ddot * (s6 - s7 * sin2 + (s9 * real(0.25) - system.b) * q_1_dot)
+                + q_1_dot * cos3 * sin2 * real(0.3333333333333333);
             values[1] = cos1;
             values[2] = cos2;
             values[3] = sin1;
             values[4] = sin2;
-            values[5] = sin6;
+            values[5] = sin3;
             values[6] = s7;
-            values[7] = cos6;
-            values[8] = s4;
+            values[7] = cos3;
+            values[8] = s5;
             values[9] = s9;
             values[10] = s10;
         }
@@ -236,25 +236,25 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
             let cos2 = values[2];
             let sin1 = values[3];
             let sin2 = values[4];
-            let sin6 = values[5];
+            let sin3 = values[5];
             let s7 = values[6];
-            let cos6 = values[7];
-            let s4 = values[8];
+            let cos3 = values[7];
+            let s5 = values[8];
             let q_0_ddot = inputs[5];
             let q_1_ddot = inputs[6];
             let s9 = values[9];
             let s10 = values[10];
             let s11 = system.k
                 + q_0_dot * q_1_dot * (cos1 * cos2 + sin1 * sin2) * real(0.25);
-            let s12 = s4 * q_0_ddot * real(0.25);
+            let s12 = s5 * q_0_ddot * real(0.25);
             let s13 = s9 * q_1_ddot * real(0.25);
             let s14 = q_0_dot
                 * (q_1_dot * s11 - q_0_dot * (s11 + s7 * cos1)
-                    - sin1 * cos6 * real(0.3333333333333333) - s12 - s13);
+                    - sin1 * cos3 * real(0.3333333333333333) - s12 - s13);
             let s15 = q_1_dot
                 * (s12 + s13 + q_0_dot * s11 - q_1_dot * (s11 + s7 * cos2)
-                    - cos6 * sin2 * real(0.3333333333333333));
-            let s16 = s10 + sin6 * (cos1 + cos2) * real(0.3333333333333333) - s14 - s15;
+                    - cos3 * sin2 * real(0.3333333333333333));
+            let s16 = s10 + sin3 * (cos1 + cos2) * real(0.3333333333333333) - s14 - s15;
             values[0] = s16;
         }
         let system = self;
@@ -279,13 +279,11 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let [q_0, q_1]: [T; 2] = (*q).into();
         let real = T::real;
         let s1 = q_0 - q_1;
-        let (sin2, cos2) = q_0.sin_cos();
-        let (sin3, cos3) = q_1.sin_cos();
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = t.sin();
-        let s6 = q_0_dot * q_1_dot * s4 * real(0.25)
+        let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([q_0, q_1, t]);
+        let s5 = cos2 * cos3 + sin2 * sin3;
+        let s6 = q_0_dot * q_1_dot * s5 * real(0.25)
             + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
-            + (s5 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
+            + (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
         let values = [
             ("m", self.m),
             ("k", self.k),
@@ -294,9 +292,9 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
             ("dot(q[1])", q_1_dot),
             ("q[0]", q_0),
             ("q[1]", q_1),
-            ("cos(q[0] - q[1])", s4),
+            ("cos(q[0] - q[1])", s5),
             ("t", t),
-            ("sin(t)", s5),
+            ("sin(t)", sin4),
             ("cos(q[0])", cos2),
             ("cos(q[1])", cos3),
             (
@@ -329,12 +327,15 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
         let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
         let s1 = q_0_mid - q_1_mid;
-        let (sin2, cos2) = q_0_mid.sin_cos();
-        let (sin3, cos3) = q_1_mid.sin_cos();
-        let s4 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
+        let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([
+            q_0_mid,
+            q_1_mid,
+            t_mid,
+        ]);
+        let s5 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
             + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot);
         h
-            * (s4 + (t_mid.sin() * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
+            * (s5 + (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
                 - self.k * real(0.5) * (s1 * s1))
     }
 
@@ -355,19 +356,21 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
         let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
         let s1 = q_0_mid - q_1_mid;
-        let (sin2, cos2) = q_0_mid.sin_cos();
-        let (sin3, cos3) = q_1_mid.sin_cos();
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let (sin5, cos5) = t_mid.sin_cos();
+        let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
+            q_0_mid,
+            q_1_mid,
+            t_mid,
+        ]);
+        let s5 = cos2 * cos3 + sin2 * sin3;
         let s6 = cos2 + cos3;
         let s7 = self.m * real(2.0);
         let s8 = self.k * real(0.5) * (s1 * s1)
-            + q_0_dot * (s7 * q_0_dot + q_1_dot * s4 * real(0.25))
-            + q_1_dot * (s7 * q_1_dot + q_0_dot * s4 * real(0.25));
-        let s9 = s8 - q_0_dot * q_1_dot * s4 * real(0.25)
+            + q_0_dot * (s7 * q_0_dot + q_1_dot * s5 * real(0.25))
+            + q_1_dot * (s7 * q_1_dot + q_0_dot * s5 * real(0.25));
+        let s9 = s8 - q_0_dot * q_1_dot * s5 * real(0.25)
             - self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
-            - (sin5 * real(0.3333333333333333) + real(1.0)) * s6;
-        s9 + h * real(0.16666666666666666) * s6 * cos5
+            - (sin4 * real(0.3333333333333333) + real(1.0)) * s6;
+        s9 + h * real(0.16666666666666666) * s6 * cos4
     }
 
     /// `d2_ld_q[0] = h*L_q[0]/2 - L_v_q[0]`
@@ -388,17 +391,20 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let t_mid = (t0 + t1) * real(0.5);
         let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
         let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
-        let (sin1, cos1) = q_0_mid.sin_cos();
-        let (sin2, cos2) = q_1_mid.sin_cos();
-        let s3 = cos1 * cos2 + sin1 * sin2;
-        let s4 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
-        let s5 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
+        let [(sin1, cos1), (sin2, cos2), (sin3, _)] = T::sin_cos_each([
+            q_0_mid,
+            q_1_mid,
+            t_mid,
+        ]);
+        let s4 = cos1 * cos2 + sin1 * sin2;
+        let s5 = sin3 * real(0.3333333333333333) + real(1.0);
+        let s6 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
             + self.k * (q_0_mid - q_1_mid);
-        let s6 = self.m * real(2.0);
-        let s7 = h * real(0.5);
+        let s7 = self.m * real(2.0);
+        let s8 = h * real(0.5);
         ::vi_core::SVector::from([
-            -(s6 * q_0_dot + q_1_dot * s3 * real(0.25)) - s7 * (s5 + s4 * sin1),
-            s7 * (s5 - s4 * sin2) - (s6 * q_1_dot + q_0_dot * s3 * real(0.25)),
+            -(s7 * q_0_dot + q_1_dot * s4 * real(0.25)) - s8 * (s6 + s5 * sin1),
+            s8 * (s6 - s5 * sin2) - (s7 * q_1_dot + q_0_dot * s4 * real(0.25)),
         ])
     }
 
@@ -419,19 +425,21 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
         let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
         let s1 = q_0_mid - q_1_mid;
-        let (sin2, cos2) = q_0_mid.sin_cos();
-        let (sin3, cos3) = q_1_mid.sin_cos();
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let (sin5, cos5) = t_mid.sin_cos();
+        let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
+            q_0_mid,
+            q_1_mid,
+            t_mid,
+        ]);
+        let s5 = cos2 * cos3 + sin2 * sin3;
         let s6 = cos2 + cos3;
         let s7 = self.m * real(2.0);
-        let s8 = q_0_dot * q_1_dot * s4 * real(0.25)
+        let s8 = q_0_dot * q_1_dot * s5 * real(0.25)
             + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
-            + (sin5 * real(0.3333333333333333) + real(1.0)) * s6;
+            + (sin4 * real(0.3333333333333333) + real(1.0)) * s6;
         let s9 = s8 - self.k * real(0.5) * (s1 * s1)
-            - q_0_dot * (s7 * q_0_dot + q_1_dot * s4 * real(0.25))
-            - q_1_dot * (s7 * q_1_dot + q_0_dot * s4 * real(0.25));
-        s9 + h * real(0.16666666666666666) * s6 * cos5
+            - q_0_dot * (s7 * q_0_dot + q_1_dot * s5 * real(0.25))
+            - q_1_dot * (s7 * q_1_dot + q_0_dot * s5 * real(0.25));
+        s9 + h * real(0.16666666666666666) * s6 * cos4
     }
 
     /// `d4_ld_q[0] = L_v_q[0] + h*L_q[0]/2`
@@ -452,17 +460,20 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let t_mid = (t0 + t1) * real(0.5);
         let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
         let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
-        let (sin1, cos1) = q_0_mid.sin_cos();
-        let (sin2, cos2) = q_1_mid.sin_cos();
-        let s3 = cos1 * cos2 + sin1 * sin2;
-        let s4 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
-        let s5 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
+        let [(sin1, cos1), (sin2, cos2), (sin3, _)] = T::sin_cos_each([
+            q_0_mid,
+            q_1_mid,
+            t_mid,
+        ]);
+        let s4 = cos1 * cos2 + sin1 * sin2;
+        let s5 = sin3 * real(0.3333333333333333) + real(1.0);
+        let s6 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
             + self.k * (q_0_mid - q_1_mid);
-        let s6 = self.m * real(2.0);
-        let s7 = h * real(0.5);
+        let s7 = self.m * real(2.0);
+        let s8 = h * real(0.5);
         ::vi_core::SVector::from([
-            s6 * q_0_dot + q_1_dot * s3 * real(0.25) - s7 * (s5 + s4 * sin1),
-            s6 * q_1_dot + q_0_dot * s3 * real(0.25) + s7 * (s5 - s4 * sin2),
+            s7 * q_0_dot + q_1_dot * s4 * real(0.25) - s8 * (s6 + s5 * sin1),
+            s7 * q_1_dot + q_0_dot * s4 * real(0.25) + s8 * (s6 - s5 * sin2),
         ])
     }
 
@@ -514,7 +525,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_dot = (q_0_1 - q_0_0) / h;
         let q_1_dot = (q_1_1 - q_1_0) / h;
         let real = T::real;
-        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * real(0.5) * self.b * h
+        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * (self.b * real(0.5)) * h
     }
 
     /// `gd_plus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2`
@@ -528,7 +539,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_dot = (q_0_1 - q_0_0) / h;
         let q_1_dot = (q_1_1 - q_1_0) / h;
         let real = T::real;
-        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * real(0.5) * self.b * h
+        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * (self.b * real(0.5)) * h
     }
 }
 
@@ -578,33 +589,36 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_1_0_low = inputs[10];
             let p0_q_0_low = inputs[11];
             let p0_q_0 = inputs[6];
-            let s1 = system.m * real(2.0);
-            let s2 = h * real(0.5);
-            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
-            let (sin3, cos3) = q_0_mid.sin_cos();
-            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
-            let (sin4, cos4) = q_1_mid.sin_cos();
-            let s5 = cos3 * cos4 + sin3 * sin4;
-            let s6 = system.b * h * real(0.5);
-            let s7 = q_0_dot * q_1_dot;
-            let s8 = sin3 * cos4 - cos3 * sin4;
-            let s9 = s7 * s8 * real(0.25) + system.k * (q_0_mid - q_1_mid);
-            let t_mid = t0 + (s2 + t0_low);
-            let s10 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
-            let s11 = s1 * q_0_dot + q_1_dot * s5 * real(0.25) - p0_q_0
-                + (s6 * q_0_dot - p0_q_0_low + s2 * (s9 + s10 * sin3));
-            values[6] = s2;
+            let s1 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = system.m * real(2.0);
+            let [(sin3, cos3), (sin4, cos4), (sin5, _)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s6 = cos3 * cos4 + sin3 * sin4;
+            let s7 = system.b * h * real(0.5);
+            let s8 = q_0_dot * q_1_dot;
+            let s9 = sin3 * cos4 - cos3 * sin4;
+            let s10 = s8 * s9 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let s11 = sin5 * real(0.3333333333333333) + real(1.0);
+            let s12 = s2 * q_0_dot + q_1_dot * s6 * real(0.25) - p0_q_0
+                + (s7 * q_0_dot - p0_q_0_low + s1 * (s10 + s11 * sin3));
+            values[6] = s1;
             values[7] = cos3;
             values[8] = cos4;
             values[9] = sin4;
-            values[10] = s5;
-            values[11] = s7;
-            values[12] = s10;
-            values[13] = s8;
-            values[14] = s9;
-            values[15] = s1;
-            values[16] = s6;
-            values[0] = s11;
+            values[10] = s6;
+            values[11] = s8;
+            values[12] = s11;
+            values[13] = s9;
+            values[14] = s10;
+            values[15] = s2;
+            values[16] = s7;
+            values[0] = s12;
         }
         /// Part 2 of `momentum_equation`: 40 operations.
         #[inline(never)]
@@ -617,36 +631,36 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s2 = values[6];
+            let s1 = values[6];
             let p0_q_1_low = inputs[12];
             let p0_q_1 = inputs[7];
             let cos3 = values[7];
             let cos4 = values[8];
             let sin4 = values[9];
-            let s5 = values[10];
-            let s7 = values[11];
-            let s10 = values[12];
-            let s8 = values[13];
-            let s9 = values[14];
-            let s1 = values[15];
-            let s6 = values[16];
-            let s12 = system.b * real(0.5);
-            let s13 = h * real(0.25);
-            let s14 = system.k + s7 * s5 * real(0.25);
-            let s15 = s1 + (s12 + s13 * (s14 + s10 * cos3)) * h;
-            let s16 = s5 * real(0.25);
-            let s17 = (q_0_dot + q_1_dot) * real(0.125) * s8;
-            let s18 = s13 * s14;
-            let s19 = s16 - (s17 + s18) * h;
-            let s20 = s1 * q_1_dot + q_0_dot * s5 * real(0.25) - p0_q_1
-                + (s6 * q_1_dot - p0_q_1_low - s2 * (s9 - s10 * sin4));
-            let s21 = s16 + (s17 - s18) * h;
-            let s22 = s1 + (s12 + s13 * (s14 + s10 * cos4)) * h;
-            values[1] = s20;
-            values[2] = s15;
-            values[3] = s21;
-            values[4] = s19;
-            values[5] = s22;
+            let s6 = values[10];
+            let s8 = values[11];
+            let s11 = values[12];
+            let s9 = values[13];
+            let s10 = values[14];
+            let s2 = values[15];
+            let s7 = values[16];
+            let s13 = system.b * real(0.5);
+            let s14 = h * real(0.25);
+            let s15 = system.k + s8 * s6 * real(0.25);
+            let s16 = s2 + (s13 + s14 * (s15 + s11 * cos3)) * h;
+            let s17 = s6 * real(0.25);
+            let s18 = (q_0_dot + q_1_dot) * real(0.125) * s9;
+            let s19 = s14 * s15;
+            let s20 = s17 - (s18 + s19) * h;
+            let s21 = s2 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
+                + (s7 * q_1_dot - p0_q_1_low - s1 * (s10 - s11 * sin4));
+            let s22 = s17 + (s18 - s19) * h;
+            let s23 = s2 + (s13 + s14 * (s15 + s11 * cos4)) * h;
+            values[1] = s21;
+            values[2] = s16;
+            values[3] = s22;
+            values[4] = s20;
+            values[5] = s23;
         }
         let system = self;
         let inputs = [
@@ -695,7 +709,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        /// Part 1 of `extended_system`: 25 operations.
+        /// Part 1 of `extended_system`: 29 operations.
         #[inline(never)]
         fn extended_system_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
@@ -704,40 +718,48 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         ) {
             let real = T::real;
             let h = inputs[3];
+            let t0 = inputs[0];
             let q_0_0 = inputs[1];
             let q_1_0 = inputs[2];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
+            let t0_low = inputs[9];
             let q_0_0_low = inputs[10];
             let q_1_0_low = inputs[11];
-            let s1 = system.m * real(2.0);
-            let s2 = h * real(0.5);
-            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
-            let (sin3, cos3) = q_0_mid.sin_cos();
-            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
-            let (sin4, cos4) = q_1_mid.sin_cos();
-            let s5 = cos3 + cos4;
-            let s6 = cos3 * cos4 + sin3 * sin4;
-            let s7 = q_1_dot * s6 * real(0.25);
-            let s8 = system.b * h * real(0.5);
-            let s9 = q_0_dot * q_1_dot;
-            let s10 = sin3 * cos4 - cos3 * sin4;
-            let s11 = q_0_mid - q_1_mid;
-            values[12] = s2;
-            values[13] = s11;
+            let s1 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = system.m * real(2.0);
+            let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s6 = cos3 + cos4;
+            let s7 = cos3 * cos4 + sin3 * sin4;
+            let s8 = q_1_dot * s7 * real(0.25);
+            let s9 = system.b * h * real(0.5);
+            let s10 = q_0_dot * q_1_dot;
+            let s11 = sin3 * cos4 - cos3 * sin4;
+            let s12 = q_0_mid - q_1_mid;
+            values[12] = s1;
+            values[13] = s12;
             values[14] = cos3;
             values[15] = cos4;
             values[16] = sin3;
             values[17] = sin4;
-            values[18] = s6;
-            values[19] = s9;
-            values[24] = s5;
-            values[26] = s10;
-            values[31] = s1;
-            values[32] = s7;
-            values[33] = s8;
+            values[18] = s7;
+            values[19] = s10;
+            values[22] = sin5;
+            values[24] = s6;
+            values[25] = cos5;
+            values[26] = s11;
+            values[31] = s2;
+            values[32] = s8;
+            values[33] = s9;
         }
-        /// Part 2 of `extended_system`: 31 operations.
+        /// Part 2 of `extended_system`: 27 operations.
         #[inline(never)]
         fn extended_system_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
@@ -746,39 +768,34 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         ) {
             let real = T::real;
             let h = inputs[3];
-            let t0 = inputs[0];
             let q_0_dot = inputs[4];
-            let t0_low = inputs[9];
-            let s2 = values[12];
+            let s1 = values[12];
             let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
-            let s11 = values[13];
+            let s12 = values[13];
             let cos3 = values[14];
             let sin3 = values[16];
-            let s6 = values[18];
-            let s9 = values[19];
-            let s10 = values[26];
-            let s1 = values[31];
-            let s7 = values[32];
-            let s8 = values[33];
-            let s12 = s9 * s10 * real(0.25) + system.k * s11;
-            let t_mid = t0 + (s2 + t0_low);
-            let (sin13, cos13) = t_mid.sin_cos();
-            let s14 = sin13 * real(0.3333333333333333) + real(1.0);
+            let s7 = values[18];
+            let s10 = values[19];
+            let sin5 = values[22];
+            let s11 = values[26];
+            let s2 = values[31];
+            let s8 = values[32];
+            let s9 = values[33];
+            let s13 = s10 * s11 * real(0.25) + system.k * s12;
+            let s14 = sin5 * real(0.3333333333333333) + real(1.0);
             let s15 = s14 * sin3;
-            let s16 = s12 + s15;
-            let s17 = s1 * q_0_dot + s7 - p0_q_0
-                + (s8 * q_0_dot - p0_q_0_low + s2 * s16);
+            let s16 = s13 + s15;
+            let s17 = s2 * q_0_dot + s8 - p0_q_0
+                + (s9 * q_0_dot - p0_q_0_low + s1 * s16);
             let s18 = system.b * real(0.5);
             let s19 = h * real(0.25);
-            let s20 = system.k + s9 * s6 * real(0.25);
+            let s20 = system.k + s10 * s7 * real(0.25);
             let s21 = s20 + s14 * cos3;
-            let s22 = s1 + (s18 + s19 * s21) * h;
-            values[22] = sin13;
+            let s22 = s2 + (s18 + s19 * s21) * h;
             values[23] = s14;
-            values[25] = cos13;
             values[27] = s15;
-            values[28] = s12;
+            values[28] = s13;
             values[29] = s16;
             values[0] = s17;
             values[35] = s20;
@@ -798,25 +815,25 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s11 = values[13];
+            let s12 = values[13];
             let sin3 = values[16];
-            let s6 = values[18];
-            let cos13 = values[25];
-            let s10 = values[26];
+            let s7 = values[18];
+            let cos5 = values[25];
+            let s11 = values[26];
             let s15 = values[27];
             let s20 = values[35];
             let s21 = values[36];
             let s18 = values[38];
             let s19 = values[39];
-            let s23 = s6 * real(0.25);
-            let s24 = (q_0_dot + q_1_dot) * real(0.125) * s10;
+            let s23 = s7 * real(0.25);
+            let s24 = (q_0_dot + q_1_dot) * real(0.125) * s11;
             let s25 = s19 * s20;
             let s26 = s23 - (s24 + s25) * h;
             let s27 = system.k * real(0.5);
-            let s28 = s27 * s11;
+            let s28 = s27 * s12;
             let s29 = q_1_dot * q_1_dot;
-            let s30 = s28 + s15 * real(0.5) + s18 * q_0_dot + s29 * s10 * real(0.125);
-            let s31 = sin3 * cos13;
+            let s30 = s28 + s15 * real(0.5) + s18 * q_0_dot + s29 * s11 * real(0.125);
+            let s31 = sin3 * cos5;
             let s32 = s31 * real(0.08333333333333333);
             let s33 = q_0_dot * s21 * real(0.25);
             let s34 = q_1_dot * s20;
@@ -847,26 +864,26 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s2 = values[12];
+            let s1 = values[12];
             let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
             let p0_q_1_low = inputs[13];
             let p0_q_1 = inputs[7];
             let energy0_low = inputs[14];
             let energy0 = inputs[8];
-            let s11 = values[13];
+            let s12 = values[13];
             let cos4 = values[15];
             let sin4 = values[17];
-            let s6 = values[18];
+            let s7 = values[18];
             let s29 = values[21];
             let s14 = values[23];
-            let s5 = values[24];
-            let cos13 = values[25];
-            let s12 = values[28];
+            let s6 = values[24];
+            let cos5 = values[25];
+            let s13 = values[28];
             let s16 = values[29];
-            let s1 = values[31];
-            let s7 = values[32];
-            let s8 = values[33];
+            let s2 = values[31];
+            let s8 = values[32];
+            let s9 = values[33];
             let s27 = values[34];
             let s20 = values[35];
             let s18 = values[38];
@@ -875,18 +892,18 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s24 = values[41];
             let s25 = values[42];
             let s38 = s14 * sin4;
-            let s39 = s12 - s38;
+            let s39 = s13 - s38;
             let s40 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
-                + (s5 * cos13 * real(0.16666666666666666) - q_0_dot * s16 * real(0.5)
+                + (s6 * cos5 * real(0.16666666666666666) - q_0_dot * s16 * real(0.5)
                     + q_1_dot * s39 * real(0.5)) * h;
-            let s41 = s1 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
-                + (s8 * q_1_dot - p0_q_1_low - s2 * s39);
+            let s41 = s2 * q_1_dot + q_0_dot * s7 * real(0.25) - p0_q_1
+                + (s9 * q_1_dot - p0_q_1_low - s1 * s39);
             let s42 = s23 + (s24 - s25) * h;
             let s43 = s20 + s14 * cos4;
-            let s44 = s1 + (s18 + s19 * s43) * h;
+            let s44 = s2 + (s18 + s19 * s43) * h;
             let s45 = q_0_dot * q_0_dot;
-            let s46 = q_1_dot * p0_q_1 + s27 * (s11 * s11) - energy0
-                - system.m * (s45 + s29) - s14 * s5 + (p0_q_0 - s7) * q_0_dot;
+            let s46 = q_1_dot * p0_q_1 + s27 * (s12 * s12) - energy0
+                - system.m * (s45 + s29) - s14 * s6 + (p0_q_0 - s8) * q_0_dot;
             let s47 = s46 + s40;
             values[20] = s45;
             values[30] = s38;
@@ -909,10 +926,10 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_1_dot = inputs[5];
             let sin4 = values[17];
             let s45 = values[20];
-            let sin13 = values[22];
-            let s5 = values[24];
-            let cos13 = values[25];
-            let s10 = values[26];
+            let sin5 = values[22];
+            let s6 = values[24];
+            let cos5 = values[25];
+            let s11 = values[26];
             let s38 = values[30];
             let s20 = values[35];
             let s43 = values[37];
@@ -921,13 +938,13 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s31 = values[44];
             let s33 = values[45];
             let s34 = values[46];
-            let s48 = s38 * real(0.5) + s18 * q_1_dot - s28 - s45 * s10 * real(0.125);
-            let s49 = sin4 * cos13;
+            let s48 = s38 * real(0.5) + s18 * q_1_dot - s28 - s45 * s11 * real(0.125);
+            let s49 = sin4 * cos5;
             let s50 = s49 * real(0.08333333333333333);
             let s51 = q_0_dot * s20 * real(0.25);
             let s52 = q_1_dot * s43 * real(0.25);
             let s53 = (-s52 - s49 * real(0.16666666666666666)) * q_1_dot
-                - sin13 * s5 * real(0.08333333333333333)
+                - sin5 * s6 * real(0.08333333333333333)
                 + (s34 * real(0.5) - s33 - s31 * real(0.16666666666666666)) * q_0_dot;
             let s54 = s48 + (s50 - s51 + s52) * h;
             let s55 = s48 + (s51 - s52 - s50) * h;
@@ -991,159 +1008,164 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        /// Part 1 of `magnitudes`: 29 operations.
+        /// Part 1 of `magnitudes`: 33 operations.
         #[inline(never)]
         fn magnitudes_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 37],
-        ) {
-            let real = T::real;
-            let h = inputs[3];
-            let q_0_0 = inputs[1];
-            let q_1_0 = inputs[2];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
-            let q_0_0_low = inputs[10];
-            let q_1_0_low = inputs[11];
-            let p0_q_0 = inputs[6];
-            let s1 = system.b * h;
-            let s2 = h * real(0.5);
-            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
-            let (sin3, cos3) = q_0_mid.sin_cos();
-            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
-            let (sin4, cos4) = q_1_mid.sin_cos();
-            let s5 = cos3 + cos4;
-            let s6 = cos3 * cos4 + sin3 * sin4;
-            let s7 = p0_q_0.abs() + (s1 * q_0_dot).abs() * real(0.5)
-                + (system.m * q_0_dot).abs() * real(2.0)
-                + (q_1_dot * s6).abs() * real(0.25);
-            values[3] = s2;
-            values[5] = q_0_mid;
-            values[6] = q_1_mid;
-            values[7] = s1;
-            values[9] = cos3;
-            values[10] = cos4;
-            values[11] = sin3;
-            values[12] = sin4;
-            values[13] = s6;
-            values[16] = s5;
-            values[27] = s7;
-        }
-        /// Part 2 of `magnitudes`: 48 operations.
-        #[inline(never)]
-        fn magnitudes_part_2<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 12],
-            values: &mut [T; 37],
+            values: &mut [T; 38],
         ) {
             let real = T::real;
             let h = inputs[3];
             let t0 = inputs[0];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
             let t0_low = inputs[9];
-            let s2 = values[3];
+            let q_0_0_low = inputs[10];
+            let q_1_0_low = inputs[11];
+            let p0_q_0 = inputs[6];
+            let s1 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = system.b * h;
+            let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s6 = cos3 + cos4;
+            let s7 = cos3 * cos4 + sin3 * sin4;
+            let s8 = p0_q_0.abs() + (s2 * q_0_dot).abs() * real(0.5)
+                + (system.m * q_0_dot).abs() * real(2.0)
+                + (q_1_dot * s7).abs() * real(0.25);
+            values[3] = s1;
+            values[4] = t_mid;
+            values[5] = q_0_mid;
+            values[6] = q_1_mid;
+            values[7] = s2;
+            values[9] = cos3;
+            values[10] = cos4;
+            values[11] = sin3;
+            values[12] = sin4;
+            values[13] = s7;
+            values[15] = sin5;
+            values[17] = s6;
+            values[18] = cos5;
+            values[28] = s8;
+        }
+        /// Part 2 of `magnitudes`: 44 operations.
+        #[inline(never)]
+        fn magnitudes_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 12],
+            values: &mut [T; 38],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let t_mid = values[4];
             let q_0_mid = values[5];
             let q_1_mid = values[6];
             let cos3 = values[9];
             let cos4 = values[10];
             let sin3 = values[11];
             let sin4 = values[12];
-            let s5 = values[16];
-            let s8 = h.abs() * real(0.5);
-            let s9 = q_0_dot * q_1_dot;
-            let s10 = sin3 * cos4 - cos3 * sin4;
-            let s11 = s9 * s10;
-            let s12 = q_0_mid - q_1_mid;
-            let s13 = system.k * s12;
-            let s14 = s11 * real(0.25) + s13;
-            let s15 = s11.abs() * real(0.25) + s13.abs();
-            let t_mid = t0 + (s2 + t0_low);
-            let (sin16, cos16) = t_mid.sin_cos();
-            let s17 = sin16 * real(0.3333333333333333) + real(1.0);
+            let sin5 = values[15];
+            let s6 = values[17];
+            let cos5 = values[18];
+            let s9 = h.abs() * real(0.5);
+            let s10 = q_0_dot * q_1_dot;
+            let s11 = sin3 * cos4 - cos3 * sin4;
+            let s12 = s10 * s11;
+            let s13 = q_0_mid - q_1_mid;
+            let s14 = system.k * s13;
+            let s15 = s12 * real(0.25) + s14;
+            let s16 = s12.abs() * real(0.25) + s14.abs();
+            let s17 = sin5 * real(0.3333333333333333) + real(1.0);
             let s18 = s17 * sin3;
-            let s19 = s15 + s18.abs();
+            let s19 = s16 + s18.abs();
             let s20 = h * t_mid;
-            let s21 = s5 * cos16 * real(0.3333333333333333)
-                + (sin16 * s5 * real(0.16666666666666666)
+            let s21 = s6 * cos5 * real(0.3333333333333333)
+                + (sin5 * s6 * real(0.16666666666666666)
                     + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666)
-                        * cos16) * h;
-            let s22 = (sin16.abs() * real(0.3333333333333333)
-                + (h * cos16).abs() * real(0.16666666666666666) + real(1.0))
+                        * cos5) * h;
+            let s22 = (sin5.abs() * real(0.3333333333333333)
+                + (h * cos5).abs() * real(0.16666666666666666) + real(1.0))
                 * (cos3.abs() + cos4.abs());
-            values[4] = t_mid;
-            values[8] = s12;
-            values[14] = s9;
-            values[15] = s17;
-            values[17] = cos16;
-            values[18] = s10;
-            values[19] = s18;
-            values[21] = s15;
-            values[22] = s19;
-            values[23] = s20;
-            values[26] = s8;
-            values[31] = s21;
-            values[32] = s14;
-            values[34] = s22;
+            values[8] = s13;
+            values[14] = s10;
+            values[16] = s17;
+            values[19] = s11;
+            values[20] = s18;
+            values[22] = s16;
+            values[23] = s19;
+            values[24] = s20;
+            values[27] = s9;
+            values[32] = s21;
+            values[33] = s15;
+            values[35] = s22;
         }
         /// Part 3 of `magnitudes`: 50 operations.
         #[inline(never)]
         fn magnitudes_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 37],
+            values: &mut [T; 38],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s2 = values[3];
+            let s1 = values[3];
             let q_0_mid = values[5];
             let q_1_mid = values[6];
             let p0_q_0 = inputs[6];
             let p0_q_1 = inputs[7];
             let energy0 = inputs[8];
-            let s12 = values[8];
+            let s13 = values[8];
             let cos3 = values[9];
             let sin3 = values[11];
-            let s6 = values[13];
-            let s9 = values[14];
-            let s17 = values[15];
-            let cos16 = values[17];
-            let s10 = values[18];
-            let s18 = values[19];
-            let s19 = values[22];
-            let s20 = values[23];
-            let s8 = values[26];
-            let s7 = values[27];
-            let s14 = values[32];
-            let s23 = q_1_dot * s10 * real(0.25);
-            let s24 = s9 * s6;
+            let s7 = values[13];
+            let s10 = values[14];
+            let s17 = values[16];
+            let cos5 = values[18];
+            let s11 = values[19];
+            let s18 = values[20];
+            let s19 = values[23];
+            let s20 = values[24];
+            let s9 = values[27];
+            let s8 = values[28];
+            let s15 = values[33];
+            let s23 = q_1_dot * s11 * real(0.25);
+            let s24 = s10 * s7;
             let s25 = system.k + s24 * real(0.25);
             let s26 = s25 + s17 * cos3;
-            let s27 = s14 + s18
+            let s27 = s15 + s18
                 + (q_1_dot * s25 * real(0.5) - q_0_dot * s26 * real(0.5)
-                    - sin3 * cos16 * real(0.16666666666666666)) * h;
-            let s28 = s7 + s8 * s19
-                + (s20 * sin3 * cos16).abs() * real(0.16666666666666666)
-                + (q_0_mid * (s23 - s2 * s26)).abs();
-            let s29 = s2 * s25;
+                    - sin3 * cos5 * real(0.16666666666666666)) * h;
+            let s28 = s8 + s9 * s19
+                + (s20 * sin3 * cos5).abs() * real(0.16666666666666666)
+                + (q_0_mid * (s23 - s1 * s26)).abs();
+            let s29 = s1 * s25;
             let s30 = s28 + (q_1_mid * (s23 - s29)).abs();
             let s31 = energy0.abs() + (q_0_dot * p0_q_0).abs() + (q_1_dot * p0_q_1).abs()
-                + s24.abs() * real(0.25) + (system.k * (s12 * s12)).abs() * real(0.5);
-            values[24] = s25;
-            values[25] = s29;
+                + s24.abs() * real(0.25) + (system.k * (s13 * s13)).abs() * real(0.5);
+            values[25] = s25;
+            values[26] = s29;
             values[0] = s30;
-            values[33] = s27;
-            values[35] = s31;
+            values[34] = s27;
+            values[36] = s31;
         }
         /// Part 4 of `magnitudes`: 40 operations.
         #[inline(never)]
         fn magnitudes_part_4<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 37],
+            values: &mut [T; 38],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1152,70 +1174,70 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let t_mid = values[4];
             let q_0_mid = values[5];
             let p0_q_1 = inputs[7];
-            let s1 = values[7];
+            let s2 = values[7];
             let sin4 = values[12];
-            let s6 = values[13];
-            let s17 = values[15];
-            let s10 = values[18];
-            let s15 = values[21];
-            let s19 = values[22];
-            let s21 = values[31];
-            let s27 = values[33];
-            let s31 = values[35];
+            let s7 = values[13];
+            let s17 = values[16];
+            let s11 = values[19];
+            let s16 = values[22];
+            let s19 = values[23];
+            let s21 = values[32];
+            let s27 = values[34];
+            let s31 = values[36];
             let s32 = s31 + system.m.abs() * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
                 + s19 * (h * q_0_dot).abs() * real(0.5);
-            let s33 = p0_q_1.abs() + (s1 * q_1_dot).abs() * real(0.5)
+            let s33 = p0_q_1.abs() + (s2 * q_1_dot).abs() * real(0.5)
                 + (system.m * q_1_dot).abs() * real(2.0)
-                + (q_0_dot * s6).abs() * real(0.25);
+                + (q_0_dot * s7).abs() * real(0.25);
             let s34 = s17 * sin4;
-            let s35 = s15 + s34.abs();
+            let s35 = s16 + s34.abs();
             let s36 = s32 + s35 * (h * q_1_dot).abs() * real(0.5) + (t_mid * s21).abs()
                 + (q_0_mid * s27).abs();
-            let s37 = q_0_dot * s10 * real(0.25);
-            values[20] = s34;
-            values[28] = s35;
-            values[29] = s37;
-            values[30] = s33;
-            values[36] = s36;
+            let s37 = q_0_dot * s11 * real(0.25);
+            values[21] = s34;
+            values[29] = s35;
+            values[30] = s37;
+            values[31] = s33;
+            values[37] = s36;
         }
         /// Part 5 of `magnitudes`: 33 operations.
         #[inline(never)]
         fn magnitudes_part_5<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 37],
+            values: &mut [T; 38],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s2 = values[3];
+            let s1 = values[3];
             let q_0_mid = values[5];
             let q_1_mid = values[6];
             let cos4 = values[10];
             let sin4 = values[12];
-            let s17 = values[15];
-            let cos16 = values[17];
-            let s34 = values[20];
-            let s20 = values[23];
-            let s25 = values[24];
-            let s29 = values[25];
-            let s8 = values[26];
-            let s35 = values[28];
-            let s37 = values[29];
-            let s33 = values[30];
-            let s14 = values[32];
-            let s22 = values[34];
-            let s36 = values[36];
-            let s38 = s33 + s8 * s35
-                + (s20 * sin4 * cos16).abs() * real(0.16666666666666666)
+            let s17 = values[16];
+            let cos5 = values[18];
+            let s34 = values[21];
+            let s20 = values[24];
+            let s25 = values[25];
+            let s29 = values[26];
+            let s9 = values[27];
+            let s35 = values[29];
+            let s37 = values[30];
+            let s33 = values[31];
+            let s15 = values[33];
+            let s22 = values[35];
+            let s36 = values[37];
+            let s38 = s33 + s9 * s35
+                + (s20 * sin4 * cos5).abs() * real(0.16666666666666666)
                 + (q_0_mid * (s37 + s29)).abs();
             let s39 = s25 + s17 * cos4;
-            let s40 = s14 - s34
-                + (sin4 * cos16 * real(0.16666666666666666) - q_0_dot * s25 * real(0.5)
+            let s40 = s15 - s34
+                + (sin4 * cos5 * real(0.16666666666666666) - q_0_dot * s25 * real(0.5)
                     + q_1_dot * s39 * real(0.5)) * h;
             let s41 = s36 + (q_1_mid * s40).abs() + s22;
-            let s42 = s38 + (q_1_mid * (s37 + s2 * s39)).abs();
+            let s42 = s38 + (q_1_mid * (s37 + s1 * s39)).abs();
             values[1] = s42;
             values[2] = s41;
         }
@@ -1234,7 +1256,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             q_0_0_low,
             q_1_0_low,
         ];
-        let mut values = [T::real(0.0); 37];
+        let mut values = [T::real(0.0); 38];
         magnitudes_part_1(system, &inputs, &mut values);
         magnitudes_part_2(system, &inputs, &mut values);
         magnitudes_part_3(system, &inputs, &mut values);
@@ -1252,7 +1274,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
     ///
-    /// 48 operations.
+    /// 49 operations.
     #[inline(always)]
     fn increment(
         &self,
@@ -1271,19 +1293,21 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
         let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
         let s2 = self.b * h;
-        let (sin3, cos3) = t_mid.sin_cos();
-        let s4 = sin3 * real(0.3333333333333333) + real(1.0);
-        let (sin5, cos5) = q_0_mid.sin_cos();
-        let (sin6, cos6) = q_1_mid.sin_cos();
-        let s7 = q_0_dot * q_1_dot * (sin5 * cos6 - cos5 * sin6) * real(0.25)
+        let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+            t_mid,
+            q_0_mid,
+            q_1_mid,
+        ]);
+        let s6 = sin3 * real(0.3333333333333333) + real(1.0);
+        let s7 = q_0_dot * q_1_dot * (sin4 * cos5 - cos4 * sin5) * real(0.25)
             + self.k * (q_0_mid - q_1_mid);
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
-                -(h * (s7 + s4 * sin5)) - s2 * q_0_dot,
-                h * (s7 - s4 * sin6) - s2 * q_1_dot,
+                -(h * (s7 + s6 * sin4)) - s2 * q_0_dot,
+                h * (s7 - s6 * sin5) - s2 * q_1_dot,
             ]),
-            energy: (-((q_0_dot * q_0_dot + q_1_dot * q_1_dot) * self.b)
-                - (cos5 + cos6) * cos3 * real(0.3333333333333333)) * h,
+            energy: -(((cos4 + cos5) * cos3 * real(0.3333333333333333)
+                + self.b * (q_0_dot * q_0_dot) + self.b * (q_1_dot * q_1_dot)) * h),
         }
     }
 
@@ -1329,35 +1353,38 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let p0_q_0 = inputs[4];
             let q_0_mid = inputs[9];
             let q_1_mid = inputs[10];
-            let s1 = system.m * real(2.0);
-            let (sin2, cos2) = q_0_mid.sin_cos();
-            let (sin3, cos3) = q_1_mid.sin_cos();
-            let s4 = cos2 * cos3 + sin2 * sin3;
-            let s5 = system.b * h;
-            let s6 = s5 * real(0.5);
-            let s7 = h * real(0.5);
-            let s8 = q_0_dot * q_1_dot;
-            let s9 = sin2 * cos3 - cos2 * sin3;
-            let s10 = s8 * s9 * real(0.25) + system.k * (q_0_mid - q_1_mid);
-            let t_mid = t0 + (s7 + t0_low);
-            let s11 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
-            let s12 = s10 + s11 * sin2;
-            let s13 = s1 * q_0_dot + q_1_dot * s4 * real(0.25) - p0_q_0
-                + (s6 * q_0_dot - p0_q_0_low + s7 * s12);
-            values[12] = s7;
-            values[13] = s5;
-            values[14] = cos2;
-            values[15] = cos3;
-            values[16] = sin3;
-            values[17] = s4;
-            values[18] = s8;
-            values[19] = s11;
-            values[20] = s9;
-            values[21] = s10;
-            values[22] = s12;
-            values[24] = s1;
-            values[25] = s6;
-            values[0] = s13;
+            let s1 = h * real(0.5);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = system.m * real(2.0);
+            let [(sin3, cos3), (sin4, cos4), (sin5, _)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s6 = cos3 * cos4 + sin3 * sin4;
+            let s7 = system.b * h;
+            let s8 = s7 * real(0.5);
+            let s9 = q_0_dot * q_1_dot;
+            let s10 = sin3 * cos4 - cos3 * sin4;
+            let s11 = s9 * s10 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let s12 = sin5 * real(0.3333333333333333) + real(1.0);
+            let s13 = s11 + s12 * sin3;
+            let s14 = s2 * q_0_dot + q_1_dot * s6 * real(0.25) - p0_q_0
+                + (s8 * q_0_dot - p0_q_0_low + s1 * s13);
+            values[12] = s1;
+            values[13] = s7;
+            values[14] = cos3;
+            values[15] = cos4;
+            values[16] = sin4;
+            values[17] = s6;
+            values[18] = s9;
+            values[19] = s12;
+            values[20] = s10;
+            values[21] = s11;
+            values[22] = s13;
+            values[24] = s2;
+            values[25] = s8;
+            values[0] = s14;
         }
         /// Part 2 of `momentum_step`: 50 operations.
         #[inline(never)]
@@ -1370,52 +1397,52 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[1];
             let q_0_dot = inputs[2];
             let q_1_dot = inputs[3];
-            let s7 = values[12];
+            let s1 = values[12];
             let p0_q_1_low = inputs[8];
             let p0_q_1 = inputs[5];
-            let s5 = values[13];
-            let cos2 = values[14];
-            let cos3 = values[15];
-            let sin3 = values[16];
-            let s4 = values[17];
-            let s8 = values[18];
-            let s11 = values[19];
-            let s9 = values[20];
-            let s10 = values[21];
-            let s12 = values[22];
-            let s1 = values[24];
-            let s6 = values[25];
-            let s14 = system.b * real(0.5);
-            let s15 = h * real(0.25);
-            let s16 = system.k + s8 * s4 * real(0.25);
-            let s17 = s16 + s11 * cos2;
-            let s18 = s1 + (s14 + s15 * s17) * h;
-            let s19 = s4 * real(0.25);
-            let s20 = (q_0_dot + q_1_dot) * real(0.125) * s9;
-            let s21 = s15 * s16;
-            let s22 = s19 - (s20 + s21) * h;
-            let s23 = -(h * s12) - s5 * q_0_dot;
-            let s24 = q_1_dot * s9 * real(0.25);
-            let s25 = (-(system.b + s24) - s7 * s17) * h;
-            let s26 = s7 * s16;
-            let s27 = (s24 + s26) * h;
-            let s28 = s10 - s11 * sin3;
-            let s29 = s1 * q_1_dot + q_0_dot * s4 * real(0.25) - p0_q_1
-                + (s6 * q_1_dot - p0_q_1_low - s7 * s28);
-            let s30 = s19 + (s20 - s21) * h;
-            let s31 = s16 + s11 * cos3;
-            values[23] = s28;
-            values[1] = s29;
-            values[26] = s31;
-            values[27] = s14;
-            values[28] = s15;
-            values[2] = s18;
-            values[3] = s30;
-            values[4] = s22;
-            values[6] = s23;
-            values[8] = s25;
-            values[29] = s26;
-            values[10] = s27;
+            let s7 = values[13];
+            let cos3 = values[14];
+            let cos4 = values[15];
+            let sin4 = values[16];
+            let s6 = values[17];
+            let s9 = values[18];
+            let s12 = values[19];
+            let s10 = values[20];
+            let s11 = values[21];
+            let s13 = values[22];
+            let s2 = values[24];
+            let s8 = values[25];
+            let s15 = system.b * real(0.5);
+            let s16 = h * real(0.25);
+            let s17 = system.k + s9 * s6 * real(0.25);
+            let s18 = s17 + s12 * cos3;
+            let s19 = s2 + (s15 + s16 * s18) * h;
+            let s20 = s6 * real(0.25);
+            let s21 = (q_0_dot + q_1_dot) * real(0.125) * s10;
+            let s22 = s16 * s17;
+            let s23 = s20 - (s21 + s22) * h;
+            let s24 = -(h * s13) - s7 * q_0_dot;
+            let s25 = q_1_dot * s10 * real(0.25);
+            let s26 = (-(system.b + s25) - s1 * s18) * h;
+            let s27 = s1 * s17;
+            let s28 = (s25 + s27) * h;
+            let s29 = s11 - s12 * sin4;
+            let s30 = s2 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
+                + (s8 * q_1_dot - p0_q_1_low - s1 * s29);
+            let s31 = s20 + (s21 - s22) * h;
+            let s32 = s17 + s12 * cos4;
+            values[23] = s29;
+            values[1] = s30;
+            values[26] = s32;
+            values[27] = s15;
+            values[28] = s16;
+            values[2] = s19;
+            values[3] = s31;
+            values[4] = s23;
+            values[6] = s24;
+            values[8] = s26;
+            values[29] = s27;
+            values[10] = s28;
         }
         /// Part 3 of `momentum_step`: 15 operations.
         #[inline(never)]
@@ -1428,24 +1455,24 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[1];
             let q_0_dot = inputs[2];
             let q_1_dot = inputs[3];
-            let s7 = values[12];
-            let s5 = values[13];
-            let s9 = values[20];
-            let s28 = values[23];
-            let s1 = values[24];
-            let s31 = values[26];
-            let s14 = values[27];
-            let s15 = values[28];
-            let s26 = values[29];
-            let s32 = s1 + (s14 + s15 * s31) * h;
-            let s33 = h * s28 - s5 * q_1_dot;
-            let s34 = q_0_dot * s9 * real(0.25);
-            let s35 = (s26 - s34) * h;
-            let s36 = (s34 - system.b - s7 * s31) * h;
-            values[5] = s32;
-            values[7] = s33;
-            values[9] = s35;
-            values[11] = s36;
+            let s1 = values[12];
+            let s7 = values[13];
+            let s10 = values[20];
+            let s29 = values[23];
+            let s2 = values[24];
+            let s32 = values[26];
+            let s15 = values[27];
+            let s16 = values[28];
+            let s27 = values[29];
+            let s33 = s2 + (s15 + s16 * s32) * h;
+            let s34 = h * s29 - s7 * q_1_dot;
+            let s35 = q_0_dot * s10 * real(0.25);
+            let s36 = (s27 - s35) * h;
+            let s37 = (s35 - system.b - s1 * s32) * h;
+            values[5] = s33;
+            values[7] = s34;
+            values[9] = s36;
+            values[11] = s37;
         }
         let system = self;
         let inputs = [
@@ -1488,7 +1515,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// and to first order at `(v + dv, h + dh)`.
     ///
-    /// 241 operations.
+    /// 243 operations.
     #[inline(always)]
     fn extended_step(
         &self,
@@ -1509,7 +1536,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        /// Part 1 of `extended_step`: 25 operations.
+        /// Part 1 of `extended_step`: 28 operations.
         #[inline(never)]
         fn extended_step_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
@@ -1518,42 +1545,48 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         ) {
             let real = T::real;
             let h = inputs[3];
+            let t0 = inputs[0];
             let q_0_0 = inputs[1];
             let q_1_0 = inputs[2];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
+            let t0_low = inputs[9];
             let q_0_0_low = inputs[10];
             let q_1_0_low = inputs[11];
-            let s1 = system.m * real(2.0);
-            let s2 = h * real(0.5);
-            let q_0_mid = q_0_0 + (s2 * q_0_dot + q_0_0_low);
-            let (sin3, cos3) = q_0_mid.sin_cos();
-            let q_1_mid = q_1_0 + (s2 * q_1_dot + q_1_0_low);
-            let (sin4, cos4) = q_1_mid.sin_cos();
-            let s5 = cos3 * cos4 + sin3 * sin4;
-            let s6 = q_1_dot * s5 * real(0.25);
-            let s7 = system.b * h;
-            let s8 = s7 * real(0.5);
-            let s9 = q_0_dot * q_1_dot;
-            let s10 = sin3 * cos4 - cos3 * sin4;
-            let s11 = q_0_mid - q_1_mid;
-            let s12 = system.k * s11;
-            values[24] = s2;
-            values[25] = s7;
-            values[26] = s11;
+            let s1 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = system.m * real(2.0);
+            let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s6 = cos3 * cos4 + sin3 * sin4;
+            let s7 = q_1_dot * s6 * real(0.25);
+            let s8 = system.b * h;
+            let s9 = s8 * real(0.5);
+            let s10 = q_0_dot * q_1_dot;
+            let s11 = sin3 * cos4 - cos3 * sin4;
+            let s12 = q_0_mid - q_1_mid;
+            values[24] = s1;
+            values[25] = s8;
+            values[26] = s12;
             values[27] = cos3;
             values[28] = cos4;
             values[29] = sin3;
             values[30] = sin4;
-            values[31] = s5;
-            values[32] = s9;
-            values[38] = s10;
-            values[39] = s12;
-            values[45] = s1;
-            values[46] = s6;
-            values[47] = s8;
+            values[31] = s6;
+            values[32] = s10;
+            values[35] = sin5;
+            values[37] = cos5;
+            values[38] = s11;
+            values[45] = s2;
+            values[46] = s7;
+            values[47] = s9;
         }
-        /// Part 2 of `extended_step`: 30 operations.
+        /// Part 2 of `extended_step`: 27 operations.
         #[inline(never)]
         fn extended_step_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
@@ -1562,39 +1595,36 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         ) {
             let real = T::real;
             let h = inputs[3];
-            let t0 = inputs[0];
             let q_0_dot = inputs[4];
-            let t0_low = inputs[9];
-            let s2 = values[24];
+            let s1 = values[24];
             let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
+            let s12 = values[26];
             let cos3 = values[27];
             let sin3 = values[29];
-            let s5 = values[31];
-            let s9 = values[32];
-            let s10 = values[38];
-            let s12 = values[39];
-            let s1 = values[45];
-            let s6 = values[46];
-            let s8 = values[47];
-            let s13 = s9 * s10 * real(0.25) + s12;
-            let t_mid = t0 + (s2 + t0_low);
-            let (sin14, cos14) = t_mid.sin_cos();
-            let s15 = sin14 * real(0.3333333333333333) + real(1.0);
+            let s6 = values[31];
+            let s10 = values[32];
+            let sin5 = values[35];
+            let s11 = values[38];
+            let s2 = values[45];
+            let s7 = values[46];
+            let s9 = values[47];
+            let s13 = system.k * s12;
+            let s14 = s10 * s11 * real(0.25) + s13;
+            let s15 = sin5 * real(0.3333333333333333) + real(1.0);
             let s16 = s15 * sin3;
-            let s17 = s13 + s16;
-            let s18 = s1 * q_0_dot + s6 - p0_q_0
-                + (s8 * q_0_dot - p0_q_0_low + s2 * s17);
+            let s17 = s14 + s16;
+            let s18 = s2 * q_0_dot + s7 - p0_q_0
+                + (s9 * q_0_dot - p0_q_0_low + s1 * s17);
             let s19 = system.b * real(0.5);
             let s20 = h * real(0.25);
-            let s21 = system.k + s9 * s5 * real(0.25);
+            let s21 = system.k + s10 * s6 * real(0.25);
             let s22 = s21 + s15 * cos3;
-            let s23 = s1 + (s19 + s20 * s22) * h;
-            values[35] = sin14;
+            let s23 = s2 + (s19 + s20 * s22) * h;
             values[36] = s15;
-            values[37] = cos14;
+            values[39] = s13;
             values[40] = s16;
-            values[41] = s13;
+            values[41] = s14;
             values[42] = s17;
             values[0] = s18;
             values[49] = s21;
@@ -1614,27 +1644,27 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s7 = values[25];
-            let s11 = values[26];
+            let s8 = values[25];
+            let s12 = values[26];
             let sin3 = values[29];
-            let s5 = values[31];
-            let cos14 = values[37];
-            let s10 = values[38];
+            let s6 = values[31];
+            let cos5 = values[37];
+            let s11 = values[38];
             let s16 = values[40];
             let s17 = values[42];
             let s21 = values[49];
             let s22 = values[50];
             let s19 = values[52];
             let s20 = values[53];
-            let s24 = s5 * real(0.25);
-            let s25 = (q_0_dot + q_1_dot) * real(0.125) * s10;
+            let s24 = s6 * real(0.25);
+            let s25 = (q_0_dot + q_1_dot) * real(0.125) * s11;
             let s26 = s20 * s21;
             let s27 = s24 - (s25 + s26) * h;
             let s28 = system.k * real(0.5);
-            let s29 = s28 * s11;
+            let s29 = s28 * s12;
             let s30 = q_1_dot * q_1_dot;
-            let s31 = s29 + s16 * real(0.5) + s19 * q_0_dot + s30 * s10 * real(0.125);
-            let s32 = sin3 * cos14;
+            let s31 = s29 + s16 * real(0.5) + s19 * q_0_dot + s30 * s11 * real(0.125);
+            let s32 = sin3 * cos5;
             let s33 = s32 * real(0.08333333333333333);
             let s34 = q_0_dot * s22;
             let s35 = s34 * real(0.25);
@@ -1642,7 +1672,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s37 = s36 * real(0.25);
             let s38 = s31 + (s33 + s35 - s37) * h;
             let s39 = s31 + (s37 - s35 - s33) * h;
-            let s40 = -(h * s17) - s7 * q_0_dot;
+            let s40 = -(h * s17) - s8 * q_0_dot;
             values[34] = s30;
             values[48] = s28;
             values[54] = s24;
@@ -1669,42 +1699,42 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s2 = values[24];
+            let s1 = values[24];
             let p0_q_1_low = inputs[13];
             let p0_q_1 = inputs[7];
             let cos4 = values[28];
             let sin3 = values[29];
             let sin4 = values[30];
-            let s5 = values[31];
+            let s6 = values[31];
             let s15 = values[36];
-            let cos14 = values[37];
-            let s10 = values[38];
-            let s13 = values[41];
-            let s1 = values[45];
-            let s8 = values[47];
+            let cos5 = values[37];
+            let s11 = values[38];
+            let s14 = values[41];
+            let s2 = values[45];
+            let s9 = values[47];
             let s21 = values[49];
             let s22 = values[50];
             let s24 = values[54];
             let s25 = values[55];
             let s26 = values[56];
-            let s41 = q_1_dot * s10 * real(0.25);
+            let s41 = q_1_dot * s11 * real(0.25);
             let s42 = system.b + s41;
-            let s43 = (-s42 - s2 * s22) * h;
-            let s44 = s2 * s21;
+            let s43 = (-s42 - s1 * s22) * h;
+            let s44 = s1 * s21;
             let s45 = (s41 + s44) * h;
             let s46 = h * real(0.16666666666666666);
             let s47 = system.b * real(2.0);
-            let s48 = (s46 * sin3 * cos14 - s47 * q_0_dot) * h;
-            let s49 = q_0_dot * s10 * real(0.25);
+            let s48 = (s46 * sin3 * cos5 - s47 * q_0_dot) * h;
+            let s49 = q_0_dot * s11 * real(0.25);
             let s50 = (s44 - s49) * h;
             let s51 = s49 - system.b;
             let s52 = s21 + s15 * cos4;
-            let s53 = (s51 - s2 * s52) * h;
-            let s54 = (s46 * sin4 * cos14 - s47 * q_1_dot) * h;
+            let s53 = (s51 - s1 * s52) * h;
+            let s54 = (s46 * sin4 * cos5 - s47 * q_1_dot) * h;
             let s55 = s15 * sin4;
-            let s56 = s13 - s55;
-            let s57 = s1 * q_1_dot + q_0_dot * s5 * real(0.25) - p0_q_1
-                + (s8 * q_1_dot - p0_q_1_low - s2 * s56);
+            let s56 = s14 - s55;
+            let s57 = s2 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
+                + (s9 * q_1_dot - p0_q_1_low - s1 * s56);
             let s58 = s24 + (s25 - s26) * h;
             values[43] = s55;
             values[44] = s56;
@@ -1731,15 +1761,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s7 = values[25];
+            let s8 = values[25];
             let sin4 = values[30];
-            let cos14 = values[37];
-            let s10 = values[38];
-            let s12 = values[39];
+            let cos5 = values[37];
+            let s11 = values[38];
+            let s13 = values[39];
             let s16 = values[40];
             let s55 = values[43];
             let s56 = values[44];
-            let s1 = values[45];
+            let s2 = values[45];
             let s21 = values[49];
             let s52 = values[51];
             let s19 = values[52];
@@ -1750,10 +1780,10 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s36 = values[61];
             let s42 = values[68];
             let s51 = values[69];
-            let s59 = s1 + (s19 + s20 * s52) * h;
+            let s59 = s2 + (s19 + s20 * s52) * h;
             let s60 = q_0_dot * q_0_dot;
-            let s61 = s55 * real(0.5) + s19 * q_1_dot - s29 - s60 * s10 * real(0.125);
-            let s62 = sin4 * cos14;
+            let s61 = s55 * real(0.5) + s19 * q_1_dot - s29 - s60 * s11 * real(0.125);
+            let s62 = sin4 * cos5;
             let s63 = s62 * real(0.08333333333333333);
             let s64 = q_0_dot * s21;
             let s65 = s64 * real(0.25);
@@ -1761,12 +1791,12 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s67 = s66 * real(0.25);
             let s68 = s61 + (s63 - s65 + s67) * h;
             let s69 = s61 + (s65 - s67 - s63) * h;
-            let s70 = h * s56 - s7 * q_1_dot;
+            let s70 = h * s56 - s8 * q_1_dot;
             let s71 = s36 * real(0.5);
             let s72 = s32 * real(0.16666666666666666);
-            let s73 = -(s42 * q_0_dot) - (s12 + s16) + (s71 - s34 * real(0.5) - s72) * h;
+            let s73 = -(s42 * q_0_dot) - (s13 + s16) + (s71 - s34 * real(0.5) - s72) * h;
             let s74 = s62 * real(0.16666666666666666);
-            let s75 = s12 - s55 + s51 * q_1_dot
+            let s75 = s13 - s55 + s51 * q_1_dot
                 + (s64 * real(0.5) - s66 * real(0.5) - s74) * h;
             values[33] = s60;
             values[5] = s59;
@@ -1780,7 +1810,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[17] = s73;
             values[20] = s75;
         }
-        /// Part 6 of `extended_step`: 44 operations.
+        /// Part 6 of `extended_step`: 46 operations.
         #[inline(never)]
         fn extended_step_part_6<T: ::vi_core::Real>(
             system: &Pendula<T>,
@@ -1797,42 +1827,41 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let p0_q_1 = inputs[7];
             let energy0_low = inputs[14];
             let energy0 = inputs[8];
-            let s11 = values[26];
+            let s12 = values[26];
             let cos3 = values[27];
             let cos4 = values[28];
             let s60 = values[33];
             let s30 = values[34];
-            let sin14 = values[35];
+            let sin5 = values[35];
             let s15 = values[36];
-            let cos14 = values[37];
+            let cos5 = values[37];
             let s17 = values[42];
             let s56 = values[44];
-            let s6 = values[46];
+            let s7 = values[46];
             let s28 = values[48];
             let s35 = values[60];
             let s67 = values[62];
             let s72 = values[64];
             let s71 = values[65];
             let s74 = values[66];
-            let s76 = s60 + s30;
-            let s77 = cos3 + cos4;
-            let s78 = q_1_dot * p0_q_1 + s28 * (s11 * s11) - energy0 - system.m * s76
-                - s15 * s77 + (p0_q_0 - s6) * q_0_dot;
-            let s79 = s77 * cos14;
-            let s80 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
-                + (s79 * real(0.16666666666666666) - q_0_dot * s17 * real(0.5)
-                    + q_1_dot * s56 * real(0.5)) * h;
-            let s81 = s78 + s80;
-            let s82 = -(s76 * system.b) - s79 * real(0.3333333333333333);
-            let s83 = s82 * h;
-            let s84 = sin14 * s77;
-            let s85 = (-s67 - s74) * q_1_dot - s84 * real(0.08333333333333333)
+            let s76 = cos3 + cos4;
+            let s77 = q_1_dot * p0_q_1 + s28 * (s12 * s12) - energy0
+                - system.m * (s60 + s30) - s15 * s76 + (p0_q_0 - s7) * q_0_dot;
+            let s78 = sin5 * s76;
+            let s79 = (-s67 - s74) * q_1_dot - s78 * real(0.08333333333333333)
                 + (s71 - s35 - s72) * q_0_dot;
-            values[8] = s81;
-            values[63] = s84;
-            values[11] = s85;
-            values[67] = s82;
-            values[14] = s83;
+            let s80 = s76 * cos5;
+            let s81 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
+                + (s80 * real(0.16666666666666666) - q_0_dot * s17 * real(0.5)
+                    + q_1_dot * s56 * real(0.5)) * h;
+            let s82 = s77 + s81;
+            let s83 = s80 * real(0.3333333333333333) + system.b * s60 + system.b * s30;
+            let s84 = -(s83 * h);
+            values[8] = s82;
+            values[63] = s78;
+            values[11] = s79;
+            values[67] = s83;
+            values[14] = s84;
         }
         /// Part 7 of `extended_step`: 9 operations.
         #[inline(never)]
@@ -1847,14 +1876,13 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_1_dot = inputs[5];
             let sin3 = values[29];
             let sin4 = values[30];
-            let cos14 = values[37];
-            let s84 = values[63];
-            let s82 = values[67];
-            let s86 = s82
-                + (s84 * real(0.16666666666666666)
-                    + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666)
-                        * cos14) * h;
-            values[23] = s86;
+            let cos5 = values[37];
+            let s78 = values[63];
+            let s83 = values[67];
+            let s85 = (s78 * real(0.16666666666666666)
+                + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666) * cos5)
+                * h - s83;
+            values[23] = s85;
         }
         let system = self;
         let inputs = [

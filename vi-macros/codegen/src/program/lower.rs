@@ -14,10 +14,12 @@ use vi_expr::{Expr, Node, Pool, Rational, Sum};
 
 /// What an expression depends on, the widest last.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Dependence {
+pub(super) enum Dependence {
     /// Nothing: it is a number.
     None,
-    /// Parameters and the step: it is constant over a run.
+    /// Parameters: it is constant over a run.
+    Parameters,
+    /// Parameters and the step: it is constant over a run of fixed steps.
     Run,
     /// What changes from step to step.
     Step,
@@ -80,7 +82,7 @@ impl<'a> Lowering<'a> {
     }
 
     /// What an expression depends on; its children are known but for those that lowering made.
-    fn dependence(&mut self, expr: Expr) -> Dependence {
+    pub(super) fn dependence(&mut self, expr: Expr) -> Dependence {
         if let Some(known) = self.dependences.get(&expr) {
             return *known;
         }
@@ -91,7 +93,8 @@ impl<'a> Lowering<'a> {
             Node::Call(_, arguments) => arguments.clone(),
         };
         let found = match self.pool.node(expr) {
-            Node::Symbol(Symbol::Parameter(_) | Symbol::Step) => Dependence::Run,
+            Node::Symbol(Symbol::Parameter(_)) => Dependence::Parameters,
+            Node::Symbol(Symbol::Step) => Dependence::Run,
             Node::Symbol(_) => Dependence::Step,
             _ => children.into_iter().map(|child| self.dependence(child)).max().unwrap_or(Dependence::None),
         };
@@ -151,8 +154,7 @@ impl<'a> Lowering<'a> {
             };
         }
         if let Some((coefficient, inside)) = self.common_coefficient(sum) {
-            let inside = self.value(inside);
-            let coefficient = self.operations.constant(Self::number(&coefficient));
+            let (inside, coefficient) = (self.value(inside), self.value(coefficient));
             return self.operations.add(Operation::Multiply(inside, coefficient));
         }
         self.plain_sum(sum)
@@ -231,85 +233,6 @@ impl<'a> Lowering<'a> {
         self.pool.sum(&terms)
     }
 
-    /// The factor that most terms share, what it is multiplied by, and the other terms.
-    fn common_factor(&mut self, sum: &Sum) -> Option<(Expr, Expr, Option<Expr>)> {
-        let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
-        for (term, _) in &sum.terms {
-            for base in self.bases(*term) {
-                *counts.entry(base).or_default() += 1;
-            }
-        }
-        // Of equally frequent ones the step, then the oldest.
-        let step = self.pool.symbol(Symbol::Step);
-        let (base, count) =
-            counts.into_iter().max_by_key(|(base, count)| (*count, *base == step, core::cmp::Reverse(*base)))?;
-        if count < 2 {
-            return None;
-        }
-        let exponents = sum.terms.iter().filter_map(|(term, _)| self.exponent(*term, base));
-        let exponent = exponents.min().unwrap_or_else(Rational::one);
-        let inverse = self.pool.power(base, &-exponent.clone());
-        let (mut inside, mut rest) = (Vec::new(), vec![self.pool.number(sum.constant.clone())]);
-        for (term, coefficient) in &sum.terms {
-            let scaled = self.pool.scale(*term, coefficient);
-            if self.exponent(*term, base).is_some() {
-                inside.push(self.pool.mul(scaled, inverse));
-            } else {
-                rest.push(scaled);
-            }
-        }
-        let factor = self.pool.power(base, &exponent);
-        // A bare sum left inside would dissolve in the sum of the quotients: e²/2 + e³/3 stays as it is.
-        let dissolves = |quotient: &Expr| matches!(self.pool.node(*quotient), Node::Sum(sum) if sum.terms.len() > 1);
-        if inside.iter().any(dissolves) {
-            return None;
-        }
-        let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
-        self.record_powers(&[inside, rest]);
-        Some((factor, inside, (!self.pool.is_zero(rest)).then_some(rest)))
-    }
-
-    /// The positive integer exponent with which a term has a base.
-    fn exponent(&self, term: Expr, base: Expr) -> Option<Rational> {
-        let usable = |exponent: &Rational| exponent.is_integer() && exponent.is_positive();
-        match self.pool.node(term) {
-            Node::Product(product) => {
-                product.factors.iter().find(|(found, e)| *found == base && usable(e)).map(|(_, e)| e.clone())
-            }
-            _ => (term == base).then(Rational::one),
-        }
-    }
-
-    /// The bases that a term has with a positive integer exponent.
-    fn bases(&self, term: Expr) -> Vec<Expr> {
-        match self.pool.node(term) {
-            Node::Product(product) => product
-                .factors
-                .iter()
-                .filter(|(base, exponent)| {
-                    exponent.is_integer() && exponent.is_positive() && self.pool.as_number(*base).is_none()
-                })
-                .map(|(base, _)| *base)
-                .collect(),
-            Node::Number(_) | Node::Pi | Node::Sum(_) => Vec::new(),
-            Node::Symbol(_) | Node::Call(..) => vec![term],
-        }
-    }
-
-    /// The coefficient that all terms share but for the sign, and the sum without it.
-    fn common_coefficient(&mut self, sum: &Sum) -> Option<(Rational, Expr)> {
-        let (_, first) = sum.terms.first()?;
-        let coefficient = first.abs();
-        let same = |other: &Rational| other.abs() == coefficient;
-        let constant = sum.constant.is_zero() || same(&sum.constant);
-        if coefficient.is_one() || !constant || sum.terms.iter().any(|(_, other)| !same(other)) {
-            return None;
-        }
-        let whole = self.pool_sum(sum);
-        let inside = self.pool.scale(whole, &coefficient.recip());
-        Some((coefficient, inside))
-    }
-
     /// coefficient·term.
     fn term(&mut self, term: Expr, coefficient: &Rational) -> OperationId {
         if coefficient.is_negative() {
@@ -333,7 +256,7 @@ impl<'a> Lowering<'a> {
                 number *= value.powf(Self::number(exponent));
                 continue;
             }
-            let fixed = dependence == Dependence::Run;
+            let fixed = dependence <= Dependence::Run;
             match self.factor(*base, exponent) {
                 Factor::Above(value) if fixed => constant.push(value),
                 Factor::Above(value) => varying.push(value),

@@ -6,6 +6,7 @@
 
 mod angles;
 mod assemble;
+mod factor;
 mod lower;
 mod magnitude;
 mod operations;
