@@ -357,7 +357,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
 
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
     ///
-    /// 40 operations.
+    /// 39 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -377,21 +377,20 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         let s1 = self.c * real(0.5);
         let s2 = self.k * h;
         let s3 = s2 * real(0.25);
-        let s4 = self.k * real(0.5);
-        let s5 = s4 * x_mid + s1 * x_dot;
-        let s6 = s3 * x_dot;
+        let s4 = self.m * x_dot;
+        let s5 = self.k * real(0.5);
+        let s6 = s5 * x_mid + s1 * x_dot;
+        let s7 = s3 * x_dot;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
-                residual: ::vi_core::SVector::from([
-                    self.m * x_dot - p0_x + (s5 * h - p0_x_low),
-                ]),
+                residual: ::vi_core::SVector::from([s4 - p0_x + (s6 * h - p0_x_low)]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(&[self.m + (s1 + s3) * h]),
             },
-            residual_dh: ::vi_core::SVector::from([s5 + s6]),
-            energy_residual: s4 * (x_mid * x_mid) - energy0
-                + (p0_x - self.m * real(0.5) * x_dot) * x_dot
+            residual_dh: ::vi_core::SVector::from([s6 + s7]),
+            energy_residual: s5 * (x_mid * x_mid) - energy0
+                + (p0_x - s4 * real(0.5)) * x_dot
                 + ((p0_x_low - s2 * real(0.5) * x_mid) * x_dot - energy0_low),
-            energy_dv: ::vi_core::SVector::from([s5 - s6]),
+            energy_dv: ::vi_core::SVector::from([s6 - s7]),
             energy_dh: -(self.k * real(0.25) * (x_dot * x_dot)),
         }
     }

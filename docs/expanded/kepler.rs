@@ -147,7 +147,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
 
     /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
     ///
-    /// 38 operations.
+    /// 39 operations.
     #[inline]
     fn step_density(
         &self,
@@ -166,15 +166,13 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         let s5 = s4 * s4;
         let s6 = s3.sqrt();
         let s7 = s5 * s6;
-        let s8 = self.mu * s7;
-        let s9 = s5 * s4 * s6;
-        let s10 = self.mu * real(3.0);
-        let s11 = s10 * x * y * s9;
-        let s12 = self.mu * x * s7 * x_ddot
-            + x_dot * (x_dot * (s10 * s1 * s9 - s8) + s11 * y_dot);
-        let s13 = s12 + self.mu * y * s7 * y_ddot
-            + y_dot * (s11 * x_dot + y_dot * (s10 * s2 * s9 - s8));
-        Ok(-s13)
+        let s8 = s5 * s4 * s6;
+        let s9 = self.mu * real(3.0) * x * y * s8;
+        let s10 = self.mu * x * s7 * x_ddot
+            + x_dot * (self.mu * x_dot * (s1 * s8 * real(3.0) - s7) + s9 * y_dot);
+        let s11 = s10 + self.mu * y * s7 * y_ddot
+            + y_dot * (s9 * x_dot + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
+        Ok(-s11)
     }
 
     /// The first of what L and f are made of that is not finite here.
@@ -364,7 +362,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     ///
     /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
     ///
-    /// 48 operations.
+    /// 46 operations.
     #[inline(always)]
     fn momentum_equation(
         &self,
@@ -389,12 +387,10 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s7 = s4.sqrt();
         let s8 = s6 * s7;
         let s9 = self.mu * h * real(0.5);
-        let s10 = self.mu * s8;
-        let s11 = s6 * s5 * s7;
-        let s12 = self.mu * real(3.0);
-        let s13 = h * h;
-        let s14 = s13 * real(0.25);
-        let s15 = -(self.mu * s13 * real(0.75) * x_mid * y_mid * s11);
+        let s10 = s6 * s5 * s7;
+        let s11 = self.mu * (h * h);
+        let s12 = s11 * real(0.25);
+        let s13 = -(s11 * real(0.75) * x_mid * y_mid * s10);
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
                 x_dot - p0_x + (s9 * x_mid * s8 - p0_x_low),
@@ -402,10 +398,10 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    real(1.0) - s14 * (s12 * s2 * s11 - s10),
-                    s15,
-                    s15,
-                    real(1.0) - s14 * (s12 * s3 * s11 - s10),
+                    real(1.0) - s12 * (s2 * s10 * real(3.0) - s8),
+                    s13,
+                    s13,
+                    real(1.0) - s12 * (s3 * s10 * real(3.0) - s8),
                 ],
             ),
         }
@@ -413,7 +409,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
 
     /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
     ///
-    /// 109 operations.
+    /// 108 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -436,29 +432,28 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s3 = y_mid * y_mid;
         let s4 = s2 + s3;
         let s5 = s4.recip();
-        let s6 = s4.sqrt();
-        let s7 = s5 * s5;
-        let s8 = s7 * s6;
+        let s6 = s5 * s5;
+        let s7 = s4.sqrt();
+        let s8 = s6 * s7;
         let s9 = self.mu * h * real(0.5);
-        let s10 = (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + self.mu * (s5 * s6))
+        let s10 = (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + self.mu * (s5 * s7))
             + (p0_x - x_dot * real(0.5)) * x_dot;
         let s11 = self.mu * real(0.5);
         let s12 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - (x_dot * x_mid * s8 + y_dot * y_mid * s8) * s11 * h;
-        let s13 = s7 * s5 * s6;
-        let s14 = self.mu * s8;
-        let s15 = self.mu * real(3.0);
-        let s16 = s15 * s2 * s13 - s14;
-        let s17 = h * h;
-        let s18 = s17 * real(0.25);
-        let s19 = -(self.mu * s17 * real(0.75) * x_mid * y_mid * s13);
-        let s20 = s15 * s3 * s13 - s14;
-        let s21 = s11 * x_mid * s8;
-        let s22 = self.mu * real(0.75);
-        let s23 = x_dot * s16 * real(0.25);
-        let s24 = (s22 * y_dot * x_mid * y_mid * s13 + s23) * h;
-        let s25 = s11 * y_mid * s8;
-        let s26 = (s22 * x_dot * x_mid * y_mid * s13 + y_dot * s20 * real(0.25)) * h;
+            - s11 * h * (x_dot * x_mid * s8 + y_dot * y_mid * s8);
+        let s13 = s6 * s5 * s7;
+        let s14 = s2 * s13 * real(3.0) - s8;
+        let s15 = self.mu * (h * h);
+        let s16 = s15 * real(0.25);
+        let s17 = -(s15 * real(0.75) * x_mid * y_mid * s13);
+        let s18 = s3 * s13 * real(3.0) - s8;
+        let s19 = s11 * x_mid * s8;
+        let s20 = self.mu * real(0.75);
+        let s21 = self.mu * real(0.25);
+        let s22 = s21 * x_dot * s14;
+        let s23 = (s20 * y_dot * x_mid * y_mid * s13 + s22) * h;
+        let s24 = s11 * y_mid * s8;
+        let s25 = (s20 * x_dot * x_mid * y_mid * s13 + s21 * y_dot * s18) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
@@ -466,20 +461,20 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
                     y_dot - p0_y + (s9 * y_mid * s8 - p0_y_low),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[real(1.0) - s18 * s16, s19, s19, real(1.0) - s18 * s20],
+                    &[real(1.0) - s16 * s14, s17, s17, real(1.0) - s16 * s18],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s21 - s24, s25 - s26]),
+            residual_dh: ::vi_core::SVector::from([s19 - s23, s24 - s25]),
             energy_residual: s10 + s12,
-            energy_dv: ::vi_core::SVector::from([s21 + s24, s25 + s26]),
-            energy_dh: y_dot * y_dot * s20 * real(0.25)
-                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s13 + s23) * x_dot,
+            energy_dv: ::vi_core::SVector::from([s19 + s23, s24 + s25]),
+            energy_dh: s21 * (y_dot * y_dot) * s18
+                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s13 + s22) * x_dot,
         }
     }
 
     /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
     ///
-    /// 118 operations.
+    /// 119 operations.
     #[cold]
     fn magnitudes(
         &self,
@@ -500,33 +495,33 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s3 = y_mid * y_mid;
         let s4 = s2 + s3;
         let s5 = s4.recip();
-        let s6 = s4.sqrt();
-        let s7 = s5 * s5;
-        let s8 = s7 * s6;
+        let s6 = s5 * s5;
+        let s7 = s4.sqrt();
+        let s8 = s6 * s7;
         let s9 = self.mu * h;
         let s10 = s9 * x_mid;
-        let s11 = s7 * s5 * s6;
-        let s12 = self.mu * real(0.5) * s8;
-        let s13 = self.mu * real(1.5);
-        let s14 = s13 * s2 * s11;
-        let s15 = x_dot.abs() + p0_x.abs() + (s10 * s8).abs() * real(0.5)
-            + (x_mid * ((s12 - s14) * h)).abs();
-        let s16 = s13 * s3 * s11;
-        let s17 = y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5)
-            + (s9 * s2 * y_mid * s11).abs() * real(1.5);
+        let s11 = s8 * real(0.5);
+        let s12 = s6 * s5 * s7;
+        let s13 = s2 * s12 * real(1.5);
+        let s14 = x_dot.abs() + p0_x.abs() + (s10 * s8).abs() * real(0.5)
+            + (x_mid * (s9 * (s11 - s13))).abs();
+        let s15 = s3 * s12 * real(1.5);
+        let s16 = y_dot.abs() + p0_y.abs() + (s9 * y_mid * s8).abs() * real(0.5)
+            + (s9 * s2 * y_mid * s12).abs() * real(1.5);
+        let s17 = self.mu * real(1.5);
         let s18 = self.mu * x_mid * s8
-            + (s13 * y_dot * x_mid * y_mid * s11 + (s14 - s12) * x_dot) * h;
+            + (s17 * y_dot * x_mid * y_mid * s12 + self.mu * (s13 - s11) * x_dot) * h;
         let s19 = self.mu * y_mid * s8
-            + (s13 * x_dot * x_mid * y_mid * s11 + (s16 - s12) * y_dot) * h;
+            + (s17 * x_dot * x_mid * y_mid * s12 + self.mu * (s15 - s11) * y_dot) * h;
         let s20 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
             + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
-        let s21 = s20 + (self.mu * (s5 * s6)).abs()
+        let s21 = s20 + (self.mu * (s5 * s7)).abs()
             + (s9 * x_dot * x_mid * s8).abs() * real(0.5)
             + (s9 * y_dot * y_mid * s8).abs() * real(0.5);
         ::vi_core::Magnitudes {
             residual: ::vi_core::SVector::from([
-                s15 + (s10 * s3 * s11).abs() * real(1.5),
-                s17 + (y_mid * ((s12 - s16) * h)).abs(),
+                s14 + (s10 * s3 * s12).abs() * real(1.5),
+                s16 + (y_mid * (s9 * (s11 - s15))).abs(),
             ]),
             energy_residual: s21 + (x_mid * s18).abs() + (y_mid * s19).abs(),
         }
@@ -569,7 +564,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     ///
     /// and to first order at `v + dv`.
     ///
-    /// 54 operations.
+    /// 52 operations.
     #[inline(always)]
     fn momentum_step(
         &self,
@@ -595,17 +590,14 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let s7 = s5 * s6;
         let s8 = self.mu * h;
         let s9 = s8 * real(0.5);
-        let s10 = self.mu * s7;
-        let s11 = s5 * s4 * s6;
-        let s12 = self.mu * real(3.0);
-        let s13 = s12 * s1 * s11 - s10;
-        let s14 = h * h;
-        let s15 = s14 * real(0.25);
-        let s16 = self.mu * s14;
-        let s17 = -(s16 * real(0.75) * x_mid * y_mid * s11);
-        let s18 = s12 * s2 * s11 - s10;
-        let s19 = s14 * real(0.5);
-        let s20 = s16 * real(1.5) * x_mid * y_mid * s11;
+        let s10 = s5 * s4 * s6;
+        let s11 = s1 * s10 * real(3.0) - s7;
+        let s12 = self.mu * (h * h);
+        let s13 = s12 * real(0.25);
+        let s14 = -(s12 * real(0.75) * x_mid * y_mid * s10);
+        let s15 = s2 * s10 * real(3.0) - s7;
+        let s16 = s12 * real(0.5);
+        let s17 = s12 * real(1.5) * x_mid * y_mid * s10;
         let change: [T; 2] = solve(
                 &::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
@@ -613,14 +605,14 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
                         y_dot - p0_y + (s9 * y_mid * s7 - p0_y_low),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[real(1.0) - s15 * s13, s17, s17, real(1.0) - s15 * s18],
+                        &[real(1.0) - s13 * s11, s14, s14, real(1.0) - s13 * s15],
                     ),
                 },
             )
             .into();
         ::vi_core::SVector::from([
-            -(s8 * x_mid * s7) + ((s19 * s13) * change[0] + (s20) * change[1]),
-            -(s8 * y_mid * s7) + ((s20) * change[0] + (s19 * s18) * change[1]),
+            -(s8 * x_mid * s7) + ((s16 * s11) * change[0] + (s17) * change[1]),
+            -(s8 * y_mid * s7) + ((s17) * change[0] + (s16 * s15) * change[1]),
         ])
     }
 }

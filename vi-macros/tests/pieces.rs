@@ -1,23 +1,32 @@
-//! A system in pieces computes what it computes whole, bit by bit.
+//! A system in loops, or in pieces, computes what it computes whole, bit by bit.
 //!
-//! `pieces/pendula.rs` is the expansion in functions of at most 50 operations; it is in the repository to be read. After a
-//! change of the compiler, `UPDATE_EXPANDED=1 cargo test -p vi-macros --test pieces` writes it anew.
+//! `pieces/` holds expansions in functions of few operations; they are in the repository to be read. After a change of the
+//! compiler, `UPDATE_EXPANDED=1 cargo test -p vi-macros --test pieces` writes them anew.
 
 use vi_core::linear::Matrix;
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, SVector, Stepping};
 
-/// Operations that a function may hold.
-const LIMIT: usize = 50;
-
-/// The system, and its text.
+/// A system, its text, and its expansion in functions of at most so many operations, from its file.
 macro_rules! system {
-    ($($tokens:tt)*) => {
-        ::vi_core::lagrangian! { $($tokens)* }
-        const TEXT: &str = stringify!($($tokens)*);
+    ($name:ident, $limit:literal, $file:literal, $($tokens:tt)*) => {
+        mod $name {
+            ::vi_core::lagrangian! { $($tokens)* }
+            pub(crate) const TEXT: &str = stringify!($($tokens)*);
+            /// Operations that a function may hold.
+            pub(crate) const LIMIT: usize = $limit;
+            pub(crate) const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/", $file);
+
+            #[rustfmt::skip]
+            #[allow(clippy::pedantic, dead_code, unreachable_pub, reason = "the items of a library")]
+            pub(crate) mod cut {
+                include!($file);
+            }
+        }
     };
 }
 
 system! {
+    pendula, 50, "pieces/pendula.rs",
     /// Two coupled pendula, driven and damped: matrices, forces and sums over all coordinates.
     pub struct Pendula {
         const N = 2;
@@ -30,41 +39,64 @@ system! {
     }
 }
 
-#[rustfmt::skip]
-#[allow(clippy::pedantic, dead_code, unreachable_pub, reason = "the items of a library")]
-#[path = "pieces/pendula.rs"]
-mod in_pieces;
+system! {
+    chain, 300, "pieces/chain.rs",
+    /// Pendula in a row, driven: what is the same for all of them is a loop.
+    pub struct Chain {
+        const N = 10;
+        param m = 1.2, k = 0.7;
+        coord q[N];
+        let springs = k * sum(i in 1..N, (q[i] - q[i - 1])^4) / 4;
+        L = m * sum(i in 0..N, dot(q[i])^2) / 2 - springs + (1 + sin(t) / 3) * sum(i in 0..N, cos(q[i]));
+        discretize midpoint;
+    }
+}
 
-fn expansion() -> String {
-    let system = vi_codegen::syntax::parse::system(TEXT.parse().expect("tokens")).expect("a right system");
+fn expansion(text: &str, limit: usize) -> String {
+    let system = vi_codegen::syntax::parse::system(text.parse().expect("tokens")).expect("a right system");
     let derived = vi_codegen::derive(system).expect("a right system");
     let vi_codegen::Derived { model, system, program, findings } = &derived;
-    vi_codegen::pretty::text(vi_codegen::emit::items(model, system, program, findings, LIMIT)).expect("Rust")
+    vi_codegen::pretty::text(vi_codegen::emit::items(model, system, program, findings, limit)).expect("Rust")
+}
+
+fn documented_is_todays(file: &str, today: &str) {
+    if std::env::var_os("UPDATE_EXPANDED").is_some() {
+        std::fs::write(file, today).expect("the file can be written");
+    }
+    let documented = std::fs::read_to_string(file).expect("the documented expansion");
+    let line = documented.lines().zip(today.lines()).position(|(old, new)| old != new);
+    assert!(documented == today, "{file} differs from line {line:?} on; UPDATE_EXPANDED=1 writes it anew");
 }
 
 #[test]
-fn the_documented_pieces_are_todays() {
-    let (path, today) = (concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pieces/pendula.rs"), expansion());
-    if std::env::var_os("UPDATE_EXPANDED").is_some() {
-        std::fs::write(path, &today).expect("the file can be written");
-    }
-    let documented = std::fs::read_to_string(path).expect("the documented expansion");
-    let line = documented.lines().zip(today.lines()).position(|(old, new)| old != new);
-    assert!(documented == today, "pendula.rs differs from line {line:?} on; UPDATE_EXPANDED=1 writes it anew");
+fn the_documented_expansions_are_todays() {
+    documented_is_todays(pendula::FILE, &expansion(pendula::TEXT, pendula::LIMIT));
+    documented_is_todays(chain::FILE, &expansion(chain::TEXT, chain::LIMIT));
 }
 
 #[test]
 fn no_function_is_longer_than_the_limit() {
-    let text = expansion();
+    let text = expansion(pendula::TEXT, pendula::LIMIT);
     let counts = text.lines().filter_map(|line| line.trim().strip_prefix("/// Part ")?.split(' ').nth(3)?.parse().ok());
     let counts: Vec<usize> = counts.collect();
     assert!(counts.len() > 10, "{} pieces", counts.len());
-    assert!(counts.iter().all(|count| *count <= LIMIT), "{counts:?}");
+    assert!(counts.iter().all(|count| *count <= pendula::LIMIT), "{counts:?}");
+    let text = expansion(chain::TEXT, chain::LIMIT);
+    let (loops, sums) = (text.matches("::core::array::from_fn(|i| ").count(), text.matches(".fold(").count());
+    assert!(loops > 50 && sums > 10 && !text.contains("/// Part "), "{loops} loops, {sums} sums");
 }
 
 /// Bits of everything that the functions of a system give at one place.
-fn bits<S: Lagrangian<2> + DiscreteLagrangian<2> + Stepping<2>>(system: &S) -> Vec<u64> {
-    let (q, v) = (SVector::from([0.3, -0.2]), SVector::from([0.7, 0.1]));
+fn bits<const N: usize, S>(system: &S) -> Vec<u64>
+where
+    S: Lagrangian<N> + DiscreteLagrangian<N> + Stepping<N>,
+{
+    let mut place = -1.0;
+    let q: SVector<f64, N> = SVector::from_fn(|_, _| {
+        place += 1.0;
+        0.3 - 0.5 * place
+    });
+    let v = q.map(|angle| 1.2 * angle + 0.34);
     let (t, h) = (0.6, 0.05);
     let interval = Interval { t0: t, q0: q, t1: t + h, q1: q + h * v };
     let node = Node {
@@ -106,8 +138,15 @@ fn bits<S: Lagrangian<2> + DiscreteLagrangian<2> + Stepping<2>>(system: &S) -> V
 
 #[test]
 fn the_pieces_compute_what_the_whole_does() {
-    let (whole, pieces) = (Pendula::default(), in_pieces::Pendula::default());
+    let (whole, pieces) = (pendula::Pendula::default(), pendula::cut::Pendula::default());
     assert_eq!(bits(&whole), bits(&pieces));
     // Another parameter is another result: what is compared is no constant.
-    assert_ne!(bits(&Pendula { k: 0.8, ..whole }), bits(&pieces));
+    assert_ne!(bits(&pendula::Pendula { k: 0.8, ..whole }), bits(&pieces));
+}
+
+#[test]
+fn the_loops_compute_what_the_whole_does() {
+    let (whole, loops) = (chain::Chain::default(), chain::cut::Chain::default());
+    assert_eq!(bits(&whole), bits(&loops));
+    assert_ne!(bits(&chain::Chain { k: 0.8, ..whole }), bits(&loops));
 }

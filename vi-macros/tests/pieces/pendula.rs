@@ -73,7 +73,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let s5 = q_0_dot * q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25)
             + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot);
         s5 + (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
-            - self.k * real(0.5) * (s1 * s1)
+            - self.k * (s1 * s1) * real(0.5)
     }
 
     /// `v·L_v − L = dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 + k*(q[0] - q[1])^2/2 - (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1])) + m*dot(q[0])^2 + m*dot(q[1])^2`
@@ -91,7 +91,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let real = T::real;
         let s1 = q_0 - q_1;
         let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([q_0, q_1, t]);
-        let s5 = self.k * real(0.5) * (s1 * s1) + self.m * (q_1_dot * q_1_dot)
+        let s5 = self.k * (s1 * s1) * real(0.5) + self.m * (q_1_dot * q_1_dot)
             - (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3);
         s5
             + (q_1_dot * (cos2 * cos3 + sin2 * sin3) * real(0.25) + self.m * q_0_dot)
@@ -102,7 +102,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
     ///
     /// `p_q[1] = dot(q[0])*cos(q[0] - q[1])/4 + 2*m*dot(q[1])`
     ///
-    /// 11 operations.
+    /// 12 operations.
     #[inline]
     fn momentum(
         &self,
@@ -114,10 +114,9 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         let [q_0, q_1]: [T; 2] = (*q).into();
         let real = T::real;
         let s1 = (q_0 - q_1).cos();
-        let s2 = self.m * real(2.0);
         ::vi_core::SVector::from([
-            q_1_dot * s1 * real(0.25) + s2 * q_0_dot,
-            q_0_dot * s1 * real(0.25) + s2 * q_1_dot,
+            q_1_dot * s1 * real(0.25) + self.m * q_0_dot * real(2.0),
+            q_0_dot * s1 * real(0.25) + self.m * q_1_dot * real(2.0),
         ])
     }
 
@@ -299,7 +298,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
             ("cos(q[1])", cos3),
             (
                 "dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - k*(q[0] - q[1])^2/2 + m*(dot(q[0])^2 + dot(q[1])^2) + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]))",
-                s6 - self.k * real(0.5) * (s1 * s1),
+                s6 - self.k * (s1 * s1) * real(0.5),
             ),
             ("-b*dot(q[0])", -(self.b * q_0_dot)),
             ("-b*dot(q[1])", -(self.b * q_1_dot)),
@@ -336,12 +335,12 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
             + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot);
         h
             * (s5 + (sin4 * real(0.3333333333333333) + real(1.0)) * (cos2 + cos3)
-                - self.k * real(0.5) * (s1 * s1))
+                - self.k * (s1 * s1) * real(0.5))
     }
 
     /// `d1_ld = h*L_t/2 - L + L_v_q[0]*v_q[0] + L_v_q[1]*v_q[1]`
     ///
-    /// 50 operations.
+    /// 51 operations.
     #[inline]
     fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let t0 = interval.t0;
@@ -352,32 +351,71 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_dot = (q_0_1 - q_0_0) / h;
         let q_1_dot = (q_1_1 - q_1_0) / h;
         let real = T::real;
-        let t_mid = (t0 + t1) * real(0.5);
-        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
-        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
-        let s1 = q_0_mid - q_1_mid;
-        let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
-            q_0_mid,
-            q_1_mid,
-            t_mid,
-        ]);
-        let s5 = cos2 * cos3 + sin2 * sin3;
-        let s6 = cos2 + cos3;
-        let s7 = self.m * real(2.0);
-        let s8 = self.k * real(0.5) * (s1 * s1)
-            + q_0_dot * (s7 * q_0_dot + q_1_dot * s5 * real(0.25))
-            + q_1_dot * (s7 * q_1_dot + q_0_dot * s5 * real(0.25));
-        let s9 = s8 - q_0_dot * q_1_dot * s5 * real(0.25)
-            - self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
-            - (sin4 * real(0.3333333333333333) + real(1.0)) * s6;
-        s9 + h * real(0.16666666666666666) * s6 * cos4
+        /// Part 1 of `d1_ld`: 47 operations.
+        #[inline(never)]
+        fn d1_ld_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 9],
+            values: &mut [T; 4],
+        ) {
+            let real = T::real;
+            let t0 = inputs[0];
+            let t1 = inputs[3];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_1 = inputs[4];
+            let q_1_1 = inputs[5];
+            let q_0_dot = inputs[7];
+            let q_1_dot = inputs[8];
+            let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+            let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+            let t_mid = (t0 + t1) * real(0.5);
+            let s1 = q_0_mid - q_1_mid;
+            let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s5 = cos2 * cos3 + sin2 * sin3;
+            let s6 = system.k * (s1 * s1) * real(0.5)
+                + q_0_dot * (system.m * q_0_dot * real(2.0) + q_1_dot * s5 * real(0.25))
+                + q_1_dot * (system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25));
+            let s7 = cos2 + cos3;
+            let s8 = s6 - q_0_dot * q_1_dot * s5 * real(0.25)
+                - system.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
+                - (sin4 * real(0.3333333333333333) + real(1.0)) * s7;
+            values[1] = s7;
+            values[2] = cos4;
+            values[3] = s8;
+        }
+        /// Part 2 of `d1_ld`: 4 operations.
+        #[inline(never)]
+        fn d1_ld_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 9],
+            values: &mut [T; 4],
+        ) {
+            let real = T::real;
+            let h = inputs[6];
+            let s7 = values[1];
+            let cos4 = values[2];
+            let s8 = values[3];
+            let s9 = s8 + h * real(0.16666666666666666) * s7 * cos4;
+            values[0] = s9;
+        }
+        let system = self;
+        let inputs = [t0, q_0_0, q_1_0, t1, q_0_1, q_1_1, h, q_0_dot, q_1_dot];
+        let mut values = [T::real(0.0); 4];
+        d1_ld_part_1(system, &inputs, &mut values);
+        d1_ld_part_2(system, &inputs, &mut values);
+        values[0]
     }
 
     /// `d2_ld_q[0] = h*L_q[0]/2 - L_v_q[0]`
     ///
     /// `d2_ld_q[1] = h*L_q[1]/2 - L_v_q[1]`
     ///
-    /// 44 operations.
+    /// 45 operations.
     #[inline]
     fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
         let t0 = interval.t0;
@@ -400,17 +438,18 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let s5 = sin3 * real(0.3333333333333333) + real(1.0);
         let s6 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
             + self.k * (q_0_mid - q_1_mid);
-        let s7 = self.m * real(2.0);
-        let s8 = h * real(0.5);
+        let s7 = h * real(0.5);
         ::vi_core::SVector::from([
-            -(s7 * q_0_dot + q_1_dot * s4 * real(0.25)) - s8 * (s6 + s5 * sin1),
-            s8 * (s6 - s5 * sin2) - (s7 * q_1_dot + q_0_dot * s4 * real(0.25)),
+            -(self.m * q_0_dot * real(2.0) + q_1_dot * s4 * real(0.25))
+                - s7 * (s6 + s5 * sin1),
+            s7 * (s6 - s5 * sin2)
+                - (self.m * q_1_dot * real(2.0) + q_0_dot * s4 * real(0.25)),
         ])
     }
 
     /// `d3_ld = L + h*L_t/2 - L_v_q[0]*v_q[0] - L_v_q[1]*v_q[1]`
     ///
-    /// 50 operations.
+    /// 51 operations.
     #[inline]
     fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
         let t0 = interval.t0;
@@ -421,32 +460,76 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_dot = (q_0_1 - q_0_0) / h;
         let q_1_dot = (q_1_1 - q_1_0) / h;
         let real = T::real;
-        let t_mid = (t0 + t1) * real(0.5);
-        let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
-        let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
-        let s1 = q_0_mid - q_1_mid;
-        let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
-            q_0_mid,
-            q_1_mid,
-            t_mid,
-        ]);
-        let s5 = cos2 * cos3 + sin2 * sin3;
-        let s6 = cos2 + cos3;
-        let s7 = self.m * real(2.0);
-        let s8 = q_0_dot * q_1_dot * s5 * real(0.25)
-            + self.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
-            + (sin4 * real(0.3333333333333333) + real(1.0)) * s6;
-        let s9 = s8 - self.k * real(0.5) * (s1 * s1)
-            - q_0_dot * (s7 * q_0_dot + q_1_dot * s5 * real(0.25))
-            - q_1_dot * (s7 * q_1_dot + q_0_dot * s5 * real(0.25));
-        s9 + h * real(0.16666666666666666) * s6 * cos4
+        /// Part 1 of `d3_ld`: 40 operations.
+        #[inline(never)]
+        fn d3_ld_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 9],
+            values: &mut [T; 5],
+        ) {
+            let real = T::real;
+            let t0 = inputs[0];
+            let t1 = inputs[3];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_1 = inputs[4];
+            let q_1_1 = inputs[5];
+            let q_0_dot = inputs[7];
+            let q_1_dot = inputs[8];
+            let q_0_mid = (q_0_0 + q_0_1) * real(0.5);
+            let q_1_mid = (q_1_0 + q_1_1) * real(0.5);
+            let t_mid = (t0 + t1) * real(0.5);
+            let [(sin1, cos1), (sin2, cos2), (sin3, cos3)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s4 = cos1 * cos2 + sin1 * sin2;
+            let s5 = cos1 + cos2;
+            let s6 = q_0_dot * q_1_dot * s4 * real(0.25)
+                + system.m * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
+                + (sin3 * real(0.3333333333333333) + real(1.0)) * s5;
+            let s7 = q_0_mid - q_1_mid;
+            let s8 = s6 - system.k * (s7 * s7) * real(0.5)
+                - q_0_dot * (system.m * q_0_dot * real(2.0) + q_1_dot * s4 * real(0.25));
+            values[1] = s4;
+            values[2] = s5;
+            values[3] = cos3;
+            values[4] = s8;
+        }
+        /// Part 2 of `d3_ld`: 11 operations.
+        #[inline(never)]
+        fn d3_ld_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 9],
+            values: &mut [T; 5],
+        ) {
+            let real = T::real;
+            let h = inputs[6];
+            let q_0_dot = inputs[7];
+            let q_1_dot = inputs[8];
+            let s4 = values[1];
+            let s5 = values[2];
+            let cos3 = values[3];
+            let s8 = values[4];
+            let s9 = s8
+                - q_1_dot * (system.m * q_1_dot * real(2.0) + q_0_dot * s4 * real(0.25))
+                + h * real(0.16666666666666666) * s5 * cos3;
+            values[0] = s9;
+        }
+        let system = self;
+        let inputs = [t0, q_0_0, q_1_0, t1, q_0_1, q_1_1, h, q_0_dot, q_1_dot];
+        let mut values = [T::real(0.0); 5];
+        d3_ld_part_1(system, &inputs, &mut values);
+        d3_ld_part_2(system, &inputs, &mut values);
+        values[0]
     }
 
     /// `d4_ld_q[0] = L_v_q[0] + h*L_q[0]/2`
     ///
     /// `d4_ld_q[1] = L_v_q[1] + h*L_q[1]/2`
     ///
-    /// 43 operations.
+    /// 44 operations.
     #[inline]
     fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
         let t0 = interval.t0;
@@ -469,11 +552,12 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let s5 = sin3 * real(0.3333333333333333) + real(1.0);
         let s6 = q_0_dot * q_1_dot * (sin1 * cos2 - cos1 * sin2) * real(0.25)
             + self.k * (q_0_mid - q_1_mid);
-        let s7 = self.m * real(2.0);
-        let s8 = h * real(0.5);
+        let s7 = h * real(0.5);
         ::vi_core::SVector::from([
-            s7 * q_0_dot + q_1_dot * s4 * real(0.25) - s8 * (s6 + s5 * sin1),
-            s7 * q_1_dot + q_0_dot * s4 * real(0.25) + s8 * (s6 - s5 * sin2),
+            self.m * q_0_dot * real(2.0) + q_1_dot * s4 * real(0.25)
+                - s7 * (s6 + s5 * sin1),
+            self.m * q_1_dot * real(2.0) + q_0_dot * s4 * real(0.25)
+                + s7 * (s6 - s5 * sin2),
         ])
     }
 
@@ -525,7 +609,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_dot = (q_0_1 - q_0_0) / h;
         let q_1_dot = (q_1_1 - q_1_0) / h;
         let real = T::real;
-        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * (self.b * real(0.5)) * h
+        self.b * real(0.5) * h * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
     }
 
     /// `gd_plus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2`
@@ -539,7 +623,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         let q_0_dot = (q_0_1 - q_0_0) / h;
         let q_1_dot = (q_1_1 - q_1_0) / h;
         let real = T::real;
-        (q_0_dot * q_0_dot + q_1_dot * q_1_dot) * (self.b * real(0.5)) * h
+        self.b * real(0.5) * h * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
     }
 }
 
@@ -554,7 +638,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// `residual_q[1] = L_v_q[1] - h*f_q[1]/2 - h*L_q[1]/2 - p0_q[1]_low - p0_q[1]`
     ///
-    /// 83 operations.
+    /// 85 operations.
     #[inline(always)]
     fn momentum_equation(
         &self,
@@ -575,7 +659,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         fn momentum_equation_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 17],
+            values: &mut [T; 16],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -593,39 +677,37 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
             let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
             let t_mid = t0 + (s1 + t0_low);
-            let s2 = system.m * real(2.0);
-            let [(sin3, cos3), (sin4, cos4), (sin5, _)] = T::sin_cos_each([
+            let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([
                 q_0_mid,
                 q_1_mid,
                 t_mid,
             ]);
-            let s6 = cos3 * cos4 + sin3 * sin4;
-            let s7 = system.b * h * real(0.5);
-            let s8 = q_0_dot * q_1_dot;
-            let s9 = sin3 * cos4 - cos3 * sin4;
-            let s10 = s8 * s9 * real(0.25) + system.k * (q_0_mid - q_1_mid);
-            let s11 = sin5 * real(0.3333333333333333) + real(1.0);
-            let s12 = s2 * q_0_dot + q_1_dot * s6 * real(0.25) - p0_q_0
-                + (s7 * q_0_dot - p0_q_0_low + s1 * (s10 + s11 * sin3));
+            let s5 = cos2 * cos3 + sin2 * sin3;
+            let s6 = system.b * h * real(0.5);
+            let s7 = q_0_dot * q_1_dot;
+            let s8 = sin2 * cos3 - cos2 * sin3;
+            let s9 = s7 * s8 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let s10 = sin4 * real(0.3333333333333333) + real(1.0);
+            let s11 = system.m * q_0_dot * real(2.0) + q_1_dot * s5 * real(0.25) - p0_q_0
+                + (s6 * q_0_dot - p0_q_0_low + s1 * (s9 + s10 * sin2));
             values[6] = s1;
-            values[7] = cos3;
-            values[8] = cos4;
-            values[9] = sin4;
-            values[10] = s6;
-            values[11] = s8;
-            values[12] = s11;
-            values[13] = s9;
-            values[14] = s10;
-            values[15] = s2;
-            values[16] = s7;
-            values[0] = s12;
+            values[7] = cos2;
+            values[8] = cos3;
+            values[9] = sin3;
+            values[10] = s5;
+            values[11] = s7;
+            values[12] = s10;
+            values[13] = s8;
+            values[14] = s9;
+            values[15] = s6;
+            values[0] = s11;
         }
-        /// Part 2 of `momentum_equation`: 40 operations.
+        /// Part 2 of `momentum_equation`: 42 operations.
         #[inline(never)]
         fn momentum_equation_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 17],
+            values: &mut [T; 16],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -634,28 +716,28 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s1 = values[6];
             let p0_q_1_low = inputs[12];
             let p0_q_1 = inputs[7];
-            let cos3 = values[7];
-            let cos4 = values[8];
-            let sin4 = values[9];
-            let s6 = values[10];
-            let s8 = values[11];
-            let s11 = values[12];
-            let s9 = values[13];
-            let s10 = values[14];
-            let s2 = values[15];
-            let s7 = values[16];
+            let cos2 = values[7];
+            let cos3 = values[8];
+            let sin3 = values[9];
+            let s5 = values[10];
+            let s7 = values[11];
+            let s10 = values[12];
+            let s8 = values[13];
+            let s9 = values[14];
+            let s6 = values[15];
+            let s12 = system.m * real(2.0);
             let s13 = system.b * real(0.5);
             let s14 = h * real(0.25);
-            let s15 = system.k + s8 * s6 * real(0.25);
-            let s16 = s2 + (s13 + s14 * (s15 + s11 * cos3)) * h;
-            let s17 = s6 * real(0.25);
-            let s18 = (q_0_dot + q_1_dot) * real(0.125) * s9;
+            let s15 = system.k + s7 * s5 * real(0.25);
+            let s16 = s12 + (s13 + s14 * (s15 + s10 * cos2)) * h;
+            let s17 = s5 * real(0.25);
+            let s18 = (q_0_dot + q_1_dot) * s8 * real(0.125);
             let s19 = s14 * s15;
             let s20 = s17 - (s18 + s19) * h;
-            let s21 = s2 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
-                + (s7 * q_1_dot - p0_q_1_low - s1 * (s10 - s11 * sin4));
+            let s21 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
+                + (s6 * q_1_dot - p0_q_1_low - s1 * (s9 - s10 * sin3));
             let s22 = s17 + (s18 - s19) * h;
-            let s23 = s2 + (s13 + s14 * (s15 + s11 * cos4)) * h;
+            let s23 = s12 + (s13 + s14 * (s15 + s10 * cos3)) * h;
             values[1] = s21;
             values[2] = s16;
             values[3] = s22;
@@ -678,7 +760,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             p0_q_0_low,
             p0_q_1_low,
         ];
-        let mut values = [T::real(0.0); 17];
+        let mut values = [T::real(0.0); 16];
         momentum_equation_part_1(system, &inputs, &mut values);
         momentum_equation_part_2(system, &inputs, &mut values);
         ::vi_core::MomentumEquation {
@@ -691,7 +773,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
 
     /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
     ///
-    /// 172 operations.
+    /// 170 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -709,12 +791,12 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        /// Part 1 of `extended_system`: 29 operations.
+        /// Part 1 of `extended_system`: 27 operations.
         #[inline(never)]
         fn extended_system_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 47],
+            values: &mut [T; 50],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -730,41 +812,39 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
             let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
             let t_mid = t0 + (s1 + t0_low);
-            let s2 = system.m * real(2.0);
-            let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+            let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
                 q_0_mid,
                 q_1_mid,
                 t_mid,
             ]);
-            let s6 = cos3 + cos4;
-            let s7 = cos3 * cos4 + sin3 * sin4;
-            let s8 = q_1_dot * s7 * real(0.25);
-            let s9 = system.b * h * real(0.5);
-            let s10 = q_0_dot * q_1_dot;
-            let s11 = sin3 * cos4 - cos3 * sin4;
-            let s12 = q_0_mid - q_1_mid;
+            let s5 = cos2 + cos3;
+            let s6 = cos2 * cos3 + sin2 * sin3;
+            let s7 = q_1_dot * s6 * real(0.25);
+            let s8 = system.b * q_0_dot;
+            let s9 = q_0_dot * q_1_dot;
+            let s10 = sin2 * cos3 - cos2 * sin3;
+            let s11 = q_0_mid - q_1_mid;
             values[12] = s1;
-            values[13] = s12;
-            values[14] = cos3;
-            values[15] = cos4;
-            values[16] = sin3;
-            values[17] = sin4;
-            values[18] = s7;
-            values[19] = s10;
-            values[22] = sin5;
-            values[24] = s6;
-            values[25] = cos5;
-            values[26] = s11;
-            values[31] = s2;
+            values[13] = s11;
+            values[14] = cos2;
+            values[15] = cos3;
+            values[16] = sin2;
+            values[17] = sin3;
+            values[18] = s6;
+            values[19] = s9;
+            values[22] = sin4;
+            values[24] = s5;
+            values[25] = cos4;
+            values[26] = s10;
             values[32] = s8;
-            values[33] = s9;
+            values[34] = s7;
         }
-        /// Part 2 of `extended_system`: 27 operations.
+        /// Part 2 of `extended_system`: 29 operations.
         #[inline(never)]
         fn extended_system_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 47],
+            values: &mut [T; 50],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -772,93 +852,93 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s1 = values[12];
             let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
-            let s12 = values[13];
-            let cos3 = values[14];
-            let sin3 = values[16];
-            let s7 = values[18];
-            let s10 = values[19];
-            let sin5 = values[22];
-            let s11 = values[26];
-            let s2 = values[31];
+            let s11 = values[13];
+            let cos2 = values[14];
+            let sin2 = values[16];
+            let s6 = values[18];
+            let s9 = values[19];
+            let sin4 = values[22];
+            let s10 = values[26];
             let s8 = values[32];
-            let s9 = values[33];
-            let s13 = s10 * s11 * real(0.25) + system.k * s12;
-            let s14 = sin5 * real(0.3333333333333333) + real(1.0);
-            let s15 = s14 * sin3;
+            let s7 = values[34];
+            let s12 = system.k * s11;
+            let s13 = s9 * s10 * real(0.25) + s12;
+            let s14 = sin4 * real(0.3333333333333333) + real(1.0);
+            let s15 = s14 * sin2;
             let s16 = s13 + s15;
-            let s17 = s2 * q_0_dot + s8 - p0_q_0
-                + (s9 * q_0_dot - p0_q_0_low + s1 * s16);
-            let s18 = system.b * real(0.5);
-            let s19 = h * real(0.25);
-            let s20 = system.k + s10 * s7 * real(0.25);
-            let s21 = s20 + s14 * cos3;
-            let s22 = s2 + (s18 + s19 * s21) * h;
+            let s17 = system.m * q_0_dot * real(2.0) + s7 - p0_q_0
+                + (s8 * s1 - p0_q_0_low + s1 * s16);
+            let s18 = system.m * real(2.0);
+            let s19 = system.b * real(0.5);
+            let s20 = h * real(0.25);
+            let s21 = system.k + s9 * s6 * real(0.25);
+            let s22 = s21 + s14 * cos2;
+            let s23 = s18 + (s19 + s20 * s22) * h;
             values[23] = s14;
-            values[27] = s15;
-            values[28] = s13;
-            values[29] = s16;
+            values[27] = s12;
+            values[28] = s15;
+            values[29] = s13;
+            values[30] = s16;
             values[0] = s17;
-            values[35] = s20;
-            values[36] = s21;
-            values[38] = s18;
-            values[39] = s19;
-            values[2] = s22;
+            values[37] = s21;
+            values[38] = s22;
+            values[40] = s18;
+            values[41] = s19;
+            values[42] = s20;
+            values[2] = s23;
         }
-        /// Part 3 of `extended_system`: 32 operations.
+        /// Part 3 of `extended_system`: 29 operations.
         #[inline(never)]
         fn extended_system_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 47],
+            values: &mut [T; 50],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s12 = values[13];
-            let sin3 = values[16];
-            let s7 = values[18];
-            let cos5 = values[25];
-            let s11 = values[26];
-            let s15 = values[27];
-            let s20 = values[35];
-            let s21 = values[36];
-            let s18 = values[38];
-            let s19 = values[39];
-            let s23 = s7 * real(0.25);
-            let s24 = (q_0_dot + q_1_dot) * real(0.125) * s11;
-            let s25 = s19 * s20;
-            let s26 = s23 - (s24 + s25) * h;
-            let s27 = system.k * real(0.5);
-            let s28 = s27 * s12;
+            let sin2 = values[16];
+            let s6 = values[18];
+            let cos4 = values[25];
+            let s10 = values[26];
+            let s12 = values[27];
+            let s15 = values[28];
+            let s8 = values[32];
+            let s21 = values[37];
+            let s22 = values[38];
+            let s20 = values[42];
+            let s24 = s6 * real(0.25);
+            let s25 = (q_0_dot + q_1_dot) * s10 * real(0.125);
+            let s26 = s20 * s21;
+            let s27 = s24 - (s25 + s26) * h;
+            let s28 = s12 * real(0.5);
             let s29 = q_1_dot * q_1_dot;
-            let s30 = s28 + s15 * real(0.5) + s18 * q_0_dot + s29 * s11 * real(0.125);
-            let s31 = sin3 * cos5;
-            let s32 = s31 * real(0.08333333333333333);
-            let s33 = q_0_dot * s21 * real(0.25);
-            let s34 = q_1_dot * s20;
-            let s35 = s34 * real(0.25);
-            let s36 = s30 + (s32 + s33 - s35) * h;
-            let s37 = s30 + (s35 - s33 - s32) * h;
+            let s30 = s28 + s15 * real(0.5) + s8 * real(0.5) + s29 * s10 * real(0.125);
+            let s31 = sin2 * cos4;
+            let s32 = s31 * real(0.3333333333333333);
+            let s33 = q_0_dot * s22;
+            let s34 = q_1_dot * s21;
+            let s35 = s30 + s20 * (s32 + s33 - s34);
+            let s36 = s30 + s20 * (s34 - s33 - s32);
             values[21] = s29;
-            values[34] = s27;
-            values[40] = s23;
-            values[41] = s24;
-            values[42] = s25;
-            values[4] = s26;
-            values[43] = s28;
-            values[44] = s31;
-            values[45] = s33;
-            values[46] = s34;
-            values[6] = s36;
-            values[9] = s37;
+            values[43] = s24;
+            values[44] = s25;
+            values[45] = s26;
+            values[4] = s27;
+            values[46] = s28;
+            values[47] = s31;
+            values[48] = s33;
+            values[49] = s34;
+            values[6] = s35;
+            values[9] = s36;
         }
-        /// Part 4 of `extended_system`: 50 operations.
+        /// Part 4 of `extended_system`: 47 operations.
         #[inline(never)]
         fn extended_system_part_4<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 47],
+            values: &mut [T; 50],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -866,88 +946,94 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_1_dot = inputs[5];
             let s1 = values[12];
             let p0_q_0_low = inputs[12];
-            let p0_q_0 = inputs[6];
             let p0_q_1_low = inputs[13];
             let p0_q_1 = inputs[7];
             let energy0_low = inputs[14];
             let energy0 = inputs[8];
-            let s12 = values[13];
-            let cos4 = values[15];
-            let sin4 = values[17];
-            let s7 = values[18];
+            let s11 = values[13];
+            let cos3 = values[15];
+            let sin3 = values[17];
+            let s6 = values[18];
             let s29 = values[21];
             let s14 = values[23];
-            let s6 = values[24];
-            let cos5 = values[25];
-            let s13 = values[28];
-            let s16 = values[29];
-            let s2 = values[31];
-            let s8 = values[32];
-            let s9 = values[33];
-            let s27 = values[34];
-            let s20 = values[35];
-            let s18 = values[38];
-            let s19 = values[39];
-            let s23 = values[40];
-            let s24 = values[41];
-            let s25 = values[42];
-            let s38 = s14 * sin4;
+            let s5 = values[24];
+            let cos4 = values[25];
+            let s13 = values[29];
+            let s16 = values[30];
+            let s21 = values[37];
+            let s18 = values[40];
+            let s19 = values[41];
+            let s20 = values[42];
+            let s24 = values[43];
+            let s25 = values[44];
+            let s26 = values[45];
+            let s37 = system.b * q_1_dot;
+            let s38 = s14 * sin3;
             let s39 = s13 - s38;
             let s40 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
-                + (s6 * cos5 * real(0.16666666666666666) - q_0_dot * s16 * real(0.5)
-                    + q_1_dot * s39 * real(0.5)) * h;
-            let s41 = s2 * q_1_dot + q_0_dot * s7 * real(0.25) - p0_q_1
-                + (s9 * q_1_dot - p0_q_1_low - s1 * s39);
-            let s42 = s23 + (s24 - s25) * h;
-            let s43 = s20 + s14 * cos4;
-            let s44 = s2 + (s18 + s19 * s43) * h;
+                + s1
+                    * (s5 * cos4 * real(0.3333333333333333) - q_0_dot * s16
+                        + q_1_dot * s39);
+            let s41 = system.m * q_1_dot * real(2.0) + q_0_dot * s6 * real(0.25) - p0_q_1
+                + (s37 * s1 - p0_q_1_low - s1 * s39);
+            let s42 = s24 + (s25 - s26) * h;
+            let s43 = s21 + s14 * cos3;
+            let s44 = s18 + (s19 + s20 * s43) * h;
             let s45 = q_0_dot * q_0_dot;
-            let s46 = q_1_dot * p0_q_1 + s27 * (s12 * s12) - energy0
-                - system.m * (s45 + s29) - s14 * s6 + (p0_q_0 - s8) * q_0_dot;
-            let s47 = s46 + s40;
+            let s46 = q_1_dot * p0_q_1 + system.k * (s11 * s11) * real(0.5) - energy0
+                - system.m * (s45 + s29) - s14 * s5;
             values[20] = s45;
-            values[30] = s38;
+            values[31] = s38;
+            values[33] = s37;
             values[1] = s41;
-            values[8] = s47;
-            values[37] = s43;
+            values[35] = s46;
+            values[36] = s40;
+            values[39] = s43;
             values[3] = s42;
             values[5] = s44;
         }
-        /// Part 5 of `extended_system`: 34 operations.
+        /// Part 5 of `extended_system`: 38 operations.
         #[inline(never)]
         fn extended_system_part_5<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 47],
+            values: &mut [T; 50],
         ) {
             let real = T::real;
-            let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let sin4 = values[17];
+            let p0_q_0 = inputs[6];
+            let sin3 = values[17];
             let s45 = values[20];
-            let sin5 = values[22];
-            let s6 = values[24];
-            let cos5 = values[25];
-            let s11 = values[26];
-            let s38 = values[30];
-            let s20 = values[35];
-            let s43 = values[37];
-            let s18 = values[38];
-            let s28 = values[43];
-            let s31 = values[44];
-            let s33 = values[45];
-            let s34 = values[46];
-            let s48 = s38 * real(0.5) + s18 * q_1_dot - s28 - s45 * s11 * real(0.125);
-            let s49 = sin4 * cos5;
-            let s50 = s49 * real(0.08333333333333333);
-            let s51 = q_0_dot * s20 * real(0.25);
-            let s52 = q_1_dot * s43 * real(0.25);
-            let s53 = (-s52 - s49 * real(0.16666666666666666)) * q_1_dot
-                - sin5 * s6 * real(0.08333333333333333)
-                + (s34 * real(0.5) - s33 - s31 * real(0.16666666666666666)) * q_0_dot;
-            let s54 = s48 + (s50 - s51 + s52) * h;
-            let s55 = s48 + (s51 - s52 - s50) * h;
+            let sin4 = values[22];
+            let s5 = values[24];
+            let cos4 = values[25];
+            let s10 = values[26];
+            let s38 = values[31];
+            let s37 = values[33];
+            let s7 = values[34];
+            let s46 = values[35];
+            let s40 = values[36];
+            let s21 = values[37];
+            let s43 = values[39];
+            let s20 = values[42];
+            let s28 = values[46];
+            let s31 = values[47];
+            let s33 = values[48];
+            let s34 = values[49];
+            let s47 = s46 + (p0_q_0 - s7) * q_0_dot + s40;
+            let s48 = s38 * real(0.5) + s37 * real(0.5) - s28 - s45 * s10 * real(0.125);
+            let s49 = sin3 * cos4;
+            let s50 = s49 * real(0.3333333333333333);
+            let s51 = q_0_dot * s21;
+            let s52 = q_1_dot * s43;
+            let s53 = (-(s52 * real(0.25)) - s49 * real(0.16666666666666666)) * q_1_dot
+                - sin4 * s5 * real(0.08333333333333333)
+                + (s34 * real(0.5) - s33 * real(0.25) - s31 * real(0.16666666666666666))
+                    * q_0_dot;
+            let s54 = s48 + s20 * (s50 - s51 + s52);
+            let s55 = s48 + s20 * (s51 - s52 - s50);
+            values[8] = s47;
             values[7] = s54;
             values[10] = s55;
             values[11] = s53;
@@ -970,7 +1056,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             p0_q_1_low,
             energy0_low,
         ];
-        let mut values = [T::real(0.0); 47];
+        let mut values = [T::real(0.0); 50];
         extended_system_part_1(system, &inputs, &mut values);
         extended_system_part_2(system, &inputs, &mut values);
         extended_system_part_3(system, &inputs, &mut values);
@@ -992,7 +1078,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
 
     /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
     ///
-    /// 200 operations.
+    /// 196 operations.
     #[cold]
     fn magnitudes(
         &self,
@@ -1013,7 +1099,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         fn magnitudes_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 38],
+            values: &mut [T; 39],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1061,7 +1147,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         fn magnitudes_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 38],
+            values: &mut [T; 39],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1091,8 +1177,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s20 = h * t_mid;
             let s21 = s6 * cos5 * real(0.3333333333333333)
                 + (sin5 * s6 * real(0.16666666666666666)
-                    + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666)
-                        * cos5) * h;
+                    + (q_0_dot * sin3 + q_1_dot * sin4) * cos5
+                        * real(0.16666666666666666)) * h;
             let s22 = (sin5.abs() * real(0.3333333333333333)
                 + (h * cos5).abs() * real(0.16666666666666666) + real(1.0))
                 * (cos3.abs() + cos4.abs());
@@ -1105,19 +1191,18 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[23] = s19;
             values[24] = s20;
             values[27] = s9;
-            values[32] = s21;
-            values[33] = s15;
-            values[35] = s22;
+            values[33] = s21;
+            values[34] = s15;
+            values[36] = s22;
         }
         /// Part 3 of `magnitudes`: 50 operations.
         #[inline(never)]
         fn magnitudes_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 38],
+            values: &mut [T; 39],
         ) {
             let real = T::real;
-            let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
             let s1 = values[3];
@@ -1139,14 +1224,17 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s20 = values[24];
             let s9 = values[27];
             let s8 = values[28];
-            let s15 = values[33];
+            let s15 = values[34];
             let s23 = q_1_dot * s11 * real(0.25);
             let s24 = s10 * s7;
             let s25 = system.k + s24 * real(0.25);
             let s26 = s25 + s17 * cos3;
-            let s27 = s15 + s18
-                + (q_1_dot * s25 * real(0.5) - q_0_dot * s26 * real(0.5)
-                    - sin3 * cos5 * real(0.16666666666666666)) * h;
+            let s27 = (q_0_mid
+                * (s15 + s18
+                    + s1
+                        * (q_1_dot * s25 - q_0_dot * s26
+                            - sin3 * cos5 * real(0.3333333333333333))))
+                .abs();
             let s28 = s8 + s9 * s19
                 + (s20 * sin3 * cos5).abs() * real(0.16666666666666666)
                 + (q_0_mid * (s23 - s1 * s26)).abs();
@@ -1157,33 +1245,36 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[25] = s25;
             values[26] = s29;
             values[0] = s30;
-            values[34] = s27;
-            values[36] = s31;
+            values[35] = s27;
+            values[37] = s31;
         }
-        /// Part 4 of `magnitudes`: 40 operations.
+        /// Part 4 of `magnitudes`: 42 operations.
         #[inline(never)]
         fn magnitudes_part_4<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 38],
+            values: &mut [T; 39],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let t_mid = values[4];
             let q_0_mid = values[5];
             let p0_q_1 = inputs[7];
             let s2 = values[7];
+            let cos4 = values[10];
             let sin4 = values[12];
             let s7 = values[13];
             let s17 = values[16];
+            let cos5 = values[18];
             let s11 = values[19];
             let s16 = values[22];
             let s19 = values[23];
-            let s21 = values[32];
-            let s27 = values[34];
-            let s31 = values[36];
+            let s20 = values[24];
+            let s25 = values[25];
+            let s29 = values[26];
+            let s9 = values[27];
+            let s31 = values[37];
             let s32 = s31 + system.m.abs() * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
                 + s19 * (h * q_0_dot).abs() * real(0.5);
             let s33 = p0_q_1.abs() + (s2 * q_1_dot).abs() * real(0.5)
@@ -1191,55 +1282,56 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
                 + (q_0_dot * s7).abs() * real(0.25);
             let s34 = s17 * sin4;
             let s35 = s16 + s34.abs();
-            let s36 = s32 + s35 * (h * q_1_dot).abs() * real(0.5) + (t_mid * s21).abs()
-                + (q_0_mid * s27).abs();
-            let s37 = q_0_dot * s11 * real(0.25);
+            let s36 = q_0_dot * s11 * real(0.25);
+            let s37 = s33 + s9 * s35
+                + (s20 * sin4 * cos5).abs() * real(0.16666666666666666)
+                + (q_0_mid * (s36 + s29)).abs();
+            let s38 = s25 + s17 * cos4;
             values[21] = s34;
             values[29] = s35;
-            values[30] = s37;
-            values[31] = s33;
-            values[37] = s36;
+            values[30] = s36;
+            values[31] = s38;
+            values[32] = s37;
+            values[38] = s32;
         }
-        /// Part 5 of `magnitudes`: 33 operations.
+        /// Part 5 of `magnitudes`: 27 operations.
         #[inline(never)]
         fn magnitudes_part_5<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 12],
-            values: &mut [T; 38],
+            values: &mut [T; 39],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
             let s1 = values[3];
-            let q_0_mid = values[5];
+            let t_mid = values[4];
             let q_1_mid = values[6];
-            let cos4 = values[10];
             let sin4 = values[12];
-            let s17 = values[16];
             let cos5 = values[18];
             let s34 = values[21];
-            let s20 = values[24];
             let s25 = values[25];
-            let s29 = values[26];
-            let s9 = values[27];
             let s35 = values[29];
-            let s37 = values[30];
-            let s33 = values[31];
-            let s15 = values[33];
-            let s22 = values[35];
-            let s36 = values[37];
-            let s38 = s33 + s9 * s35
-                + (s20 * sin4 * cos5).abs() * real(0.16666666666666666)
-                + (q_0_mid * (s37 + s29)).abs();
-            let s39 = s25 + s17 * cos4;
-            let s40 = s15 - s34
-                + (sin4 * cos5 * real(0.16666666666666666) - q_0_dot * s25 * real(0.5)
-                    + q_1_dot * s39 * real(0.5)) * h;
-            let s41 = s36 + (q_1_mid * s40).abs() + s22;
-            let s42 = s38 + (q_1_mid * (s37 + s1 * s39)).abs();
-            values[1] = s42;
-            values[2] = s41;
+            let s36 = values[30];
+            let s38 = values[31];
+            let s37 = values[32];
+            let s21 = values[33];
+            let s15 = values[34];
+            let s27 = values[35];
+            let s22 = values[36];
+            let s32 = values[38];
+            let s39 = (q_1_mid
+                * (s15 - s34
+                    + s1
+                        * (sin4 * cos5 * real(0.3333333333333333) - q_0_dot * s25
+                            + q_1_dot * s38)))
+                .abs();
+            let s40 = s32 + s35 * (h * q_1_dot).abs() * real(0.5) + (t_mid * s21).abs()
+                + s27 + s39 + s22;
+            let s41 = s37 + (q_1_mid * (s36 + s1 * s38)).abs();
+            values[1] = s41;
+            values[2] = s40;
         }
         let system = self;
         let inputs = [
@@ -1256,7 +1348,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             q_0_0_low,
             q_1_0_low,
         ];
-        let mut values = [T::real(0.0); 38];
+        let mut values = [T::real(0.0); 39];
         magnitudes_part_1(system, &inputs, &mut values);
         magnitudes_part_2(system, &inputs, &mut values);
         magnitudes_part_3(system, &inputs, &mut values);
@@ -1317,7 +1409,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// and to first order at `v + dv`.
     ///
-    /// 102 operations.
+    /// 104 operations.
     #[inline(always)]
     fn momentum_step(
         &self,
@@ -1355,36 +1447,34 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_1_mid = inputs[10];
             let s1 = h * real(0.5);
             let t_mid = t0 + (s1 + t0_low);
-            let s2 = system.m * real(2.0);
-            let [(sin3, cos3), (sin4, cos4), (sin5, _)] = T::sin_cos_each([
+            let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([
                 q_0_mid,
                 q_1_mid,
                 t_mid,
             ]);
-            let s6 = cos3 * cos4 + sin3 * sin4;
-            let s7 = system.b * h;
-            let s8 = s7 * real(0.5);
-            let s9 = q_0_dot * q_1_dot;
-            let s10 = sin3 * cos4 - cos3 * sin4;
-            let s11 = s9 * s10 * real(0.25) + system.k * (q_0_mid - q_1_mid);
-            let s12 = sin5 * real(0.3333333333333333) + real(1.0);
-            let s13 = s11 + s12 * sin3;
-            let s14 = s2 * q_0_dot + q_1_dot * s6 * real(0.25) - p0_q_0
-                + (s8 * q_0_dot - p0_q_0_low + s1 * s13);
+            let s5 = cos2 * cos3 + sin2 * sin3;
+            let s6 = system.b * h;
+            let s7 = s6 * real(0.5);
+            let s8 = q_0_dot * q_1_dot;
+            let s9 = sin2 * cos3 - cos2 * sin3;
+            let s10 = s8 * s9 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let s11 = sin4 * real(0.3333333333333333) + real(1.0);
+            let s12 = s10 + s11 * sin2;
+            let s13 = system.m * q_0_dot * real(2.0) + q_1_dot * s5 * real(0.25) - p0_q_0
+                + (s7 * q_0_dot - p0_q_0_low + s1 * s12);
             values[12] = s1;
-            values[13] = s7;
-            values[14] = cos3;
-            values[15] = cos4;
-            values[16] = sin4;
-            values[17] = s6;
-            values[18] = s9;
-            values[19] = s12;
-            values[20] = s10;
-            values[21] = s11;
-            values[22] = s13;
-            values[24] = s2;
-            values[25] = s8;
-            values[0] = s14;
+            values[13] = s6;
+            values[14] = cos2;
+            values[15] = cos3;
+            values[16] = sin3;
+            values[17] = s5;
+            values[18] = s8;
+            values[19] = s11;
+            values[20] = s9;
+            values[21] = s10;
+            values[22] = s12;
+            values[24] = s7;
+            values[0] = s13;
         }
         /// Part 2 of `momentum_step`: 50 operations.
         #[inline(never)]
@@ -1400,40 +1490,39 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s1 = values[12];
             let p0_q_1_low = inputs[8];
             let p0_q_1 = inputs[5];
-            let s7 = values[13];
-            let cos3 = values[14];
-            let cos4 = values[15];
-            let sin4 = values[16];
-            let s6 = values[17];
-            let s9 = values[18];
-            let s12 = values[19];
-            let s10 = values[20];
-            let s11 = values[21];
-            let s13 = values[22];
-            let s2 = values[24];
-            let s8 = values[25];
+            let s6 = values[13];
+            let cos2 = values[14];
+            let sin3 = values[16];
+            let s5 = values[17];
+            let s8 = values[18];
+            let s11 = values[19];
+            let s9 = values[20];
+            let s10 = values[21];
+            let s12 = values[22];
+            let s7 = values[24];
+            let s14 = system.m * real(2.0);
             let s15 = system.b * real(0.5);
             let s16 = h * real(0.25);
-            let s17 = system.k + s9 * s6 * real(0.25);
-            let s18 = s17 + s12 * cos3;
-            let s19 = s2 + (s15 + s16 * s18) * h;
-            let s20 = s6 * real(0.25);
-            let s21 = (q_0_dot + q_1_dot) * real(0.125) * s10;
+            let s17 = system.k + s8 * s5 * real(0.25);
+            let s18 = s17 + s11 * cos2;
+            let s19 = s14 + (s15 + s16 * s18) * h;
+            let s20 = s5 * real(0.25);
+            let s21 = (q_0_dot + q_1_dot) * s9 * real(0.125);
             let s22 = s16 * s17;
             let s23 = s20 - (s21 + s22) * h;
-            let s24 = -(h * s13) - s7 * q_0_dot;
-            let s25 = q_1_dot * s10 * real(0.25);
+            let s24 = -(h * s12) - s6 * q_0_dot;
+            let s25 = q_1_dot * s9 * real(0.25);
             let s26 = (-(system.b + s25) - s1 * s18) * h;
             let s27 = s1 * s17;
             let s28 = (s25 + s27) * h;
-            let s29 = s11 - s12 * sin4;
-            let s30 = s2 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
-                + (s8 * q_1_dot - p0_q_1_low - s1 * s29);
+            let s29 = s10 - s11 * sin3;
+            let s30 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
+                + (s7 * q_1_dot - p0_q_1_low - s1 * s29);
             let s31 = s20 + (s21 - s22) * h;
-            let s32 = s17 + s12 * cos4;
             values[23] = s29;
             values[1] = s30;
-            values[26] = s32;
+            values[25] = s17;
+            values[26] = s14;
             values[27] = s15;
             values[28] = s16;
             values[2] = s19;
@@ -1444,7 +1533,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[29] = s27;
             values[10] = s28;
         }
-        /// Part 3 of `momentum_step`: 15 operations.
+        /// Part 3 of `momentum_step`: 17 operations.
         #[inline(never)]
         fn momentum_step_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
@@ -1456,17 +1545,20 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_0_dot = inputs[2];
             let q_1_dot = inputs[3];
             let s1 = values[12];
-            let s7 = values[13];
-            let s10 = values[20];
+            let s6 = values[13];
+            let cos3 = values[15];
+            let s11 = values[19];
+            let s9 = values[20];
             let s29 = values[23];
-            let s2 = values[24];
-            let s32 = values[26];
+            let s17 = values[25];
+            let s14 = values[26];
             let s15 = values[27];
             let s16 = values[28];
             let s27 = values[29];
-            let s33 = s2 + (s15 + s16 * s32) * h;
-            let s34 = h * s29 - s7 * q_1_dot;
-            let s35 = q_0_dot * s10 * real(0.25);
+            let s32 = s17 + s11 * cos3;
+            let s33 = s14 + (s15 + s16 * s32) * h;
+            let s34 = h * s29 - s6 * q_1_dot;
+            let s35 = q_0_dot * s9 * real(0.25);
             let s36 = (s27 - s35) * h;
             let s37 = (s35 - system.b - s1 * s32) * h;
             values[5] = s33;
@@ -1515,7 +1607,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// and to first order at `(v + dv, h + dh)`.
     ///
-    /// 243 operations.
+    /// 230 operations.
     #[inline(always)]
     fn extended_step(
         &self,
@@ -1536,12 +1628,12 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        /// Part 1 of `extended_step`: 28 operations.
+        /// Part 1 of `extended_step`: 26 operations.
         #[inline(never)]
         fn extended_step_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 70],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1557,41 +1649,37 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
             let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
             let t_mid = t0 + (s1 + t0_low);
-            let s2 = system.m * real(2.0);
-            let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+            let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
                 q_0_mid,
                 q_1_mid,
                 t_mid,
             ]);
-            let s6 = cos3 * cos4 + sin3 * sin4;
-            let s7 = q_1_dot * s6 * real(0.25);
-            let s8 = system.b * h;
-            let s9 = s8 * real(0.5);
-            let s10 = q_0_dot * q_1_dot;
-            let s11 = sin3 * cos4 - cos3 * sin4;
-            let s12 = q_0_mid - q_1_mid;
+            let s5 = cos2 * cos3 + sin2 * sin3;
+            let s6 = q_1_dot * s5 * real(0.25);
+            let s7 = system.b * q_0_dot;
+            let s8 = q_0_dot * q_1_dot;
+            let s9 = sin2 * cos3 - cos2 * sin3;
+            let s10 = q_0_mid - q_1_mid;
             values[24] = s1;
-            values[25] = s8;
-            values[26] = s12;
+            values[25] = s10;
+            values[26] = cos2;
             values[27] = cos3;
-            values[28] = cos4;
+            values[28] = sin2;
             values[29] = sin3;
-            values[30] = sin4;
-            values[31] = s6;
-            values[32] = s10;
-            values[35] = sin5;
-            values[37] = cos5;
-            values[38] = s11;
-            values[45] = s2;
-            values[46] = s7;
-            values[47] = s9;
+            values[30] = s5;
+            values[31] = s8;
+            values[34] = sin4;
+            values[37] = cos4;
+            values[38] = s9;
+            values[45] = s7;
+            values[47] = s6;
         }
-        /// Part 2 of `extended_step`: 27 operations.
+        /// Part 2 of `extended_step`: 29 operations.
         #[inline(never)]
         fn extended_step_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 70],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1599,101 +1687,98 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s1 = values[24];
             let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
-            let s12 = values[26];
-            let cos3 = values[27];
-            let sin3 = values[29];
-            let s6 = values[31];
-            let s10 = values[32];
-            let sin5 = values[35];
-            let s11 = values[38];
-            let s2 = values[45];
-            let s7 = values[46];
-            let s9 = values[47];
-            let s13 = system.k * s12;
-            let s14 = s10 * s11 * real(0.25) + s13;
-            let s15 = sin5 * real(0.3333333333333333) + real(1.0);
-            let s16 = s15 * sin3;
-            let s17 = s14 + s16;
-            let s18 = s2 * q_0_dot + s7 - p0_q_0
-                + (s9 * q_0_dot - p0_q_0_low + s1 * s17);
-            let s19 = system.b * real(0.5);
-            let s20 = h * real(0.25);
-            let s21 = system.k + s10 * s6 * real(0.25);
-            let s22 = s21 + s15 * cos3;
-            let s23 = s2 + (s19 + s20 * s22) * h;
-            values[36] = s15;
-            values[39] = s13;
-            values[40] = s16;
-            values[41] = s14;
-            values[42] = s17;
-            values[0] = s18;
-            values[49] = s21;
-            values[50] = s22;
-            values[52] = s19;
-            values[53] = s20;
-            values[2] = s23;
+            let s10 = values[25];
+            let cos2 = values[26];
+            let sin2 = values[28];
+            let s5 = values[30];
+            let s8 = values[31];
+            let sin4 = values[34];
+            let s9 = values[38];
+            let s7 = values[45];
+            let s6 = values[47];
+            let s11 = system.k * s10;
+            let s12 = s8 * s9 * real(0.25) + s11;
+            let s13 = sin4 * real(0.3333333333333333) + real(1.0);
+            let s14 = s13 * sin2;
+            let s15 = s12 + s14;
+            let s16 = system.m * q_0_dot * real(2.0) + s6 - p0_q_0
+                + (s7 * s1 - p0_q_0_low + s1 * s15);
+            let s17 = system.m * real(2.0);
+            let s18 = system.b * real(0.5);
+            let s19 = h * real(0.25);
+            let s20 = system.k + s8 * s5 * real(0.25);
+            let s21 = s20 + s13 * cos2;
+            let s22 = s17 + (s18 + s19 * s21) * h;
+            values[35] = s13;
+            values[39] = s11;
+            values[40] = s14;
+            values[41] = s12;
+            values[42] = s15;
+            values[0] = s16;
+            values[49] = s20;
+            values[50] = s21;
+            values[52] = s17;
+            values[53] = s18;
+            values[54] = s19;
+            values[2] = s22;
         }
-        /// Part 3 of `extended_step`: 36 operations.
+        /// Part 3 of `extended_step`: 33 operations.
         #[inline(never)]
         fn extended_step_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 70],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s8 = values[25];
-            let s12 = values[26];
-            let sin3 = values[29];
-            let s6 = values[31];
-            let cos5 = values[37];
-            let s11 = values[38];
-            let s16 = values[40];
-            let s17 = values[42];
-            let s21 = values[49];
-            let s22 = values[50];
-            let s19 = values[52];
-            let s20 = values[53];
-            let s24 = s6 * real(0.25);
-            let s25 = (q_0_dot + q_1_dot) * real(0.125) * s11;
-            let s26 = s20 * s21;
-            let s27 = s24 - (s25 + s26) * h;
-            let s28 = system.k * real(0.5);
-            let s29 = s28 * s12;
-            let s30 = q_1_dot * q_1_dot;
-            let s31 = s29 + s16 * real(0.5) + s19 * q_0_dot + s30 * s11 * real(0.125);
-            let s32 = sin3 * cos5;
-            let s33 = s32 * real(0.08333333333333333);
-            let s34 = q_0_dot * s22;
-            let s35 = s34 * real(0.25);
-            let s36 = q_1_dot * s21;
-            let s37 = s36 * real(0.25);
-            let s38 = s31 + (s33 + s35 - s37) * h;
-            let s39 = s31 + (s37 - s35 - s33) * h;
-            let s40 = -(h * s17) - s8 * q_0_dot;
-            values[34] = s30;
-            values[48] = s28;
-            values[54] = s24;
-            values[55] = s25;
-            values[56] = s26;
-            values[4] = s27;
-            values[57] = s29;
-            values[58] = s32;
-            values[59] = s34;
-            values[60] = s35;
-            values[61] = s36;
-            values[6] = s38;
-            values[9] = s39;
-            values[12] = s40;
+            let sin2 = values[28];
+            let s5 = values[30];
+            let cos4 = values[37];
+            let s9 = values[38];
+            let s11 = values[39];
+            let s14 = values[40];
+            let s15 = values[42];
+            let s7 = values[45];
+            let s20 = values[49];
+            let s21 = values[50];
+            let s19 = values[54];
+            let s23 = s5 * real(0.25);
+            let s24 = (q_0_dot + q_1_dot) * s9 * real(0.125);
+            let s25 = s19 * s20;
+            let s26 = s23 - (s24 + s25) * h;
+            let s27 = s11 * real(0.5);
+            let s28 = q_1_dot * q_1_dot;
+            let s29 = s27 + s14 * real(0.5) + s7 * real(0.5) + s28 * s9 * real(0.125);
+            let s30 = sin2 * cos4;
+            let s31 = s30 * real(0.3333333333333333);
+            let s32 = q_0_dot * s21;
+            let s33 = q_1_dot * s20;
+            let s34 = s29 + s19 * (s31 + s32 - s33);
+            let s35 = s33 - s32 - s31;
+            let s36 = s29 + s19 * s35;
+            let s37 = -(h * s15) - s7 * h;
+            values[33] = s28;
+            values[55] = s23;
+            values[56] = s24;
+            values[57] = s25;
+            values[4] = s26;
+            values[58] = s27;
+            values[59] = s30;
+            values[60] = s32;
+            values[61] = s33;
+            values[6] = s34;
+            values[64] = s35;
+            values[9] = s36;
+            values[12] = s37;
         }
         /// Part 4 of `extended_step`: 47 operations.
         #[inline(never)]
         fn extended_step_part_4<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 70],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1702,187 +1787,169 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s1 = values[24];
             let p0_q_1_low = inputs[13];
             let p0_q_1 = inputs[7];
-            let cos4 = values[28];
+            let cos3 = values[27];
             let sin3 = values[29];
-            let sin4 = values[30];
-            let s6 = values[31];
-            let s15 = values[36];
-            let cos5 = values[37];
-            let s11 = values[38];
-            let s14 = values[41];
-            let s2 = values[45];
-            let s9 = values[47];
-            let s21 = values[49];
-            let s22 = values[50];
-            let s24 = values[54];
-            let s25 = values[55];
-            let s26 = values[56];
-            let s41 = q_1_dot * s11 * real(0.25);
-            let s42 = system.b + s41;
-            let s43 = (-s42 - s1 * s22) * h;
-            let s44 = s1 * s21;
-            let s45 = (s41 + s44) * h;
-            let s46 = h * real(0.16666666666666666);
-            let s47 = system.b * real(2.0);
-            let s48 = (s46 * sin3 * cos5 - s47 * q_0_dot) * h;
-            let s49 = q_0_dot * s11 * real(0.25);
-            let s50 = (s44 - s49) * h;
-            let s51 = s49 - system.b;
-            let s52 = s21 + s15 * cos4;
-            let s53 = (s51 - s1 * s52) * h;
-            let s54 = (s46 * sin4 * cos5 - s47 * q_1_dot) * h;
-            let s55 = s15 * sin4;
-            let s56 = s14 - s55;
-            let s57 = s2 * q_1_dot + q_0_dot * s6 * real(0.25) - p0_q_1
-                + (s9 * q_1_dot - p0_q_1_low - s1 * s56);
-            let s58 = s24 + (s25 - s26) * h;
-            values[43] = s55;
-            values[44] = s56;
-            values[1] = s57;
-            values[51] = s52;
-            values[3] = s58;
-            values[68] = s42;
-            values[15] = s43;
-            values[16] = s50;
-            values[18] = s45;
-            values[69] = s51;
-            values[19] = s53;
-            values[21] = s48;
-            values[22] = s54;
+            let s5 = values[30];
+            let s13 = values[35];
+            let cos4 = values[37];
+            let s9 = values[38];
+            let s12 = values[41];
+            let s7 = values[45];
+            let s20 = values[49];
+            let s21 = values[50];
+            let s23 = values[55];
+            let s24 = values[56];
+            let s25 = values[57];
+            let s30 = values[59];
+            let s38 = q_1_dot * s9 * real(0.25);
+            let s39 = system.b + s38;
+            let s40 = (-s39 - s1 * s21) * h;
+            let s41 = s1 * s20;
+            let s42 = (s38 + s41) * h;
+            let s43 = h * real(0.16666666666666666);
+            let s44 = (s30 * s43 - s7 * real(2.0)) * h;
+            let s45 = q_0_dot * s9 * real(0.25);
+            let s46 = (s41 - s45) * h;
+            let s47 = s45 - system.b;
+            let s48 = s20 + s13 * cos3;
+            let s49 = (s47 - s1 * s48) * h;
+            let s50 = sin3 * cos4;
+            let s51 = system.b * q_1_dot;
+            let s52 = (s50 * s43 - s51 * real(2.0)) * h;
+            let s53 = s13 * sin3;
+            let s54 = s12 - s53;
+            let s55 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
+                + (s51 * s1 - p0_q_1_low - s1 * s54);
+            let s56 = s23 + (s24 - s25) * h;
+            values[43] = s53;
+            values[44] = s54;
+            values[46] = s51;
+            values[1] = s55;
+            values[51] = s48;
+            values[3] = s56;
+            values[62] = s50;
+            values[66] = s39;
+            values[15] = s40;
+            values[16] = s46;
+            values[18] = s42;
+            values[67] = s47;
+            values[19] = s49;
+            values[21] = s44;
+            values[22] = s52;
         }
         /// Part 5 of `extended_step`: 50 operations.
         #[inline(never)]
         fn extended_step_part_5<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 70],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s8 = values[25];
-            let sin4 = values[30];
-            let cos5 = values[37];
-            let s11 = values[38];
-            let s13 = values[39];
-            let s16 = values[40];
-            let s55 = values[43];
-            let s56 = values[44];
-            let s2 = values[45];
-            let s21 = values[49];
-            let s52 = values[51];
-            let s19 = values[52];
-            let s20 = values[53];
-            let s29 = values[57];
-            let s32 = values[58];
-            let s34 = values[59];
-            let s36 = values[61];
-            let s42 = values[68];
-            let s51 = values[69];
-            let s59 = s2 + (s19 + s20 * s52) * h;
-            let s60 = q_0_dot * q_0_dot;
-            let s61 = s55 * real(0.5) + s19 * q_1_dot - s29 - s60 * s11 * real(0.125);
-            let s62 = sin4 * cos5;
-            let s63 = s62 * real(0.08333333333333333);
-            let s64 = q_0_dot * s21;
-            let s65 = s64 * real(0.25);
-            let s66 = q_1_dot * s52;
-            let s67 = s66 * real(0.25);
-            let s68 = s61 + (s63 - s65 + s67) * h;
-            let s69 = s61 + (s65 - s67 - s63) * h;
-            let s70 = h * s56 - s8 * q_1_dot;
-            let s71 = s36 * real(0.5);
-            let s72 = s32 * real(0.16666666666666666);
-            let s73 = -(s42 * q_0_dot) - (s13 + s16) + (s71 - s34 * real(0.5) - s72) * h;
-            let s74 = s62 * real(0.16666666666666666);
-            let s75 = s13 - s55 + s51 * q_1_dot
-                + (s64 * real(0.5) - s66 * real(0.5) - s74) * h;
-            values[33] = s60;
-            values[5] = s59;
-            values[62] = s67;
-            values[7] = s68;
-            values[10] = s69;
-            values[64] = s72;
+            let s1 = values[24];
+            let p0_q_1 = inputs[7];
+            let energy0 = inputs[8];
+            let s10 = values[25];
+            let cos2 = values[26];
+            let cos3 = values[27];
+            let s28 = values[33];
+            let sin4 = values[34];
+            let s13 = values[35];
+            let s9 = values[38];
+            let s11 = values[39];
+            let s14 = values[40];
+            let s53 = values[43];
+            let s54 = values[44];
+            let s51 = values[46];
+            let s20 = values[49];
+            let s48 = values[51];
+            let s17 = values[52];
+            let s18 = values[53];
+            let s19 = values[54];
+            let s27 = values[58];
+            let s50 = values[62];
+            let s35 = values[64];
+            let s39 = values[66];
+            let s47 = values[67];
+            let s57 = s17 + (s18 + s19 * s48) * h;
+            let s58 = q_0_dot * q_0_dot;
+            let s59 = s53 * real(0.5) + s51 * real(0.5) - s27 - s58 * s9 * real(0.125);
+            let s60 = s50 * real(0.3333333333333333);
+            let s61 = q_0_dot * s20;
+            let s62 = q_1_dot * s48;
+            let s63 = s59 + s19 * (s60 - s61 + s62);
+            let s64 = s61 - s62 - s60;
+            let s65 = s59 + s19 * s64;
+            let s66 = h * s54 - s51 * h;
+            let s67 = -(s39 * q_0_dot) - (s11 + s14) + s1 * s35;
+            let s68 = s11 - s53 + s47 * q_1_dot + s1 * s64;
+            let s69 = cos2 + cos3;
+            let s70 = q_1_dot * p0_q_1 + system.k * (s10 * s10) * real(0.5) - energy0
+                - system.m * (s58 + s28) - s13 * s69;
+            let s71 = sin4 * s69;
+            values[32] = s58;
+            values[36] = s69;
+            values[48] = s70;
+            values[5] = s57;
+            values[63] = s62;
+            values[7] = s63;
+            values[10] = s65;
             values[65] = s71;
-            values[66] = s74;
-            values[13] = s70;
-            values[17] = s73;
-            values[20] = s75;
+            values[13] = s66;
+            values[17] = s67;
+            values[20] = s68;
         }
-        /// Part 6 of `extended_step`: 46 operations.
+        /// Part 6 of `extended_step`: 45 operations.
         #[inline(never)]
         fn extended_step_part_6<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 15],
-            values: &mut [T; 70],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
+            let s1 = values[24];
             let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
             let p0_q_1_low = inputs[13];
-            let p0_q_1 = inputs[7];
             let energy0_low = inputs[14];
-            let energy0 = inputs[8];
-            let s12 = values[26];
-            let cos3 = values[27];
-            let cos4 = values[28];
-            let s60 = values[33];
-            let s30 = values[34];
-            let sin5 = values[35];
-            let s15 = values[36];
-            let cos5 = values[37];
-            let s17 = values[42];
-            let s56 = values[44];
-            let s7 = values[46];
-            let s28 = values[48];
-            let s35 = values[60];
-            let s67 = values[62];
-            let s72 = values[64];
-            let s71 = values[65];
-            let s74 = values[66];
-            let s76 = cos3 + cos4;
-            let s77 = q_1_dot * p0_q_1 + s28 * (s12 * s12) - energy0
-                - system.m * (s60 + s30) - s15 * s76 + (p0_q_0 - s7) * q_0_dot;
-            let s78 = sin5 * s76;
-            let s79 = (-s67 - s74) * q_1_dot - s78 * real(0.08333333333333333)
-                + (s71 - s35 - s72) * q_0_dot;
-            let s80 = s76 * cos5;
-            let s81 = q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
-                + (s80 * real(0.16666666666666666) - q_0_dot * s17 * real(0.5)
-                    + q_1_dot * s56 * real(0.5)) * h;
-            let s82 = s77 + s81;
-            let s83 = s80 * real(0.3333333333333333) + system.b * s60 + system.b * s30;
-            let s84 = -(s83 * h);
-            values[8] = s82;
-            values[63] = s78;
-            values[11] = s79;
-            values[67] = s83;
-            values[14] = s84;
-        }
-        /// Part 7 of `extended_step`: 9 operations.
-        #[inline(never)]
-        fn extended_step_part_7<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 15],
-            values: &mut [T; 70],
-        ) {
-            let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
+            let sin2 = values[28];
             let sin3 = values[29];
-            let sin4 = values[30];
-            let cos5 = values[37];
-            let s78 = values[63];
-            let s83 = values[67];
-            let s85 = (s78 * real(0.16666666666666666)
-                + (q_0_dot * sin3 + q_1_dot * sin4) * real(0.16666666666666666) * cos5)
-                * h - s83;
-            values[23] = s85;
+            let s58 = values[32];
+            let s28 = values[33];
+            let s69 = values[36];
+            let cos4 = values[37];
+            let s15 = values[42];
+            let s54 = values[44];
+            let s6 = values[47];
+            let s70 = values[48];
+            let s30 = values[59];
+            let s32 = values[60];
+            let s33 = values[61];
+            let s50 = values[62];
+            let s62 = values[63];
+            let s71 = values[65];
+            let s72 = (-(s62 * real(0.25)) - s50 * real(0.16666666666666666)) * q_1_dot
+                - s71 * real(0.08333333333333333)
+                + (s33 * real(0.5) - s32 * real(0.25) - s30 * real(0.16666666666666666))
+                    * q_0_dot;
+            let s73 = s69 * cos4 * real(0.3333333333333333);
+            let s74 = s70 + (p0_q_0 - s6) * q_0_dot
+                + (q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
+                    + s1 * (s73 - q_0_dot * s15 + q_1_dot * s54));
+            let s75 = s73 + system.b * s58 + system.b * s28;
+            let s76 = -(s75 * h);
+            let s77 = (s71 * real(0.16666666666666666)
+                + (q_0_dot * sin2 + q_1_dot * sin3) * cos4 * real(0.16666666666666666))
+                * h - s75;
+            values[8] = s74;
+            values[11] = s72;
+            values[14] = s76;
+            values[23] = s77;
         }
         let system = self;
         let inputs = [
@@ -1902,14 +1969,13 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             p0_q_1_low,
             energy0_low,
         ];
-        let mut values = [T::real(0.0); 70];
+        let mut values = [T::real(0.0); 68];
         extended_step_part_1(system, &inputs, &mut values);
         extended_step_part_2(system, &inputs, &mut values);
         extended_step_part_3(system, &inputs, &mut values);
         extended_step_part_4(system, &inputs, &mut values);
         extended_step_part_5(system, &inputs, &mut values);
         extended_step_part_6(system, &inputs, &mut values);
-        extended_step_part_7(system, &inputs, &mut values);
         let (change, change_h) = solve(
             &::vi_core::ExtendedSystem {
                 momentum: ::vi_core::MomentumEquation {

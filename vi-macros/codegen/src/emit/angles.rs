@@ -12,6 +12,7 @@ use vi_expr::Function as Elementary;
 const TOGETHER: usize = 4;
 
 /// The groups of a function.
+#[derive(Default)]
 pub(super) struct Angles(Vec<Vec<OperationId>>);
 
 impl Angles {

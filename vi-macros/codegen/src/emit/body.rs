@@ -5,11 +5,13 @@
 //! too long for one body all results have names, and [`pieces`] compute them.
 
 use super::angles::Angles;
+use super::folds::FoldText;
 use super::formula::Formula;
+use super::loops::{Loops, Writing as Loop, Written};
 use super::names::Names;
 use super::pieces::{Statement, Writing, pieces};
 use crate::model::Model;
-use crate::program::{Function, Operation, OperationId};
+use crate::program::{Function, Operation, OperationId, component};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -27,6 +29,8 @@ pub(super) struct Body {
     pub(super) results: Vec<Vec<Entry>>,
     /// What is read of the inputs, with its names.
     pub(super) inputs: BTreeMap<Symbol, Ident>,
+    /// Vectors that are read as a whole, by their components 0, with their names.
+    pub(super) vectors: BTreeMap<Symbol, Ident>,
 }
 
 /// One result.
@@ -60,39 +64,31 @@ struct Printer<'a> {
     written: BTreeMap<OperationId, Formula>,
     named: BTreeMap<OperationId, Ident>,
     inputs: BTreeMap<Symbol, Ident>,
+    vectors: BTreeMap<Symbol, Ident>,
     statements: Vec<Statement>,
     in_pieces: bool,
     angles: Angles,
+    /// Sums over what loops compute.
+    folds: BTreeMap<OperationId, (OperationId, FoldText)>,
 }
 
-/// Prints a function of a system whose rule has so many points, in pieces if it has more operations than `limit`.
+/// Prints a function of a system whose rule has so many points: in loops or, where these do not help, in pieces if it has
+/// more operations than `limit`.
 pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place, limit: usize) -> Body {
-    let in_pieces = function.operation_count() > limit;
-    let needed = if in_pieces { function.local_order() } else { function.operations.needed(&function.results) };
+    let long = function.operation_count() > limit;
+    let (names, needed) = (Names::new(model, points), function.operations.needed(&function.results));
+    if let Some(loops) = long.then(|| Loops::of(function, limit)).flatten() {
+        return Printer::new(model, function, names, loops.uses()).in_loops(&loops, &needed, place);
+    }
+    let needed = if long { function.local_order() } else { needed };
     let angles = Angles::of(function, &needed);
     let needed = angles.first(function, needed);
     let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
-    for id in function.results.iter().flatten() {
-        *uses.entry(*id).or_default() += 1;
+    let operands = needed.iter().flat_map(|id| function.operations.get(*id).operands());
+    for id in operands.chain(function.results.iter().flatten().copied()) {
+        *uses.entry(id).or_default() += 1;
     }
-    for id in &needed {
-        for operand in function.operations.get(*id).operands() {
-            *uses.entry(operand).or_default() += 1;
-        }
-    }
-    let mut printer = Printer {
-        model,
-        function,
-        names: Names::new(model, points),
-        uses,
-        results: function.results.iter().flatten().copied().collect(),
-        written: BTreeMap::new(),
-        named: BTreeMap::new(),
-        inputs: BTreeMap::new(),
-        statements: Vec::new(),
-        in_pieces,
-        angles,
-    };
+    let mut printer = Printer { in_pieces: long, angles, ..Printer::new(model, function, names, uses) };
     printer.name_inputs(&needed, place);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
     for id in needed {
@@ -100,8 +96,61 @@ pub(super) fn body(model: &Model, function: &Function, points: usize, place: Pla
     }
     let prelude = constants.then(|| quote!(let real = T::real;));
     let statements = printer.statements(prelude.as_ref(), limit);
-    let results = function.results.iter().map(|group| group.iter().map(|id| printer.result(*id)).collect()).collect();
-    Body { statements: quote!(#prelude #statements), results, inputs: printer.inputs }
+    printer.body(quote!(#prelude #statements))
+}
+
+impl<'a> Printer<'a> {
+    fn new(model: &'a Model, function: &'a Function, names: Names<'a>, uses: BTreeMap<OperationId, usize>) -> Self {
+        Self {
+            model,
+            function,
+            names,
+            uses,
+            results: function.results.iter().flatten().copied().collect(),
+            written: BTreeMap::new(),
+            named: BTreeMap::new(),
+            inputs: BTreeMap::new(),
+            vectors: BTreeMap::new(),
+            statements: Vec::new(),
+            in_pieces: false,
+            angles: Angles::default(),
+            folds: BTreeMap::new(),
+        }
+    }
+
+    /// The printed body.
+    fn body(self, statements: TokenStream) -> Body {
+        let row = |group: &Vec<OperationId>| group.iter().map(|id| self.result(*id)).collect();
+        let results = self.function.results.iter().map(row).collect();
+        Body { statements, results, inputs: self.inputs, vectors: self.vectors }
+    }
+
+    /// The body in loops, and what is in none of them before and after.
+    fn in_loops(mut self, loops: &Loops, needed: &[OperationId], place: Place) -> Body {
+        let mut vectors = loops.vectors();
+        if place == Place::Interval && vectors.contains(&Symbol::StepVelocity(0)) {
+            vectors.extend([Symbol::Q0(0), Symbol::Q1(0)]);
+        }
+        for vector in vectors {
+            self.vectors.insert(vector.clone(), self.names.vector(&vector));
+        }
+        self.name_inputs(needed, place);
+        let (first, last) = loops.singles();
+        for id in first {
+            self.write(id);
+        }
+        let before = self.statements(None, usize::MAX);
+        let (vectors, singles) = (&self.vectors, &self.written);
+        let Written { statements, members, folds } = loops.write(Loop { vectors, singles, names: &mut self.names });
+        self.statements.clear();
+        self.written.extend(members);
+        self.folds = folds;
+        for id in last {
+            self.write(id);
+        }
+        let after = self.statements(None, usize::MAX);
+        self.body(quote!(let real = T::real; #before #statements #after))
+    }
 }
 
 impl Printer<'_> {
@@ -118,32 +167,46 @@ impl Printer<'_> {
             }
         }
         for symbol in symbols {
-            let ident = self.names.of(&symbol);
-            self.inputs.insert(symbol, ident);
+            if self.component(&symbol).is_none() {
+                let ident = self.names.of(&symbol);
+                self.inputs.insert(symbol, ident);
+            }
         }
+    }
+
+    /// A component of a vector that is read as a whole.
+    fn component(&self, symbol: &Symbol) -> Option<Formula> {
+        let (vector, index) = component(symbol)?;
+        let (name, index) = (self.vectors.get(&vector)?, Literal::usize_unsuffixed(index));
+        Some(Formula::atom(quote!(#name[#index]), 0))
+    }
+
+    /// The formula of an operation whose operands are written.
+    fn formula(&mut self, id: OperationId, operation: &Operation) -> Formula {
+        if let Some((start, text)) = self.folds.get(&id) {
+            return text.from(&self.operand(*start));
+        }
+        let sine = match operation {
+            Operation::Input(Symbol::Parameter(index)) => {
+                let system = if self.in_pieces { format_ident!("system") } else { format_ident!("self") };
+                return Formula::parameter(&system, &self.model.parameters[*index].name);
+            }
+            Operation::Input(symbol) => {
+                return self.component(symbol).unwrap_or_else(|| {
+                    let name = self.names.of(symbol);
+                    self.named.insert(id, name.clone());
+                    Formula::name(&name)
+                });
+            }
+            Operation::Call(function @ (Elementary::Sin | Elementary::Cos), angle) => self.sine(id, *function, *angle),
+            _ => None,
+        };
+        sine.unwrap_or_else(|| Formula::of(operation, &mut |operand| self.operand(operand)))
     }
 
     fn write(&mut self, id: OperationId) {
         let operation = self.function.operations.get(id).clone();
-        let formula = match &operation {
-            Operation::Input(Symbol::Parameter(index)) => {
-                let system = if self.in_pieces { format_ident!("system") } else { format_ident!("self") };
-                Formula::parameter(&system, &self.model.parameters[*index].name)
-            }
-            Operation::Input(symbol) => {
-                let name = self.names.of(symbol);
-                self.named.insert(id, name.clone());
-                Formula::name(&name)
-            }
-            Operation::Call(function @ (Elementary::Sin | Elementary::Cos), angle) => {
-                if let Some(formula) = self.sine(id, *function, *angle) {
-                    formula
-                } else {
-                    Formula::of(&operation, &mut |operand| self.operand(operand))
-                }
-            }
-            _ => Formula::of(&operation, &mut |operand| self.operand(operand)),
-        };
+        let formula = self.formula(id, &operation);
         if self.written.contains_key(&id) {
             return;
         }
@@ -263,8 +326,11 @@ impl Printer<'_> {
     }
 }
 
-/// The parts of vector inputs: `let [x, y]: [T; 2] = (*q).into();`, `_` for what is not read.
+/// The parts of vector inputs: `let [x, y]: [T; 2] = (*q).into();`, `_` for what is not read; or a vector as a whole.
 pub(super) fn parts(body: &Body, model: &Model, symbol: impl Fn(usize) -> Symbol, vector: &TokenStream) -> TokenStream {
+    if let Some(name) = body.vectors.get(&symbol(0)) {
+        return quote!(let #name = &#vector.data.0[0];);
+    }
     let dimension = Literal::usize_unsuffixed(model.dimension());
     let names: Vec<Option<&Ident>> = (0..model.dimension()).map(|index| body.inputs.get(&symbol(index))).collect();
     if names.iter().all(Option::is_none) {

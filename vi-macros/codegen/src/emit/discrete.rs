@@ -38,11 +38,17 @@ fn interval_parts(source: &Source, body: &Body) -> TokenStream {
         let (start, end) = (input(Symbol::Q0(index))?, input(Symbol::Q1(index))?);
         Some(quote!(let #velocity = (#end - #start) / #h;))
     });
+    let vectors = |symbol| body.vectors.get(&symbol);
+    let velocity = vectors(Symbol::StepVelocity(0)).and_then(|v| {
+        let (q0, q1, h) = (vectors(Symbol::Q0(0))?, vectors(Symbol::Q1(0))?, input(Symbol::Step)?);
+        let dimension = source.dimension();
+        Some(quote!(let #v: [T; #dimension] = ::core::array::from_fn(|index| (#q1[index] - #q0[index]) / #h);))
+    });
     let step = part(body, &Symbol::Step, &quote!(interval.t1 - interval.t0));
     let (t0, t1) = (part(body, &Symbol::T0, &quote!(interval.t0)), part(body, &Symbol::T1, &quote!(interval.t1)));
     let q0 = parts(body, model, Symbol::Q0, &quote!(interval.q0));
     let q1 = parts(body, model, Symbol::Q1, &quote!(interval.q1));
-    quote!(#t0 #t1 #step #q0 #q1 #(#quotients)*)
+    quote!(#t0 #t1 #step #q0 #q1 #(#quotients)* #velocity)
 }
 
 /// A number in the slots.

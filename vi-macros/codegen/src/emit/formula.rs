@@ -40,7 +40,8 @@ impl Formula {
         Self { tokens, binding: Binding::Atom, operations }
     }
 
-    fn constant(value: f64) -> Self {
+    /// A number.
+    pub(super) fn constant(value: f64) -> Self {
         let value = number(value);
         Self::atom(quote!(real(#value)), 0)
     }

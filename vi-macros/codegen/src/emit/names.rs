@@ -42,6 +42,39 @@ impl<'a> Names<'a> {
         ident
     }
 
+    /// The identifier of the vector with this component 0: `q0`, `p0_low`, `q_mid`.
+    pub(super) fn vector(&mut self, symbol: &Symbol) -> Ident {
+        let name = self.vector_name(symbol);
+        self.free(name)
+    }
+
+    fn vector_name(&self, symbol: &Symbol) -> String {
+        match symbol {
+            Symbol::Q0(_) => "q0".to_owned(),
+            Symbol::Q1(_) => "q1".to_owned(),
+            Symbol::P0(_) => "p0".to_owned(),
+            Symbol::Acceleration(_) => "a".to_owned(),
+            Symbol::Low(of) => format!("{}_low", self.vector_name(of)),
+            Symbol::AtPoint(point, variable) => {
+                let variable = self.vector_name(&Symbol::Continuous(*variable));
+                self.at_point(&variable, *point)
+            }
+            Symbol::Continuous(Variable::Coordinate(_)) => "q".to_owned(),
+            // Of velocities, and of nothing else that has components.
+            _ => "v".to_owned(),
+        }
+    }
+
+    /// `x_mid`; of a rule with several points `x_at2`.
+    fn at_point(&self, variable: &str, point: usize) -> String {
+        if self.points == 1 { format!("{variable}_mid") } else { format!("{variable}_at{}", point + 1) }
+    }
+
+    /// The counter of a loop.
+    pub(super) fn counter(&mut self) -> Ident {
+        self.free("i".to_owned())
+    }
+
     /// The identifier of the next shared term.
     pub(super) fn next_shared(&mut self) -> Ident {
         self.shared += 1;
@@ -86,7 +119,7 @@ impl<'a> Names<'a> {
             Symbol::Low(of) => format!("{}_low", self.wanted(of)),
             Symbol::AtPoint(point, variable) => {
                 let variable = self.wanted(&Symbol::Continuous(*variable));
-                if self.points == 1 { format!("{variable}_mid") } else { format!("{variable}_at{}", point + 1) }
+                self.at_point(&variable, *point)
             }
             Symbol::Field(_) => "field".to_owned(),
         }

@@ -7,6 +7,7 @@
 
 use super::operations::{Operation, OperationId, Operations};
 use super::powers::{Factor, Occurrence};
+use super::sums::Way;
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, Zero};
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,6 +35,7 @@ pub(super) struct Lowering<'a> {
     pub(super) angles: BTreeSet<Expr>,
     values: BTreeMap<Expr, OperationId>,
     dependences: BTreeMap<Expr, Dependence>,
+    pub(super) ways: BTreeMap<Expr, Way>,
     arguments: &'a BTreeMap<(usize, Variable), Expr>,
 }
 
@@ -41,8 +43,8 @@ impl<'a> Lowering<'a> {
     /// A function with these arguments of the points.
     pub(super) fn new(pool: &'a mut Pool<Symbol>, arguments: &'a BTreeMap<(usize, Variable), Expr>) -> Self {
         let (operations, occurrences, angles) = (Operations::default(), BTreeMap::new(), BTreeSet::new());
-        let (values, dependences) = (BTreeMap::new(), BTreeMap::new());
-        Self { pool, operations, occurrences, angles, values, dependences, arguments }
+        let (values, dependences, ways) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { pool, operations, occurrences, angles, values, dependences, ways, arguments }
     }
 
     /// Lowers expressions and all that they need, children first.
@@ -50,6 +52,7 @@ impl<'a> Lowering<'a> {
         let used: Vec<Expr> = exprs.iter().copied().chain(self.arguments.values().copied()).collect();
         self.record_powers(&used);
         self.record_angles(&used);
+        // Children first, so that nothing is deep; products as they are needed, with their coefficients.
         for expr in self.pool.reachable(&used) {
             self.value(expr);
         }
@@ -71,7 +74,7 @@ impl<'a> Lowering<'a> {
         } else {
             match node {
                 Node::Symbol(symbol) => self.symbol(symbol),
-                Node::Sum(sum) => self.sum(&sum),
+                Node::Sum(sum) => self.sum(expr, &sum),
                 Node::Product(product) => self.product(&product.factors, &Rational::one()),
                 Node::Call(function, arguments) => self.call(function, &arguments),
                 Node::Number(_) | Node::Pi => self.operations.constant(f64::NAN),
@@ -102,6 +105,11 @@ impl<'a> Lowering<'a> {
         found
     }
 
+    /// Whether it is made of parameters, and not of numbers alone; where that was asked before.
+    pub(super) fn is_parameter(&self, expr: Expr) -> bool {
+        self.dependences.get(&expr) == Some(&Dependence::Parameters)
+    }
+
     fn symbol(&mut self, symbol: Symbol) -> OperationId {
         let Symbol::AtPoint(point, variable) = symbol else {
             return self.operations.add(Operation::Input(symbol));
@@ -128,36 +136,38 @@ impl<'a> Lowering<'a> {
     }
 
     /// Σ coefficient·term + constant.
-    fn sum(&mut self, sum: &Sum) -> OperationId {
-        if sum.constant.is_zero() && sum.terms.len() == 1 {
-            let (term, coefficient) = &sum.terms[0];
-            return self.term(*term, coefficient);
-        }
-        if let Some((large, small)) = self.by_size(sum) {
-            return self.join(&large, &small);
-        }
-        if let Some((factor, inside, rest)) = self.common_factor(sum) {
-            let inside = self.value(inside);
-            let factor = self.value(factor);
-            let product = self.operations.add(Operation::Multiply(inside, factor));
-            return match rest {
-                Some(rest) if self.leads_negative(rest) => {
-                    let positive = self.pool.neg(rest);
-                    let positive = self.value(positive);
-                    self.operations.add(Operation::Subtract(product, positive))
+    fn sum(&mut self, expr: Expr, sum: &Sum) -> OperationId {
+        match self.way(expr) {
+            Way::Term => match sum.terms.first() {
+                Some((term, coefficient)) => self.term(*term, coefficient),
+                None => self.operations.constant(Self::number(&sum.constant)),
+            },
+            Way::BySize { large, small } => {
+                let large = self.value(large);
+                self.plus(large, small)
+            }
+            Way::Factor { factor, inside, rest } => {
+                let product = if matches!(self.way(inside), Way::Coefficient { .. }) {
+                    self.product(&[(inside, Rational::one()), (factor, Rational::one())], &Rational::one())
+                } else {
+                    let (inside, factor) = (self.value(inside), self.value(factor));
+                    self.multiply(inside, factor)
+                };
+                match rest {
+                    Some(rest) if self.leads_negative(rest) => self.plus(product, rest),
+                    Some(rest) => {
+                        let rest = self.value(rest);
+                        self.operations.add(Operation::Add(rest, product))
+                    }
+                    None => product,
                 }
-                Some(rest) => {
-                    let rest = self.value(rest);
-                    self.operations.add(Operation::Add(rest, product))
-                }
-                None => product,
-            };
+            }
+            Way::Coefficient { coefficient, inside } => {
+                let (inside, coefficient) = (self.value(inside), self.value(coefficient));
+                self.multiply(inside, coefficient)
+            }
+            Way::Plain => self.plain_sum(sum),
         }
-        if let Some((coefficient, inside)) = self.common_coefficient(sum) {
-            let (inside, coefficient) = (self.value(inside), self.value(coefficient));
-            return self.operations.add(Operation::Multiply(inside, coefficient));
-        }
-        self.plain_sum(sum)
     }
 
     /// Term by term, positive ones first.
@@ -183,37 +193,14 @@ impl<'a> Lowering<'a> {
         self.operations.add(Operation::Negate(all.unwrap_or(zero)))
     }
 
-    /// Large terms and those of order h, where a sum has both.
-    fn by_size(&mut self, sum: &Sum) -> Option<(Sum, Sum)> {
-        let (small, large): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| self.is_small(*term));
-        if small.is_empty() || (large.is_empty() && sum.constant.is_zero()) {
-            return None;
+    /// What is there, and an expression more.
+    fn plus(&mut self, left: OperationId, right: Expr) -> OperationId {
+        if self.leads_negative(right) {
+            let positive = self.pool.neg(right);
+            let positive = self.value(positive);
+            return self.operations.add(Operation::Subtract(left, positive));
         }
-        let large = Sum { constant: sum.constant.clone(), terms: large };
-        Some((large, Sum { constant: Rational::zero(), terms: small }))
-    }
-
-    /// The low part of a carried quantity, or a term with a factor h.
-    fn is_small(&self, term: Expr) -> bool {
-        match self.pool.node(term) {
-            Node::Symbol(Symbol::Low(_) | Symbol::Step) => true,
-            Node::Product(product) => product.factors.iter().any(|(base, exponent)| {
-                exponent.is_positive() && matches!(self.pool.node(*base), Node::Symbol(Symbol::Low(_) | Symbol::Step))
-            }),
-            _ => false,
-        }
-    }
-
-    fn join(&mut self, large: &Sum, small: &Sum) -> OperationId {
-        let large = self.pool_sum(large);
-        let small = self.pool_sum(small);
-        let left = self.value(large);
-        if self.leads_negative(small) {
-            let positive = self.pool.neg(small);
-            let right = self.value(positive);
-            return self.operations.add(Operation::Subtract(left, right));
-        }
-        let right = self.value(small);
+        let right = self.value(right);
         self.operations.add(Operation::Add(left, right))
     }
 
@@ -225,12 +212,6 @@ impl<'a> Lowering<'a> {
             }
             _ => false,
         }
-    }
-
-    fn pool_sum(&mut self, sum: &Sum) -> Expr {
-        let mut terms: Vec<Expr> = sum.terms.iter().map(|(term, c)| self.pool.scale(*term, c)).collect();
-        terms.push(self.pool.number(sum.constant.clone()));
-        self.pool.sum(&terms)
     }
 
     /// coefficient·term.
@@ -245,38 +226,86 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// coefficient·Π base^exponent; what is constant over a run first.
+    /// coefficient·Π base^exponent.
     fn product(&mut self, factors: &[(Expr, Rational)], coefficient: &Rational) -> OperationId {
-        let (mut constant, mut number) = (Vec::new(), Self::number(coefficient));
-        let (mut varying, mut below) = (Vec::new(), Vec::new());
+        let mut gathered = Gathered { number: Self::number(coefficient), ..Gathered::default() };
         for (base, exponent) in factors {
-            let dependence = self.dependence(*base);
-            if dependence == Dependence::None {
-                let value = self.pool.evaluate(*base, &mut |_| f64::NAN);
-                number *= value.powf(Self::number(exponent));
-                continue;
-            }
-            let fixed = dependence <= Dependence::Run;
-            match self.factor(*base, exponent) {
-                Factor::Above(value) if fixed => constant.push(value),
-                Factor::Above(value) => varying.push(value),
-                Factor::Below(value) => below.push(value),
-            }
+            self.gather(&mut gathered, *base, exponent);
         }
-        let multiply = |operations: &mut Operations, left, right| operations.add(Operation::Multiply(left, right));
-        // A number alone before a varying factor stands behind it; with a parameter it is constant over a run.
-        let number = self.operations.constant(number);
-        let numerator = if constant.is_empty() {
-            let product = varying.into_iter().reduce(|left, right| multiply(&mut self.operations, left, right));
-            product.map_or(number, |product| multiply(&mut self.operations, product, number))
-        } else {
-            constant.push(number);
-            let all = constant.into_iter().chain(varying);
-            all.reduce(|left, right| multiply(&mut self.operations, left, right)).unwrap_or(number)
-        };
-        match below.into_iter().reduce(|left, right| multiply(&mut self.operations, left, right)) {
+        let below = core::mem::take(&mut gathered.below);
+        let numerator = self.numerator(gathered);
+        match below.into_iter().reduce(|left, right| self.multiply(left, right)) {
             Some(denominator) => self.operations.add(Operation::Divide(numerator, denominator)),
             None => numerator,
         }
     }
+
+    fn gather(&mut self, into: &mut Gathered, base: Expr, exponent: &Rational) {
+        let dependence = self.dependence(base);
+        if dependence == Dependence::None {
+            let value = self.pool.evaluate(base, &mut |_| f64::NAN);
+            into.number *= value.powf(Self::number(exponent));
+            return;
+        }
+        // A number before a sum is one with the coefficient.
+        let value = match self.way(base) {
+            Way::Coefficient { coefficient, inside } if exponent.is_one() => {
+                match self.pool.as_number(coefficient).cloned() {
+                    Some(number) => into.number *= Self::number(&number),
+                    None => into.parameters.push(self.value(coefficient)),
+                }
+                Factor::Above(self.value(inside))
+            }
+            _ => self.factor(base, exponent),
+        };
+        match (value, dependence) {
+            (Factor::Below(value), _) => into.below.push(value),
+            (Factor::Above(value), Dependence::Step) => into.varying.push(value),
+            (Factor::Above(value), Dependence::Run) => into.step.push(value),
+            (Factor::Above(value), _) => into.parameters.push(value),
+        }
+    }
+
+    /// What is constant over a run first, so that the product with it is made once; unless the rest is there already.
+    fn numerator(&mut self, of: Gathered) -> OperationId {
+        let Gathered { number, parameters, step, varying, .. } = of;
+        let plain = number.to_bits() == 1.0_f64.to_bits() && step.is_empty();
+        let number = self.operations.constant(number);
+        if !plain && !varying.is_empty() && parameters.len() + varying.len() > 1 {
+            let mut rest = parameters.iter().chain(&varying).copied().map(Some);
+            let first = rest.next().flatten();
+            let find = |left: Option<OperationId>, right: Option<OperationId>| {
+                self.operations.find(&Operation::Multiply(left?, right?))
+            };
+            if let Some(there) = rest.fold(first, find) {
+                let constant = step.into_iter().chain([number]).reduce(|left, right| self.multiply(left, right));
+                return self.multiply(there, constant.unwrap_or(number));
+            }
+        }
+        // A number alone before a varying factor stands behind it; with a parameter it is constant over a run.
+        let mut all: Vec<OperationId> = parameters.into_iter().chain(step).collect();
+        if all.is_empty() {
+            let product = varying.into_iter().reduce(|left, right| self.multiply(left, right));
+            return product.map_or(number, |product| self.multiply(product, number));
+        }
+        all.push(number);
+        all.extend(varying);
+        all.into_iter().reduce(|left, right| self.multiply(left, right)).unwrap_or(number)
+    }
+
+    fn multiply(&mut self, left: OperationId, right: OperationId) -> OperationId {
+        self.operations.add(Operation::Multiply(left, right))
+    }
+}
+
+/// The factors of a product, by what they depend on.
+#[derive(Default)]
+struct Gathered {
+    number: f64,
+    parameters: Vec<OperationId>,
+    /// What depends on h, but not on the state.
+    step: Vec<OperationId>,
+    varying: Vec<OperationId>,
+    /// What is divided by.
+    below: Vec<OperationId>,
 }

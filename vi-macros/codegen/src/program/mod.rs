@@ -6,15 +6,17 @@
 
 mod angles;
 mod assemble;
-mod factor;
+mod families;
 mod lower;
 mod magnitude;
 mod operations;
 mod order;
 mod powers;
+mod sums;
 mod verify;
 
 pub use assemble::program;
+pub use families::{Families, Membership, component};
 pub use operations::{Operation, OperationId, Operations};
 
 /// What one function computes.

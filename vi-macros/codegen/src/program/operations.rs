@@ -209,6 +209,23 @@ impl Operation {
         first.into_iter().chain(second)
     }
 
+    /// The operation without its operands.
+    pub(super) fn form(&self) -> Self {
+        let none = OperationId(0);
+        match self {
+            Self::Constant(_) | Self::Input(_) => self.clone(),
+            Self::Negate(_) => Self::Negate(none),
+            Self::Add(..) => Self::Add(none, none),
+            Self::Subtract(..) => Self::Subtract(none, none),
+            Self::Multiply(..) => Self::Multiply(none, none),
+            Self::Divide(..) => Self::Divide(none, none),
+            Self::SquareRoot(_) => Self::SquareRoot(none),
+            Self::Reciprocal(_) => Self::Reciprocal(none),
+            Self::Call(function, _) => Self::Call(*function, none),
+            Self::Call2(function, ..) => Self::Call2(*function, none, none),
+        }
+    }
+
     /// Whether it costs anything.
     #[must_use]
     pub fn is_work(&self) -> bool {

@@ -1,0 +1,234 @@
+//! A long body as loops over the coordinates.
+//!
+//! In: a function and its [`Families`]. Out: statements in which a family is an array,
+//!
+//! ```text
+//! let s4: [T; 63] = ::core::array::from_fn(|i| q_mid[i + 1] - q_mid[i]);
+//! let s5: [T; 63] = ::core::array::from_fn(|i| (s1 + s2 * s4[i]) * s4[i]);
+//! ```
+//!
+//! or stands in the formula of the one that reads it. First what all have in common, then the arrays, then what is no family:
+//! the ends of a chain, and sums over it. The operations stay the same, and their results, bit by bit; but a short one is done
+//! again rather than kept.
+
+use super::folds::{Fold, FoldText, folds};
+use super::formula::Formula;
+use super::names::Names;
+use crate::program::{Families, Function, Membership, Operation, OperationId, component};
+use crate::symbol::Symbol;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::quote;
+use std::collections::{BTreeMap, BTreeSet};
+use vi_expr::Function as Elementary;
+
+/// Operations that one line may hold.
+const LINE: usize = 10;
+/// Operations that are done again rather than kept.
+const AGAIN: usize = 1;
+
+/// Which families of a function are arrays.
+pub(super) struct Loops<'a> {
+    function: &'a Function,
+    families: Families,
+    /// Operations that are in no family, operands before results.
+    singles: Vec<OperationId>,
+    /// Families that something reads which is in none.
+    outside: BTreeSet<usize>,
+    /// How often families read a family.
+    uses: Vec<usize>,
+    /// Sums over members of families, by their last operations.
+    folds: BTreeMap<OperationId, Fold>,
+}
+
+/// What the loops are written with.
+pub(super) struct Writing<'a, 'n> {
+    /// The names of the vectors among the inputs, by their components 0.
+    pub(super) vectors: &'a BTreeMap<Symbol, Ident>,
+    /// The formulas of operations in no family.
+    pub(super) singles: &'a BTreeMap<OperationId, Formula>,
+    pub(super) names: &'a mut Names<'n>,
+}
+
+/// What the loops leave: their statements, and where members are that are read outside.
+pub(super) struct Written {
+    pub(super) statements: TokenStream,
+    pub(super) members: BTreeMap<OperationId, Formula>,
+    /// Sums over members, by their last operations: what they start from, and what makes a formula of that.
+    pub(super) folds: BTreeMap<OperationId, (OperationId, FoldText)>,
+}
+
+impl<'a> Loops<'a> {
+    /// The loops of a function; `None` where they leave more than `limit` operations to be written.
+    pub(super) fn of(function: &'a Function, limit: usize) -> Option<Self> {
+        let families = function.families();
+        let needed = function.operations.needed(&function.results);
+        let singles: Vec<OperationId> = needed.into_iter().filter(|id| families.of(*id).is_none()).collect();
+        let (folds, singles) = folds(function, &families, singles);
+        let work = |id: &&OperationId| function.operations.get(**id).is_work();
+        let written = singles.iter().filter(work).count() + families.members.len();
+        if families.members.is_empty() || written > limit {
+            return None;
+        }
+        let operands = |id: OperationId| function.operations.get(id).operands();
+        let started = folds.values().map(|fold| fold.start);
+        let read = singles.iter().flat_map(|id| operands(*id)).chain(function.results.iter().flatten().copied());
+        let outside = read.chain(started).filter_map(|id| families.of(id)).map(|of| of.family).collect();
+        let mut uses = vec![0; families.members.len()];
+        for of in families.members.iter().flat_map(|members| operands(members[0])).filter_map(|id| families.of(id)) {
+            uses[of.family] += 1;
+        }
+        Some(Self { function, families, singles, outside, uses, folds })
+    }
+
+    /// Operations in no family: those that no family leads to, and the others.
+    pub(super) fn singles(&self) -> (Vec<OperationId>, Vec<OperationId>) {
+        let mut late = BTreeSet::new();
+        for id in &self.singles {
+            let waits = |operand: OperationId| late.contains(&operand) || self.families.of(operand).is_some();
+            if self.function.operations.get(*id).operands().any(waits) {
+                late.insert(*id);
+            }
+        }
+        self.singles.iter().copied().partition(|id| !late.contains(id))
+    }
+
+    /// How often lines read an operation that is in no family: a loop counts twice, so that it has a name there.
+    pub(super) fn uses(&self) -> BTreeMap<OperationId, usize> {
+        let mut uses = BTreeMap::new();
+        let operands = |id: &OperationId| self.function.operations.get(*id).operands();
+        let started = self.folds.values().map(|fold| fold.start);
+        let once = self.singles.iter().flat_map(operands).chain(self.function.results.iter().flatten().copied());
+        let once = once.chain(started);
+        let twice = self.families.members.iter().flat_map(|members| operands(&members[0]));
+        for (id, count) in once.map(|id| (id, 1)).chain(twice.map(|id| (id, 2))) {
+            *uses.entry(id).or_default() += count;
+        }
+        uses
+    }
+
+    /// The vectors among the inputs, by their components 0.
+    pub(super) fn vectors(&self) -> BTreeSet<Symbol> {
+        let operations = self.function.operations.needed(&self.function.results);
+        let symbol = |id| match self.function.operations.get(id) {
+            Operation::Input(symbol) => component(symbol).map(|(vector, _)| vector),
+            _ => None,
+        };
+        operations.into_iter().filter_map(symbol).collect()
+    }
+
+    /// The loops, written.
+    pub(super) fn write(&self, writing: Writing) -> Written {
+        let counter = writing.names.counter();
+        let mut lines = Lines { loops: self, writing, counter, arrays: BTreeMap::new() };
+        let statements = (0..self.families.members.len()).map(|family| lines.line(family)).collect();
+        let arrays = &lines.arrays;
+        let member = |(family, array): (&usize, &Array)| {
+            let members = self.families.members[*family].iter().zip(0_usize..);
+            members.map(|(id, place)| (*id, array.entry(None, place))).collect::<Vec<_>>()
+        };
+        let counter = &lines.counter;
+        let fold = |(id, fold): (&OperationId, &Fold)| {
+            let term = arrays.get(&fold.family)?.entry(Some(counter), 0);
+            Some((*id, (fold.start, fold.text(counter, &term))))
+        };
+        let folds = self.folds.iter().filter_map(fold).collect();
+        Written { statements, members: arrays.iter().flat_map(member).collect(), folds }
+    }
+
+    /// The family of the sines or cosines of the angles of which this one is the cosines or sines.
+    fn partner(&self, operation: &Operation) -> Option<usize> {
+        let other = match operation {
+            Operation::Call(Elementary::Sin, angle) => Operation::Call(Elementary::Cos, *angle),
+            Operation::Call(Elementary::Cos, angle) => Operation::Call(Elementary::Sin, *angle),
+            _ => return None,
+        };
+        let Membership { family, place } = self.families.of(self.function.operations.find(&other)?)?;
+        (place == 0).then_some(family)
+    }
+}
+
+/// An array, or one part of an array of pairs.
+#[derive(Clone)]
+struct Array {
+    name: Ident,
+    part: Option<Literal>,
+}
+
+impl Array {
+    /// Its entry so far behind the counter, or, without one, behind the first.
+    fn entry(&self, counter: Option<&Ident>, place: usize) -> Formula {
+        let (name, part) = (&self.name, self.part.iter());
+        let place = (place > 0 || counter.is_none()).then(|| Literal::usize_unsuffixed(place));
+        let plus = (counter.is_some() && place.is_some()).then(|| quote!(+));
+        Formula::atom(quote!(#name[#counter #plus #place] #(.#part)*), 0)
+    }
+}
+
+/// Lines of loops, as they are written.
+struct Lines<'a, 'n> {
+    loops: &'a Loops<'a>,
+    writing: Writing<'a, 'n>,
+    counter: Ident,
+    arrays: BTreeMap<usize, Array>,
+}
+
+impl Lines<'_, '_> {
+    /// The line of a family; empty where it has been written, or its formula stands in others.
+    fn line(&mut self, family: usize) -> TokenStream {
+        let loops = self.loops;
+        let (members, counter) = (&loops.families.members[family], self.counter.clone());
+        let (operation, length) = (loops.function.operations.get(members[0]), Literal::usize_unsuffixed(members.len()));
+        if self.arrays.contains_key(&family) {
+            return TokenStream::new();
+        }
+        if let (Some(partner), Operation::Call(function, angle)) = (loops.partner(operation), operation) {
+            let (name, receiver) = (self.writing.names.next_shared(), self.operand(*angle, 0).receiver());
+            let (own, other) = if *function == Elementary::Sin { (0, 1) } else { (1, 0) };
+            for (family, part) in [(family, own), (partner, other)] {
+                let part = Some(Literal::usize_unsuffixed(part));
+                self.arrays.insert(family, Array { name: name.clone(), part });
+            }
+            return quote!(let #name: [(T, T); #length] = ::core::array::from_fn(|#counter| #receiver.sin_cos()););
+        }
+        let symbol = loops.function.operations.name(members[0]).and_then(component);
+        let formula = self.formula(family, 0);
+        if symbol.is_none() && self.is_inside(family, formula.operations) {
+            return TokenStream::new();
+        }
+        let names = &mut *self.writing.names;
+        let name = if let Some((vector, _)) = symbol { names.vector(&vector) } else { names.next_shared() };
+        let tokens = formula.tokens();
+        let line = quote!(let #name: [T; #length] = ::core::array::from_fn(|#counter| #tokens););
+        self.arrays.insert(family, Array { name, part: None });
+        line
+    }
+
+    /// Whether a family with such a formula is written where it is read.
+    fn is_inside(&self, family: usize, operations: usize) -> bool {
+        let alone = self.loops.uses[family] == 1 && operations <= LINE;
+        !self.loops.outside.contains(&family) && (alone || operations <= AGAIN)
+    }
+
+    /// The formula of a family, so many places on.
+    fn formula(&self, family: usize, place: usize) -> Formula {
+        let operation = self.loops.function.operations.get(self.loops.families.members[family][0]);
+        Formula::of(operation, &mut |operand| self.operand(operand, place))
+    }
+
+    /// An operand of the first member of a family, as it is written so many places on.
+    fn operand(&self, id: OperationId, on: usize) -> Formula {
+        let counter = Some(&self.counter);
+        if let Operation::Input(symbol) = self.loops.function.operations.get(id)
+            && let Some((vector, place)) = component(symbol)
+            && let Some(name) = self.writing.vectors.get(&vector)
+        {
+            return Array { name: name.clone(), part: None }.entry(counter, place + on);
+        }
+        if let Some(Membership { family, place }) = self.loops.families.of(id) {
+            let inside = || self.formula(family, place + on);
+            return self.arrays.get(&family).map_or_else(inside, |array| array.entry(counter, place + on));
+        }
+        // What is in no family and is read here was written before.
+        self.writing.singles.get(&id).cloned().unwrap_or_else(|| Formula::constant(f64::NAN))
+    }
+}

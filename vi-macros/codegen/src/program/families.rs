@@ -1,0 +1,130 @@
+//! The same formula again and again, shifted along the coordinates: in a chain, every spring has the same force.
+//!
+//! In: a function. Out: families of its operations,
+//!
+//! ```text
+//! member k:  op(a_(k + i), b_(k + j), c)      k = 0 … length − 1
+//! ```
+//!
+//! with the same operation and the same i, j for all k; a and b are components of vectors among the inputs, or families again,
+//! and c does not depend on any such. A loop computes a family. AFTER THIS the operands of a family's members are members of
+//! families, inputs, or the same for all.
+
+use super::{Function, Operation, OperationId};
+use crate::symbol::{Symbol, Variable};
+use std::collections::BTreeMap;
+
+/// Members from which on there is a loop.
+const LEAST: usize = 8;
+
+/// What members of a family have in common.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Shape {
+    /// The component of a vector.
+    Input(Symbol),
+    /// An operation and its operands.
+    Operation(Operation, Vec<Relative>),
+}
+
+/// An operand as seen from the place of an operation.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Relative {
+    /// The same everywhere.
+    Fixed(OperationId),
+    /// Of a shape, so many places on, or back.
+    Shifted { shape: usize, on: usize, back: usize },
+}
+
+/// Where a member is: in which family, and at which place there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Membership {
+    /// Index into the families.
+    pub family: usize,
+    /// From 0 to the length.
+    pub place: usize,
+}
+
+/// The families of a function.
+pub struct Families {
+    /// Their members, in order; a family stands behind those of its operands.
+    pub members: Vec<Vec<OperationId>>,
+    of: BTreeMap<OperationId, Membership>,
+}
+
+impl Families {
+    /// The membership of an operation that has one.
+    #[must_use]
+    pub fn of(&self, id: OperationId) -> Option<Membership> {
+        self.of.get(&id).copied()
+    }
+}
+
+/// The component 0 of the vector that a symbol is a component of, and which it is.
+#[must_use]
+pub fn component(symbol: &Symbol) -> Option<(Symbol, usize)> {
+    let of_variable = |variable: &Variable| match variable {
+        Variable::Time => None,
+        Variable::Coordinate(index) => Some((Variable::Coordinate(0), *index)),
+        Variable::Velocity(index) => Some((Variable::Velocity(0), *index)),
+    };
+    match symbol {
+        Symbol::Q0(index) => Some((Symbol::Q0(0), *index)),
+        Symbol::Q1(index) => Some((Symbol::Q1(0), *index)),
+        Symbol::P0(index) => Some((Symbol::P0(0), *index)),
+        Symbol::StepVelocity(index) => Some((Symbol::StepVelocity(0), *index)),
+        Symbol::Acceleration(index) => Some((Symbol::Acceleration(0), *index)),
+        Symbol::Continuous(variable) => of_variable(variable).map(|(of, index)| (Symbol::Continuous(of), index)),
+        Symbol::AtPoint(point, variable) => {
+            of_variable(variable).map(|(of, index)| (Symbol::AtPoint(*point, of), index))
+        }
+        Symbol::Low(of) => component(of).map(|(of, index)| (Symbol::Low(Box::new(of)), index)),
+        Symbol::Parameter(_) | Symbol::T0 | Symbol::T1 | Symbol::Step | Symbol::E0 | Symbol::Field(_) => None,
+    }
+}
+
+impl Function {
+    /// Its families.
+    #[must_use]
+    pub fn families(&self) -> Families {
+        let (mut shapes, mut placed) = (BTreeMap::new(), BTreeMap::new());
+        let mut rows: Vec<BTreeMap<usize, OperationId>> = Vec::new();
+        for id in self.operations.needed(&self.results) {
+            let Some((shape, place)) = shape(self.operations.get(id), &placed) else { continue };
+            let next = shapes.len();
+            let number = *shapes.entry(shape).or_insert(next);
+            placed.insert(id, (number, place));
+            rows.resize_with(shapes.len(), BTreeMap::new);
+            rows[number].insert(place, id);
+        }
+        // Shapes are numbered after those of their operands.
+        let is_work = |run: &Vec<OperationId>| self.operations.get(run[0]).is_work();
+        let members: Vec<_> = rows.iter().flat_map(runs).filter(is_work).collect();
+        let of = members
+            .iter()
+            .zip(0..)
+            .flat_map(|(run, family)| run.iter().zip(0..).map(move |(id, place)| (*id, Membership { family, place })));
+        Families { of: of.collect(), members }
+    }
+}
+
+/// The shape of an operation and the place of its first operand that has one; `None` where none has.
+fn shape(operation: &Operation, placed: &BTreeMap<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
+    if let Operation::Input(symbol) = operation {
+        return component(symbol).map(|(vector, place)| (Shape::Input(vector), place));
+    }
+    let start = operation.operands().find_map(|operand| placed.get(&operand).map(|(_, place)| *place))?;
+    let relative = operation.operands().map(|operand| match placed.get(&operand) {
+        Some(&(shape, place)) => {
+            Relative::Shifted { shape, on: place.saturating_sub(start), back: start.saturating_sub(place) }
+        }
+        None => Relative::Fixed(operand),
+    });
+    Some((Shape::Operation(operation.form(), relative.collect()), start))
+}
+
+/// Members side by side, where they are enough. An operand of theirs has the same neighbours.
+fn runs(row: &BTreeMap<usize, OperationId>) -> Vec<Vec<OperationId>> {
+    let entries: Vec<(&usize, &OperationId)> = row.iter().collect();
+    let runs = entries.chunk_by(|(left, _), (right, _)| **left + 1 == **right);
+    runs.filter(|run| run.len() >= LEAST).map(|run| run.iter().map(|(_, id)| **id).collect()).collect()
+}

@@ -1,0 +1,187 @@
+//! How a sum is written.
+//!
+//! In: a sum. Out: what its terms have in common, and what is left. Terms of order h are added up first and joined to the large
+//! ones last. Factors are taken out where that saves products in every step. Parameters are not: they are coefficients,
+//! computed once per run, whatever stands in them.
+
+use super::lower::{Dependence, Lowering};
+use crate::symbol::Symbol;
+use num_traits::{One, Signed, Zero};
+use std::collections::BTreeMap;
+use vi_expr::{Expr, Node, Rational, Sum};
+
+/// The way in which an expression that is a sum is written.
+#[derive(Clone, Copy)]
+pub(super) enum Way {
+    /// It is one term, or no sum.
+    Term,
+    /// Large terms, and those of order h.
+    BySize { large: Expr, small: Expr },
+    /// factor·inside + rest
+    Factor { factor: Expr, inside: Expr, rest: Option<Expr> },
+    /// coefficient·inside, the coefficient of numbers and parameters
+    Coefficient { coefficient: Expr, inside: Expr },
+    /// Term by term.
+    Plain,
+}
+
+impl Lowering<'_> {
+    /// The way in which an expression is written.
+    pub(super) fn way(&mut self, expr: Expr) -> Way {
+        if let Some(known) = self.ways.get(&expr) {
+            return *known;
+        }
+        let Node::Sum(sum) = self.pool.node(expr).clone() else { return Way::Term };
+        let way = if sum.terms.is_empty() || sum.constant.is_zero() && sum.terms.len() == 1 {
+            Way::Term
+        } else {
+            let way = self.by_size(&sum).or_else(|| self.common_factor(&sum));
+            way.or_else(|| self.common_coefficient(&sum)).unwrap_or(Way::Plain)
+        };
+        self.ways.insert(expr, way);
+        way
+    }
+
+    /// Large terms and those of order h, where a sum has both.
+    fn by_size(&mut self, sum: &Sum) -> Option<Way> {
+        let (small, large): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| self.is_small(*term));
+        if small.is_empty() || (large.is_empty() && sum.constant.is_zero()) {
+            return None;
+        }
+        let large = self.pool_sum(&Sum { constant: sum.constant.clone(), terms: large });
+        Some(Way::BySize { large, small: self.pool_sum(&Sum { constant: Rational::zero(), terms: small }) })
+    }
+
+    /// The low part of a carried quantity, or a term with a factor h.
+    fn is_small(&self, term: Expr) -> bool {
+        match self.pool.node(term) {
+            Node::Symbol(Symbol::Low(_) | Symbol::Step) => true,
+            Node::Product(product) => product.factors.iter().any(|(base, exponent)| {
+                exponent.is_positive() && matches!(self.pool.node(*base), Node::Symbol(Symbol::Low(_) | Symbol::Step))
+            }),
+            _ => false,
+        }
+    }
+
+    fn pool_sum(&mut self, sum: &Sum) -> Expr {
+        let mut terms: Vec<Expr> = sum.terms.iter().map(|(term, c)| self.pool.scale(*term, c)).collect();
+        terms.push(self.pool.number(sum.constant.clone()));
+        self.pool.sum(&terms)
+    }
+
+    /// The factor that most terms share, what it is multiplied by, and the other terms. Parameters are factors of what
+    /// changes with the state at no cost, as coefficients computed once per run; they are taken out of sums of such only.
+    fn common_factor(&mut self, sum: &Sum) -> Option<Way> {
+        let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
+        let varies = sum.terms.iter().any(|(term, _)| self.dependence(*term) > Dependence::Parameters);
+        for (term, _) in &sum.terms {
+            for base in self.bases(*term) {
+                if !varies || self.dependence(base) > Dependence::Parameters {
+                    *counts.entry(base).or_default() += 1;
+                }
+            }
+        }
+        // Of equally frequent ones the step, then the oldest.
+        let step = self.pool.symbol(Symbol::Step);
+        let (base, count) =
+            counts.into_iter().max_by_key(|(base, count)| (*count, *base == step, core::cmp::Reverse(*base)))?;
+        if count < 2 {
+            return None;
+        }
+        let exponents = sum.terms.iter().filter_map(|(term, _)| self.exponent(*term, base));
+        let exponent = exponents.min().unwrap_or_else(Rational::one);
+        let inverse = self.pool.power(base, &-exponent.clone());
+        let (mut inside, mut rest) = (Vec::new(), vec![self.pool.number(sum.constant.clone())]);
+        for (term, coefficient) in &sum.terms {
+            let scaled = self.pool.scale(*term, coefficient);
+            if self.exponent(*term, base).is_some() {
+                inside.push(self.pool.mul(scaled, inverse));
+            } else {
+                rest.push(scaled);
+            }
+        }
+        let factor = self.pool.power(base, &exponent);
+        // A bare sum left inside would dissolve in the sum of the quotients: e²/2 + e³/3 stays as it is.
+        let dissolves = |quotient: &Expr| matches!(self.pool.node(*quotient), Node::Sum(sum) if sum.terms.len() > 1);
+        if inside.iter().any(dissolves) {
+            return None;
+        }
+        let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
+        self.record_powers(&[inside, rest]);
+        Some(Way::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
+    }
+
+    /// The positive integer exponent with which a term has a base.
+    fn exponent(&self, term: Expr, base: Expr) -> Option<Rational> {
+        let usable = |exponent: &Rational| exponent.is_integer() && exponent.is_positive();
+        match self.pool.node(term) {
+            Node::Product(product) => {
+                product.factors.iter().find(|(found, e)| *found == base && usable(e)).map(|(_, e)| e.clone())
+            }
+            _ => (term == base).then(Rational::one),
+        }
+    }
+
+    /// The bases that a term has with a positive integer exponent.
+    fn bases(&self, term: Expr) -> Vec<Expr> {
+        match self.pool.node(term) {
+            Node::Product(product) => product
+                .factors
+                .iter()
+                .filter(|(base, exponent)| {
+                    exponent.is_integer() && exponent.is_positive() && self.pool.as_number(*base).is_none()
+                })
+                .map(|(base, _)| *base)
+                .collect(),
+            Node::Number(_) | Node::Pi | Node::Sum(_) => Vec::new(),
+            Node::Symbol(_) | Node::Call(..) => vec![term],
+        }
+    }
+
+    /// The coefficient that most terms share but for the sign, with parameters if all have the same, and the sum without it.
+    fn common_coefficient(&mut self, sum: &Sum) -> Option<Way> {
+        let mut parameters = self.parameters(sum.terms.first()?.0);
+        let alike = |(term, _): &(Expr, Rational)| self.parameters(*term) == parameters;
+        if !sum.constant.is_zero() && !parameters.is_empty() || !sum.terms.iter().all(alike) {
+            return None;
+        }
+        let mut counts: BTreeMap<Rational, usize> = BTreeMap::new();
+        let numbers = sum.terms.iter().map(|(_, number)| number).chain([&sum.constant]);
+        for number in numbers.filter(|number| !number.is_zero()) {
+            *counts.entry(number.abs()).or_default() += 1;
+        }
+        // Every other one is a product still, and this one more; those that were one become products, too.
+        let all: usize = counts.values().sum();
+        let ones = counts.get(&Rational::one()).copied().unwrap_or(0);
+        let (number, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
+        let number = if count == all || count > ones + 1 { number } else { Rational::one() };
+        if number.is_one() && parameters.is_empty() {
+            return None;
+        }
+        let mut product = |sign: i32| {
+            let power = |(base, exponent): &mut (Expr, Rational)| {
+                self.pool.power(*base, &(&*exponent * Rational::from_integer(sign.into())))
+            };
+            let powers: Vec<Expr> = parameters.iter_mut().map(power).collect();
+            powers.into_iter().fold(self.pool.one(), |product, power| self.pool.mul(product, power))
+        };
+        let (coefficient, inverse) = (product(1), product(-1));
+        let coefficient = self.pool.scale(coefficient, &number);
+        let mut terms = vec![self.pool.number(&sum.constant / &number)];
+        for (term, c) in &sum.terms {
+            let term = self.pool.mul(*term, inverse);
+            terms.push(self.pool.scale(term, &(c / &number)));
+        }
+        Some(Way::Coefficient { coefficient, inside: self.pool.sum(&terms) })
+    }
+
+    /// The powers of parameters that a term which changes with the state has as factors.
+    fn parameters(&self, term: Expr) -> Vec<(Expr, Rational)> {
+        let Node::Product(product) = self.pool.node(term) else { return Vec::new() };
+        let fixed = |(base, _): &&(Expr, Rational)| self.is_parameter(*base);
+        if product.factors.iter().all(|factor| fixed(&factor)) {
+            return Vec::new();
+        }
+        product.factors.iter().filter(fixed).cloned().collect()
+    }
+}
