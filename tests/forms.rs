@@ -285,9 +285,10 @@ fn every_form_steps_as_the_dense_matrix_does() {
     for [fixed, preserving] in all {
         // Measured: 4.0e-15 and 4.0e-12 at most.
         assert!(fixed.0 <= 5e-15 && preserving.0 <= 5e-12, "{fixed:?}, {preserving:?}");
-        // Newton's iteration finds its root by a wrong matrix, too, though not as fast. Measured: 2 more of 667.
+        // Newton's iteration finds its root by a wrong matrix, too, though not as fast. Measured: 20 more of 362,
+        // where a radius that is learnt falls on the other side of some steps.
         for (_, own, dense) in [fixed, preserving] {
-            assert!(own.abs_diff(dense) * 50 <= dense, "{own} iterations for {dense}");
+            assert!(own.abs_diff(dense) * 16 <= dense, "{own} iterations for {dense}");
         }
     }
 }

@@ -99,7 +99,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
         let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
             + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
-        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
             + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
         s5 + s4 * θ1_dot
     }
@@ -121,7 +121,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
         let s4 = self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3)
             + s1 * (self.l1 * self.l1) * real(0.5) * θ1_dot;
-        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
             - self.l1 * self.g * s1 * cos2 - self.m2 * self.l2 * self.g * cos3;
         s5 + s4 * θ1_dot
     }
@@ -179,15 +179,15 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1, θ2]: [T; 2] = (*q).into();
         let s1 = self.m1 + self.m2;
         let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
-        let s4 = sin2 * cos3 - cos2 * sin3;
-        let s5 = self.m2 * self.l1 * self.l2;
-        let s6 = s5 * (cos2 * cos3 + sin2 * sin3);
+        let s4 = self.m2 * self.l1 * self.l2;
+        let s5 = s4 * (cos2 * cos3 + sin2 * sin3);
+        let s6 = sin2 * cos3 - cos2 * sin3;
         let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
-            &[self.l1 * self.l1 * s1, s6, s6, self.m2 * (self.l2 * self.l2)],
+            &[self.l1 * self.l1 * s1, s5, s5, self.m2 * (self.l2 * self.l2)],
         );
         let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
-            -(self.l1 * self.g * s1 * sin2 + s5 * (θ2_dot * θ2_dot) * s4),
-            s5 * (θ1_dot * θ1_dot) * s4 - self.m2 * self.l2 * self.g * sin3,
+            -(self.l1 * self.g * s1 * sin2 + s4 * (θ2_dot * θ2_dot) * s6),
+            s4 * (θ1_dot * θ1_dot) * s6 - self.m2 * self.l2 * self.g * sin3,
         ]);
         ::vi_core::linear::acceleration(time, &mass, &applied)
     }
@@ -207,22 +207,22 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let [θ1, θ2]: [T; 2] = (*q).into();
         let [(sin1, cos1), (sin2, cos2)] = T::sin_cos_each([θ1, θ2]);
         let s3 = cos1 * cos2 + sin1 * sin2;
-        let s4 = sin1 * cos2 - cos1 * sin2;
-        let s5 = self.m2 * self.l1 * self.l2;
-        let s6 = s5 * θ1_dot;
-        let s7 = s6 * θ2_dot;
-        let s8 = s7 * s4;
-        let s9 = self.l1 * self.g * (self.m1 + self.m2);
-        let s10 = s7 * s3;
-        let s11 = self.m2 * self.l2 * self.g;
-        let s12 = s5 * θ2_dot * s4 * θ1_ddot;
-        let s13 = s6 * s4 * θ2_ddot;
+        let s4 = self.m2 * self.l1 * self.l2;
+        let s5 = s4 * θ1_dot;
+        let s6 = s5 * θ2_dot;
+        let s7 = s6 * s3;
+        let s8 = self.l1 * self.g * (self.m1 + self.m2);
+        let s9 = self.m2 * self.l2 * self.g;
+        let s10 = sin1 * cos2 - cos1 * sin2;
+        let s11 = s6 * s10;
+        let s12 = s4 * θ2_dot * s10 * θ1_ddot;
+        let s13 = s5 * s10 * θ2_ddot;
         let s14 = θ2_dot
-            * (s12 + s13 + s5 * (θ1_dot * θ1_dot) * θ2_dot * s3
-                - θ2_dot * (s10 + s11 * cos2));
-        let s15 = θ2_ddot * (s8 - s11 * sin2) - (s8 + s9 * sin1) * θ1_ddot
+            * (s12 + s13 + s4 * (θ1_dot * θ1_dot) * θ2_dot * s3
+                - θ2_dot * (s7 + s9 * cos2));
+        let s15 = θ2_ddot * (s11 - s9 * sin2) - (s11 + s8 * sin1) * θ1_ddot
             - θ1_dot
-                * (s6 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s10 + s9 * cos1) - s12
+                * (s5 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s7 + s8 * cos1) - s12
                     - s13);
         Ok(s15 - s14)
     }
@@ -243,7 +243,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         let s1 = self.m1 + self.m2;
         let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
         let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
             + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
         let values = [
             ("m1", self.m1),
@@ -288,7 +288,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
         let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
             + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
-        let s5 = self.m2 * (self.l2 * self.l2) * real(0.5) * (θ2_dot * θ2_dot)
+        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
             + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
         h * (s5 + s4 * θ1_dot)
     }
@@ -307,17 +307,17 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
         let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.l1 * self.l1 * s1;
-        let s6 = self.m2 * self.l1 * self.l2;
-        let s7 = self.m2 * (self.l2 * self.l2);
-        let s8 = s6 * θ1_dot;
-        let s9 = θ1_dot * (s5 * θ1_dot + s6 * θ2_dot * s4)
-            + θ2_dot * (s7 * θ2_dot + s8 * s4) - s5 * real(0.5) * (θ1_dot * θ1_dot);
-        let s10 = s9 - s7 * real(0.5) * (θ2_dot * θ2_dot) - s8 * θ2_dot * s4
-            - self.l1 * self.g * s1 * cos2;
-        s10 - self.m2 * self.l2 * self.g * cos3
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1 * s1;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
+            + θ2_dot * (s2 * θ2_dot + s8 * s6) - s3 * (θ1_dot * θ1_dot) * real(0.5);
+        let s10 = s9 - s2 * (θ2_dot * θ2_dot) * real(0.5) - s8 * θ2_dot * s6
+            - self.l1 * self.g * s1 * cos4;
+        s10 - self.m2 * self.l2 * self.g * cos5
     }
 
     /// `d2_ld_θ1 = h*L_θ1/2 - L_v_θ1`
@@ -364,18 +364,18 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
         let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
         let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
         let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.l1 * self.l1 * s1;
-        let s6 = self.m2 * self.l1 * self.l2;
-        let s7 = self.m2 * (self.l2 * self.l2);
-        let s8 = s6 * θ1_dot;
-        let s9 = s5 * real(0.5) * (θ1_dot * θ1_dot)
-            + s7 * real(0.5) * (θ2_dot * θ2_dot) + s8 * θ2_dot * s4
-            + self.l1 * self.g * s1 * cos2;
-        s9 + self.m2 * self.l2 * self.g * cos3
-            - θ1_dot * (s5 * θ1_dot + s6 * θ2_dot * s4)
-            - θ2_dot * (s7 * θ2_dot + s8 * s4)
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1 * s1;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = s3 * (θ1_dot * θ1_dot) * real(0.5)
+            + s2 * (θ2_dot * θ2_dot) * real(0.5) + s8 * θ2_dot * s6
+            + self.l1 * self.g * s1 * cos4;
+        s9 + self.m2 * self.l2 * self.g * cos5
+            - θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
+            - θ2_dot * (s2 * θ2_dot + s8 * s6)
     }
 
     /// `d4_ld_θ1 = L_v_θ1 + h*L_θ1/2`
@@ -481,34 +481,34 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
         let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
         let s2 = self.m1 + self.m2;
-        let [(sin3, cos3), (sin4, cos4)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s5 = cos3 * cos4 + sin3 * sin4;
-        let s6 = sin3 * cos4 - cos3 * sin4;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g * s2;
-        let s12 = self.m2 * self.l2 * self.g;
-        let s13 = self.l1 * self.l1;
-        let s14 = self.m2 * (self.l2 * self.l2);
-        let s15 = s9 * s5;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = self.l1 * self.l1;
+        let [(sin5, cos5), (sin6, cos6)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s7 = cos5 * cos6 + sin5 * sin6;
+        let s8 = self.m2 * self.l1 * self.l2;
+        let s9 = s8 * θ1_dot;
+        let s10 = s9 * θ2_dot;
+        let s11 = s10 * s7;
+        let s12 = self.l1 * self.g * s2;
+        let s13 = self.m2 * self.l2 * self.g;
+        let s14 = sin5 * cos6 - cos5 * sin6;
+        let s15 = s10 * s14;
         let s16 = h * h * real(0.25);
-        let s17 = s7 * s5;
-        let s18 = s7 * real(0.5) * (θ1_dot + θ2_dot) * s6;
-        let s19 = s15 * (h * real(0.25));
+        let s17 = s8 * s7;
+        let s18 = s8 * real(0.5) * (θ1_dot + θ2_dot) * s14;
+        let s19 = s11 * (h * real(0.25));
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
-                s13 * s2 * θ1_dot + s7 * θ2_dot * s5 - p0_θ1
-                    - (p0_θ1_low - s1 * (s10 + s11 * sin3)),
-                s14 * θ2_dot + s8 * s5 - p0_θ2 - (p0_θ2_low + s1 * (s10 - s12 * sin4)),
+                s4 * s2 * θ1_dot + s8 * θ2_dot * s7 - p0_θ1
+                    - (p0_θ1_low - s1 * (s15 + s12 * sin5)),
+                s3 * θ2_dot + s9 * s7 - p0_θ2 - (p0_θ2_low + s1 * (s15 - s13 * sin6)),
             ]),
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[
-                    s2 * s13 + s16 * (s15 + s11 * cos3),
+                    s2 * s4 + s16 * (s11 + s12 * cos5),
                     s17 + (s18 - s19) * h,
                     s17 - (s18 + s19) * h,
-                    s14 + s16 * (s15 + s12 * cos4),
+                    s3 + s16 * (s11 + s13 * cos6),
                 ],
             ),
         }
@@ -516,7 +516,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
 
     /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
     ///
-    /// 133 operations.
+    /// 136 operations.
     #[inline(always)]
     fn extended_system(
         &self,
@@ -536,65 +536,65 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
         let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
         let s2 = self.m1 + self.m2;
-        let [(sin3, cos3), (sin4, cos4)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s5 = cos3 * cos4 + sin3 * sin4;
-        let s6 = sin3 * cos4 - cos3 * sin4;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g * s2;
-        let s12 = s11 * sin3;
-        let s13 = s10 + s12;
-        let s14 = self.m2 * self.l2 * self.g;
-        let s15 = s14 * sin4;
-        let s16 = s10 - s15;
-        let s17 = self.l1 * self.l1;
-        let s18 = s17 * s2 * θ1_dot;
-        let s19 = s7 * θ2_dot * s5;
-        let s20 = self.m2 * (self.l2 * self.l2);
-        let s21 = s20 * θ2_dot;
-        let s22 = s11 * cos3;
-        let s23 = s14 * cos4;
-        let s24 = (p0_θ2 - s21 * real(0.5)) * θ2_dot - (energy0 + s22 + s23)
-            + (p0_θ1 - s18 * real(0.5) - s19) * θ1_dot;
-        let s25 = s9 * s5;
-        let s26 = s25 + s22;
-        let s27 = s25 + s23;
-        let s28 = h * h * real(0.25);
-        let s29 = s7 * s5;
-        let s30 = s7 * real(0.5);
-        let s31 = s30 * (θ1_dot + θ2_dot) * s6;
-        let s32 = s25 * (h * real(0.25));
-        let s33 = θ2_dot * θ2_dot;
-        let s34 = s12 * real(0.5) + s30 * s33 * s6;
-        let s35 = s7 * real(0.25);
-        let s36 = (s35 * θ1_dot * s33 * s5 - θ1_dot * s26 * real(0.25)) * h;
-        let s37 = θ1_dot * θ1_dot;
-        let s38 = s30 * s37;
-        let s39 = s15 * real(0.5) - s38 * s6;
-        let s40 = (s35 * s37 * θ2_dot * s5 - θ2_dot * s27 * real(0.25)) * h;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = self.l1 * self.l1;
+        let s5 = s3 * θ2_dot;
+        let s6 = θ1_dot * θ1_dot;
+        let s7 = θ2_dot * θ2_dot;
+        let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s10 = cos8 * cos9 + sin8 * sin9;
+        let s11 = self.m2 * self.l1 * self.l2;
+        let s12 = s11 * θ1_dot;
+        let s13 = s12 * θ2_dot;
+        let s14 = s13 * s10;
+        let s15 = self.l1 * self.g * s2;
+        let s16 = s15 * cos8;
+        let s17 = self.m2 * self.l2 * self.g;
+        let s18 = s17 * cos9;
+        let s19 = s4 * s2 * θ1_dot;
+        let s20 = s11 * θ2_dot * s10;
+        let s21 = sin8 * cos9 - cos8 * sin9;
+        let s22 = s13 * s21;
+        let s23 = s15 * sin8;
+        let s24 = s22 + s23;
+        let s25 = s17 * sin9;
+        let s26 = s22 - s25;
+        let s27 = (p0_θ2 - s5 * real(0.5)) * θ2_dot - (energy0 + s16 + s18)
+            + (p0_θ1 - s19 * real(0.5) - s20) * θ1_dot;
+        let s28 = s14 + s16;
+        let s29 = s14 + s18;
+        let s30 = h * h * real(0.25);
+        let s31 = s11 * s10;
+        let s32 = s11 * real(0.5) * (θ1_dot + θ2_dot) * s21;
+        let s33 = s14 * (h * real(0.25));
+        let s34 = s23 * real(0.5) + s11 * s7 * s21 * real(0.5);
+        let s35 = s11 * real(0.25);
+        let s36 = (s35 * θ1_dot * s7 * s10 - θ1_dot * s28 * real(0.25)) * h;
+        let s37 = s11 * s6;
+        let s38 = s25 * real(0.5) - s37 * s21 * real(0.5);
+        let s39 = (s35 * s6 * θ2_dot * s10 - θ2_dot * s29 * real(0.25)) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    s18 + s19 - p0_θ1 - (p0_θ1_low - s1 * s13),
-                    s21 + s8 * s5 - p0_θ2 - (p0_θ2_low + s1 * s16),
+                    s19 + s20 - p0_θ1 - (p0_θ1_low - s1 * s24),
+                    s5 + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s26),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
                     &[
-                        s2 * s17 + s28 * s26,
-                        s29 + (s31 - s32) * h,
-                        s29 - (s31 + s32) * h,
-                        s20 + s28 * s27,
+                        s2 * s4 + s30 * s28,
+                        s31 + (s32 - s33) * h,
+                        s31 - (s32 + s33) * h,
+                        s3 + s30 * s29,
                     ],
                 ),
             },
-            residual_dh: ::vi_core::SVector::from([s34 - s36, s39 - s40]),
-            energy_residual: s24
+            residual_dh: ::vi_core::SVector::from([s34 - s36, s38 - s39]),
+            energy_residual: s27
                 + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                    + s1 * (θ2_dot * s16 - θ1_dot * s13)),
-            energy_dv: ::vi_core::SVector::from([s34 + s36, s39 + s40]),
-            energy_dh: s38 * s33 * s5 - s37 * s26 * real(0.25) - s33 * s27 * real(0.25),
+                    + s1 * (θ2_dot * s26 - θ1_dot * s24)),
+            energy_dv: ::vi_core::SVector::from([s34 + s36, s38 + s39]),
+            energy_dh: s37 * s7 * s10 * real(0.5) - s6 * s28 * real(0.25)
+                - s7 * s29 * real(0.25),
         }
     }
 
@@ -617,56 +617,56 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let s1 = h * real(0.5);
         let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
         let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = sin2 * cos3 - cos2 * sin3;
-        let s6 = self.m1.abs() + self.m2.abs();
-        let s7 = self.l1 * self.l1;
-        let s8 = self.m2 * self.l1 * self.l2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = θ2_dot * θ2_dot;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
         let s9 = s8 * θ2_dot;
-        let s10 = s8 * θ1_dot;
-        let s11 = s10 * θ2_dot;
-        let s12 = s11 * s5;
-        let s13 = s12.abs();
-        let s14 = self.l1 * self.g;
-        let s15 = s14 * (self.m1 + self.m2);
-        let s16 = s15 * sin2;
-        let s17 = s13 + s16.abs();
-        let s18 = s11 * s4;
-        let s19 = s18 + s15 * cos2;
-        let s20 = s9 * s5;
-        let s21 = s18 * s1;
-        let s22 = h.abs() * real(0.5);
-        let s23 = p0_θ1.abs() + s6 * (s7 * θ1_dot).abs() + (s9 * s4).abs() + s22 * s17
-            + (θ1_mid * (s20 - s1 * s19)).abs();
-        let s24 = self.m2 * (self.l2 * self.l2);
-        let s25 = self.m2 * self.l2 * self.g;
-        let s26 = s25 * sin3;
-        let s27 = s13 + s26.abs();
-        let s28 = s10 * s5;
-        let s29 = s25 * cos3;
-        let s30 = s18 + s29;
-        let s31 = p0_θ2.abs() + (s24 * θ2_dot).abs() + (s10 * s4).abs() + s22 * s27
-            + (θ1_mid * (s28 + s21)).abs();
-        let s32 = θ2_dot * θ2_dot;
-        let s33 = s8 * real(0.5);
-        let s34 = (θ1_mid
-            * (s12 + s16 + (s33 * θ1_dot * s32 * s4 - θ1_dot * s19 * real(0.5)) * h))
+        let s10 = s9 * s6;
+        let s11 = self.l1 * self.g;
+        let s12 = s11 * (self.m1 + self.m2);
+        let s13 = self.m2 * self.l2 * self.g;
+        let s14 = s13 * cos5;
+        let s15 = s7 * θ2_dot;
+        let s16 = sin4 * cos5 - cos4 * sin5;
+        let s17 = s9 * s16;
+        let s18 = s12 * sin4;
+        let s19 = s13 * sin5;
+        let s20 = self.m1.abs() + self.m2.abs();
+        let s21 = self.l1 * self.l1;
+        let s22 = s17.abs();
+        let s23 = s22 + s18.abs();
+        let s24 = s15 * s16;
+        let s25 = s10 + s12 * cos4;
+        let s26 = s10 * s1;
+        let s27 = h.abs() * real(0.5);
+        let s28 = p0_θ1.abs() + s20 * (s21 * θ1_dot).abs() + (s15 * s6).abs()
+            + s27 * s23 + (θ1_mid * (s24 - s1 * s25)).abs();
+        let s29 = s22 + s19.abs();
+        let s30 = s8 * s16;
+        let s31 = s10 + s14;
+        let s32 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * s6).abs() + s27 * s29
+            + (θ1_mid * (s30 + s26)).abs();
+        let s33 = θ1_dot * θ1_dot;
+        let s34 = s7 * real(0.5);
+        let s35 = (θ1_mid
+            * (s17 + s18 + (s34 * θ1_dot * s3 * s6 - θ1_dot * s25 * real(0.5)) * h))
             .abs();
-        let s35 = θ1_dot * θ1_dot;
         let s36 = (θ2_mid
-            * (s12 - s26 - (s33 * s35 * θ2_dot * s4 - θ2_dot * s30 * real(0.5)) * h))
+            * (s17 - s19 - (s34 * s33 * θ2_dot * s6 - θ2_dot * s31 * real(0.5)) * h))
             .abs();
         let s37 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
-            + s7 * s6 * real(0.5) * s35;
-        let s38 = s37 + (s24 * s32).abs() * real(0.5) + s18.abs()
-            + s6 * (s14 * cos2).abs() + s29.abs();
-        let s39 = s38 + s17 * (h * θ1_dot).abs() * real(0.5)
-            + s27 * (h * θ2_dot).abs() * real(0.5) + s34;
+            + s21 * s20 * s33 * real(0.5);
+        let s38 = s37 + (s2 * s3).abs() * real(0.5) + s10.abs()
+            + s20 * (s11 * cos4).abs() + s14.abs();
+        let s39 = s38 + s23 * (h * θ1_dot).abs() * real(0.5)
+            + s29 * (h * θ2_dot).abs() * real(0.5) + s35;
         ::vi_core::Magnitudes {
             residual: ::vi_core::SVector::from([
-                s23 + (θ2_mid * (s20 - s21)).abs(),
-                s31 + (θ2_mid * (s28 + s1 * s30)).abs(),
+                s28 + (θ2_mid * (s24 - s26)).abs(),
+                s32 + (θ2_mid * (s30 + s1 * s31)).abs(),
             ]),
             energy_residual: s39 + s36,
         }
@@ -729,54 +729,53 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
         let real = T::real;
         let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = sin2 * cos3 - cos2 * sin3;
-        let s6 = self.m2 * self.l1 * self.l2;
-        let s7 = s6 * θ1_dot;
-        let s8 = s7 * θ2_dot;
-        let s9 = s8 * s5;
-        let s10 = self.l1 * self.g * s1;
-        let s11 = s9 + s10 * sin2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.m2 * self.l1 * self.l2;
+        let s8 = s7 * θ1_dot;
+        let s9 = s8 * θ2_dot;
+        let s10 = s9 * s6;
+        let s11 = self.l1 * self.g * s1;
         let s12 = self.m2 * self.l2 * self.g;
-        let s13 = s9 - s12 * sin3;
-        let s14 = self.l1 * self.l1;
-        let s15 = s6 * θ2_dot;
-        let s16 = h * real(0.5);
-        let s17 = self.m2 * (self.l2 * self.l2);
-        let s18 = s8 * s4;
-        let s19 = s18 + s10 * cos2;
-        let s20 = s18 + s12 * cos3;
+        let s13 = s7 * θ2_dot;
+        let s14 = sin4 * cos5 - cos4 * sin5;
+        let s15 = s9 * s14;
+        let s16 = s15 + s11 * sin4;
+        let s17 = s15 - s12 * sin5;
+        let s18 = h * real(0.5);
+        let s19 = s10 + s11 * cos4;
+        let s20 = s10 + s12 * cos5;
         let s21 = h * h * real(0.25);
-        let s22 = s6 * s4;
-        let s23 = s6 * real(0.5) * (θ1_dot + θ2_dot) * s5;
-        let s24 = s18 * (h * real(0.25));
-        let s25 = s15 * s5;
-        let s26 = s7 * s5;
-        let s27 = s18 * s16;
+        let s22 = s7 * s6;
+        let s23 = s7 * real(0.5) * (θ1_dot + θ2_dot) * s14;
+        let s24 = s10 * (h * real(0.25));
+        let s25 = s13 * s14;
+        let s26 = s8 * s14;
+        let s27 = s10 * s18;
         let change: [T; 2] = solve(
                 &::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        s14 * s1 * θ1_dot + s15 * s4 - p0_θ1
-                            - (p0_θ1_low - s16 * s11),
-                        s17 * θ2_dot + s7 * s4 - p0_θ2 - (p0_θ2_low + s16 * s13),
+                        s3 * s1 * θ1_dot + s13 * s6 - p0_θ1 - (p0_θ1_low - s18 * s16),
+                        s2 * θ2_dot + s8 * s6 - p0_θ2 - (p0_θ2_low + s18 * s17),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
                         &[
-                            s1 * s14 + s21 * s19,
+                            s1 * s3 + s21 * s19,
                             s22 + (s23 - s24) * h,
                             s22 - (s23 + s24) * h,
-                            s17 + s21 * s20,
+                            s2 + s21 * s20,
                         ],
                     ),
                 },
             )
             .into();
         ::vi_core::SVector::from([
-            -(h * s11)
-                + (((-s25 - s16 * s19) * h) * change[0] + ((s27 - s26) * h) * change[1]),
-            h * s13
-                + (((s25 + s27) * h) * change[0] + ((s26 - s16 * s20) * h) * change[1]),
+            -(h * s16)
+                + (((-s25 - s18 * s19) * h) * change[0] + ((s27 - s26) * h) * change[1]),
+            h * s17
+                + (((s25 + s27) * h) * change[0] + ((s26 - s18 * s20) * h) * change[1]),
         ])
     }
 
@@ -788,7 +787,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// and to first order at `(v + dv, h + dh)`.
     ///
-    /// 163 operations.
+    /// 167 operations.
     #[inline(always)]
     fn extended_step(
         &self,
@@ -811,86 +810,87 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
         let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
         let s2 = self.m1 + self.m2;
-        let [(sin3, cos3), (sin4, cos4)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s5 = cos3 * cos4 + sin3 * sin4;
-        let s6 = sin3 * cos4 - cos3 * sin4;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g * s2;
-        let s12 = s11 * sin3;
-        let s13 = s10 + s12;
-        let s14 = self.m2 * self.l2 * self.g;
-        let s15 = s14 * sin4;
-        let s16 = s10 - s15;
-        let s17 = self.l1 * self.l1;
-        let s18 = s17 * s2 * θ1_dot;
-        let s19 = s7 * θ2_dot;
-        let s20 = s19 * s5;
-        let s21 = self.m2 * (self.l2 * self.l2);
-        let s22 = s21 * θ2_dot;
-        let s23 = s11 * cos3;
-        let s24 = s14 * cos4;
-        let s25 = (p0_θ2 - s22 * real(0.5)) * θ2_dot - (energy0 + s23 + s24)
-            + (p0_θ1 - s18 * real(0.5) - s20) * θ1_dot;
-        let s26 = s9 * s5;
-        let s27 = s26 + s23;
-        let s28 = s26 + s24;
-        let s29 = h * h * real(0.25);
-        let s30 = s7 * s5;
-        let s31 = s7 * real(0.5);
-        let s32 = s31 * (θ1_dot + θ2_dot) * s6;
-        let s33 = s26 * (h * real(0.25));
-        let s34 = θ2_dot * θ2_dot;
-        let s35 = s12 * real(0.5) + s31 * s34 * s6;
-        let s36 = θ1_dot * s27;
-        let s37 = s7 * real(0.25);
-        let s38 = (s37 * θ1_dot * s34 * s5 - s36 * real(0.25)) * h;
-        let s39 = θ1_dot * θ1_dot;
-        let s40 = s31 * s39;
-        let s41 = s15 * real(0.5) - s40 * s6;
-        let s42 = θ2_dot * s28;
-        let s43 = (s37 * s39 * θ2_dot * s5 - s42 * real(0.25)) * h;
-        let s44 = s19 * s6;
-        let s45 = s8 * s6;
-        let s46 = s26 * s1;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = self.l1 * self.l1;
+        let s5 = s3 * θ2_dot;
+        let s6 = θ1_dot * θ1_dot;
+        let s7 = θ2_dot * θ2_dot;
+        let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s10 = cos8 * cos9 + sin8 * sin9;
+        let s11 = self.m2 * self.l1 * self.l2;
+        let s12 = s11 * θ1_dot;
+        let s13 = s12 * θ2_dot;
+        let s14 = s13 * s10;
+        let s15 = self.l1 * self.g * s2;
+        let s16 = s15 * cos8;
+        let s17 = self.m2 * self.l2 * self.g;
+        let s18 = s17 * cos9;
+        let s19 = s4 * s2 * θ1_dot;
+        let s20 = s11 * θ2_dot;
+        let s21 = s20 * s10;
+        let s22 = sin8 * cos9 - cos8 * sin9;
+        let s23 = s13 * s22;
+        let s24 = s15 * sin8;
+        let s25 = s23 + s24;
+        let s26 = s17 * sin9;
+        let s27 = s23 - s26;
+        let s28 = (p0_θ2 - s5 * real(0.5)) * θ2_dot - (energy0 + s16 + s18)
+            + (p0_θ1 - s19 * real(0.5) - s21) * θ1_dot;
+        let s29 = s14 + s16;
+        let s30 = s14 + s18;
+        let s31 = h * h * real(0.25);
+        let s32 = s11 * s10;
+        let s33 = s11 * real(0.5);
+        let s34 = s33 * (θ1_dot + θ2_dot) * s22;
+        let s35 = s14 * (h * real(0.25));
+        let s36 = s24 * real(0.5) + s11 * s7 * s22 * real(0.5);
+        let s37 = θ1_dot * s29;
+        let s38 = s11 * real(0.25);
+        let s39 = (s38 * θ1_dot * s7 * s10 - s37 * real(0.25)) * h;
+        let s40 = s11 * s6;
+        let s41 = s26 * real(0.5) - s40 * s22 * real(0.5);
+        let s42 = θ2_dot * s30;
+        let s43 = (s38 * s6 * θ2_dot * s10 - s42 * real(0.25)) * h;
+        let s44 = s20 * s22;
+        let s45 = s12 * s22;
+        let s46 = s14 * s1;
         let (change, change_h) = solve(
             &::vi_core::ExtendedSystem {
                 momentum: ::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        s18 + s20 - p0_θ1 - (p0_θ1_low - s1 * s13),
-                        s22 + s8 * s5 - p0_θ2 - (p0_θ2_low + s1 * s16),
+                        s19 + s21 - p0_θ1 - (p0_θ1_low - s1 * s25),
+                        s5 + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s27),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
                         &[
-                            s2 * s17 + s29 * s27,
-                            s30 + (s32 - s33) * h,
-                            s30 - (s32 + s33) * h,
-                            s21 + s29 * s28,
+                            s2 * s4 + s31 * s29,
+                            s32 + (s34 - s35) * h,
+                            s32 - (s34 + s35) * h,
+                            s3 + s31 * s30,
                         ],
                     ),
                 },
-                residual_dh: ::vi_core::SVector::from([s35 - s38, s41 - s43]),
-                energy_residual: s25
+                residual_dh: ::vi_core::SVector::from([s36 - s39, s41 - s43]),
+                energy_residual: s28
                     + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                        + s1 * (θ2_dot * s16 - θ1_dot * s13)),
-                energy_dv: ::vi_core::SVector::from([s35 + s38, s41 + s43]),
-                energy_dh: s40 * s34 * s5 - s39 * s27 * real(0.25)
-                    - s34 * s28 * real(0.25),
+                        + s1 * (θ2_dot * s27 - θ1_dot * s25)),
+                energy_dv: ::vi_core::SVector::from([s36 + s39, s41 + s43]),
+                energy_dh: s40 * s7 * s10 * real(0.5) - s6 * s29 * real(0.25)
+                    - s7 * s30 * real(0.25),
             },
         );
         let change: [T; 2] = change.into();
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
-                -(h * s13)
-                    + (((-s44 - s1 * s27) * h) * change[0]
+                -(h * s25)
+                    + (((-s44 - s1 * s29) * h) * change[0]
                         + ((s46 - s45) * h) * change[1]
-                        + ((s31 * θ1_dot * s34 * s5 - s36 * real(0.5)) * h - s13)
+                        + ((s33 * θ1_dot * s7 * s10 - s37 * real(0.5)) * h - s25)
                             * change_h),
-                h * s16
-                    + (((s44 + s46) * h) * change[0] + ((s45 - s1 * s28) * h) * change[1]
-                        + (s16 + (s40 * θ2_dot * s5 - s42 * real(0.5)) * h) * change_h),
+                h * s27
+                    + (((s44 + s46) * h) * change[0] + ((s45 - s1 * s30) * h) * change[1]
+                        + (s27 + (s33 * s6 * θ2_dot * s10 - s42 * real(0.5)) * h)
+                            * change_h),
             ]),
             energy: real(0.0),
         }

@@ -60,8 +60,15 @@ struct Last<const N: usize, T> {
     previous: T,
     /// Step density D of the interval.
     density: T,
+    /// Change of v since the interval before.
+    change: SVector<T, N>,
+}
+
+impl<const N: usize, T: Real> Last<N, T> {
     /// Change of v by time, between the middles of the last two intervals.
-    slope: SVector<T, N>,
+    fn slope(&self) -> SVector<T, N> {
+        self.change * (T::real(2.0) / (self.h + self.previous))
+    }
 }
 
 /// The integrator that solves for its own step; see the [module](self).
@@ -249,7 +256,6 @@ impl<const N: usize, T: Real> Checkpoint<N, T> {
         let last = &self.last;
         // One over the time between the middles of the two intervals.
         let frequency = T::real(2.0) / (h + last.h);
-        let slope = (v - last.v) * frequency;
         let density_next = density + (density - last.density) * (frequency * h);
         let step = Step {
             t: node.t,
@@ -264,7 +270,7 @@ impl<const N: usize, T: Real> Checkpoint<N, T> {
             residual: T::real(residual),
             method,
         };
-        let last = Last { v, h, previous: last.h, density, slope };
+        let last = Last { v, h, previous: last.h, density, change: v - last.v };
         (node, last, step)
     }
 }

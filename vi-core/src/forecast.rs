@@ -187,8 +187,9 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     fn enter(&mut self, i: usize, u: T) {
         self.newest[i] = u;
         for (k, weight) in OLDER.iter().enumerate() {
-            let before = self.parts.get(k + 1).map_or(T::zero(), |part| part[i]);
-            self.parts[k][i] = before + u * T::real(*weight);
+            let part = u * T::real(*weight);
+            // Behind the last one is nothing: not a zero, which would have to be added.
+            self.parts[k][i] = self.parts.get(k + 1).map_or(part, |before| before[i] + part);
         }
     }
 

@@ -66,6 +66,8 @@ impl<T: Scalar> Reciprocal<T> {
     pub(crate) fn push(&mut self, reciprocal: T, good: bool) {
         let [a, b, _] = self.last;
         self.last = [reciprocal, a, b];
-        self.foretold &= good;
+        if !good {
+            self.foretold = false;
+        }
     }
 }

@@ -49,7 +49,7 @@ impl<const N: usize, T: Scalar> Checkpoint<N, T> {
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
         let numbers = [last.density, last.previous];
-        let mut numbers = numbers.iter().chain(last.v.iter()).chain(last.slope.iter());
+        let mut numbers = numbers.iter().chain(last.v.iter()).chain(last.change.iter());
         if !numbers.all(|number| number.is_finite()) || !forecasts.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last interval", expression: None });
         }
@@ -71,8 +71,8 @@ where
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
         let mut checkpoint = self.run;
         // The slope only extrapolates v, and where it has overflowed the guess goes without it.
-        if !checkpoint.last.slope.iter().all(|entry| entry.is_finite()) {
-            checkpoint.last.slope = SVector::zeros();
+        if !checkpoint.last.change.iter().all(|entry| entry.is_finite()) {
+            checkpoint.last.change = SVector::zeros();
         }
         checkpoint
     }

@@ -249,17 +249,17 @@ where
     /// One fixed step of the phase.
     fn fixed_step(&mut self, phase: Phase<T>) -> Result<Step<N, T>, StepError> {
         let (system, start, last, h) = (&self.system, self.run.node, self.run.last, phase.h);
-        let guess = last.v + last.slope * ((last.h + h) * T::real(0.5));
+        let guess = last.v + last.slope() * ((last.h + h) * T::real(0.5));
         let Solution { v, iterations } = continuation::nearest(system, &start, h, guess, last.v)?;
         let equations = system.extended_system(&start, h, &v);
         let t = start.t.to_f64();
         let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
         let infinite = StepError::NonFinite { t, quantity: "step density", expression: None };
         let density = Elimination::finite(&equations).ok_or(singular)?.density().ok_or(infinite)?;
-        let momentum = &equations.momentum;
-        let residual = momentum::worst(&momentum.residual, &system.magnitudes(&start, h, &v).residual);
+        // Of the equation that was solved: next to the smallest numbers the rows of both differ in what underflows.
+        let residual = momentum::residual(system, &start, h, &v);
         // The energy row e = c + v·r is what the energy carried lacks of the discrete energy of this interval.
-        let gap = equations.energy_residual + v.dot(&momentum.residual);
+        let gap = equations.energy_residual + v.dot(&equations.momentum.residual);
         let root = super::Root { v, h, density, iterations, residual, approach: None };
         let step = self.take(start, root, Method::FixedStep)?;
         let phase = Phase { gap, density_next: step.density_next, ..phase };

@@ -15,7 +15,7 @@ pub(super) fn predict<const N: usize, T: Scalar, S: Stepping<N, T>>(
     node: &Node<N, T>,
     last: &Last<N, T>,
 ) -> Trial<N, T> {
-    let extrapolated = Trial { v: last.v + last.slope * last.h, h: last.h };
+    let extrapolated = Trial { v: last.v + last.slope() * last.h, h: last.h };
     improve(system, node, last, extrapolated)
         .or_else(|| improve(system, node, last, Trial { v: last.v, h: last.h }))
         .unwrap_or(extrapolated)

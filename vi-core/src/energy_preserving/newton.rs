@@ -63,6 +63,8 @@ pub(super) struct Elimination<const N: usize, T> {
     /// Sum of the absolute values of the terms of S.
     schur_magnitude: T,
     determinant: T,
+    /// 1/determinant.
+    reciprocal: T,
 }
 
 impl<const N: usize, T: Scalar> Elimination<N, T> {
@@ -96,25 +98,26 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
             schur -= term;
             schur_magnitude += term.abs();
         }
-        Self { residual, residual_dh, schur, schur_magnitude, determinant }
+        Self { residual, residual_dh, schur, schur_magnitude, determinant, reciprocal: determinant.recip() }
     }
 
     /// The trial that follows, `(δv, δh)` taken.
     #[inline]
     pub(super) fn step(&self, equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, trial: &Trial<N, T>) -> Step<N, T> {
-        let mut energy = (equations.energy_residual / trial.h) * self.determinant;
+        let mut known = T::zero();
         for (energy_dv, a) in equations.energy_dv.iter().zip(self.residual.iter()) {
-            energy -= *energy_dv * *a;
+            known += *energy_dv * *a;
         }
-        let dh = -(energy / self.schur);
-        let reciprocal = self.determinant.recip();
-        Step { v: -(self.residual + self.residual_dh * dh) * reciprocal, h: dh }
+        // The row over h, and S, both times h: one quotient, where two would wait for each other.
+        let energy = equations.energy_residual * self.determinant - known * trial.h;
+        let dh = -(energy / (self.schur * trial.h));
+        Step { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
     }
 
     /// −4 S, the step density D of the interval.
     #[inline]
     pub(super) fn density_or_infinite(&self) -> T {
-        self.schur / self.determinant * T::real(-4.0)
+        self.schur * self.reciprocal * T::real(-4.0)
     }
 
     /// Step density D of the interval; `None` where a term of it is not finite.

@@ -107,8 +107,8 @@ fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
     let density = elimination.density().ok_or(infinite)?;
     let (t_mid, q_mid) = start.midpoint(h, &v);
     // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
-    let slope = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
-    Ok(Checkpoint::new(node, Last { v, h, previous: h, density, slope }))
+    let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
+    Ok(Checkpoint::new(node, Last { v, h, previous: h, density, change: acceleration * h }))
 }
 
 /// A step must lead forward.
