@@ -39,6 +39,24 @@ fn the_chain_grows_with_its_length() {
 }
 
 #[test]
+fn a_longer_chain_has_the_same_loops() {
+    let [short, long] = [16, 64].map(|length| {
+        let program = lowered(&families::chain(length));
+        let equation = program.function("momentum_equation").expect("every function is there");
+        let loops = equation.families().members;
+        let inside: usize = loops.iter().map(Vec::len).sum();
+        for members in &loops {
+            let work = members.iter().all(|id| equation.operations.get(*id).is_work());
+            assert!(work && members.len() > length / 2, "{} of {length}", members.len());
+        }
+        (loops.len(), inside, equation.operation_count() - inside)
+    });
+    // As many, and as much that is in none: constants, and the ends.
+    assert_eq!((short.0, short.2), (long.0, long.2));
+    assert_eq!(long, (37, 2315, 45));
+}
+
+#[test]
 fn the_pendulum_grows_with_its_pairs() {
     let found = LINKS.map(|links| counts(&lowered(&families::pendulum(links))));
     let pinned = [
