@@ -101,14 +101,18 @@ impl Lowering<'_> {
             }
         }
         let factor = self.pool.power(base, &exponent);
-        // A bare sum left inside would dissolve in the sum of the quotients: e²/2 + e³/3 stays as it is.
-        let dissolves = |quotient: &Expr| matches!(self.pool.node(*quotient), Node::Sum(sum) if sum.terms.len() > 1);
-        if inside.iter().any(dissolves) {
+        if self.dissolves(&inside) {
             return None;
         }
         let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
         self.record_powers(&[inside, rest]);
         Some(Way::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
+    }
+
+    /// Whether a bare sum is among the terms: it would dissolve in their sum, and its differences with it. e²/2 + e³/3 stays as
+    /// it is.
+    fn dissolves(&self, terms: &[Expr]) -> bool {
+        terms.iter().any(|term| matches!(self.pool.node(*term), Node::Sum(sum) if sum.terms.len() > 1))
     }
 
     /// The positive integer exponent with which a term has a base.
@@ -172,7 +176,7 @@ impl Lowering<'_> {
             let term = self.pool.mul(*term, inverse);
             terms.push(self.pool.scale(term, &(c / &number)));
         }
-        Some(Way::Coefficient { coefficient, inside: self.pool.sum(&terms) })
+        (!self.dissolves(&terms)).then(|| Way::Coefficient { coefficient, inside: self.pool.sum(&terms) })
     }
 
     /// The powers of parameters that a term which changes with the state has as factors.
