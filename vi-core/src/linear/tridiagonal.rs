@@ -30,9 +30,10 @@ pub struct Factors<const N: usize, T> {
 impl<const N: usize, T: Real> Tridiagonal<N, T> {
     const MIDDLE: usize = N / 2;
 
-    /// The reciprocals of the pivots, those of the two halves in turn; the lower half of an even N is a row shorter.
+    /// The reciprocals of the pivots, those of the two halves in turn, and right-hand sides eliminated on the way, but for the
+    /// middle row: they wait for less than the pivots do. The lower half of an even N is a row shorter.
     #[inline]
-    fn reciprocals(&self) -> [T; N] {
+    fn eliminate<const M: usize>(&self, x: &mut SMatrix<T, N, M>) -> [T; N] {
         let Self { lower, diagonal, upper } = self;
         let mut reciprocals = [T::zero(); N];
         let (mut above, mut below) = (T::zero(), T::zero());
@@ -46,6 +47,7 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
                 below = (diagonal[j] - from_below * below).recip();
                 reciprocals[j] = below;
             }
+            self.inward(&reciprocals, x, step);
         }
         let m = Self::MIDDLE;
         let mut pivot = diagonal[m];
@@ -77,21 +79,25 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         N < 2 || kept & is_kept(0, upper[0].abs()) & is_kept(N - 1, lower[N - 1].abs())
     }
 
+    /// The rows so many steps from both ends, but for the middle one, less what they have of the rows before.
     #[inline]
-    fn substitute<const M: usize>(&self, reciprocals: &[T; N], mut x: SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        let Self { lower, upper, .. } = self;
-        let m = Self::MIDDLE;
-        for k in 0..M {
-            let mut x = x.column_mut(k);
-            for step in 0..m {
-                let (i, j) = (step, N - 1 - step);
-                let known = if step == 0 { T::zero() } else { lower[i] * x[i - 1] };
-                x[i] = (x[i] - known) * reciprocals[i];
-                if j > m {
-                    let known = if step == 0 { T::zero() } else { upper[j] * x[j + 1] };
-                    x[j] = (x[j] - known) * reciprocals[j];
-                }
+    fn inward<const M: usize>(&self, reciprocals: &[T; N], x: &mut SMatrix<T, N, M>, step: usize) {
+        let (i, j) = (step, N - 1 - step);
+        for mut x in x.column_iter_mut() {
+            let known = if step == 0 { T::zero() } else { self.lower[i] * x[i - 1] };
+            x[i] = (x[i] - known) * reciprocals[i];
+            if j > Self::MIDDLE {
+                let known = if step == 0 { T::zero() } else { self.upper[j] * x[j + 1] };
+                x[j] = (x[j] - known) * reciprocals[j];
             }
+        }
+    }
+
+    /// The middle row, and from there all others.
+    #[inline]
+    fn outward<const M: usize>(&self, reciprocals: &[T; N], x: &mut SMatrix<T, N, M>) {
+        let (Self { lower, upper, .. }, m) = (self, Self::MIDDLE);
+        for mut x in x.column_iter_mut() {
             let mut middle = x[m];
             if m > 0 {
                 middle -= lower[m] * x[m - 1];
@@ -111,7 +117,6 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
                 }
             }
         }
-        x
     }
 }
 
@@ -120,16 +125,22 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
 
     #[inline]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        self.substitute(&self.reciprocals(), *rhs)
+        let mut x = *rhs;
+        let reciprocals = self.eliminate(&mut x);
+        self.outward(&reciprocals, &mut x);
+        x
     }
 
     fn inverse(&self) -> Self::Inverse {
-        Factors { matrix: *self, reciprocals: self.reciprocals() }
+        Factors { matrix: *self, reciprocals: self.eliminate(&mut SMatrix::<T, N, 0>::zeros()) }
     }
 
     #[inline]
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
-        inverse.matrix.substitute(&inverse.reciprocals, *rhs)
+        let (Factors { matrix, reciprocals }, mut x) = (inverse, *rhs);
+        (0..Self::MIDDLE).for_each(|step| matrix.inward(reciprocals, &mut x, step));
+        matrix.outward(reciprocals, &mut x);
+        x
     }
 
     fn dense(&self) -> SMatrix<T, N, N> {
