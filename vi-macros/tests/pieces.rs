@@ -48,6 +48,7 @@ system! {
         coord q[N];
         let springs = k * sum(i in 1..N, (q[i] - q[i - 1])^4) / 4;
         L = m * sum(i in 0..N, dot(q[i])^2) / 2 - springs + (1 + sin(t) / 3) * sum(i in 0..N, cos(q[i]));
+        force q[i in 0..N - 1] = k * cos(q[i]);
         discretize midpoint;
     }
 }

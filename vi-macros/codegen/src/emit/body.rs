@@ -1,12 +1,13 @@
 //! The body of a function: inputs named, shared terms bound once, results as formulas.
 //!
 //! In: a [`Function`]. Out: statements, and one formula per result. A term that is used more than once, is an argument
-//! of the rule, or makes a line too long, gets a name; everything else is written where it is used. In a function that is
-//! too long for one body all results have names, and [`pieces`] compute them.
+//! of the rule, or makes a line too long, gets a name; everything else is written where it is used. What is
+//! too long for one body is written in loops over the coordinates ([`Loops`]); where that does not make it short enough, all
+//! results have names, and [`pieces`] compute them.
 
 use super::angles::Angles;
 use super::folds::FoldText;
-use super::formula::Formula;
+use super::formula::{Formula, LINE};
 use super::loops::{Loops, Writing as Loop, Written};
 use super::names::Names;
 use super::pieces::{Statement, Writing, pieces};
@@ -17,9 +18,6 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
-
-/// Operations that one line may hold.
-const LINE: usize = 10;
 
 /// A printed body.
 pub(super) struct Body {

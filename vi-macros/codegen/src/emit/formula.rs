@@ -6,6 +6,9 @@ use crate::program::{Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+/// Operations that one line may hold.
+pub(super) const LINE: usize = 10;
+
 /// How tightly a formula binds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
@@ -40,8 +43,7 @@ impl Formula {
         Self { tokens, binding: Binding::Atom, operations }
     }
 
-    /// A number.
-    pub(super) fn constant(value: f64) -> Self {
+    fn constant(value: f64) -> Self {
         let value = number(value);
         Self::atom(quote!(real(#value)), 0)
     }

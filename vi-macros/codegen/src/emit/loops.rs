@@ -12,7 +12,7 @@
 //! again rather than kept.
 
 use super::folds::{Fold, FoldText, folds};
-use super::formula::Formula;
+use super::formula::{Formula, LINE};
 use super::names::Names;
 use crate::program::{Families, Function, Membership, Operation, OperationId, component};
 use crate::symbol::Symbol;
@@ -21,8 +21,6 @@ use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
 
-/// Operations that one line may hold.
-const LINE: usize = 10;
 /// Operations that are done again rather than kept.
 const AGAIN: usize = 1;
 
@@ -177,13 +175,15 @@ impl Lines<'_, '_> {
     fn line(&mut self, family: usize) -> TokenStream {
         let loops = self.loops;
         let (members, counter) = (&loops.families.members[family], self.counter.clone());
-        let (operation, length) = (loops.function.operations.get(members[0]), Literal::usize_unsuffixed(members.len()));
+        let operation = loops.function.operations.get(members[0]);
         if self.arrays.contains_key(&family) {
             return TokenStream::new();
         }
         if let (Some(partner), Operation::Call(function, angle)) = (loops.partner(operation), operation) {
             let (name, receiver) = (self.writing.names.next_shared(), self.operand(*angle, 0).receiver());
             let (own, other) = if *function == Elementary::Sin { (0, 1) } else { (1, 0) };
+            // Of some angles one of both may not be needed.
+            let length = Literal::usize_unsuffixed(members.len().max(loops.families.members[partner].len()));
             for (family, part) in [(family, own), (partner, other)] {
                 let part = Some(Literal::usize_unsuffixed(part));
                 self.arrays.insert(family, Array { name: name.clone(), part });
@@ -197,7 +197,7 @@ impl Lines<'_, '_> {
         }
         let names = &mut *self.writing.names;
         let name = if let Some((vector, _)) = symbol { names.vector(&vector) } else { names.next_shared() };
-        let tokens = formula.tokens();
+        let (tokens, length) = (formula.tokens(), Literal::usize_unsuffixed(members.len()));
         let line = quote!(let #name: [T; #length] = ::core::array::from_fn(|#counter| #tokens););
         self.arrays.insert(family, Array { name, part: None });
         line
@@ -228,7 +228,9 @@ impl Lines<'_, '_> {
             let inside = || self.formula(family, place + on);
             return self.arrays.get(&family).map_or_else(inside, |array| array.entry(counter, place + on));
         }
-        // What is in no family and is read here was written before.
-        self.writing.singles.get(&id).cloned().unwrap_or_else(|| Formula::constant(f64::NAN))
+        // What is in no family and is read here was written before; it would be the same written out.
+        let operation = self.loops.function.operations.get(id);
+        let again = || Formula::of(operation, &mut |operand| self.operand(operand, on));
+        self.writing.singles.get(&id).cloned().unwrap_or_else(again)
     }
 }
