@@ -34,6 +34,8 @@ where
     closed_form: Option<ClosedForm<N, T>>,
     run: Checkpoint<N, T>,
     failure: Option<StepError>,
+    /// Whether no step is foretold: by the branch, or after a failure. One question before a step instead of two.
+    is_sought: bool,
 }
 
 /// Which root of the momentum equation is a step, where it has several.
@@ -128,9 +130,10 @@ where
     /// With what is the same in every step.
     fn prepared(system: S, run: Checkpoint<N, T>) -> Self {
         let Checkpoint { node, stride, branch, .. } = &run;
+        let is_sought = *branch != Branch::Nearest;
         let inverse = stride.inverse(&system, node).filter(|_| *branch == Branch::Nearest);
         let closed_form = ClosedForm::of(&system, node, stride.h, inverse.as_ref());
-        Self { system, inverse, closed_form, run, failure: None }
+        Self { system, inverse, closed_form, run, failure: None, is_sought }
     }
 
     /// Takes one step and returns the state reached.
@@ -140,24 +143,27 @@ where
     /// spent; [`StepError::NonFinite`], [`StepError::Singular`]. The same error again after an error.
     #[inline]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
-        if let Some(failure) = self.failure {
-            return Err(failure);
-        }
-        let Self { system, inverse, closed_form, run, .. } = self;
-        if let Some(closed_form) = closed_form {
+        let Self { system, inverse, closed_form, run, is_sought, .. } = self;
+        if *is_sought {
+            if let Some(failure) = self.failure {
+                return Err(failure);
+            }
+        } else if let Some(closed_form) = closed_form.as_ref().filter(|_| S::CLOSED_FORM) {
             let (h, (way, gain)) = (run.stride.h, closed_form.step(&run.node));
             if run.node.stays_finite(h, &way, &gain) {
                 run.stride.forecast.replace(way * h.recip());
                 run.node.advance(h, &way, &gain);
                 return Ok(run.node.state());
             }
-        } else if let Some(found) = run.foretold(system, inverse.as_ref())
-            && run.node.stays_finite(run.stride.h, &(found.v() * run.stride.h), &found.gain)
-        {
-            run.place = run.stride.place_after::<S>(&run.node, &found);
-            run.stride.take::<S>(&found);
-            run.take(&found);
-            return Ok(run.node.state());
+        } else if let Some(found) = run.foretold(system, inverse.as_ref()) {
+            let mut node = run.node;
+            node.advance(run.stride.h, &(found.v() * run.stride.h), &found.gain);
+            if node.is_finite() {
+                run.place = run.stride.place_after::<S>(&run.node, &found);
+                run.stride.take::<S>(&found);
+                (run.node, run.iterations) = (node, found.iterations);
+                return Ok(node.state());
+            }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers; and each number for itself, since
         // the compiler joins those that it stores side by side, and then one waits for the other.
@@ -170,7 +176,7 @@ where
                 (self.run.node, self.run.place, self.run.iterations) = (node, place, iterations);
                 self.run.stride.resume(stride);
             }
-            Err(failure) => self.failure = Some(failure),
+            Err(failure) => (self.failure, self.is_sought) = (Some(failure), true),
         }
         outcome.map(|()| self.run.node.state())
     }
@@ -231,8 +237,8 @@ impl<const N: usize, T: Scalar> Checkpoint<N, T> {
     /// The next step, where it has not to be sought.
     #[inline]
     fn foretold<S: Stepping<N, T>>(&self, system: &S, inverse: Option<&Inverse<S, N, T>>) -> Option<Found<N, T>> {
-        let Self { node, stride, place, branch, .. } = self;
-        if *branch == Branch::Nearest { stride.foretold(system, node, *place, inverse) } else { None }
+        let Self { node, stride, place, .. } = self;
+        stride.foretold(system, node, *place, inverse)
     }
 
     /// Moves to the end of a step.
