@@ -67,3 +67,28 @@ pub enum Symbol {
     /// Variable of the continuous system, evaluated at a point of the rule.
     AtPoint(usize, Variable),
 }
+
+impl Symbol {
+    /// The component 0 of the vector that it is a component of, and which it is.
+    #[must_use]
+    pub fn component(&self) -> Option<(Self, usize)> {
+        let of_variable = |variable: &Variable| match variable {
+            Variable::Time => None,
+            Variable::Coordinate(index) => Some((Variable::Coordinate(0), *index)),
+            Variable::Velocity(index) => Some((Variable::Velocity(0), *index)),
+        };
+        match self {
+            Self::Q0(index) => Some((Self::Q0(0), *index)),
+            Self::Q1(index) => Some((Self::Q1(0), *index)),
+            Self::P0(index) => Some((Self::P0(0), *index)),
+            Self::StepVelocity(index) => Some((Self::StepVelocity(0), *index)),
+            Self::Acceleration(index) => Some((Self::Acceleration(0), *index)),
+            Self::Continuous(variable) => of_variable(variable).map(|(of, index)| (Self::Continuous(of), index)),
+            Self::AtPoint(point, variable) => {
+                of_variable(variable).map(|(of, index)| (Self::AtPoint(*point, of), index))
+            }
+            Self::Low(of) => of.component().map(|(of, index)| (Self::Low(Box::new(of)), index)),
+            Self::Parameter(_) | Self::T0 | Self::T1 | Self::Step | Self::E0 | Self::Field(_) => None,
+        }
+    }
+}

@@ -12,7 +12,7 @@ use super::loops::{Loops, Writing as Loop, Written};
 use super::names::Names;
 use super::pieces::{Statement, Writing, pieces};
 use crate::model::Model;
-use crate::program::{Function, Operation, OperationId, component};
+use crate::program::{Function, Operation, OperationId};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -75,18 +75,13 @@ struct Printer<'a> {
 pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place, limit: usize) -> Body {
     let long = function.operation_count() > limit;
     let (names, needed) = (Names::new(model, points), function.operations.needed(&function.results));
-    if let Some(loops) = long.then(|| Loops::of(function, limit)).flatten() {
+    if let Some(loops) = long.then(|| Loops::of(function, &needed, limit)).flatten() {
         return Printer::new(model, function, names, loops.uses()).in_loops(&loops, &needed, place);
     }
     let needed = if long { function.local_order() } else { needed };
     let angles = Angles::of(function, &needed);
     let needed = angles.first(function, needed);
-    let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
-    let operands = needed.iter().flat_map(|id| function.operations.get(*id).operands());
-    for id in operands.chain(function.results.iter().flatten().copied()) {
-        *uses.entry(id).or_default() += 1;
-    }
-    let mut printer = Printer { in_pieces: long, angles, ..Printer::new(model, function, names, uses) };
+    let mut printer = Printer { in_pieces: long, angles, ..Printer::new(model, function, names, function.uses()) };
     printer.name_inputs(&needed, place);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
     for id in needed {
@@ -125,7 +120,11 @@ impl<'a> Printer<'a> {
 
     /// The body in loops, and what is in none of them before and after.
     fn in_loops(mut self, loops: &Loops, needed: &[OperationId], place: Place) -> Body {
-        let mut vectors = loops.vectors();
+        let vector = |id: &OperationId| match self.function.operations.get(*id) {
+            Operation::Input(symbol) => symbol.component().map(|(vector, _)| vector),
+            _ => None,
+        };
+        let mut vectors: BTreeSet<Symbol> = needed.iter().filter_map(vector).collect();
         if place == Place::Interval && vectors.contains(&Symbol::StepVelocity(0)) {
             vectors.extend([Symbol::Q0(0), Symbol::Q1(0)]);
         }
@@ -174,7 +173,7 @@ impl Printer<'_> {
 
     /// A component of a vector that is read as a whole.
     fn component(&self, symbol: &Symbol) -> Option<Formula> {
-        let (vector, index) = component(symbol)?;
+        let (vector, index) = symbol.component()?;
         let (name, index) = (self.vectors.get(&vector)?, Literal::usize_unsuffixed(index));
         Some(Formula::atom(quote!(#name[#index]), 0))
     }

@@ -56,12 +56,7 @@ pub(super) fn folds(
     families: &Families,
     singles: Vec<OperationId>,
 ) -> (BTreeMap<OperationId, Fold>, Vec<OperationId>) {
-    let mut uses: BTreeMap<OperationId, usize> = BTreeMap::new();
-    let needed = function.operations.needed(&function.results);
-    let operands = needed.iter().flat_map(|id| function.operations.get(*id).operands());
-    for id in operands.chain(function.results.iter().flatten().copied()) {
-        *uses.entry(id).or_default() += 1;
-    }
+    let uses = function.uses();
     let mut folds: BTreeMap<OperationId, Fold> = BTreeMap::new();
     for id in &singles {
         let (before, term, subtracts) = match function.operations.get(*id) {

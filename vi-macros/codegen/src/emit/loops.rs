@@ -14,7 +14,7 @@
 use super::folds::{Fold, FoldText, folds};
 use super::formula::{Formula, LINE};
 use super::names::Names;
-use crate::program::{Families, Function, Membership, Operation, OperationId, component};
+use crate::program::{Families, Function, Membership, Operation, OperationId};
 use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
@@ -56,11 +56,10 @@ pub(super) struct Written {
 }
 
 impl<'a> Loops<'a> {
-    /// The loops of a function; `None` where they leave more than `limit` operations to be written.
-    pub(super) fn of(function: &'a Function, limit: usize) -> Option<Self> {
+    /// The loops of a function that needs these operations; `None` where they leave more than `limit` to be written.
+    pub(super) fn of(function: &'a Function, needed: &[OperationId], limit: usize) -> Option<Self> {
         let families = function.families();
-        let needed = function.operations.needed(&function.results);
-        let singles: Vec<OperationId> = needed.into_iter().filter(|id| families.of(*id).is_none()).collect();
+        let singles = needed.iter().copied().filter(|id| families.of(*id).is_none()).collect();
         let (folds, singles) = folds(function, &families, singles);
         let work = |id: &&OperationId| function.operations.get(**id).is_work();
         let written = singles.iter().filter(work).count() + families.members.len();
@@ -102,16 +101,6 @@ impl<'a> Loops<'a> {
             *uses.entry(id).or_default() += count;
         }
         uses
-    }
-
-    /// The vectors among the inputs, by their components 0.
-    pub(super) fn vectors(&self) -> BTreeSet<Symbol> {
-        let operations = self.function.operations.needed(&self.function.results);
-        let symbol = |id| match self.function.operations.get(id) {
-            Operation::Input(symbol) => component(symbol).map(|(vector, _)| vector),
-            _ => None,
-        };
-        operations.into_iter().filter_map(symbol).collect()
     }
 
     /// The loops, written.
@@ -190,7 +179,7 @@ impl Lines<'_, '_> {
             }
             return quote!(let #name: [(T, T); #length] = ::core::array::from_fn(|#counter| #receiver.sin_cos()););
         }
-        let symbol = loops.function.operations.name(members[0]).and_then(component);
+        let symbol = loops.function.operations.name(members[0]).and_then(Symbol::component);
         let formula = self.formula(family, 0);
         if symbol.is_none() && self.is_inside(family, formula.operations) {
             return TokenStream::new();
@@ -219,7 +208,7 @@ impl Lines<'_, '_> {
     fn operand(&self, id: OperationId, on: usize) -> Formula {
         let counter = Some(&self.counter);
         if let Operation::Input(symbol) = self.loops.function.operations.get(id)
-            && let Some((vector, place)) = component(symbol)
+            && let Some((vector, place)) = symbol.component()
             && let Some(name) = self.writing.vectors.get(&vector)
         {
             return Array { name: name.clone(), part: None }.entry(counter, place + on);

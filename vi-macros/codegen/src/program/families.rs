@@ -11,7 +11,7 @@
 //! families, inputs, or the same for all.
 
 use super::{Function, Operation, OperationId};
-use crate::symbol::{Symbol, Variable};
+use crate::symbol::Symbol;
 use std::collections::BTreeMap;
 
 /// Members from which on there is a loop.
@@ -59,29 +59,6 @@ impl Families {
     }
 }
 
-/// The component 0 of the vector that a symbol is a component of, and which it is.
-#[must_use]
-pub fn component(symbol: &Symbol) -> Option<(Symbol, usize)> {
-    let of_variable = |variable: &Variable| match variable {
-        Variable::Time => None,
-        Variable::Coordinate(index) => Some((Variable::Coordinate(0), *index)),
-        Variable::Velocity(index) => Some((Variable::Velocity(0), *index)),
-    };
-    match symbol {
-        Symbol::Q0(index) => Some((Symbol::Q0(0), *index)),
-        Symbol::Q1(index) => Some((Symbol::Q1(0), *index)),
-        Symbol::P0(index) => Some((Symbol::P0(0), *index)),
-        Symbol::StepVelocity(index) => Some((Symbol::StepVelocity(0), *index)),
-        Symbol::Acceleration(index) => Some((Symbol::Acceleration(0), *index)),
-        Symbol::Continuous(variable) => of_variable(variable).map(|(of, index)| (Symbol::Continuous(of), index)),
-        Symbol::AtPoint(point, variable) => {
-            of_variable(variable).map(|(of, index)| (Symbol::AtPoint(*point, of), index))
-        }
-        Symbol::Low(of) => component(of).map(|(of, index)| (Symbol::Low(Box::new(of)), index)),
-        Symbol::Parameter(_) | Symbol::T0 | Symbol::T1 | Symbol::Step | Symbol::E0 | Symbol::Field(_) => None,
-    }
-}
-
 impl Function {
     /// Its families.
     #[must_use]
@@ -110,7 +87,7 @@ impl Function {
 /// The shape of an operation and the place of its first operand that has one; `None` where none has.
 fn shape(operation: &Operation, placed: &BTreeMap<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
     if let Operation::Input(symbol) = operation {
-        return component(symbol).map(|(vector, place)| (Shape::Input(vector), place));
+        return symbol.component().map(|(vector, place)| (Shape::Input(vector), place));
     }
     let start = operation.operands().find_map(|operand| placed.get(&operand).map(|(_, place)| *place))?;
     let relative = operation.operands().map(|operand| match placed.get(&operand) {

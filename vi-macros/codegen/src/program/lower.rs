@@ -105,7 +105,8 @@ impl<'a> Lowering<'a> {
         found
     }
 
-    /// Whether it is made of parameters, and not of numbers alone; where that was asked before.
+    /// Whether a base of a term is made of parameters, and not of numbers alone. It was asked when the base was lowered, before
+    /// the term.
     pub(super) fn is_parameter(&self, expr: Expr) -> bool {
         self.dependences.get(&expr) == Some(&Dependence::Parameters)
     }

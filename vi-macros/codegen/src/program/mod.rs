@@ -16,8 +16,10 @@ mod sums;
 mod verify;
 
 pub use assemble::program;
-pub use families::{Families, Membership, component};
+pub use families::{Families, Membership};
 pub use operations::{Operation, OperationId, Operations};
+
+use std::collections::BTreeMap;
 
 /// What one function computes.
 pub struct Function {
@@ -27,6 +29,19 @@ pub struct Function {
     pub operations: Operations,
     /// The results, in groups: a number is a group of one, a vector one of N, a matrix N groups (its rows).
     pub results: Vec<Vec<OperationId>>,
+}
+
+impl Function {
+    /// How often each operation that the results need is read: by others, and as a result.
+    pub(crate) fn uses(&self) -> BTreeMap<OperationId, usize> {
+        let mut uses = BTreeMap::new();
+        let needed = self.operations.needed(&self.results);
+        let operands = needed.into_iter().flat_map(|id| self.operations.get(id).operands());
+        for id in operands.chain(self.results.iter().flatten().copied()) {
+            *uses.entry(id).or_default() += 1;
+        }
+        uses
+    }
 }
 
 /// All functions of a system.
