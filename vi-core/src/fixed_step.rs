@@ -14,7 +14,7 @@
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 use crate::closed_form::ClosedForm;
-use crate::stride::{Found, Inverse, Stride};
+use crate::stride::{Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use crate::{continuation, momentum};
 use core::hint::black_box;
@@ -149,13 +149,14 @@ where
                 return Err(failure);
             }
         } else if let Some(closed_form) = closed_form.as_ref().filter(|_| S::CLOSED_FORM) {
-            let (h, (way, gain)) = (run.stride.h, closed_form.step(&run.node));
-            if run.node.stays_finite(h, &way, &gain) {
+            let (mut node, h, (way, gain)) = (run.node, run.stride.h, closed_form.step(&run.node));
+            node.advance(h, &way, &gain);
+            if node.is_finite() {
                 run.stride.forecast.replace(way * h.recip());
-                run.node.advance(h, &way, &gain);
-                return Ok(run.node.state());
+                run.node = node;
+                return Ok(node.state());
             }
-        } else if let Some(found) = run.foretold(system, inverse.as_ref()) {
+        } else if let Some(found) = run.stride.foretold(system, &run.node, run.place, inverse.as_ref()) {
             let mut node = run.node;
             node.advance(run.stride.h, &(found.v() * run.stride.h), &found.gain);
             if node.is_finite() {
@@ -234,25 +235,12 @@ impl<const N: usize, T: Scalar> Checkpoint<N, T> {
         Self { node: node.apart(), stride: stride.apart(), place: black_box(place), iterations, branch }
     }
 
-    /// The next step, where it has not to be sought.
-    #[inline]
-    fn foretold<S: Stepping<N, T>>(&self, system: &S, inverse: Option<&Inverse<S, N, T>>) -> Option<Found<N, T>> {
-        let Self { node, stride, place, .. } = self;
-        stride.foretold(system, node, *place, inverse)
-    }
-
-    /// Moves to the end of a step.
-    #[inline]
-    fn take(&mut self, found: &Found<N, T>) {
-        self.node.advance(self.stride.h, &(found.v() * self.stride.h), &found.gain);
-        self.iterations = found.iterations;
-    }
-
     /// Takes a step that has to be sought.
     fn seek<S: Stepping<N, T>>(&mut self, system: &S) -> Result<(), StepError> {
         let t = self.node.t;
         let found = self.stride.seek(system, &self.node, self.branch)?;
-        self.take(&found);
+        self.node.advance(self.stride.h, &(found.v() * self.stride.h), &found.gain);
+        self.iterations = found.iterations;
         self.place = self.stride.place::<S>(&self.node);
         self.node.check_finite(t)
     }

@@ -123,13 +123,6 @@ impl<const N: usize, T: Scalar> Node<N, T> {
         ((a + b) + (c + d)).is_finite()
     }
 
-    /// Whether they are over the step that [`Node::advance`] is told.
-    #[inline(always)]
-    pub(crate) fn stays_finite(mut self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
-        self.advance(h, way, momentum_gain);
-        self.is_finite()
-    }
-
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
     /// the last good node.
     ///

@@ -102,16 +102,14 @@ pub trait Real:
     /// The larger of two numbers.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// Whether every lane is finite.
+    /// Whether it is finite.
     fn is_finite(self) -> bool;
-    /// Whether every lane is above zero.
+    /// Whether it is above zero.
     fn is_positive(self) -> bool;
-    /// Whether `self ≤ bound` in every lane. A lane that is not a number is not below anything.
+    /// Whether `self ≤ bound`. What is not a number is not below anything.
     fn is_at_most(self, bound: Self) -> bool;
-    /// The value, of several lanes the first, as it stands in errors and tables.
+    /// The value, as it stands in errors and tables.
     fn to_f64(self) -> f64;
-    /// The smallest absolute value among the lanes: what a pivot is chosen by.
-    fn least_magnitude(self) -> f64;
 }
 
 /// One number: what the control flow of a stepper needs beside the formulas.
@@ -202,9 +200,6 @@ macro_rules! impl_real {
             #[allow(clippy::cast_lossless)]
             #[inline]
             fn to_f64(self) -> f64 { self as f64 }
-            #[allow(clippy::cast_lossless)]
-            #[inline]
-            fn least_magnitude(self) -> f64 { $float::abs(self) as f64 }
         }
 
         impl Scalar for $float {}

@@ -165,8 +165,4 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
     fn to_f64(self) -> f64 {
         self.get()
     }
-    #[inline(always)]
-    fn least_magnitude(self) -> f64 {
-        self.get().abs()
-    }
 }

@@ -223,7 +223,4 @@ impl<T: Real> Real for Dual<T> {
     fn to_f64(self) -> f64 {
         self.value.to_f64()
     }
-    fn least_magnitude(self) -> f64 {
-        self.value.least_magnitude()
-    }
 }

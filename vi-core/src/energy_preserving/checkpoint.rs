@@ -70,7 +70,7 @@ where
     /// Finite numbers only, so that a text format without infinities can hold it.
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
         let mut checkpoint = self.run;
-        // The slope only extrapolates v, and where it has overflowed the guess goes without it.
+        // The change only extrapolates v, and where it has overflowed the guess goes without it.
         if !checkpoint.last.change.iter().all(|entry| entry.is_finite()) {
             checkpoint.last.change = SVector::zeros();
         }

@@ -91,7 +91,7 @@ fn solve_3<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SM
 pub(super) fn pivot<T: Real, const N: usize>(a: &mut SMatrix<T, N, N>, column: usize) -> Option<usize> {
     let mut pivot = column;
     for row in column + 1..N {
-        if a[(row, column)].least_magnitude() > a[(pivot, column)].least_magnitude() {
+        if a[(row, column)].abs().to_f64() > a[(pivot, column)].abs().to_f64() {
             pivot = row;
         }
     }
