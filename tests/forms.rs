@@ -183,7 +183,7 @@ impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
     type Jacobian = SMatrix<f64, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const SMOOTH: bool = S::SMOOTH;
-    const PLACE: f64 = S::PLACE;
+    const PLACE: Option<f64> = S::PLACE;
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
         dense(self.0.momentum_equation(node, h, v))
@@ -215,11 +215,12 @@ impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
     fn extended_step(
         &self,
         node: &Node<N>,
+        place: &SVector<f64, N>,
         h: f64,
         v: &SVector<f64, N>,
         solve: impl FnOnce(&ExtendedSystem<N>) -> (SVector<f64, N>, f64),
     ) -> Increment<N> {
-        self.0.extended_step(node, h, v, |system| solve(&dense_in_both(*system)))
+        self.0.extended_step(node, place, h, v, |system| solve(&dense_in_both(*system)))
     }
 }
 

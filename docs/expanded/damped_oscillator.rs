@@ -324,7 +324,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     const CONSTANT_JACOBIAN: bool = true;
     const SMOOTH: bool = true;
     const CLOSED_FORM: bool = true;
-    const PLACE: f64 = 0.5f64;
+    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
 
     /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
     ///
@@ -455,7 +455,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
 
     /// `p1 − p0_x = h*f_x + h*L_x`
     ///
-    /// and to first order at `v + dv`.
+    /// to first order at `v + dv`.
     ///
     /// 24 operations.
     #[inline(always)]
@@ -492,6 +492,61 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
             -((self.k * x_mid + self.c * x_dot) * h)
                 + (((-self.c - s2 * real(0.5)) * h) * change[0]),
         ])
+    }
+
+    /// `p1 − p0_x = h*f_x + h*L_x`
+    ///
+    /// `E1 − E0 = h*f_x*v_x`
+    ///
+    /// at `(v + dv, h + dh)`.
+    ///
+    /// 37 operations.
+    #[inline(always)]
+    fn extended_step(
+        &self,
+        node: &::vi_core::Node<1, T>,
+        place: &::vi_core::SVector<T, 1>,
+        h: T,
+        v: &::vi_core::SVector<T, 1>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::ExtendedSystem<1, T, Self::Jacobian>,
+        ) -> (::vi_core::SVector<T, 1>, T),
+    ) -> ::vi_core::Increment<1, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [p0_x]: [T; 1] = node.p.into();
+        let [p0_x_low]: [T; 1] = node.p_low.into();
+        let [x_dot]: [T; 1] = (*v).into();
+        let [x_mid]: [T; 1] = (*place).into();
+        let real = T::real;
+        let s1 = self.k * h * real(0.25);
+        let s2 = self.m * x_dot;
+        let s3 = self.k * x_mid;
+        let s4 = s3 * real(0.5) + self.c * x_dot * real(0.5);
+        let s5 = s1 * x_dot;
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        s2 - p0_x + (s4 * h - p0_x_low),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[self.m + (self.c * real(0.5) + s1) * h],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s4 + s5]),
+                energy_residual: self.k * (x_mid * x_mid) * real(0.5) - energy0
+                    + (p0_x - s2 * real(0.5)) * x_dot
+                    + ((p0_x_low - s3 * (h * real(0.5))) * x_dot - energy0_low),
+                energy_dv: ::vi_core::SVector::from([s4 - s5]),
+                energy_dh: -(self.k * (x_dot * x_dot) * real(0.25)),
+            },
+        );
+        self.increment(
+            node,
+            h + change_h,
+            &(::vi_core::SVector::<T, 1>::from(*v) + change),
+        )
     }
 }
 

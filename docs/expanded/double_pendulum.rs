@@ -457,7 +457,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
-    const PLACE: f64 = 0.5f64;
+    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
 
     /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
     ///
@@ -709,7 +709,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// `p1 − p0_θ2 = h*L_θ2`
     ///
-    /// and to first order at `v + dv`.
+    /// to first order at `v + dv`.
     ///
     /// 86 operations.
     #[inline(always)]
@@ -785,13 +785,14 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ///
     /// `E1 − E0 = 0`
     ///
-    /// and to first order at `(v + dv, h + dh)`.
+    /// to first order at `(v + dv, h + dh)`.
     ///
-    /// 167 operations.
+    /// 161 operations.
     #[inline(always)]
     fn extended_step(
         &self,
         node: &::vi_core::Node<2, T>,
+        place: &::vi_core::SVector<T, 2>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
         solve: impl ::core::ops::FnOnce(
@@ -800,96 +801,94 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     ) -> ::vi_core::Increment<2, T> {
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
         let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
         let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
         let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let s2 = self.m1 + self.m2;
-        let s3 = self.m2 * (self.l2 * self.l2);
-        let s4 = self.l1 * self.l1;
-        let s5 = s3 * θ2_dot;
-        let s6 = θ1_dot * θ1_dot;
-        let s7 = θ2_dot * θ2_dot;
-        let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s10 = cos8 * cos9 + sin8 * sin9;
-        let s11 = self.m2 * self.l1 * self.l2;
-        let s12 = s11 * θ1_dot;
-        let s13 = s12 * θ2_dot;
-        let s14 = s13 * s10;
-        let s15 = self.l1 * self.g * s2;
-        let s16 = s15 * cos8;
-        let s17 = self.m2 * self.l2 * self.g;
-        let s18 = s17 * cos9;
-        let s19 = s4 * s2 * θ1_dot;
-        let s20 = s11 * θ2_dot;
-        let s21 = s20 * s10;
-        let s22 = sin8 * cos9 - cos8 * sin9;
-        let s23 = s13 * s22;
-        let s24 = s15 * sin8;
-        let s25 = s23 + s24;
-        let s26 = s17 * sin9;
-        let s27 = s23 - s26;
-        let s28 = (p0_θ2 - s5 * real(0.5)) * θ2_dot - (energy0 + s16 + s18)
-            + (p0_θ1 - s19 * real(0.5) - s21) * θ1_dot;
-        let s29 = s14 + s16;
-        let s30 = s14 + s18;
+        let s1 = self.m1 + self.m2;
+        let s2 = self.m2 * (self.l2 * self.l2);
+        let s3 = self.l1 * self.l1;
+        let s4 = s2 * θ2_dot;
+        let s5 = θ1_dot * θ1_dot;
+        let s6 = θ2_dot * θ2_dot;
+        let [(sin7, cos7), (sin8, cos8)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s9 = cos7 * cos8 + sin7 * sin8;
+        let s10 = self.m2 * self.l1 * self.l2;
+        let s11 = s10 * θ1_dot;
+        let s12 = s11 * θ2_dot;
+        let s13 = s12 * s9;
+        let s14 = self.l1 * self.g * s1;
+        let s15 = s14 * cos7;
+        let s16 = self.m2 * self.l2 * self.g;
+        let s17 = s16 * cos8;
+        let s18 = s3 * s1 * θ1_dot;
+        let s19 = s10 * θ2_dot;
+        let s20 = s19 * s9;
+        let s21 = sin7 * cos8 - cos7 * sin8;
+        let s22 = s12 * s21;
+        let s23 = s14 * sin7;
+        let s24 = s22 + s23;
+        let s25 = s16 * sin8;
+        let s26 = s22 - s25;
+        let s27 = h * real(0.5);
+        let s28 = (p0_θ2 - s4 * real(0.5)) * θ2_dot - (energy0 + s15 + s17)
+            + (p0_θ1 - s18 * real(0.5) - s20) * θ1_dot;
+        let s29 = s13 + s15;
+        let s30 = s13 + s17;
         let s31 = h * h * real(0.25);
-        let s32 = s11 * s10;
-        let s33 = s11 * real(0.5);
-        let s34 = s33 * (θ1_dot + θ2_dot) * s22;
-        let s35 = s14 * (h * real(0.25));
-        let s36 = s24 * real(0.5) + s11 * s7 * s22 * real(0.5);
+        let s32 = s10 * s9;
+        let s33 = s10 * real(0.5);
+        let s34 = s33 * (θ1_dot + θ2_dot) * s21;
+        let s35 = s13 * (h * real(0.25));
+        let s36 = s23 * real(0.5) + s10 * s6 * s21 * real(0.5);
         let s37 = θ1_dot * s29;
-        let s38 = s11 * real(0.25);
-        let s39 = (s38 * θ1_dot * s7 * s10 - s37 * real(0.25)) * h;
-        let s40 = s11 * s6;
-        let s41 = s26 * real(0.5) - s40 * s22 * real(0.5);
+        let s38 = s10 * real(0.25);
+        let s39 = (s38 * θ1_dot * s6 * s9 - s37 * real(0.25)) * h;
+        let s40 = s10 * s5;
+        let s41 = s25 * real(0.5) - s40 * s21 * real(0.5);
         let s42 = θ2_dot * s30;
-        let s43 = (s38 * s6 * θ2_dot * s10 - s42 * real(0.25)) * h;
-        let s44 = s20 * s22;
-        let s45 = s12 * s22;
-        let s46 = s14 * s1;
+        let s43 = (s38 * s5 * θ2_dot * s9 - s42 * real(0.25)) * h;
+        let s44 = s19 * s21;
+        let s45 = s11 * s21;
+        let s46 = s13 * s27;
         let (change, change_h) = solve(
             &::vi_core::ExtendedSystem {
                 momentum: ::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        s19 + s21 - p0_θ1 - (p0_θ1_low - s1 * s25),
-                        s5 + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s27),
+                        s18 + s20 - p0_θ1 - (p0_θ1_low - s27 * s24),
+                        s4 + s11 * s9 - p0_θ2 - (p0_θ2_low + s27 * s26),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
                         &[
-                            s2 * s4 + s31 * s29,
+                            s1 * s3 + s31 * s29,
                             s32 + (s34 - s35) * h,
                             s32 - (s34 + s35) * h,
-                            s3 + s31 * s30,
+                            s2 + s31 * s30,
                         ],
                     ),
                 },
                 residual_dh: ::vi_core::SVector::from([s36 - s39, s41 - s43]),
                 energy_residual: s28
                     + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                        + s1 * (θ2_dot * s27 - θ1_dot * s25)),
+                        + s27 * (θ2_dot * s26 - θ1_dot * s24)),
                 energy_dv: ::vi_core::SVector::from([s36 + s39, s41 + s43]),
-                energy_dh: s40 * s7 * s10 * real(0.5) - s6 * s29 * real(0.25)
-                    - s7 * s30 * real(0.25),
+                energy_dh: s40 * s6 * s9 * real(0.5) - s5 * s29 * real(0.25)
+                    - s6 * s30 * real(0.25),
             },
         );
         let change: [T; 2] = change.into();
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
-                -(h * s25)
-                    + (((-s44 - s1 * s29) * h) * change[0]
+                -(h * s24)
+                    + (((-s44 - s27 * s29) * h) * change[0]
                         + ((s46 - s45) * h) * change[1]
-                        + ((s33 * θ1_dot * s7 * s10 - s37 * real(0.5)) * h - s25)
+                        + ((s33 * θ1_dot * s6 * s9 - s37 * real(0.5)) * h - s24)
                             * change_h),
-                h * s27
-                    + (((s44 + s46) * h) * change[0] + ((s45 - s1 * s30) * h) * change[1]
-                        + (s27 + (s33 * s6 * θ2_dot * s10 - s42 * real(0.5)) * h)
+                h * s26
+                    + (((s44 + s46) * h) * change[0]
+                        + ((s45 - s27 * s30) * h) * change[1]
+                        + (s26 + (s33 * s5 * θ2_dot * s9 - s42 * real(0.5)) * h)
                             * change_h),
             ]),
             energy: real(0.0),

@@ -361,7 +361,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
-    const PLACE: f64 = 0.5f64;
+    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
 
     /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
     ///
@@ -572,7 +572,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     ///
     /// `p1 − p0_y = h*L_y`
     ///
-    /// and to first order at `v + dv`.
+    /// to first order at `v + dv`.
     ///
     /// 52 operations.
     #[inline(always)]
@@ -624,6 +624,85 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
             -(s8 * x_mid * s7) + ((s16 * s11) * change[0] + (s17) * change[1]),
             -(s8 * y_mid * s7) + ((s17) * change[0] + (s16 * s15) * change[1]),
         ])
+    }
+
+    /// `p1 − p0_x = h*L_x`
+    ///
+    /// `p1 − p0_y = h*L_y`
+    ///
+    /// `E1 − E0 = 0`
+    ///
+    /// at `(v + dv, h + dh)`.
+    ///
+    /// 101 operations.
+    #[inline(always)]
+    fn extended_step(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        place: &::vi_core::SVector<T, 2>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
+        ) -> (::vi_core::SVector<T, 2>, T),
+    ) -> ::vi_core::Increment<2, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let [x_mid, y_mid]: [T; 2] = (*place).into();
+        let real = T::real;
+        let s1 = x_mid * x_mid;
+        let s2 = y_mid * y_mid;
+        let s3 = s1 + s2;
+        let s4 = s3.recip();
+        let s5 = s3.sqrt();
+        let s6 = s4 * s4;
+        let s7 = s6 * s5;
+        let s8 = self.mu * x_mid * s7;
+        let s9 = self.mu * y_mid * s7;
+        let s10 = h * real(0.5);
+        let s11 = (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + self.mu * (s4 * s5))
+            + (p0_x - x_dot * real(0.5)) * x_dot;
+        let s12 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+            - self.mu * real(0.5) * h * (x_dot * x_mid * s7 + y_dot * y_mid * s7);
+        let s13 = s6 * s4 * s5;
+        let s14 = s1 * s13 * real(3.0) - s7;
+        let s15 = self.mu * (h * h);
+        let s16 = s15 * real(0.25);
+        let s17 = -(s15 * real(0.75) * x_mid * y_mid * s13);
+        let s18 = s2 * s13 * real(3.0) - s7;
+        let s19 = s8 * real(0.5);
+        let s20 = self.mu * real(0.75);
+        let s21 = self.mu * real(0.25);
+        let s22 = s21 * x_dot * s14;
+        let s23 = (s20 * y_dot * x_mid * y_mid * s13 + s22) * h;
+        let s24 = s9 * real(0.5);
+        let s25 = (s20 * x_dot * x_mid * y_mid * s13 + s21 * y_dot * s18) * h;
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        x_dot - p0_x + (s8 * s10 - p0_x_low),
+                        y_dot - p0_y + (s9 * s10 - p0_y_low),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[real(1.0) - s16 * s14, s17, s17, real(1.0) - s16 * s18],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s19 - s23, s24 - s25]),
+                energy_residual: s11 + s12,
+                energy_dv: ::vi_core::SVector::from([s19 + s23, s24 + s25]),
+                energy_dh: self.mu * (y_dot * y_dot) * s18 * real(0.25)
+                    + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s13 + s22) * x_dot,
+            },
+        );
+        self.increment(
+            node,
+            h + change_h,
+            &(::vi_core::SVector::<T, 2>::from(*v) + change),
+        )
     }
 }
 

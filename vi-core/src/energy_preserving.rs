@@ -28,6 +28,7 @@ mod checkpoint;
 mod fallback;
 mod foretold;
 mod guess;
+mod lesson;
 mod newton;
 mod starts;
 
@@ -38,7 +39,7 @@ use crate::condition::Condition;
 use crate::state::Method;
 use crate::{Increment, Node, Real, Scalar, State, Step, StepError, Stepping};
 use nalgebra::SVector;
-use newton::{Failure, Root, Trial};
+use newton::{Failure, Root};
 
 /// A step may be longer or shorter than the last one by this factor at most.
 const RATIO: f64 = 3.0;
@@ -98,9 +99,9 @@ where
         }
         if let Some(found) = self.foretold() {
             let foretold::Found { root, gain, .. } = &found;
-            let (node, last, step) = self.run.reached(&self.run.node, root, gain, Method::EnergyPreserving);
+            let (node, last, step) = self.run.reached::<S>(&self.run.node, root, gain, Method::EnergyPreserving);
             if node.is_finite() {
-                self.run.forecasts.push(&found);
+                self.run.forecasts.push::<S>(&self.run.node, &found);
                 (self.run.node, self.run.last) = (node, last);
                 return Ok(step);
             }
@@ -187,12 +188,12 @@ where
     /// Takes the step `root` from `start`, and learns from it.
     fn take(&mut self, start: Node<N, T>, root: Root<N, T>, method: Method<T>) -> Result<Step<N, T>, StepError> {
         let gain = self.system.increment(&start, root.h, &root.v);
-        let (node, last, step) = self.run.reached(&start, &root, &gain, method);
+        let (node, last, step) = self.run.reached::<S>(&start, &root, &gain, method);
         node.check_finite(start.t)?;
         match method {
             // A length that was given foretells none.
             Method::FixedStep => self.run.forecasts = foretold::Forecasts::new(root.v, root.h),
-            _ => self.run.forecasts.learn(&self.system, &start, &self.run.last, (&root, &gain)),
+            _ => self.run.forecasts.learn(&self.system, &start, &self.run.last, &root, &node),
         }
         (self.run.node, self.run.last) = (node, last);
         Ok(step)
@@ -200,24 +201,18 @@ where
 
     /// The forward step from `node`, within the bounds.
     fn root(&self, node: &Node<N, T>) -> Result<Root<N, T>, StepError> {
-        let Self { system, run: Checkpoint { last, forecasts, .. }, .. } = self;
+        let Self { system, run: Checkpoint { last, .. }, .. } = self;
         let ratio = T::real(RATIO);
         let range = (last.h / ratio, last.h * ratio);
         // At the smallest root D has the sign that it had: past a change of sign lies another root.
         let forward = |root: &Root<N, T>| root.density.to_f64() * last.density.to_f64() > 0.0;
-        // A lesson starts from the last interval.
-        let lesson = Trial { v: last.v, h: last.h };
-        let lesson = forecasts.is_learning().then(|| newton::solve(system, node, lesson, range, |_| ()).ok());
-        let root = match lesson.flatten().filter(forward) {
-            Some(root) => root,
-            None => match newton::solve(system, node, guess::predict(system, node, last), range, |_| ()) {
-                Ok(root) if forward(&root) => root,
-                Err(Failure::Degenerate { h, density }) => {
-                    let (t, h, density) = (node.t.to_f64(), h.to_f64(), density.to_f64());
-                    return Err(StepError::DegenerateStep { t, h, density });
-                }
-                _ => bracket::smallest_root(system, node, last)?,
-            },
+        let root = match newton::solve(system, node, guess::predict(system, node, last), range, |_| ()) {
+            Ok(root) if forward(&root) => root,
+            Err(Failure::Degenerate { h, density }) => {
+                let (t, h, density) = (node.t.to_f64(), h.to_f64(), density.to_f64());
+                return Err(StepError::DegenerateStep { t, h, density });
+            }
+            _ => bracket::smallest_root(system, node, last)?,
         };
         match &self.run.bounds {
             Some(bounds) if !bounds.admit(root.h) => Err(bounds.refusal(node.t, root.h)),
@@ -243,7 +238,7 @@ fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
 impl<const N: usize, T: Real> Checkpoint<N, T> {
     /// The node and the interval after the step `root` from `start`, and the step.
     #[inline]
-    fn reached(
+    fn reached<S: Stepping<N, T>>(
         &self,
         start: &Node<N, T>,
         root: &Root<N, T>,
@@ -251,7 +246,7 @@ impl<const N: usize, T: Real> Checkpoint<N, T> {
         method: Method<T>,
     ) -> (Node<N, T>, Last<N, T>, Step<N, T>) {
         let Root { v, h, density, iterations, residual, .. } = *root;
-        let node = start.advanced(h, &v, gain);
+        let node = start.advanced::<S>(h, &v, gain);
         let (t_mid, q_mid) = start.midpoint(h, &v);
         let last = &self.last;
         // One over the time between the middles of the two intervals.

@@ -44,9 +44,8 @@ pub(crate) struct Forecast<const M: usize, T> {
     guess: SVector<T, M>,
     /// The extrapolation to the next step, whether it is the guess or not.
     extrapolation: SVector<T, M>,
-    /// The unknowns of the last step.
-    newest: SVector<T, M>,
-    /// What the steps up to now give to the extrapolations after the next one, each used up in its turn.
+    /// What the steps up to now give to the extrapolations after the next one, each used up in its turn. To the last of them only
+    /// the newest step gives anything, and as often as it is: once.
     parts: [SVector<T, M>; OLDER.len()],
     /// Whether the guess is the extrapolation: 1, or 0 where it is the last step.
     extrapolated: T,
@@ -88,7 +87,6 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         let mut constant = Self {
             guess,
             extrapolation: guess,
-            newest: guess,
             parts: [SVector::zeros(); OLDER.len()],
             extrapolated: T::zero(),
             weight: T::one(),
@@ -107,7 +105,6 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     pub(crate) fn apart(mut self) -> Self {
         self.guess = black_box(self.guess);
         self.extrapolation = black_box(self.extrapolation);
-        self.newest = black_box(self.newest);
         self.parts = self.parts.map(black_box);
         self.extrapolated = black_box(self.extrapolated);
         self.weight = black_box(self.weight);
@@ -123,12 +120,12 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     /// The unknowns of the last step.
     #[inline]
     pub(crate) fn newest(&self) -> SVector<T, M> {
-        self.newest
+        self.parts[OLDER.len() - 1]
     }
 
     /// Whether everything is a finite number.
     pub(crate) fn is_finite(&self) -> bool {
-        let numbers = self.parts.iter().chain([&self.guess, &self.extrapolation, &self.newest]).flat_map(|u| u.iter());
+        let numbers = self.parts.iter().chain([&self.guess, &self.extrapolation]).flat_map(|u| u.iter());
         numbers.chain([&self.extrapolated, &self.weight, &self.radius]).all(|number| number.is_finite())
     }
 
@@ -165,7 +162,7 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     /// Takes the step `u` where no guess is needed.
     #[inline]
     pub(crate) fn replace(&mut self, u: SVector<T, M>) {
-        self.newest = u;
+        self.parts[OLDER.len() - 1] = u;
         self.known = 1;
     }
 
@@ -185,7 +182,6 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     /// Gives entry i of the step `u` to all extrapolations after the next one.
     #[inline]
     fn enter(&mut self, i: usize, u: T) {
-        self.newest[i] = u;
         for (k, weight) in OLDER.iter().enumerate() {
             let part = u * T::real(*weight);
             // Behind the last one is nothing: not a zero, which would have to be added.
@@ -209,7 +205,7 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         let steady = kept && radius <= self.radius * T::real(16.0);
         self.radius = radius;
         self.known = (self.known + 1).min(ENOUGH);
-        let better = length_squared(&(u - self.extrapolation)) <= length_squared(&(u - self.newest)) * T::real(0.25);
+        let better = length_squared(&(u - self.extrapolation)) <= length_squared(&(u - self.newest())) * T::real(0.25);
         let (extrapolated, weight) = if better && self.known == ENOUGH { (1.0, NEWEST) } else { (0.0, 1.0) };
         (self.extrapolated, self.weight) = (T::real(extrapolated), T::real(weight));
         self.push(&u, &SVector::zeros());

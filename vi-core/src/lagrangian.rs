@@ -88,8 +88,9 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     const CLOSED_FORM: bool = false;
     /// Whether L and f are made of functions without a kink or a jump, so that Newton's iteration is quadratic everywhere.
     const SMOOTH: bool;
-    /// The part of the step at whose end [`Stepping::momentum_step`] is told the coordinates: one half for the middle.
-    const PLACE: f64 = 0.5;
+    /// The part of the step at whose end [`Stepping::momentum_step`] and [`Stepping::extended_step`] are told the coordinates: one
+    /// half for the middle. `None` where they find out themselves.
+    const PLACE: Option<f64> = None;
 
     /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the
     /// velocity that belongs to `p`.
@@ -124,6 +125,7 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     fn extended_step(
         &self,
         node: &Node<N, T>,
+        _place: &SVector<T, N>,
         h: T,
         v: &SVector<T, N>,
         solve: impl FnOnce(&ExtendedSystem<N, T, Self::Jacobian>) -> (SVector<T, N>, T),
@@ -301,7 +303,7 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const CLOSED_FORM: bool = S::CLOSED_FORM;
     const SMOOTH: bool = S::SMOOTH;
-    const PLACE: f64 = S::PLACE;
+    const PLACE: Option<f64> = S::PLACE;
 
     #[inline]
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, S::Jacobian> {
@@ -339,10 +341,11 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     fn extended_step(
         &self,
         node: &Node<N, T>,
+        place: &SVector<T, N>,
         h: T,
         v: &SVector<T, N>,
         solve: impl FnOnce(&ExtendedSystem<N, T, S::Jacobian>) -> (SVector<T, N>, T),
     ) -> Increment<N, T> {
-        S::extended_step(self, node, h, v, solve)
+        S::extended_step(self, node, place, h, v, solve)
     }
 }

@@ -66,13 +66,19 @@ impl<const N: usize, T: Real> Node<N, T> {
     #[inline]
     pub fn midpoint(&self, h: T, v: &SVector<T, N>) -> (T, SVector<T, N>) {
         let half = h * T::real(0.5);
-        (self.t + (self.t_low + half), self.place(half, v))
+        (self.t + (self.t_low + half), self.moved(half, v))
     }
 
-    /// `q + way v`.
+    /// Where the step `(v, h)` of a system evaluates L, as it is told; see [`Stepping::PLACE`].
     #[inline]
-    pub fn place(&self, way: T, v: &SVector<T, N>) -> SVector<T, N> {
-        self.q + (self.q_low + v * way)
+    pub fn place<S: Stepping<N, T>>(&self, h: T, v: &SVector<T, N>) -> SVector<T, N> {
+        S::PLACE.map_or(self.q, |part| self.moved(h * T::real(part), v))
+    }
+
+    /// `q + h v`.
+    #[inline]
+    fn moved(&self, h: T, v: &SVector<T, N>) -> SVector<T, N> {
+        self.q + (self.q_low + v * h)
     }
 
     /// Moves time by `h` and coordinates by `way = h v`; momenta and energy stay.
@@ -89,11 +95,14 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
     }
 
-    /// The node at the end of the step `(v, h)`.
+    /// The node at the end of the step `(v, h)` of a system.
     #[inline]
-    pub(crate) fn advanced(mut self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
+    pub(crate) fn advanced<S: Stepping<N, T>>(mut self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
         self.advance(h, &(v * h), &gain.momentum);
-        compensated::add(&mut self.energy, &mut self.energy_low, gain.energy);
+        // Else the gain is the number zero, which the compiler may not leave out of a sum.
+        if !S::AUTONOMOUS || S::FORCED {
+            compensated::add(&mut self.energy, &mut self.energy_low, gain.energy);
+        }
         self
     }
 

@@ -109,13 +109,14 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
     /// Where [`Stepping::momentum_step`] evaluates L in the stride from this node, as it is foretold.
     #[inline]
     pub(crate) fn place<S: Stepping<N, T>>(&self, node: &Node<N, T>) -> SVector<T, N> {
-        node.place(self.h * T::real(S::PLACE), &self.forecast.guess())
+        node.place::<S>(self.h, &self.forecast.guess())
     }
 
     /// The same for the stride after the step `found` from this node.
     #[inline]
     pub(crate) fn place_after<S: Stepping<N, T>>(&self, node: &Node<N, T>, found: &Found<N, T>) -> SVector<T, N> {
-        let (h, part) = (self.h, T::real(S::PLACE));
+        let Some(part) = S::PLACE.map(T::real) else { return node.q };
+        let h = self.h;
         let change = h * (T::one() + part * self.forecast.weight());
         let mut place = node.q;
         for i in 0..N {
@@ -174,7 +175,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
             }
             before = Some(length);
             trial += step;
-            place = node.place(self.h * T::real(S::PLACE), &trial);
+            place = node.place::<S>(self.h, &trial);
         }
         None
     }
@@ -187,7 +188,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
             (-equation.jacobian.solve(&equation.residual), equation.jacobian)
         };
         let start = self.forecast.newest();
-        let (mut step, place) = (start, node.place(h * T::real(S::PLACE), &start));
+        let (mut step, place) = (start, node.place::<S>(h, &start));
         let carried = system.momentum_step(node, &place, h, &start, |equation| {
             step = -equation.jacobian.solve(&equation.residual);
             step

@@ -147,7 +147,7 @@ fn what_is_not_kept_is_seen() {
     trips(SphericalPendulum::default(), &PENDULUM, Fault::DirectedGain, check::reversibility);
     trips(Duffing::default(), &DUFFING, Fault::Residual, check::reversibility);
     trips(SphericalPendulum::default(), &PENDULUM, Fault::Energy, check::energy);
-    trips(SphericalPendulum::default(), &PENDULUM, Fault::EnergyGain, check::energy);
+    trips(Duffing::default(), &DUFFING, Fault::EnergyGain, check::energy);
     trips(Duffing::default(), &DUFFING, Fault::Energy, check::energy);
     trips(Duffing::default(), &DUFFING, Fault::GdPlus, check::energy);
     trips(SphericalPendulum::default(), &PENDULUM, Fault::StepDensity, check::step_law);

@@ -125,7 +125,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     /// The velocity after a Newton step from v, the gain of the momenta there, and |δ|².
     #[inline(always)]
     fn carried(&self, v: &Vector<N, FUSED>) -> (Vector<N, FUSED>, Vector<N, FUSED>, f64) {
-        let place = self.node.place(self.h * Lane::new(S::PLACE), v);
+        let place = self.node.place::<S>(self.h, v);
         let mut step = *v;
         let gain = self.system.momentum_step(
             &self.node,

@@ -260,7 +260,7 @@ where
         let residual = momentum::residual(system, &start, h, &v);
         // The energy row e = c + v·r is what the energy carried lacks of the discrete energy of this interval.
         let gap = equations.energy_residual + v.dot(&equations.momentum.residual);
-        let root = super::Root { v, h, density, iterations, residual, approach: None };
+        let root = super::Root { v, h, density, iterations, residual };
         let step = self.take(start, root, Method::FixedStep)?;
         let phase = Phase { gap, density_next: step.density_next, ..phase };
         self.run.phase = Some(phase);

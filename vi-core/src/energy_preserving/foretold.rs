@@ -4,17 +4,13 @@
 //! of them shorter than what is trusted (`forecast`), the length stays inside the range and D keeps its sign. `None` else, and
 //! for every 64th step, which learns what may be trusted.
 
+use super::lesson::Radii;
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
-use crate::forecast::{Forecast, Lesson, length_squared};
+use crate::forecast::{Forecast, length_squared};
 use crate::{Increment, Node, Scalar, Stepping};
 use nalgebra::SVector;
 
-/// Part of a rounding that the iteration may leave in v and in h. It has a sign, and a million of them add up: with a quarter
-/// the angular momentum of Kepler's problem drifts by 1.3e-12 in a million steps, with this by less than 1e-13.
-const SHARE: f64 = 1.0 / 256.0;
-/// The same of what is left out of a gain.
-const SHARE_OF_GAIN: f64 = 1.0 / 16.0;
 /// Residual where nothing was evaluated to confirm it, in roundings: that of the evaluation before.
 const UNCONFIRMED: f64 = 1.0;
 
@@ -34,6 +30,9 @@ const ATTEMPTS: u32 = 3;
 pub(super) struct Forecasts<const N: usize, T> {
     v: Forecast<N, T>,
     h: Forecast<1, T>,
+    radii: Radii<T>,
+    /// Where the next step evaluates L.
+    place: SVector<T, N>,
 }
 
 /// A step that was foretold.
@@ -52,7 +51,8 @@ pub(super) struct Found<const N: usize, T> {
 impl<const N: usize, T: Scalar> Forecasts<N, T> {
     /// Before the first step, which follows the interval `(v, h)`.
     pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
-        Self { v: Forecast::new(v), h: Forecast::new(SVector::repeat(h)) }
+        let (v, h) = (Forecast::new(v), Forecast::new(SVector::repeat(h)));
+        Self { v, h, radii: Radii::zero(), place: SVector::zeros() }
     }
 
     /// Whether the next step is one that learns.
@@ -61,16 +61,48 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         self.v.is_learning()
     }
 
-    /// Whether everything is a finite number.
-    pub(super) fn is_finite(&self) -> bool {
-        self.v.is_finite() && self.h.is_finite()
+    /// Where the next step begins its iteration.
+    #[inline]
+    fn guess(&self) -> Trial<N, T> {
+        let [h]: [T; 1] = self.h.guess().into();
+        Trial { v: self.v.guess(), h }
     }
 
-    /// Takes a step that was foretold.
+    /// Whether everything is a finite number.
+    pub(super) fn is_finite(&self) -> bool {
+        let place = self.place.iter().all(|entry| entry.is_finite());
+        place && self.v.is_finite() && self.h.is_finite() && self.radii.is_finite()
+    }
+
+    /// Takes the step from `node` that was foretold.
     #[inline]
-    pub(super) fn push(&mut self, Found { trial, step, .. }: &Found<N, T>) {
+    pub(super) fn push<S: Stepping<N, T>>(&mut self, node: &Node<N, T>, found: &Found<N, T>) {
+        let Found { trial, step, .. } = found;
+        self.place = self.place_after::<S>(node, found);
         self.v.push(&trial.v, &step.v);
         self.h.push(&SVector::repeat(trial.h), &SVector::repeat(step.h));
+    }
+
+    /// Where [`Stepping::extended_step`] evaluates L in the step after `found` from this node, to which δ gives
+    /// a multiple of it only: what waits for δ is little.
+    #[inline]
+    fn place_after<S: Stepping<N, T>>(
+        &self,
+        node: &Node<N, T>,
+        Found { trial, step, .. }: &Found<N, T>,
+    ) -> SVector<T, N> {
+        let Some(part) = S::PLACE.map(T::real) else { return node.q };
+        let (weight_v, weight_h) = (self.v.weight() * part, self.h.weight());
+        let h = self.h.after(0, trial.h);
+        let (by_v, by_both) = (trial.h + h * weight_v, T::one() + weight_v * weight_h);
+        let mut place = node.q;
+        for i in 0..N {
+            let v = self.v.after(i, trial.v[i]) * part;
+            let foretold = node.q[i] + (node.q_low[i] + (trial.h * trial.v[i] + h * v));
+            let by_h = trial.v[i] + v * weight_h;
+            place[i] = foretold + (step.v[i] * (by_v + step.h * by_both) + step.h * by_h);
+        }
+        place
     }
 
     /// The root and what is gained over it, where it was foretold.
@@ -84,11 +116,10 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         if !S::SMOOTH || self.is_learning() {
             return None;
         }
-        let [h] = self.h.guess().into();
-        let (mut trial, mut before) = (Trial { v: self.v.guess(), h }, None);
+        let (mut trial, mut place, mut before) = (self.guess(), self.place, None);
         for iterations in 1..=ATTEMPTS {
             let mut newton = None;
-            let gain = system.extended_step(node, trial.h, &trial.v, |equations| {
+            let gain = system.extended_step(node, &place, trial.h, &trial.v, |equations| {
                 let elimination = Elimination::of(equations);
                 let step = elimination.step(equations, &trial);
                 newton = Some((elimination, step));
@@ -104,49 +135,34 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
             if !contracts {
                 return None;
             }
-            if lengths.0 <= self.v.radius() && lengths.1 <= self.h.radius() {
+            if self.radii.admit(lengths) {
                 let (Trial { v, h }, density) = (next, elimination.density_or_infinite());
                 let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
                 // At the smallest root D has the sign that it had.
                 let forward = density * last.density > T::zero() && !elimination.is_degenerate();
-                let root = Root { v, h, density, iterations, residual: UNCONFIRMED, approach: None };
+                let root = Root { v, h, density, iterations, residual: UNCONFIRMED };
                 return (in_range && forward).then_some(Found { root, gain, trial, step });
             }
             (before, trial) = (Some(lengths), next);
+            place = node.place::<S>(trial.h, &trial.v);
         }
         None
     }
 
-    /// Takes a step that was not foretold, after the interval `last`, and what it taught.
+    /// Takes the step `root` to `end` that was not foretold, after the interval `last`, and what it taught.
     pub(super) fn learn<S: Stepping<N, T>>(
         &mut self,
         system: &S,
         node: &Node<N, T>,
         last: &Last<N, T>,
-        (root, gain): (&Root<N, T>, &Increment<N, T>),
+        root: &Root<N, T>,
+        end: &Node<N, T>,
     ) {
-        let lessons = newton::lessons(system, node, root).filter(|_| S::SMOOTH);
-        let [by_v, by_h] = lessons.map_or([T::zero(); 2], |lessons| {
-            let radii = lessons.map(|(lesson, rounding)| lesson.radius(SHARE) * rounding);
-            // What gains are off by that are carried to the first order only: of the second order too, but another one.
-            let (dv, dh) = (root.v - last.v, root.h - last.h);
-            let carried = system.extended_step(node, last.h, &last.v, |_| (dv, dh));
-            let noise = system.magnitudes(node, root.h, &root.v);
-            let epsilon = T::real(T::EPSILON);
-            let momentum =
-                (length_squared(&(carried.momentum - gain.momentum)), length_squared(&(noise.residual * epsilon)));
-            let energy = (carried.energy - gain.energy, noise.energy_residual * epsilon);
-            let part = |(second, rounding)| Lesson { first: T::one(), second, rounding }.radius(SHARE_OF_GAIN);
-            let part = lesser(part(momentum), part((energy.0 * energy.0, energy.1 * energy.1)));
-            [lesser(radii[0], length_squared(&dv) * part), lesser(radii[1], dh * dh * part)]
-        });
-        self.v.learn(root.v, by_v);
-        self.h.learn(SVector::repeat(root.h), by_h);
+        let change = root.v - last.v;
+        self.radii = if S::SMOOTH { Radii::learnt(system, node, root, change) } else { Radii::zero() };
+        self.v.learn(root.v, self.radii.v);
+        self.h.learn(SVector::repeat(root.h), self.radii.h);
+        let Trial { v, h } = self.guess();
+        self.place = end.place::<S>(h, &v);
     }
-}
-
-/// The lesser of two numbers, zero where it is none.
-fn lesser<T: Scalar>(a: T, b: T) -> T {
-    let lesser = if a < b { a } else { b };
-    if lesser.is_finite() { lesser } else { T::zero() }
 }

@@ -11,7 +11,6 @@
 //!
 //! and S is the step density besides.
 
-use crate::forecast::{Lesson, length_squared};
 use crate::linear::{self, Matrix};
 use crate::momentum;
 use crate::{ExtendedSystem, Node, Scalar, Stepping};
@@ -37,8 +36,6 @@ pub(super) struct Root<const N: usize, T> {
     pub(super) density: T,
     pub(super) iterations: u32,
     pub(super) residual: f64,
-    /// |δv|² and δh² of the first two Newton steps, where there were any.
-    pub(super) approach: Option<[(T, T); 2]>,
 }
 
 /// Why there is no root here.
@@ -105,11 +102,12 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     #[inline]
     pub(super) fn step(&self, equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, trial: &Trial<N, T>) -> Step<N, T> {
         let mut known = T::zero();
-        for (energy_dv, a) in equations.energy_dv.iter().zip(self.residual.iter()) {
-            known += *energy_dv * *a;
+        for i in 0..N {
+            known +=
+                (equations.energy_dv[i] * trial.h - equations.momentum.residual[i] * T::real(0.5)) * self.residual[i];
         }
         // The row over h, and S, both times h: one quotient, where two would wait for each other.
-        let energy = equations.energy_residual * self.determinant - known * trial.h;
+        let energy = equations.energy_residual * self.determinant - known;
         let dh = -(energy / (self.schur * trial.h));
         Step { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
     }
@@ -154,7 +152,6 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     mut observe: impl FnMut(f64),
 ) -> Result<Root<N, T>, Failure<T>> {
     let mut before = Rows { momentum: f64::INFINITY, energy: f64::INFINITY };
-    let mut lengths = [None; 2];
     for iterations in 0..=ITERATIONS {
         let equations = system.extended_system(node, trial.h, &trial.v);
         let elimination = Elimination::finite(&equations).ok_or(Failure::NoRoot)?;
@@ -163,16 +160,10 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
         let density = elimination.density().ok_or(Failure::NoRoot)?;
         if rows.are_at_floor(&before) {
             let (Trial { v, h }, residual) = (trial, momentum::worse(rows.momentum, rows.energy));
-            let [first, second] = lengths;
-            // At the floor after one step: the second would have been no longer than rounding.
-            let approach = first.map(|first| [first, second.unwrap_or((T::zero(), T::zero()))]);
-            let root = Root { v, h, density, iterations, residual, approach };
+            let root = Root { v, h, density, iterations, residual };
             return if elimination.is_degenerate() { Err(Failure::Degenerate { h, density }) } else { Ok(root) };
         }
         let step = elimination.step(&equations, &trial);
-        if let Some(length) = lengths.get_mut(iterations as usize) {
-            *length = Some((length_squared(&step.v), step.h * step.h));
-        }
         trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
         if !(trial.h >= shortest && trial.h <= longest) {
             return Err(Failure::NoRoot);
@@ -180,37 +171,6 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
         before = rows;
     }
     Err(Failure::NoRoot)
-}
-
-/// What the way to a root taught of the iteration: for v and for h each, the whole of the second Newton step laid to its
-/// own first one, all measured in steps that are rounding. Also the squares of those.
-pub(super) fn lessons<const N: usize, T: Scalar, S: Stepping<N, T>>(
-    system: &S,
-    node: &Node<N, T>,
-    root: &Root<N, T>,
-) -> Option<[(Lesson<T>, T); 2]> {
-    let [first, second] = root.approach?;
-    let Root { v, h, .. } = *root;
-    let (equations, magnitudes) = (system.extended_system(node, h, &v), system.magnitudes(node, h, &v));
-    let noise = magnitudes.residual * T::real(T::EPSILON);
-    let mut noisy = equations;
-    noisy.momentum.residual = noise;
-    noisy.energy_residual = magnitudes.energy_residual * T::real(T::EPSILON);
-    let elimination = Elimination::finite(&noisy)?;
-    // The terms of δh may cancel: rounding does not know their signs.
-    let energy = noisy.energy_residual / h
-        + equations
-            .energy_dv
-            .iter()
-            .zip(elimination.residual.iter())
-            .fold(T::zero(), |sum, (dv, a)| sum + (*dv * *a).abs());
-    let rounding_h = energy / elimination.schur;
-    let rounding_v =
-        length_squared(&elimination.residual) + length_squared(&elimination.residual_dh) * rounding_h * rounding_h;
-    let rounding_h = rounding_h * rounding_h;
-    let worst = (second.0 / rounding_v).max(second.1 / rounding_h);
-    let lesson = |first: T, rounding: T| Lesson { first: first / rounding, second: worst, rounding: T::one() };
-    Some([(lesson(first.0, rounding_v), rounding_v), (lesson(first.1, rounding_h), rounding_h)])
 }
 
 /// The residuals of the rows, in roundings.

@@ -99,7 +99,7 @@ fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
     let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
     start.check_finite(t)?;
     let start = start.leaving(system, h, &v);
-    let node = start.advanced(h, &v, &system.increment(&start, h, &v));
+    let node = start.advanced::<S>(h, &v, &system.increment(&start, h, &v));
     node.check_finite(t)?;
     let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
     let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };

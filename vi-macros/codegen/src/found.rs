@@ -95,7 +95,10 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         jacobian: equation.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
         pattern: equation.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         symmetric: equation.is_some_and(|(_, rows)| symmetric(rows)),
-        constant_gain: rows("momentum_step").is_some_and(|(step, rows)| dependence(step, rows) <= Dependence::Step),
+        // After the equations, 1 + N rows, come the gains and their slopes, where these are carried.
+        constant_gain: rows("momentum_step").is_some_and(|(step, rows)| {
+            step.results.len() > model.dimension() + 1 && dependence(step, rows) <= Dependence::Step
+        }),
         operations: program.functions().map(|function| (function.name, function.operation_count())).collect(),
     }
 }

@@ -1235,7 +1235,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
-    const PLACE: f64 = 0.5f64;
+    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
 
     /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
     ///
@@ -1847,7 +1847,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     ///
     /// `p1 − p0_q[9] = h*L_q[9]`
     ///
-    /// and to first order at `v + dv`.
+    /// to first order at `v + dv`.
     ///
     /// 344 operations.
     #[inline(never)]
@@ -2001,6 +2001,242 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
             s29[7] + ((s54) * change[7] + (s31[7]) * change[8] + (s55) * change[9]),
             -(h * s33) + ((s55) * change[8] + (-(s13 * s37)) * change[9]),
         ])
+    }
+
+    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+    ///
+    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+    ///
+    /// `p1 − p0_q[2] = h*f_q[2] + h*L_q[2]`
+    ///
+    /// `p1 − p0_q[3] = h*f_q[3] + h*L_q[3]`
+    ///
+    /// `p1 − p0_q[4] = h*f_q[4] + h*L_q[4]`
+    ///
+    /// `p1 − p0_q[5] = h*f_q[5] + h*L_q[5]`
+    ///
+    /// `p1 − p0_q[6] = h*f_q[6] + h*L_q[6]`
+    ///
+    /// `p1 − p0_q[7] = h*f_q[7] + h*L_q[7]`
+    ///
+    /// `p1 − p0_q[8] = h*f_q[8] + h*L_q[8]`
+    ///
+    /// `p1 − p0_q[9] = h*L_q[9]`
+    ///
+    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
+    ///
+    /// at `(v + dv, h + dh)`.
+    ///
+    /// 702 operations.
+    #[inline(never)]
+    fn extended_step(
+        &self,
+        node: &::vi_core::Node<10, T>,
+        place: &::vi_core::SVector<T, 10>,
+        h: T,
+        v: &::vi_core::SVector<T, 10>,
+        solve: impl ::core::ops::FnOnce(
+            &::vi_core::ExtendedSystem<10, T, Self::Jacobian>,
+        ) -> (::vi_core::SVector<T, 10>, T),
+    ) -> ::vi_core::Increment<10, T> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
+        let p0 = &node.p.data.0[0];
+        let p0_low = &node.p_low.data.0[0];
+        let v = &(*v).data.0[0];
+        let q_mid = &(*place).data.0[0];
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let t_mid = t0 + (s1 + t0_low);
+        let (sin2, cos2) = t_mid.sin_cos();
+        let s3 = sin2 * real(0.3333333333333333) + real(1.0);
+        let s4 = self.k * real(3.0);
+        let s5 = h * h;
+        let s6 = self.k * s5;
+        let s7 = s6 * real(0.25);
+        let s8 = s5 * real(0.25);
+        let s9 = s5 * real(0.75);
+        let s10 = s6 * real(0.75);
+        let s11 = self.k * real(0.75);
+        let s12 = self.k * real(0.25);
+        let s13 = self.k * real(1.5);
+        let s14 = s13 * v[2];
+        let s15 = s13 * v[4];
+        let s16 = s13 * v[6];
+        let s17: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
+        let s18: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
+        let s19: [T; 9] = ::core::array::from_fn(|i| {
+            (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
+        });
+        let s20: [T; 9] = ::core::array::from_fn(|i| s19[i] * s19[i]);
+        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
+        let s22: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
+        let s23: [T; 9] = ::core::array::from_fn(|i| s19[i] * (q_mid[i + 1] - q_mid[i]));
+        let s24: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].0);
+        let s25: [T; 8] = ::core::array::from_fn(|i| self.k * (s23[i] - s23[i + 1]));
+        let s26: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
+        let s27: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * s1);
+        let s28: [T; 8] = ::core::array::from_fn(|i| {
+            s26[i + 1] - (p0_low[i + 1] - s1 * (s25[i] + s24[i + 1]) + s27[i + 1])
+        });
+        let s29: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s25[i] + s24[i + 1]));
+        let s30: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].1);
+        let s31: [T; 8] = ::core::array::from_fn(|i| {
+            s4 * (s19[i] + s19[i + 1]) + s30[i + 1]
+        });
+        let s32: [T; 9] = ::core::array::from_fn(|i| s7 * s22[i].0);
+        let s33: [T; 8] = ::core::array::from_fn(|i| {
+            self.m + (s32[i + 1] + s8 * s31[i])
+        });
+        let s34: [T; 10] = ::core::array::from_fn(|i| s24[i] * real(0.5));
+        let s35: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * real(0.5));
+        let s36: [T; 10] = ::core::array::from_fn(|i| {
+            cos2 * s22[i].0 * real(0.08333333333333333)
+        });
+        let s37: [T; 9] = ::core::array::from_fn(|i| s11 * v[i + 1] * s19[i]);
+        let s38: [T; 9] = ::core::array::from_fn(|i| s36[i] + s12 * v[i] * s22[i].0);
+        let s39: [T; 8] = ::core::array::from_fn(|i| {
+            s25[i] * real(0.5) + s34[i + 1] - s35[i + 1]
+        });
+        let s40: [T; 9] = ::core::array::from_fn(|i| s11 * v[i] * s19[i]);
+        let s41: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s31[i] * real(0.25));
+        let s42: [T; 8] = ::core::array::from_fn(|i| {
+            s39[i] + (s38[i + 1] - s40[i] + s41[i] - s37[i + 1]) * h
+        });
+        let s43: [T; 8] = ::core::array::from_fn(|i| {
+            s39[i] + (s40[i] - s41[i] + s37[i + 1] - s36[i + 1]) * h
+        });
+        let s44: [T; 10] = ::core::array::from_fn(|i| v[i] * s22[i].0);
+        let s45 = (1..10).fold(s22[0].1, |sum, i| sum + s22[i].1);
+        let s46 = self.k * s23[0];
+        let s47 = s46 - s24[0];
+        let s48 = self.k * s23[8];
+        let s49 = s48 + s24[9];
+        let s50 = (1..10).fold(s18[0], |sum, i| sum + s18[i])
+            + self.k * (1..9).fold(s20[0], |sum, i| sum + s20[i]) * real(0.25) - energy0
+            - self.m * (1..10).fold(s21[0], |sum, i| sum + s21[i]) * real(0.5)
+            - s3 * s45;
+        let s51 = self.k * s19[0];
+        let s52 = s51 * real(3.0) + s30[0];
+        let s53 = self.k * s19[8];
+        let s54 = s53 * real(3.0) + s30[9];
+        let s55 = -(s51 * s9);
+        let s56 = -(s10 * s19[1]);
+        let s57 = -(s10 * s19[2]);
+        let s58 = -(s10 * s19[3]);
+        let s59 = -(s10 * s19[4]);
+        let s60 = -(s10 * s19[5]);
+        let s61 = -(s10 * s19[6]);
+        let s62 = -(s10 * s19[7]);
+        let s63 = -(s53 * s9);
+        let s64 = s34[0] - s46 * real(0.5) - s35[0];
+        let s65 = v[0] * s52 * real(0.25);
+        let s66 = s48 * real(0.5) + s34[9];
+        let s67 = v[9] * s54 * real(0.25);
+        let s68 = -(s21[0] * s52) - s21[2] * s31[1] - s21[4] * s31[3] - s21[6] * s31[5]
+            - s21[9] * s54 - sin2 * s45 * real(0.3333333333333333);
+        let s69 = s68 * real(0.25) + (s13 * v[9] * s19[8] - s41[7]) * v[8]
+            + (s16 * s19[6] - s41[6] + s13 * v[8] * s19[7]) * v[7];
+        let s70 = s69 + (s15 * s19[4] - s41[4] + s16 * s19[5]) * v[5]
+            + (s14 * s19[2] - s41[2] + s15 * s19[3]) * v[3];
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        s26[0] - (p0_low[0] + s1 * s47 + s27[0]),
+                        s28[0],
+                        s28[1],
+                        s28[2],
+                        s28[3],
+                        s28[4],
+                        s28[5],
+                        s28[6],
+                        s28[7],
+                        s26[9] - (p0_low[9] - s1 * s49),
+                    ]),
+                    jacobian: ::vi_core::linear::Tridiagonal {
+                        lower: [
+                            T::real(0.0),
+                            s55,
+                            s56,
+                            s57,
+                            s58,
+                            s59,
+                            s60,
+                            s61,
+                            s62,
+                            s63,
+                        ],
+                        diagonal: [
+                            self.m + (s32[0] + s8 * s52),
+                            s33[0],
+                            s33[1],
+                            s33[2],
+                            s33[3],
+                            s33[4],
+                            s33[5],
+                            s33[6],
+                            s33[7],
+                            self.m + s8 * s54,
+                        ],
+                        upper: [
+                            s55,
+                            s56,
+                            s57,
+                            s58,
+                            s59,
+                            s60,
+                            s61,
+                            s62,
+                            s63,
+                            T::real(0.0),
+                        ],
+                    },
+                },
+                residual_dh: ::vi_core::SVector::from([
+                    s64 + (s38[0] + s65 - s37[0]) * h,
+                    s42[0],
+                    s42[1],
+                    s42[2],
+                    s42[3],
+                    s42[4],
+                    s42[5],
+                    s42[6],
+                    s42[7],
+                    s66 + (s36[9] - s40[8] + s67) * h,
+                ]),
+                energy_residual: s50
+                    + ((1..10).fold(s17[0], |sum, i| sum + s17[i]) - energy0_low
+                        + s1
+                            * ((0..8)
+                                .fold(
+                                    s45 * cos2 * real(0.3333333333333333) + v[0] * s47,
+                                    |sum, i| sum - s29[i],
+                                ) - v[9] * s49)),
+                energy_dv: ::vi_core::SVector::from([
+                    s64 + (s37[0] - s65 - s36[0]) * h,
+                    s43[0],
+                    s43[1],
+                    s43[2],
+                    s43[3],
+                    s43[4],
+                    s43[5],
+                    s43[6],
+                    s43[7],
+                    s66 + (s40[8] - s67 - s36[9]) * h,
+                ]),
+                energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
+                    - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
+                        * real(0.16666666666666666),
+            },
+        );
+        self.increment(
+            node,
+            h + change_h,
+            &(::vi_core::SVector::<T, 10>::from(*v) + change),
+        )
     }
 }
 

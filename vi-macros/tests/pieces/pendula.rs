@@ -632,7 +632,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
     const SMOOTH: bool = true;
-    const PLACE: f64 = 0.5f64;
+    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
 
     /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
     ///
@@ -1407,7 +1407,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
     ///
-    /// and to first order at `v + dv`.
+    /// to first order at `v + dv`.
     ///
     /// 104 operations.
     #[inline(always)]
@@ -1605,13 +1605,14 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
     ///
-    /// and to first order at `(v + dv, h + dh)`.
+    /// to first order at `(v + dv, h + dh)`.
     ///
-    /// 230 operations.
+    /// 224 operations.
     #[inline(always)]
     fn extended_step(
         &self,
         node: &::vi_core::Node<2, T>,
+        place: &::vi_core::SVector<T, 2>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
         solve: impl ::core::ops::FnOnce(
@@ -1622,32 +1623,27 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let t0_low = node.t_low;
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
-        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
-        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
         let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
         let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let [q_0_mid, q_1_mid]: [T; 2] = (*place).into();
         let real = T::real;
         /// Part 1 of `extended_step`: 26 operations.
         #[inline(never)]
         fn extended_step_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 15],
+            inputs: &[T; 13],
             values: &mut [T; 68],
         ) {
             let real = T::real;
-            let h = inputs[3];
+            let h = inputs[1];
             let t0 = inputs[0];
-            let q_0_0 = inputs[1];
-            let q_1_0 = inputs[2];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
-            let t0_low = inputs[9];
-            let q_0_0_low = inputs[10];
-            let q_1_0_low = inputs[11];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
+            let t0_low = inputs[7];
+            let q_0_mid = inputs[11];
+            let q_1_mid = inputs[12];
             let s1 = h * real(0.5);
-            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
-            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
             let t_mid = t0 + (s1 + t0_low);
             let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
                 q_0_mid,
@@ -1660,6 +1656,9 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s8 = q_0_dot * q_1_dot;
             let s9 = sin2 * cos3 - cos2 * sin3;
             let s10 = q_0_mid - q_1_mid;
+            let s11 = system.k * s10;
+            let s12 = s8 * s9 * real(0.25) + s11;
+            let s13 = sin4 * real(0.3333333333333333) + real(1.0);
             values[24] = s1;
             values[25] = s10;
             values[26] = cos2;
@@ -1669,36 +1668,37 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[30] = s5;
             values[31] = s8;
             values[34] = sin4;
+            values[35] = s13;
             values[37] = cos4;
             values[38] = s9;
+            values[39] = s11;
+            values[41] = s12;
             values[45] = s7;
             values[47] = s6;
         }
-        /// Part 2 of `extended_step`: 29 operations.
+        /// Part 2 of `extended_step`: 27 operations.
         #[inline(never)]
         fn extended_step_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 15],
+            inputs: &[T; 13],
             values: &mut [T; 68],
         ) {
             let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
             let s1 = values[24];
-            let p0_q_0_low = inputs[12];
-            let p0_q_0 = inputs[6];
-            let s10 = values[25];
+            let p0_q_0_low = inputs[8];
+            let p0_q_0 = inputs[4];
             let cos2 = values[26];
             let sin2 = values[28];
             let s5 = values[30];
             let s8 = values[31];
-            let sin4 = values[34];
+            let s13 = values[35];
             let s9 = values[38];
+            let s12 = values[41];
             let s7 = values[45];
             let s6 = values[47];
-            let s11 = system.k * s10;
-            let s12 = s8 * s9 * real(0.25) + s11;
-            let s13 = sin4 * real(0.3333333333333333) + real(1.0);
             let s14 = s13 * sin2;
             let s15 = s12 + s14;
             let s16 = system.m * q_0_dot * real(2.0) + s6 - p0_q_0
@@ -1709,10 +1709,9 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s20 = system.k + s8 * s5 * real(0.25);
             let s21 = s20 + s13 * cos2;
             let s22 = s17 + (s18 + s19 * s21) * h;
-            values[35] = s13;
-            values[39] = s11;
+            let s23 = s5 * real(0.25);
+            let s24 = (q_0_dot + q_1_dot) * s9 * real(0.125);
             values[40] = s14;
-            values[41] = s12;
             values[42] = s15;
             values[0] = s16;
             values[49] = s20;
@@ -1721,20 +1720,21 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[53] = s18;
             values[54] = s19;
             values[2] = s22;
+            values[55] = s23;
+            values[56] = s24;
         }
-        /// Part 3 of `extended_step`: 33 operations.
+        /// Part 3 of `extended_step`: 29 operations.
         #[inline(never)]
         fn extended_step_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 15],
+            inputs: &[T; 13],
             values: &mut [T; 68],
         ) {
             let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
             let sin2 = values[28];
-            let s5 = values[30];
             let cos4 = values[37];
             let s9 = values[38];
             let s11 = values[39];
@@ -1744,8 +1744,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s20 = values[49];
             let s21 = values[50];
             let s19 = values[54];
-            let s23 = s5 * real(0.25);
-            let s24 = (q_0_dot + q_1_dot) * s9 * real(0.125);
+            let s23 = values[55];
+            let s24 = values[56];
             let s25 = s19 * s20;
             let s26 = s23 - (s24 + s25) * h;
             let s27 = s11 * real(0.5);
@@ -1760,8 +1760,6 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s36 = s29 + s19 * s35;
             let s37 = -(h * s15) - s7 * h;
             values[33] = s28;
-            values[55] = s23;
-            values[56] = s24;
             values[57] = s25;
             values[4] = s26;
             values[58] = s27;
@@ -1777,16 +1775,16 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         #[inline(never)]
         fn extended_step_part_4<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 15],
+            inputs: &[T; 13],
             values: &mut [T; 68],
         ) {
             let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
             let s1 = values[24];
-            let p0_q_1_low = inputs[13];
-            let p0_q_1 = inputs[7];
+            let p0_q_1_low = inputs[9];
+            let p0_q_1 = inputs[5];
             let cos3 = values[27];
             let sin3 = values[29];
             let s5 = values[30];
@@ -1841,16 +1839,16 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         #[inline(never)]
         fn extended_step_part_5<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 15],
+            inputs: &[T; 13],
             values: &mut [T; 68],
         ) {
             let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
             let s1 = values[24];
-            let p0_q_1 = inputs[7];
-            let energy0 = inputs[8];
+            let p0_q_1 = inputs[5];
+            let energy0 = inputs[6];
             let s10 = values[25];
             let cos2 = values[26];
             let cos3 = values[27];
@@ -1905,18 +1903,18 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         #[inline(never)]
         fn extended_step_part_6<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 15],
+            inputs: &[T; 13],
             values: &mut [T; 68],
         ) {
             let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
             let s1 = values[24];
-            let p0_q_0_low = inputs[12];
-            let p0_q_0 = inputs[6];
-            let p0_q_1_low = inputs[13];
-            let energy0_low = inputs[14];
+            let p0_q_0_low = inputs[8];
+            let p0_q_0 = inputs[4];
+            let p0_q_1_low = inputs[9];
+            let energy0_low = inputs[10];
             let sin2 = values[28];
             let sin3 = values[29];
             let s58 = values[32];
@@ -1954,8 +1952,6 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         let system = self;
         let inputs = [
             t0,
-            q_0_0,
-            q_1_0,
             h,
             q_0_dot,
             q_1_dot,
@@ -1963,11 +1959,11 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             p0_q_1,
             energy0,
             t0_low,
-            q_0_0_low,
-            q_1_0_low,
             p0_q_0_low,
             p0_q_1_low,
             energy0_low,
+            q_0_mid,
+            q_1_mid,
         ];
         let mut values = [T::real(0.0); 68];
         extended_step_part_1(system, &inputs, &mut values);

@@ -166,11 +166,11 @@ fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> Option<TokenStrea
     })
 }
 
-/// The part of the step at whose end `momentum_step` is told the coordinates.
+/// The part of the step at whose end `momentum_step` and `extended_step` are told the coordinates.
 fn place(source: &Source) -> Option<TokenStream> {
     let (_, part) = source.system.equations.place.as_ref()?;
-    let part = part.to_f64()?;
-    Some(quote!(const PLACE: f64 = #part;))
+    let part = source.function("momentum_step").and_then(|_| part.to_f64())?;
+    Some(quote!(const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(#part);))
 }
 
 /// The formulas of both gains.
@@ -180,9 +180,10 @@ fn gains(source: &Source) -> String {
     format!("{momenta}\n\n{}", source.formula("E1 − E0", of.energy_increment))
 }
 
-/// The Newton step in v, and the gain at its end to first order; where that is cheaper than to evaluate it there.
+/// The Newton step in v, and the gain at its end: to first order where that is cheaper than to evaluate it there.
 fn momentum_step(source: &Source) -> Option<TokenStream> {
     let (dimension, size) = (source.dimension(), source.model.dimension());
+    let end = end(source.function("momentum_step")?, size + 1);
     let momenta = source.formulas("p1 − p0", &source.system.equations.momentum_increment);
     let solve = quote! {
         solve: impl ::core::ops::FnOnce(
@@ -191,7 +192,7 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
     };
     let method = Method {
         name: "momentum_step",
-        formula: format!("{momenta}\n\nand to first order at `v + dv`."),
+        formula: format!("{momenta}\n\n{end} `v + dv`."),
         solve: Some(solve),
         told: true,
         output: quote!(::vi_core::SVector<T, #dimension>),
@@ -199,7 +200,13 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
     method.tokens(source, |body| {
         let (equations, rest) = body.results.split_at(size + 1);
         let (_, equation) = momentum_fields(source, equations);
-        let (gains, slopes) = rest.split_first()?;
+        let Some((gains, slopes)) = rest.split_first() else {
+            // In loops v is an array.
+            return Some(quote! {
+                let reached = ::vi_core::SVector::<T, #dimension>::from(*v) + solve(&#equation);
+                self.increment(node, h, &reached).momentum
+            });
+        };
         let gains = gains.iter().zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
         Some(quote! {
             let change: [T; #dimension] = solve(&#equation).into();
@@ -208,9 +215,10 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
     })
 }
 
-/// The Newton step in (v, h), and both gains at its end to first order.
+/// The Newton step in (v, h), and both gains at its end, in the same way.
 fn extended_step(source: &Source) -> Option<TokenStream> {
     let (dimension, size) = (source.dimension(), source.model.dimension());
+    let end = end(source.function("extended_step")?, size + 5);
     let solve = quote! {
         solve: impl ::core::ops::FnOnce(
             &::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>,
@@ -218,15 +226,20 @@ fn extended_step(source: &Source) -> Option<TokenStream> {
     };
     let method = Method {
         name: "extended_step",
-        formula: format!("{}\n\nand to first order at `(v + dv, h + dh)`.", gains(source)),
+        formula: format!("{}\n\n{end} `(v + dv, h + dh)`.", gains(source)),
         solve: Some(solve),
-        told: false,
+        told: true,
         output: quote!(::vi_core::Increment<#dimension, T>),
     };
     method.tokens(source, |body| {
         let (equations, rest) = body.results.split_at(size + 5);
         let equations = extended_fields(source, equations)?;
-        let [momentum, energy, slopes @ ..] = rest else { return None };
+        let [momentum, energy, slopes @ ..] = rest else {
+            return Some(quote! {
+                let (change, change_h) = solve(&#equations);
+                self.increment(node, h + change_h, &(::vi_core::SVector::<T, #dimension>::from(*v) + change))
+            });
+        };
         let mut gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
         let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
         Some(quote! {
@@ -235,6 +248,11 @@ fn extended_step(source: &Source) -> Option<TokenStream> {
             ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #(#gains)* }
         })
     })
+}
+
+/// How a step of so many rows of equations comes by the gains after it: by those rows that follow, or evaluated anew.
+fn end(step: &Function, equations: usize) -> &'static str {
+    if step.results.len() > equations { "to first order at" } else { "at" }
 }
 
 /// `gain + Σ slope_j change_j`, without what is zero; the slope after those by v is that by h.

@@ -182,56 +182,51 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let system_of_both = assembly.function("extended_system", &extended)?;
     let magnitudes = assembly.function("magnitudes", &magnitudes)?;
     let increment = assembly.function("increment", &gains)?;
-    momentum.push(gains[0].clone());
-    extended.extend(gains);
     let evaluated = [&equation, &system_of_both].map(|(function, _)| function.cost() + increment.0.cost());
-    let short = equation.0.operation_count() <= CARRIED;
-    let steps = if short { steps(assembly, of, [momentum, extended], evaluated)? } else { Vec::new() };
-    Ok([equation, system_of_both, magnitudes, increment].into_iter().chain(steps).collect())
+    let mut functions = vec![equation, system_of_both, magnitudes, increment];
+    if functions[0].0.operation_count() <= CARRIED {
+        functions.extend(steps(assembly, of, [momentum, extended], &gains, evaluated)?);
+    }
+    Ok(functions)
 }
 
-/// The functions that carry the gains, where that costs less than `evaluated`: of the momentum equation and of both, each with
-/// the gains after it, and of what the equations and, at the end of the step, the gains cost by themselves.
+/// The Newton steps, of the momentum equation and of both: told the place of L, where there is one. The gains after them are
+/// carried to the end of the step where that costs less than `evaluated`, what the equations and, there, the gains cost by themselves.
 fn steps(
     assembly: &mut Assembly,
     of: &Equations,
-    [mut momentum, mut extended]: [Vec<Vec<Expr>>; 2],
+    [momentum, extended]: [Vec<Vec<Expr>>; 2],
+    gains: &[Vec<Expr>],
     evaluated: [usize; 2],
 ) -> Assembled {
-    let (dimension, slopes) = (of.residual.len(), &of.increment_slopes);
-    if slopes.is_empty() {
-        return Ok(Vec::new());
-    }
-    let slopes: Vec<Vec<Expr>> = slopes.iter().map(|row| assembly.open_all(row)).collect();
-    let of_momentum: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
-    // Carrying costs the products with the slopes besides.
-    let zero = assembly.pool.zero();
-    let products = |slopes: &[Vec<Expr>]| slopes.iter().flatten().filter(|slope| **slope != zero).count();
-    let allowed =
-        [evaluated[0].saturating_sub(2 * products(&of_momentum)), evaluated[1].saturating_sub(2 * products(&slopes))];
-    momentum.extend(of_momentum);
-    extended.extend(slopes);
-    let extended = carried(assembly, "extended_step", &extended, allowed[1])?;
+    let dimension = of.residual.len();
+    let slopes: Vec<Vec<Expr>> = of.increment_slopes.iter().map(|row| assembly.open_all(row)).collect();
+    let by_v: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
     if let Some((place, _)) = &of.place {
-        // It is told where that is.
+        // They are told where that is.
         let told = |point: &usize, variable: &Variable| point == place && matches!(variable, Variable::Coordinate(_));
         assembly.arguments.retain(|(point, variable), _| !told(point, variable));
     }
-    let momentum = carried(assembly, "momentum_step", &momentum, allowed[0])?;
-    Ok([extended, momentum].into_iter().flatten().collect())
+    let steps = [
+        ("momentum_step", momentum, gains[..1].iter().chain(&by_v), evaluated[0]),
+        ("extended_step", extended, gains.iter().chain(&slopes), evaluated[1]),
+    ];
+    let mut functions = Vec::with_capacity(steps.len());
+    for (name, equations, carried, evaluated) in steps {
+        // Carrying costs the products with the slopes besides.
+        let zero = assembly.pool.zero();
+        let products = carried.clone().flatten().filter(|slope| **slope != zero).count();
+        let groups: Vec<Vec<Expr>> = equations.iter().chain(carried).cloned().collect();
+        let step = assembly.function(name, &groups)?;
+        let cheaper = step.0.operation_count() <= CARRIED && step.0.cost() + 2 * products <= evaluated;
+        if cheaper && !slopes.is_empty() {
+            functions.push(step);
+        } else if of.place.is_some() {
+            functions.push(assembly.function(name, &equations)?);
+        }
+    }
+    Ok(functions)
 }
 
 /// Operations up to which gains are carried: measured, a chain of 64 gains nothing by it, and takes longer to compile.
 const CARRIED: usize = 1000;
-
-/// A function of equations and gains, and of the slopes that carry the gains to the end of the step which the equations
-/// give; where it costs no more than `allowed`.
-fn carried(
-    assembly: &mut Assembly,
-    name: &'static str,
-    groups: &[Vec<Expr>],
-    allowed: usize,
-) -> core::result::Result<Option<(Function, Expressions)>, TooLarge> {
-    let step = assembly.function(name, groups)?;
-    Ok((step.0.operation_count() <= CARRIED && step.0.cost() <= allowed).then_some(step))
-}

@@ -107,7 +107,7 @@ impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const SMOOTH: bool = S::SMOOTH;
-    const PLACE: f64 = S::PLACE;
+    const PLACE: Option<f64> = S::PLACE;
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N, f64, S::Jacobian> {
         self.counted().momentum_equation(node, h, v)
@@ -139,11 +139,12 @@ impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
     fn extended_step(
         &self,
         node: &Node<N>,
+        place: &SVector<f64, N>,
         h: f64,
         v: &SVector<f64, N>,
         solve: impl FnOnce(&ExtendedSystem<N, f64, S::Jacobian>) -> (SVector<f64, N>, f64),
     ) -> Increment<N> {
-        self.counted().extended_step(node, h, v, solve)
+        self.counted().extended_step(node, place, h, v, solve)
     }
 }
 
