@@ -42,8 +42,6 @@ const ENOUGH: u8 = 8;
 pub(crate) struct Forecast<const M: usize, T> {
     /// The guess of the next step.
     guess: SVector<T, M>,
-    /// The extrapolation to the next step, whether it is the guess or not.
-    extrapolation: SVector<T, M>,
     /// What the steps up to now give to the extrapolations after the next one, each used up in its turn. To the last of them only
     /// the newest step gives anything, and as often as it is: once.
     parts: [SVector<T, M>; OLDER.len()],
@@ -86,7 +84,6 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     pub(crate) fn new(guess: SVector<T, M>) -> Self {
         let mut constant = Self {
             guess,
-            extrapolation: guess,
             parts: [SVector::zeros(); OLDER.len()],
             extrapolated: T::zero(),
             weight: T::one(),
@@ -104,7 +101,6 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
     /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
     pub(crate) fn apart(mut self) -> Self {
         self.guess = black_box(self.guess);
-        self.extrapolation = black_box(self.extrapolation);
         self.parts = self.parts.map(black_box);
         self.extrapolated = black_box(self.extrapolated);
         self.weight = black_box(self.weight);
@@ -125,7 +121,7 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
 
     /// Whether everything is a finite number.
     pub(crate) fn is_finite(&self) -> bool {
-        let numbers = self.parts.iter().chain([&self.guess, &self.extrapolation]).flat_map(|u| u.iter());
+        let numbers = self.parts.iter().chain([&self.guess]).flat_map(|u| u.iter());
         numbers.chain([&self.extrapolated, &self.weight, &self.radius]).all(|number| number.is_finite())
     }
 
@@ -159,6 +155,12 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         self.parts[0][i] * self.extrapolated + trial * self.weight
     }
 
+    /// The polynomial of degree 5 through the last six steps, at the next one: `6 u0 − 15 u1 + 20 u2 − 15 u3 + 6 u4 − u5`. The parts
+    /// are the first coefficients of `(1 − z)⁷ Σ u_i z^i`, and their sum is that with the opposite sign.
+    fn of_degree_five(&self) -> SVector<T, M> {
+        self.parts.iter().fold(SVector::zeros(), |sum, part| sum - part)
+    }
+
     /// Takes the step `u` where no guess is needed.
     #[inline]
     pub(crate) fn replace(&mut self, u: SVector<T, M>) {
@@ -173,7 +175,6 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         for i in 0..M {
             let u = trial[i] + step[i];
             self.guess[i] = self.after(i, trial[i]) + step[i] * self.weight;
-            self.extrapolation[i] = self.parts[0][i] + u * T::real(NEWEST);
             self.enter(i, u);
         }
         self.until = self.until.saturating_sub(1);
@@ -205,7 +206,8 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         let steady = kept && radius <= self.radius * T::real(16.0);
         self.radius = radius;
         self.known = (self.known + 1).min(ENOUGH);
-        let better = length_squared(&(u - self.extrapolation)) <= length_squared(&(u - self.newest())) * T::real(0.25);
+        let [by_last, by_degree_five] = [self.newest(), self.of_degree_five()].map(|guess| length_squared(&(u - guess)));
+        let better = by_degree_five <= by_last * T::real(0.25);
         let (extrapolated, weight) = if better && self.known == ENOUGH { (1.0, NEWEST) } else { (0.0, 1.0) };
         (self.extrapolated, self.weight) = (T::real(extrapolated), T::real(weight));
         self.push(&u, &SVector::zeros());
