@@ -206,7 +206,8 @@ impl<const M: usize, T: Scalar> Forecast<M, T> {
         let steady = kept && radius <= self.radius * T::real(16.0);
         self.radius = radius;
         self.known = (self.known + 1).min(ENOUGH);
-        let [by_last, by_degree_five] = [self.newest(), self.of_degree_five()].map(|guess| length_squared(&(u - guess)));
+        let [by_last, by_degree_five] =
+            [self.newest(), self.of_degree_five()].map(|guess| length_squared(&(u - guess)));
         let better = by_degree_five <= by_last * T::real(0.25);
         let (extrapolated, weight) = if better && self.known == ENOUGH { (1.0, NEWEST) } else { (0.0, 1.0) };
         (self.extrapolated, self.weight) = (T::real(extrapolated), T::real(weight));

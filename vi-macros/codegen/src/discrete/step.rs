@@ -41,6 +41,9 @@ pub struct Equations {
     /// The derivatives of p1 − p0 and, last, of E1 − E0: entry (i, j) by v_j, and by h where j is N. None for systems so large
     /// that no function would use them.
     pub increment_slopes: Vec<Vec<Expr>>,
+    /// The same of p1 − p0 + 2 r, which for the midpoint rule is 2 (L_v − p0) and knows no force. A Newton step makes r zero: it
+    /// changes p1 − p0 by these slopes times the step, and by 2 r.
+    pub kick_slopes: Vec<Vec<Expr>>,
 }
 
 /// Coordinates up to which the derivatives of the increments may be used.
@@ -69,22 +72,28 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     }
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
 
+    let kicks = kicks(pool, &momentum_increment, &residual)?;
+
     let (equations, increments) =
         (residual.iter().chain([&energy]), momentum_increment.iter().chain([&energy_increment]));
     let carried = if dimension <= CARRIED_COORDINATES { dimension + 1 } else { 0 };
-    let rows = equations.chain(increments.take(carried)).map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
+    let rows = equations.chain(&kicks).chain(increments.take(carried));
+    let rows = rows.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];
+    let mut kick_slopes = vec![Vec::with_capacity(dimension + 1); dimension];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
         let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
         increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
+        kick_slopes.iter_mut().zip(column.kicks).for_each(|(row, entry)| row.push(entry));
     }
     let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
     increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
+    kick_slopes.iter_mut().zip(column.kicks).for_each(|(row, entry)| row.push(entry));
 
     Ok(Equations {
         place: place(pool, &points),
@@ -98,6 +107,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
         momentum_increment,
         energy_increment,
         increment_slopes,
+        kick_slopes,
     })
 }
 
@@ -167,10 +177,23 @@ fn lies_at(pool: &mut Pool<Symbol>, point: &Point, part: &Rational) -> bool {
     })
 }
 
-/// The derivatives of all rows by one unknown: those of momentum, that of energy, the increments of both.
+/// `p1 − p0 + 2 r`, multiplied out.
+fn kicks(pool: &mut Pool<Symbol>, increments: &[Expr], residuals: &[Expr]) -> Result<Vec<Expr>, TooLarge> {
+    let two = pool.integer(2);
+    let rows = increments.iter().zip(residuals);
+    rows.map(|(increment, residual)| {
+        let twice = pool.mul(two, *residual);
+        let kick = pool.add(*increment, twice);
+        pool.expand(kick)
+    })
+    .collect()
+}
+
+/// The derivatives of all rows by one unknown: those of momentum, that of energy, the kicks, the increments of both.
 struct Column {
     residual: Vec<Expr>,
     energy: Expr,
+    kicks: Vec<Expr>,
     increments: Vec<Expr>,
 }
 
@@ -194,8 +217,9 @@ fn by_unknown(
         column.push(pool.expand(slope)?);
     }
     let mut energy = column.split_off(dimension);
-    let increments = energy.split_off(1);
-    Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), increments })
+    let mut kicks = energy.split_off(1);
+    let increments = kicks.split_off(dimension);
+    Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), kicks, increments })
 }
 
 /// `row − v·column`, multiplied out.

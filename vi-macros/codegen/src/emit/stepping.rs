@@ -5,7 +5,7 @@ use super::body::{Body, Entry, Place, part, parts};
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
-use crate::program::Function;
+use crate::program::{Function, Operation};
 use crate::symbol::{Symbol, Variable};
 use num_traits::ToPrimitive;
 use proc_macro2::{Literal, TokenStream};
@@ -169,7 +169,11 @@ fn extended_fields(source: &Source, results: &[Vec<Entry>]) -> Option<TokenStrea
 /// The part of the step at whose end `momentum_step` and `extended_step` are told the coordinates.
 fn place(source: &Source) -> Option<TokenStream> {
     let (_, part) = source.system.equations.place.as_ref()?;
-    let part = source.function("momentum_step").and_then(|_| part.to_f64())?;
+    let reads =
+        |operation: &Operation| matches!(operation, Operation::Input(Symbol::AtPoint(_, Variable::Coordinate(_))));
+    let told =
+        |step: &Function| step.operations.needed(&step.results).into_iter().any(|id| reads(step.operations.get(id)));
+    let part = part.to_f64().filter(|_| source.function("momentum_step").is_some_and(told))?;
     Some(quote!(const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(#part);))
 }
 
@@ -200,16 +204,19 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
     method.tokens(source, |body| {
         let (equations, rest) = body.results.split_at(size + 1);
         let (_, equation) = momentum_fields(source, equations);
-        let Some((gains, slopes)) = rest.split_first() else {
+        let [gains, residuals, slopes @ ..] = rest else {
             // In loops v is an array.
             return Some(quote! {
                 let reached = ::vi_core::SVector::<T, #dimension>::from(*v) + solve(&#equation);
                 self.increment(node, h, &reached).momentum
             });
         };
-        let gains = gains.iter().zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
+        let residual = |i: usize| (&residuals[0], quote!(momentum.residual[#i]));
+        let gains = gains.iter().zip(slopes).enumerate();
+        let gains = gains.map(|(i, (gain, slopes))| carried(gain, slopes, Some(residual(i)), size));
         Some(quote! {
-            let change: [T; #dimension] = solve(&#equation).into();
+            let momentum = #equation;
+            let change: [T; #dimension] = solve(&momentum).into();
             ::vi_core::SVector::from([#(#gains),*])
         })
     })
@@ -234,18 +241,21 @@ fn extended_step(source: &Source) -> Option<TokenStream> {
     method.tokens(source, |body| {
         let (equations, rest) = body.results.split_at(size + 5);
         let equations = extended_fields(source, equations)?;
-        let [momentum, energy, slopes @ ..] = rest else {
+        let [momentum, energy, residuals, slopes @ ..] = rest else {
             return Some(quote! {
                 let (change, change_h) = solve(&#equations);
                 self.increment(node, h + change_h, &(::vi_core::SVector::<T, #dimension>::from(*v) + change))
             });
         };
-        let mut gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, size));
-        let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
+        let residual = |i: usize| (&residuals[0], quote!(both.momentum.residual[#i]));
+        let momenta = momentum.iter().zip(slopes).enumerate();
+        let momenta = momenta.map(|(i, (gain, slopes))| carried(gain, slopes, Some(residual(i)), size));
+        let energy = carried(energy.first()?, slopes.last()?, None, size);
         Some(quote! {
-            let (change, change_h) = solve(&#equations);
+            let both = #equations;
+            let (change, change_h) = solve(&both);
             let change: [T; #dimension] = change.into();
-            ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #(#gains)* }
+            ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #energy }
         })
     })
 }
@@ -255,18 +265,19 @@ fn end(step: &Function, equations: usize) -> &'static str {
     if step.results.len() > equations { "to first order at" } else { "at" }
 }
 
-/// `gain + Σ slope_j change_j`, without what is zero; the slope after those by v is that by h.
-fn carried(gain: &Entry, slopes: &[Entry], dimension: usize) -> TokenStream {
-    let terms = slopes.iter().enumerate().filter(|(_, slope)| !slope.zero).map(|(j, slope)| {
+/// `gain + (Σ slope_j change_j + factor residual)`, without what is zero; the slope after those by v is that by h.
+fn carried(gain: &Entry, slopes: &[Entry], residual: Option<(&Entry, TokenStream)>, dimension: usize) -> TokenStream {
+    let products = slopes.iter().enumerate().map(|(j, slope)| {
         let change = if j < dimension {
             let j = Literal::usize_unsuffixed(j);
             quote!(change[#j])
         } else {
             quote!(change_h)
         };
-        quote!((#slope) * #change)
+        (slope, change)
     });
-    let sum = terms.reduce(|sum, term| quote!(#sum + #term));
+    let terms = products.chain(residual).filter(|(factor, _)| !factor.zero);
+    let sum = terms.map(|(factor, of)| quote!((#factor) * #of)).reduce(|sum, term| quote!(#sum + #term));
     sum.map_or_else(|| quote!(#gain), |sum| quote!(#gain + (#sum)))
 }
 

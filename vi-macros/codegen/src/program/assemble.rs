@@ -5,9 +5,9 @@
 
 use super::lower::Lowering;
 use super::magnitude::magnitude;
-use super::verify;
 use super::{Function, Program};
-use crate::discrete::{DiscreteSystem, Equations, Fields, Point, bounded};
+use super::{steps, verify};
+use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
 use crate::messages::{Message, error};
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
@@ -44,12 +44,13 @@ pub(super) struct Expressions {
     pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
 }
 
-type Assembled = core::result::Result<Vec<(Function, Expressions)>, TooLarge>;
+pub(super) type Assembled = core::result::Result<Vec<(Function, Expressions)>, TooLarge>;
 
-struct Assembly<'a> {
-    pool: &'a mut Pool<Symbol>,
+pub(super) struct Assembly<'a> {
+    pub(super) pool: &'a mut Pool<Symbol>,
     fields: &'a Fields,
-    arguments: BTreeMap<(usize, Variable), Expr>,
+    /// Where the points are: what is not here, the function is told.
+    pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
 }
 
 impl<'a> Assembly<'a> {
@@ -82,7 +83,7 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    fn open_all(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+    pub(super) fn open_all(&mut self, exprs: &[Expr]) -> Vec<Expr> {
         exprs.iter().map(|expr| self.open(*expr)).collect()
     }
 
@@ -90,7 +91,7 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
     }
 
-    fn function(
+    pub(super) fn function(
         &mut self,
         name: &'static str,
         groups: &[Vec<Expr>],
@@ -184,49 +185,7 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let increment = assembly.function("increment", &gains)?;
     let evaluated = [&equation, &system_of_both].map(|(function, _)| function.cost() + increment.0.cost());
     let mut functions = vec![equation, system_of_both, magnitudes, increment];
-    if functions[0].0.operation_count() <= CARRIED {
-        functions.extend(steps(assembly, of, [momentum, extended], &gains, evaluated)?);
-    }
+    let short = functions[0].0.operation_count() <= steps::TOLD;
+    functions.extend(steps::steps(assembly, of, [momentum, extended], &gains, (short, evaluated))?);
     Ok(functions)
 }
-
-/// The Newton steps, of the momentum equation and of both: told the place of L, where there is one. The gains after them are
-/// carried to the end of the step where that costs less than `evaluated`, what the equations and, there, the gains cost by themselves.
-fn steps(
-    assembly: &mut Assembly,
-    of: &Equations,
-    [momentum, extended]: [Vec<Vec<Expr>>; 2],
-    gains: &[Vec<Expr>],
-    evaluated: [usize; 2],
-) -> Assembled {
-    let dimension = of.residual.len();
-    let slopes: Vec<Vec<Expr>> = of.increment_slopes.iter().map(|row| assembly.open_all(row)).collect();
-    let by_v: Vec<Vec<Expr>> = slopes.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
-    if let Some((place, _)) = &of.place {
-        // They are told where that is.
-        let told = |point: &usize, variable: &Variable| point == place && matches!(variable, Variable::Coordinate(_));
-        assembly.arguments.retain(|(point, variable), _| !told(point, variable));
-    }
-    let steps = [
-        ("momentum_step", momentum, gains[..1].iter().chain(&by_v), evaluated[0]),
-        ("extended_step", extended, gains.iter().chain(&slopes), evaluated[1]),
-    ];
-    let mut functions = Vec::with_capacity(steps.len());
-    for (name, equations, carried, evaluated) in steps {
-        // Carrying costs the products with the slopes besides.
-        let zero = assembly.pool.zero();
-        let products = carried.clone().flatten().filter(|slope| **slope != zero).count();
-        let groups: Vec<Vec<Expr>> = equations.iter().chain(carried).cloned().collect();
-        let step = assembly.function(name, &groups)?;
-        let cheaper = step.0.operation_count() <= CARRIED && step.0.cost() + 2 * products <= evaluated;
-        if cheaper && !slopes.is_empty() {
-            functions.push(step);
-        } else if of.place.is_some() {
-            functions.push(assembly.function(name, &equations)?);
-        }
-    }
-    Ok(functions)
-}
-
-/// Operations up to which gains are carried: measured, a chain of 64 gains nothing by it, and takes longer to compile.
-const CARRIED: usize = 1000;

@@ -12,6 +12,7 @@ mod magnitude;
 mod operations;
 mod order;
 mod powers;
+mod steps;
 mod sums;
 mod verify;
 
