@@ -4,12 +4,11 @@
 //! that polynomials in symbols, functions and roots cancel exactly. Sums in denominators and arguments are expanded in
 //! themselves and stay factors. The work is bounded: an expansion over the limit is an error, never a hang.
 
-use std::collections::BTreeMap;
 use std::fmt;
 
 use num_traits::{One, Signed, ToPrimitive};
 
-use crate::{Expr, Node, Pool, Rational, number};
+use crate::{Expr, Node, Pool, Rational, Table, number};
 
 /// Most terms that one expansion may write.
 const LIMIT: usize = 50_000;
@@ -61,9 +60,9 @@ impl<S: Clone + Ord> Pool<S> {
     }
 
     fn expand_once(&mut self, expr: Expr, budget: &mut Budget) -> Result<Expr, TooLarge> {
-        let mut expanded: BTreeMap<Expr, Expr> = BTreeMap::new();
+        let mut expanded: Table<Expr, Expr> = Table::default();
         for node in self.reachable(&[expr]) {
-            let new = |child: &Expr| expanded.get(child).copied().unwrap_or(*child);
+            let new = |child: &Expr| expanded.get(*child).copied().unwrap_or(*child);
             let result = match &*self.shared_node(node) {
                 Node::Number(_) | Node::Pi | Node::Symbol(_) => node,
                 Node::Sum(sum) => {
@@ -83,7 +82,7 @@ impl<S: Clone + Ord> Pool<S> {
             };
             expanded.insert(node, result);
         }
-        Ok(expanded.get(&expr).copied().unwrap_or(expr))
+        Ok(expanded.get(expr).copied().unwrap_or(expr))
     }
 
     /// Product of powers of expanded bases.

@@ -29,6 +29,7 @@
 //! | file | product |
 //! |---|---|
 //! | `node`, `order`, `function`, `pool` | what an expression is, and where it lives |
+//! | `table` | what is known of expressions |
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand` | new expressions from old |
@@ -49,9 +50,11 @@ mod product;
 mod render;
 mod substitute;
 mod sum;
+mod table;
 
 pub use expand::TooLarge;
 pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};
 pub use pool::Pool;
 pub use render::MAX_CHARACTERS;
+pub use table::{Index, Table};

@@ -116,18 +116,16 @@ impl<S: Clone + Ord> Pool<S> {
     /// All nodes at and below the given expressions, each once, children before parents.
     #[must_use]
     pub fn reachable(&self, exprs: &[Expr]) -> Vec<Expr> {
-        let size = exprs.iter().max().map_or(0, |largest| largest.0 + 1);
-        let mut seen = vec![false; size];
-        let mut open = exprs.to_vec();
-        let mut found = Vec::new();
-        while let Some(expr) = open.pop() {
-            if !seen[expr.0] {
-                seen[expr.0] = true;
-                found.push(expr);
-                open.extend(self.node(expr).children());
-            }
+        let mut open = Open::default();
+        for expr in exprs {
+            open.insert(*expr);
         }
-        found.sort_unstable();
+        let mut found = Vec::new();
+        while let Some(expr) = open.take_newest() {
+            found.push(expr);
+            self.node(expr).each_child(|child| open.insert(child));
+        }
+        found.reverse();
         found
     }
 
@@ -167,5 +165,32 @@ impl<S: Clone + Ord> Pool<S> {
         self.nodes.push(Arc::clone(&node));
         self.index.insert(node, expr);
         expr
+    }
+}
+
+/// Expressions that are still to be visited, the newest first: one bit for each, so that neither a search nor a sort is needed.
+#[derive(Default)]
+struct Open {
+    words: Vec<u64>,
+}
+
+impl Open {
+    fn insert(&mut self, expr: Expr) {
+        let word = expr.0 / 64;
+        if word >= self.words.len() {
+            self.words.resize(word + 1, 0);
+        }
+        self.words[word] |= 1 << (expr.0 % 64);
+    }
+
+    fn take_newest(&mut self) -> Option<Expr> {
+        while let Some(word) = self.words.last_mut() {
+            if let Some(bit) = word.checked_ilog2() {
+                *word &= !(1 << bit);
+                return Some(Expr(64 * (self.words.len() - 1) + bit as usize));
+            }
+            self.words.pop();
+        }
+        None
     }
 }

@@ -13,6 +13,7 @@
 use super::{Function, Operation, OperationId};
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
+use vi_expr::Table;
 
 /// Members from which on there is a loop.
 const LEAST: usize = 8;
@@ -48,14 +49,14 @@ pub struct Membership {
 pub struct Families {
     /// Their members, in order; a family stands behind those of its operands.
     pub members: Vec<Vec<OperationId>>,
-    of: BTreeMap<OperationId, Membership>,
+    of: Table<OperationId, Membership>,
 }
 
 impl Families {
     /// The membership of an operation that has one.
     #[must_use]
     pub fn of(&self, id: OperationId) -> Option<Membership> {
-        self.of.get(&id).copied()
+        self.of.get(id).copied()
     }
 }
 
@@ -63,7 +64,7 @@ impl Function {
     /// Its families.
     #[must_use]
     pub fn families(&self) -> Families {
-        let (mut shapes, mut placed) = (BTreeMap::new(), BTreeMap::new());
+        let (mut shapes, mut placed) = (BTreeMap::new(), Table::default());
         let mut rows: Vec<BTreeMap<usize, OperationId>> = Vec::new();
         for id in self.operations.needed(&self.results) {
             let Some((shape, place)) = shape(self.operations.get(id), &placed) else { continue };
@@ -85,12 +86,12 @@ impl Function {
 }
 
 /// The shape of an operation and the place of its first operand that has one; `None` where none has.
-fn shape(operation: &Operation, placed: &BTreeMap<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
+fn shape(operation: &Operation, placed: &Table<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
     if let Operation::Input(symbol) = operation {
         return symbol.component().map(|(vector, place)| (Shape::Input(vector), place));
     }
-    let start = operation.operands().find_map(|operand| placed.get(&operand).map(|(_, place)| *place))?;
-    let relative = operation.operands().map(|operand| match placed.get(&operand) {
+    let start = operation.operands().find_map(|operand| placed.get(operand).map(|(_, place)| *place))?;
+    let relative = operation.operands().map(|operand| match placed.get(operand) {
         Some(&(shape, place)) => {
             Relative::Shifted { shape, on: place.saturating_sub(start), back: start.saturating_sub(place) }
         }

@@ -4,15 +4,14 @@
 
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
-use vi_expr::Function;
+use vi_expr::{Function, Index, Table};
 
 /// The index of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct OperationId(u32);
 
-impl OperationId {
-    /// As a place in the list of operations.
-    pub(super) fn index(self) -> usize {
+impl Index for OperationId {
+    fn index(self) -> usize {
         self.0 as usize
     }
 }
@@ -49,7 +48,7 @@ pub enum Operation {
 pub struct Operations {
     list: Vec<Operation>,
     index: BTreeMap<Operation, OperationId>,
-    names: BTreeMap<OperationId, Symbol>,
+    names: Table<OperationId, Symbol>,
 }
 
 impl Operations {
@@ -96,15 +95,15 @@ impl Operations {
 
     /// The operation is the argument of the rule that this symbol names.
     pub fn call_it(&mut self, id: OperationId, name: Symbol) {
-        if !matches!(self.get(id), Operation::Constant(_) | Operation::Input(_)) {
-            self.names.entry(id).or_insert(name);
+        if self.get(id).is_work() && !self.names.contains(id) {
+            self.names.insert(id, name);
         }
     }
 
     /// The name that an operation was given.
     #[must_use]
     pub fn name(&self, id: OperationId) -> Option<&Symbol> {
-        self.names.get(&id)
+        self.names.get(id)
     }
 
     /// How many operations are listed.

@@ -36,7 +36,7 @@ impl Lowering<'_> {
         for expr in self.pool.reachable(exprs) {
             if let Node::Product(product) = self.pool.node(expr) {
                 for (base, exponent) in &product.factors {
-                    self.occurrences.entry(*base).or_default().record(exponent);
+                    self.occurrences.entry(*base).record(exponent);
                 }
             }
         }
@@ -45,7 +45,7 @@ impl Lowering<'_> {
     /// `base^exponent` as a factor of a product.
     pub(super) fn factor(&mut self, base: Expr, exponent: &Rational) -> Factor {
         let value = self.value(base);
-        let occurrence = self.occurrences.get(&base).copied().unwrap_or_default();
+        let occurrence = self.occurrences.get(base).copied().unwrap_or_default();
         let Some(halves) = halves(exponent) else {
             let exponent = self.operations.constant(exponent.to_f64().unwrap_or(f64::NAN));
             return Factor::Above(self.operations.add(Operation::Call2(Function::Pow, value, exponent)));

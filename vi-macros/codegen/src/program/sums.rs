@@ -28,7 +28,7 @@ pub(super) enum Way {
 impl Lowering<'_> {
     /// The way in which an expression is written.
     pub(super) fn way(&mut self, expr: Expr) -> Way {
-        if let Some(known) = self.ways.get(&expr) {
+        if let Some(known) = self.ways.get(expr) {
             return *known;
         }
         let Node::Sum(sum) = self.pool.node(expr).clone() else { return Way::Term };
