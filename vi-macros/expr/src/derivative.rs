@@ -9,12 +9,14 @@
 //! One pass over the shared nodes: an expression that occurs many times is differentiated once. Products are flat, so that
 //! a chain of n nested calls has a derivative of n factors, and the way there takes n² steps.
 
+use std::hash::Hash;
+
 use num_bigint::BigInt;
 use num_traits::One;
 
 use crate::{Expr, Function, Node, Pool, Rational, Table};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// Derivative of `expr`, where the closure gives that of each symbol (asked once per symbol): 1 for the variable and 0 for
     /// the others gives a partial derivative, the rates of all symbols give a total one.
     pub fn derivative(&mut self, expr: Expr, symbol_derivative: &mut dyn FnMut(&mut Self, &S) -> Expr) -> Expr {

@@ -3,11 +3,13 @@
 //! In: expressions and the value of each symbol. Out: their values in `f64`, each shared node computed once.
 //! Meant for checks, not for speed; the undefined expression is NaN.
 
+use std::hash::Hash;
+
 use num_traits::ToPrimitive;
 
 use crate::{Expr, Node, Pool, Rational, Table};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// Value of one expression.
     #[must_use]
     pub fn evaluate(&self, expr: Expr, values: &mut dyn FnMut(&S) -> f64) -> f64 {

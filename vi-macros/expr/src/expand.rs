@@ -5,6 +5,7 @@
 //! themselves and stay factors. The work is bounded: an expansion over the limit is an error, never a hang.
 
 use std::fmt;
+use std::hash::Hash;
 
 use num_traits::{One, Signed, ToPrimitive};
 
@@ -41,7 +42,7 @@ impl Budget {
     }
 }
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `expr` multiplied out.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ pub type Rational = BigRational;
 
 /// Handle of an expression in its [`Pool`](crate::Pool). Two expressions of one pool are the same canonical form exactly if
 /// their handles are equal. A handle means nothing in another pool.
-#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Expr(pub(crate) usize);
 
 impl Expr {

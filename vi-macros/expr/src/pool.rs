@@ -4,32 +4,32 @@
 //! AFTER THIS a node never changes, and its children have smaller handles than itself, so that every pass is a loop over
 //! [`Pool::reachable`] in ascending order and no depth of nesting exhausts the stack.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::hash::Hash;
 use std::sync::Arc;
 
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use crate::{Expr, Node, Product, Rational};
+use crate::{Distinct, Expr, Node, Product, Rational};
 
 /// Owner of expressions over symbols of type `S`.
 #[derive(Clone, Debug)]
 pub struct Pool<S> {
-    nodes: Vec<Arc<Node<S>>>,
-    index: BTreeMap<Arc<Node<S>>, Expr>,
+    nodes: Distinct<Arc<Node<S>>>,
 }
 
-impl<S: Clone + Ord> Default for Pool<S> {
+impl<S: Clone + Eq + Hash> Default for Pool<S> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// Pool with the three expressions that every pool has: 0, 1 and the undefined one.
     #[must_use]
     pub fn new() -> Self {
-        let mut pool = Self { nodes: Vec::new(), index: BTreeMap::new() };
+        let mut pool = Self { nodes: Distinct::default() };
         pool.intern(Node::Number(Rational::zero()));
         pool.intern(Node::Number(Rational::one()));
         pool.intern(Node::Product(Product { factors: vec![(Expr::ZERO, -Rational::one())] }));
@@ -110,7 +110,7 @@ impl<S: Clone + Ord> Pool<S> {
     #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "no pool is empty")]
     pub fn len(&self) -> usize {
-        self.nodes.len()
+        self.nodes.values().len()
     }
 
     /// All nodes at and below the given expressions, each once, children before parents.
@@ -131,7 +131,10 @@ impl<S: Clone + Ord> Pool<S> {
 
     /// The symbols in an expression.
     #[must_use]
-    pub fn symbols(&self, expr: Expr) -> BTreeSet<S> {
+    pub fn symbols(&self, expr: Expr) -> BTreeSet<S>
+    where
+        S: Ord,
+    {
         self.reachable(&[expr]).into_iter().filter_map(|expr| self.as_symbol(expr)).cloned().collect()
     }
 
@@ -157,14 +160,7 @@ impl<S: Clone + Ord> Pool<S> {
 
     /// Handle of a node that is already canonical.
     pub(crate) fn intern(&mut self, node: Node<S>) -> Expr {
-        if let Some(expr) = self.index.get(&node) {
-            return *expr;
-        }
-        let expr = Expr(self.nodes.len());
-        let node = Arc::new(node);
-        self.nodes.push(Arc::clone(&node));
-        self.index.insert(node, expr);
-        expr
+        Expr(self.nodes.insert(node))
     }
 }
 

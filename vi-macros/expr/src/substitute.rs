@@ -3,9 +3,11 @@
 //! In: an expression and a replacement for some symbols. Out: the expression with all of them replaced at once, in canonical
 //! form again, so that `(q1 - q0)/h` with `q1 = q0 + h*v` is `v`.
 
+use std::hash::Hash;
+
 use crate::{Expr, Node, Pool, Table};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `expr` with each symbol replaced by what the closure gives (asked once per symbol); nothing keeps the symbol.
     /// Replacements are not substituted into again.
     pub fn substitute(&mut self, expr: Expr, map: &mut dyn FnMut(&mut Self, &S) -> Option<Expr>) -> Expr {

@@ -5,12 +5,13 @@
 //! AFTER THIS no term is a number or a sum, and a numeric coefficient stands nowhere but in a [`Sum`].
 
 use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use num_traits::{One, Zero};
 
 use crate::{Expr, Node, Pool, Rational, Sum, number};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `left + right`. A sum of many terms is built by [`Pool::sum`]: one by one, each addition copies what is there.
     pub fn add(&mut self, left: Expr, right: Expr) -> Expr {
         self.sum(&[left, right])

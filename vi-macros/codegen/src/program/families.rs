@@ -13,13 +13,13 @@
 use super::{Function, Operation, OperationId};
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
-use vi_expr::Table;
+use vi_expr::{Distinct, Table};
 
 /// Members from which on there is a loop.
 const LEAST: usize = 8;
 
 /// What members of a family have in common.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
+#[derive(PartialEq, Eq, Hash)]
 enum Shape {
     /// The component of a vector.
     Input(Symbol),
@@ -28,7 +28,7 @@ enum Shape {
 }
 
 /// An operand as seen from the place of an operation.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
+#[derive(PartialEq, Eq, Hash)]
 enum Relative {
     /// The same everywhere.
     Fixed(OperationId),
@@ -64,14 +64,13 @@ impl Function {
     /// Its families.
     #[must_use]
     pub fn families(&self) -> Families {
-        let (mut shapes, mut placed) = (BTreeMap::new(), Table::default());
+        let (mut shapes, mut placed) = (Distinct::<Shape>::default(), Table::default());
         let mut rows: Vec<BTreeMap<usize, OperationId>> = Vec::new();
         for id in self.operations.needed(&self.results) {
             let Some((shape, place)) = shape(self.operations.get(id), &placed) else { continue };
-            let next = shapes.len();
-            let number = *shapes.entry(shape).or_insert(next);
+            let number = shapes.insert(shape);
             placed.insert(id, (number, place));
-            rows.resize_with(shapes.len(), BTreeMap::new);
+            rows.resize_with(shapes.values().len(), BTreeMap::new);
             rows[number].insert(place, id);
         }
         // Shapes are numbered after those of their operands.
