@@ -116,10 +116,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// All nodes at and below the given expressions, each once, children before parents.
     #[must_use]
     pub fn reachable(&self, exprs: &[Expr]) -> Vec<Expr> {
-        let mut open = Open::default();
-        for expr in exprs {
-            open.insert(*expr);
-        }
+        let mut open = Open::new(exprs);
         let mut found = Vec::new();
         while let Some(expr) = open.take_newest() {
             found.push(expr);
@@ -165,27 +162,35 @@ impl<S: Clone + Eq + Hash> Pool<S> {
 }
 
 /// Expressions that are still to be visited, the newest first: one bit for each, so that neither a search nor a sort is needed.
-#[derive(Default)]
 struct Open {
     words: Vec<u64>,
+    /// No bit is set in the words from here on.
+    end: usize,
 }
 
 impl Open {
-    fn insert(&mut self, expr: Expr) {
-        let word = expr.0 / 64;
-        if word >= self.words.len() {
-            self.words.resize(word + 1, 0);
+    fn new(exprs: &[Expr]) -> Self {
+        let end = exprs.iter().max().map_or(0, |newest| newest.0 / 64 + 1);
+        let mut open = Self { words: vec![0; end], end };
+        for expr in exprs {
+            open.insert(*expr);
         }
-        self.words[word] |= 1 << (expr.0 % 64);
+        open
+    }
+
+    /// Adds an expression that is not newer than the first ones.
+    fn insert(&mut self, expr: Expr) {
+        self.words[expr.0 / 64] |= 1 << (expr.0 % 64);
     }
 
     fn take_newest(&mut self) -> Option<Expr> {
-        while let Some(word) = self.words.last_mut() {
+        while self.end > 0 {
+            let word = &mut self.words[self.end - 1];
             if let Some(bit) = word.checked_ilog2() {
-                *word &= !(1 << bit);
-                return Some(Expr(64 * (self.words.len() - 1) + bit as usize));
+                *word ^= 1 << bit;
+                return Some(Expr(64 * (self.end - 1) + bit as usize));
             }
-            self.words.pop();
+            self.end -= 1;
         }
         None
     }

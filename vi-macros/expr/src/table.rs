@@ -2,7 +2,7 @@
 //!
 //! In: indices that count from 0, as handles of expressions do. Out: a [`Table`], in which a value is found at its index and
 //! not by comparisons: a macro is built without optimisation, and there a search tree takes most of the time. A table that is
-//! almost empty costs almost nothing, however large its indices are.
+//! almost empty costs almost nothing, however large its indices are: most passes over expressions see a few of many.
 
 use std::marker::PhantomData;
 
@@ -12,18 +12,21 @@ pub trait Index: Copy {
     fn index(self) -> usize;
 }
 
+/// Indices of one page.
+const PAGE: usize = 256;
+
 /// A map from indices to values.
 #[derive(Clone, Debug)]
 pub struct Table<K, V> {
-    /// One more than where the value stands, 0 for none: memory of zeros is free.
-    places: Vec<usize>,
+    /// One more than where a value stands, 0 for none; a page without values is empty.
+    pages: Vec<Vec<usize>>,
     values: Vec<V>,
     keys: PhantomData<K>,
 }
 
 impl<K, V> Default for Table<K, V> {
     fn default() -> Self {
-        Self { places: Vec::new(), values: Vec::new(), keys: PhantomData }
+        Self { pages: Vec::new(), values: Vec::new(), keys: PhantomData }
     }
 }
 
@@ -31,10 +34,8 @@ impl<K: Index, V> Table<K, V> {
     /// The value at an index.
     #[must_use]
     pub fn get(&self, key: K) -> Option<&V> {
-        match self.places.get(key.index()) {
-            None | Some(0) => None,
-            Some(place) => Some(&self.values[*place - 1]),
-        }
+        let place = self.pages.get(key.index() / PAGE)?.get(key.index() % PAGE)?;
+        self.values.get(place.checked_sub(1)?)
     }
 
     /// Whether there is a value at an index.
@@ -45,14 +46,13 @@ impl<K: Index, V> Table<K, V> {
 
     /// Puts a value at an index, in place of one that is there.
     pub fn insert(&mut self, key: K, value: V) {
-        let index = key.index();
-        self.reach(index);
-        let place = self.places[index];
-        if place == 0 {
-            self.values.push(value);
-            self.places[index] = self.values.len();
+        let next = self.values.len() + 1;
+        let place = self.place(key);
+        if let Some(there) = place.checked_sub(1) {
+            self.values[there] = value;
         } else {
-            self.values[place - 1] = value;
+            *place = next;
+            self.values.push(value);
         }
     }
 
@@ -64,15 +64,19 @@ impl<K: Index, V> Table<K, V> {
         if !self.contains(key) {
             self.insert(key, V::default());
         }
-        &mut self.values[self.places[key.index()] - 1]
+        let place = *self.place(key) - 1;
+        &mut self.values[place]
     }
 
-    fn reach(&mut self, index: usize) {
-        if index >= self.places.len() {
-            let mut places = vec![0; (index + 1).max(2 * self.places.len())];
-            places[..self.places.len()].copy_from_slice(&self.places);
-            self.places = places;
+    fn place(&mut self, key: K) -> &mut usize {
+        let (page, place) = (key.index() / PAGE, key.index() % PAGE);
+        if page >= self.pages.len() {
+            self.pages.resize(page + 1, Vec::new());
         }
+        if self.pages[page].is_empty() {
+            self.pages[page] = vec![0; PAGE];
+        }
+        &mut self.pages[page][place]
     }
 }
 
