@@ -26,6 +26,13 @@ pub(super) enum Dependence {
     Step,
 }
 
+/// What is found out about expressions, whichever function they are lowered for.
+#[derive(Default)]
+pub(super) struct Known {
+    dependences: Table<Expr, Dependence>,
+    pub(super) ways: Table<Expr, Way>,
+}
+
 /// The lowering of one function.
 pub(super) struct Lowering<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
@@ -34,17 +41,22 @@ pub(super) struct Lowering<'a> {
     /// The arguments of sines and cosines.
     pub(super) angles: Table<Expr, ()>,
     values: Table<Expr, OperationId>,
-    dependences: Table<Expr, Dependence>,
+    /// The ways that this function has taken.
     pub(super) ways: Table<Expr, Way>,
+    pub(super) known: &'a mut Known,
     arguments: &'a BTreeMap<(usize, Variable), Expr>,
 }
 
 impl<'a> Lowering<'a> {
     /// A function with these arguments of the points.
-    pub(super) fn new(pool: &'a mut Pool<Symbol>, arguments: &'a BTreeMap<(usize, Variable), Expr>) -> Self {
+    pub(super) fn new(
+        pool: &'a mut Pool<Symbol>,
+        known: &'a mut Known,
+        arguments: &'a BTreeMap<(usize, Variable), Expr>,
+    ) -> Self {
         let (operations, occurrences, angles) = (Operations::default(), Table::default(), Table::default());
-        let (values, dependences, ways) = (Table::default(), Table::default(), Table::default());
-        Self { pool, operations, occurrences, angles, values, dependences, ways, arguments }
+        let (values, ways) = (Table::default(), Table::default());
+        Self { pool, operations, occurrences, angles, values, ways, known, arguments }
     }
 
     /// Lowers expressions and all that they need, children first.
@@ -86,7 +98,7 @@ impl<'a> Lowering<'a> {
 
     /// What an expression depends on; its children are known but for those that lowering made.
     pub(super) fn dependence(&mut self, expr: Expr) -> Dependence {
-        if let Some(known) = self.dependences.get(expr) {
+        if let Some(known) = self.known.dependences.get(expr) {
             return *known;
         }
         let children: Vec<Expr> = match self.pool.node(expr) {
@@ -101,14 +113,14 @@ impl<'a> Lowering<'a> {
             Node::Symbol(_) => Dependence::Step,
             _ => children.into_iter().map(|child| self.dependence(child)).max().unwrap_or(Dependence::None),
         };
-        self.dependences.insert(expr, found);
+        self.known.dependences.insert(expr, found);
         found
     }
 
     /// Whether a base of a term is made of parameters, and not of numbers alone. It was asked when the base was lowered, before
     /// the term.
     pub(super) fn is_parameter(&self, expr: Expr) -> bool {
-        self.dependences.get(expr) == Some(&Dependence::Parameters)
+        self.known.dependences.get(expr) == Some(&Dependence::Parameters)
     }
 
     fn symbol(&mut self, symbol: Symbol) -> OperationId {
