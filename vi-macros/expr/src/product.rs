@@ -50,6 +50,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     pub fn product(&mut self, factors: &[Expr]) -> Expr {
         match factors {
             [only] => *only,
+            _ if factors.contains(&Expr::ZERO) && !factors.contains(&Expr::UNDEFINED) => Expr::ZERO,
             _ => self.powers(factors.iter().map(|factor| (*factor, Rational::one()))),
         }
     }
