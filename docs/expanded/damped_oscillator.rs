@@ -476,18 +476,16 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         let real = T::real;
         let s1 = self.c * real(0.5);
         let s2 = self.k * h;
-        let change: [T; 1] = solve(
-                &::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        self.m * x_dot - p0_x
-                            + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
-                    ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[self.m + (s1 + s2 * real(0.25)) * h],
-                    ),
-                },
-            )
-            .into();
+        let momentum = ::vi_core::MomentumEquation {
+            residual: ::vi_core::SVector::from([
+                self.m * x_dot - p0_x
+                    + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
+            ]),
+            jacobian: ::vi_core::SMatrix::from_row_slice(
+                &[self.m + (s1 + s2 * real(0.25)) * h],
+            ),
+        };
+        let change: [T; 1] = solve(&momentum).into();
         ::vi_core::SVector::from([
             -((self.k * x_mid + self.c * x_dot) * h)
                 + (((-self.c - s2 * real(0.5)) * h) * change[0]),

@@ -5,7 +5,7 @@
 //! fields; a program knows the points at which fields are evaluated, and no field any more.
 
 /// A variable of L(t, q, v) and f(t, q, v), by which they are differentiated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Variable {
     /// Time t.
     Time,
@@ -16,7 +16,7 @@ pub enum Variable {
 }
 
 /// What a rule evaluates without looking inside: the Lagrangian, or one component of the force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// L.
     Lagrangian,
@@ -25,7 +25,7 @@ pub enum Quantity {
 }
 
 /// A partial derivative of a quantity at a point of the rule.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Field {
     /// L or f_i.
     pub quantity: Quantity,
@@ -36,7 +36,7 @@ pub struct Field {
 }
 
 /// A symbol of the compiler.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Symbol {
     /// Runtime parameter, by index.
     Parameter(usize),

@@ -4,12 +4,14 @@
 //! with an argument of canonical sign, so that `sin(a - b)` and `sin(b - a)` share.
 //! AFTER THIS an even or odd function never has an argument whose first coefficient is negative.
 
+use std::hash::Hash;
+
 use num_traits::{One, Signed, Zero};
 
 use crate::function::Parity;
 use crate::{Expr, Function, Node, Pool, Rational};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `function(arguments)`. The number of arguments is the caller's duty ([`Function::arity`]).
     /// `pow` with an exact exponent becomes [`Pool::power`].
     /// Undefined are `ln(x)` for numbers `x ≤ 0`, and `asin(x)`, `acos(x)` for numbers beyond ±1.

@@ -9,14 +9,14 @@
 //! One pass over the shared nodes: an expression that occurs many times is differentiated once. Products are flat, so that
 //! a chain of n nested calls has a derivative of n factors, and the way there takes n² steps.
 
-use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use num_bigint::BigInt;
 use num_traits::One;
 
-use crate::{Expr, Function, Node, Pool, Rational};
+use crate::{Expr, Function, Node, Pool, Rational, Table};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// Derivative of `expr`, where the closure gives that of each symbol (asked once per symbol): 1 for the variable and 0 for
     /// the others gives a partial derivative, the rates of all symbols give a total one.
     pub fn derivative(&mut self, expr: Expr, symbol_derivative: &mut dyn FnMut(&mut Self, &S) -> Expr) -> Expr {
@@ -24,13 +24,15 @@ impl<S: Clone + Ord> Pool<S> {
             return expr;
         }
         // Only derivatives other than 0.
-        let mut derivatives = BTreeMap::new();
+        let mut derivatives = Table::default();
         for node in self.reachable(&[expr]) {
-            let derivative = match &*self.shared_node(node) {
-                Node::Number(_) | Node::Pi => Expr::ZERO,
+            let shared = self.shared_node(node);
+            let derivative = match &*shared {
                 Node::Symbol(symbol) => symbol_derivative(self, symbol),
+                constant if !constant.any_child(|child| derivatives.contains(child)) => Expr::ZERO,
+                Node::Number(_) | Node::Pi => Expr::ZERO,
                 Node::Sum(sum) => self
-                    .combination(sum.terms.iter().filter_map(|(term, c)| Some((*derivatives.get(term)?, c.clone())))),
+                    .combination(sum.terms.iter().filter_map(|(term, c)| Some((*derivatives.get(*term)?, c.clone())))),
                 Node::Product(product) => self.product_derivative(&product.factors, &derivatives),
                 Node::Call(function, arguments) => self.call_derivative(*function, arguments, node, &derivatives),
             };
@@ -38,13 +40,13 @@ impl<S: Clone + Ord> Pool<S> {
                 derivatives.insert(node, derivative);
             }
         }
-        derivatives.get(&expr).copied().unwrap_or(Expr::ZERO)
+        derivatives.get(expr).copied().unwrap_or(Expr::ZERO)
     }
 
-    fn product_derivative(&mut self, factors: &[(Expr, Rational)], derivatives: &BTreeMap<Expr, Expr>) -> Expr {
+    fn product_derivative(&mut self, factors: &[(Expr, Rational)], derivatives: &Table<Expr, Expr>) -> Expr {
         let mut terms = Vec::new();
         for (place, (base, exponent)) in factors.iter().enumerate() {
-            let Some(derivative) = derivatives.get(base) else { continue };
+            let Some(derivative) = derivatives.get(*base) else { continue };
             let mut powers = factors.to_vec();
             if let Some((_, lowered)) = powers.get_mut(place) {
                 *lowered -= Rational::one();
@@ -60,11 +62,11 @@ impl<S: Clone + Ord> Pool<S> {
         function: Function,
         arguments: &[Expr],
         value: Expr,
-        derivatives: &BTreeMap<Expr, Expr>,
+        derivatives: &Table<Expr, Expr>,
     ) -> Expr {
         let mut terms = Vec::new();
         for (slot, argument) in arguments.iter().enumerate() {
-            let Some(derivative) = derivatives.get(argument) else { continue };
+            let Some(derivative) = derivatives.get(*argument) else { continue };
             let partial = match arguments {
                 [x] => self.unary_partial(function, *x, value),
                 [x, y] => self.binary_partial(function, slot == 0, *x, *y, value),

@@ -3,13 +3,13 @@
 //! In: expressions and the value of each symbol. Out: their values in `f64`, each shared node computed once.
 //! Meant for checks, not for speed; the undefined expression is NaN.
 
-use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use num_traits::ToPrimitive;
 
-use crate::{Expr, Node, Pool, Rational};
+use crate::{Expr, Node, Pool, Rational, Table};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// Value of one expression.
     #[must_use]
     pub fn evaluate(&self, expr: Expr, values: &mut dyn FnMut(&S) -> f64) -> f64 {
@@ -19,7 +19,7 @@ impl<S: Clone + Ord> Pool<S> {
     /// Values of several expressions, in their order; the closure is asked once per symbol.
     #[must_use]
     pub fn evaluate_all(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<f64> {
-        let mut known = BTreeMap::new();
+        let mut known = Table::default();
         for expr in self.reachable(exprs) {
             let value = self.node_value(expr, &known, values);
             known.insert(expr, value);
@@ -27,7 +27,7 @@ impl<S: Clone + Ord> Pool<S> {
         exprs.iter().map(|expr| value_of(&known, *expr)).collect()
     }
 
-    fn node_value(&self, expr: Expr, known: &BTreeMap<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
+    fn node_value(&self, expr: Expr, known: &Table<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
         if self.is_undefined(expr) {
             return f64::NAN;
         }
@@ -50,8 +50,8 @@ impl<S: Clone + Ord> Pool<S> {
     }
 }
 
-fn value_of(known: &BTreeMap<Expr, f64>, expr: Expr) -> f64 {
-    known.get(&expr).copied().unwrap_or(f64::NAN)
+fn value_of(known: &Table<Expr, f64>, expr: Expr) -> f64 {
+    known.get(expr).copied().unwrap_or(f64::NAN)
 }
 
 fn float(number: &Rational) -> f64 {

@@ -4,12 +4,12 @@
 //! that polynomials in symbols, functions and roots cancel exactly. Sums in denominators and arguments are expanded in
 //! themselves and stay factors. The work is bounded: an expansion over the limit is an error, never a hang.
 
-use std::collections::BTreeMap;
 use std::fmt;
+use std::hash::Hash;
 
 use num_traits::{One, Signed, ToPrimitive};
 
-use crate::{Expr, Node, Pool, Rational, number};
+use crate::{Expr, Node, Pool, Rational, Table, number};
 
 /// Most terms that one expansion may write.
 const LIMIT: usize = 50_000;
@@ -42,7 +42,7 @@ impl Budget {
     }
 }
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `expr` multiplied out.
     ///
     /// # Errors
@@ -61,36 +61,43 @@ impl<S: Clone + Ord> Pool<S> {
     }
 
     fn expand_once(&mut self, expr: Expr, budget: &mut Budget) -> Result<Expr, TooLarge> {
-        let mut expanded: BTreeMap<Expr, Expr> = BTreeMap::new();
+        // Only nodes that change.
+        let mut expanded: Table<Expr, Expr> = Table::default();
         for node in self.reachable(&[expr]) {
-            let new = |child: &Expr| expanded.get(child).copied().unwrap_or(*child);
-            let result = match &*self.shared_node(node) {
-                Node::Number(_) | Node::Pi | Node::Symbol(_) => node,
+            let new = |child: &Expr| expanded.get(*child).copied().unwrap_or(*child);
+            let shared = self.shared_node(node);
+            let changes = shared.any_child(|child| expanded.contains(child));
+            let result = match &*shared {
                 Node::Sum(sum) => {
-                    let parts: Vec<_> = sum.terms.iter().map(|(term, c)| (new(term), c.clone())).collect();
-                    budget.spend(parts.iter().map(|(term, _)| self.term_count(*term)).sum())?;
-                    let constant = self.number(sum.constant.clone());
-                    self.combination(parts.into_iter().chain([(constant, Rational::one())]))
+                    budget.spend(sum.terms.iter().map(|(term, _)| self.term_count(new(term))).sum())?;
+                    if changes {
+                        let constant = self.number(sum.constant.clone());
+                        let parts = sum.terms.iter().map(|(term, c)| (new(term), c.clone()));
+                        self.combination(parts.chain([(constant, Rational::one())]))
+                    } else {
+                        node
+                    }
                 }
-                Node::Product(product) => {
+                Node::Product(product) if changes || product.factors.iter().any(|factor| self.is_open(factor)) => {
                     let factors: Vec<_> = product.factors.iter().map(|(base, e)| (new(base), e.clone())).collect();
                     self.expand_product(factors, budget)?
                 }
-                Node::Call(function, arguments) => {
+                Node::Call(function, arguments) if changes => {
                     let arguments: Vec<Expr> = arguments.iter().map(new).collect();
                     self.call(*function, &arguments)
                 }
+                _ => node,
             };
-            expanded.insert(node, result);
+            if result != node {
+                expanded.insert(node, result);
+            }
         }
-        Ok(expanded.get(&expr).copied().unwrap_or(expr))
+        Ok(expanded.get(expr).copied().unwrap_or(expr))
     }
 
     /// Product of powers of expanded bases.
     fn expand_product(&mut self, factors: Vec<(Expr, Rational)>, budget: &mut Budget) -> Result<Expr, TooLarge> {
-        let (sums, others): (Vec<_>, Vec<_>) = factors.into_iter().partition(|(base, exponent)| {
-            exponent.is_integer() && exponent.is_positive() && self.term_count(*base) > 1
-        });
+        let (sums, others): (Vec<_>, Vec<_>) = factors.into_iter().partition(|factor| self.is_open(factor));
         let mut result = self.powers(others);
         for (base, exponent) in sums {
             // Too large for a machine integer is too large for the budget.
@@ -100,6 +107,11 @@ impl<S: Clone + Ord> Pool<S> {
             }
         }
         Ok(result)
+    }
+
+    /// A power that is to be multiplied out.
+    fn is_open(&self, (base, exponent): &(Expr, Rational)) -> bool {
+        exponent.is_integer() && exponent.is_positive() && self.term_count(*base) > 1
     }
 
     /// Product of two expanded expressions, term by term.

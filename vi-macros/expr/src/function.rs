@@ -4,7 +4,7 @@
 //! The square root is none of them: it is the power 1/2. Derivatives are built where expressions are differentiated.
 
 /// Elementary function of one or two real arguments, named as in the language of systems.
-#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Function {
     /// `e^x`.
     Exp,

@@ -28,7 +28,8 @@
 //!
 //! | file | product |
 //! |---|---|
-//! | `node`, `order`, `function`, `pool` | what an expression is, and where it lives |
+//! | `node`, `identity`, `function`, `pool` | what an expression is, and where it lives |
+//! | `distinct`, `table` | values by what they are, and by index |
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand` | new expressions from old |
@@ -38,20 +39,24 @@
 
 mod call;
 mod derivative;
+mod distinct;
 mod evaluate;
 mod expand;
 mod function;
+mod identity;
 mod node;
 mod number;
-mod order;
 mod pool;
 mod product;
 mod render;
 mod substitute;
 mod sum;
+mod table;
 
+pub use distinct::Distinct;
 pub use expand::TooLarge;
 pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};
 pub use pool::Pool;
 pub use render::MAX_CHARACTERS;
+pub use table::{Index, Table};

@@ -5,14 +5,14 @@
 
 use num_rational::BigRational;
 
-use crate::Function;
+use crate::{Function, Index};
 
 /// Exact number of any size, always in lowest terms.
 pub type Rational = BigRational;
 
 /// Handle of an expression in its [`Pool`](crate::Pool). Two expressions of one pool are the same canonical form exactly if
 /// their handles are equal. A handle means nothing in another pool.
-#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Expr(pub(crate) usize);
 
 impl Expr {
@@ -22,6 +22,12 @@ impl Expr {
     pub(crate) const ONE: Self = Self(1);
     /// `0^-1`, third in every pool: the value of every operation that has none.
     pub(crate) const UNDEFINED: Self = Self(2);
+}
+
+impl Index for Expr {
+    fn index(self) -> usize {
+        self.0
+    }
 }
 
 /// One operation on older expressions.
@@ -76,14 +82,27 @@ pub struct Product {
 }
 
 impl<S> Node<S> {
-    /// The operands, in the order of the node.
-    #[must_use]
-    pub fn children(&self) -> Vec<Expr> {
+    /// Shows the operands, in the order of the node.
+    pub fn each_child(&self, mut see: impl FnMut(Expr)) {
         match self {
-            Self::Number(_) | Self::Pi | Self::Symbol(_) => Vec::new(),
-            Self::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
-            Self::Product(product) => product.factors.iter().map(|(base, _)| *base).collect(),
-            Self::Call(_, arguments) => arguments.clone(),
+            Self::Number(_) | Self::Pi | Self::Symbol(_) => {}
+            Self::Sum(Sum { terms: parts, .. }) | Self::Product(Product { factors: parts }) => {
+                for (part, _) in parts {
+                    see(*part);
+                }
+            }
+            Self::Call(_, arguments) => {
+                for argument in arguments {
+                    see(*argument);
+                }
+            }
         }
+    }
+
+    /// Whether one of the operands is so.
+    pub(crate) fn any_child(&self, is: impl Fn(Expr) -> bool) -> bool {
+        let mut any = false;
+        self.each_child(|child| any = any || is(child));
+        any
     }
 }

@@ -40,9 +40,13 @@ pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     }
 }
 
-/// `left·right`, integers likewise.
+/// `left·right`, integers likewise, and a factor 1.
 pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
-    if left.is_integer() && right.is_integer() {
+    if left.is_one() {
+        right.clone()
+    } else if right.is_one() {
+        left.clone()
+    } else if left.is_integer() && right.is_integer() {
         Rational::from_integer(left.numer() * right.numer())
     } else {
         left * right

@@ -4,32 +4,32 @@
 //! AFTER THIS a node never changes, and its children have smaller handles than itself, so that every pass is a loop over
 //! [`Pool::reachable`] in ascending order and no depth of nesting exhausts the stack.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::hash::Hash;
 use std::sync::Arc;
 
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use crate::{Expr, Node, Product, Rational};
+use crate::{Distinct, Expr, Node, Product, Rational};
 
 /// Owner of expressions over symbols of type `S`.
 #[derive(Clone, Debug)]
 pub struct Pool<S> {
-    nodes: Vec<Arc<Node<S>>>,
-    index: BTreeMap<Arc<Node<S>>, Expr>,
+    nodes: Distinct<Arc<Node<S>>>,
 }
 
-impl<S: Clone + Ord> Default for Pool<S> {
+impl<S: Clone + Eq + Hash> Default for Pool<S> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// Pool with the three expressions that every pool has: 0, 1 and the undefined one.
     #[must_use]
     pub fn new() -> Self {
-        let mut pool = Self { nodes: Vec::new(), index: BTreeMap::new() };
+        let mut pool = Self { nodes: Distinct::default() };
         pool.intern(Node::Number(Rational::zero()));
         pool.intern(Node::Number(Rational::one()));
         pool.intern(Node::Product(Product { factors: vec![(Expr::ZERO, -Rational::one())] }));
@@ -110,30 +110,28 @@ impl<S: Clone + Ord> Pool<S> {
     #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "no pool is empty")]
     pub fn len(&self) -> usize {
-        self.nodes.len()
+        self.nodes.values().len()
     }
 
     /// All nodes at and below the given expressions, each once, children before parents.
     #[must_use]
     pub fn reachable(&self, exprs: &[Expr]) -> Vec<Expr> {
-        let size = exprs.iter().max().map_or(0, |largest| largest.0 + 1);
-        let mut seen = vec![false; size];
-        let mut open = exprs.to_vec();
+        let mut open = Open::new(exprs);
         let mut found = Vec::new();
-        while let Some(expr) = open.pop() {
-            if !seen[expr.0] {
-                seen[expr.0] = true;
-                found.push(expr);
-                open.extend(self.node(expr).children());
-            }
+        while let Some(expr) = open.take_newest() {
+            found.push(expr);
+            self.node(expr).each_child(|child| open.insert(child));
         }
-        found.sort_unstable();
+        found.reverse();
         found
     }
 
     /// The symbols in an expression.
     #[must_use]
-    pub fn symbols(&self, expr: Expr) -> BTreeSet<S> {
+    pub fn symbols(&self, expr: Expr) -> BTreeSet<S>
+    where
+        S: Ord,
+    {
         self.reachable(&[expr]).into_iter().filter_map(|expr| self.as_symbol(expr)).cloned().collect()
     }
 
@@ -159,13 +157,41 @@ impl<S: Clone + Ord> Pool<S> {
 
     /// Handle of a node that is already canonical.
     pub(crate) fn intern(&mut self, node: Node<S>) -> Expr {
-        if let Some(expr) = self.index.get(&node) {
-            return *expr;
+        Expr(self.nodes.insert(node))
+    }
+}
+
+/// Expressions that are still to be visited, the newest first: one bit for each, so that neither a search nor a sort is needed.
+struct Open {
+    words: Vec<u64>,
+    /// No bit is set in the words from here on.
+    end: usize,
+}
+
+impl Open {
+    fn new(exprs: &[Expr]) -> Self {
+        let end = exprs.iter().max().map_or(0, |newest| newest.0 / 64 + 1);
+        let mut open = Self { words: vec![0; end], end };
+        for expr in exprs {
+            open.insert(*expr);
         }
-        let expr = Expr(self.nodes.len());
-        let node = Arc::new(node);
-        self.nodes.push(Arc::clone(&node));
-        self.index.insert(node, expr);
-        expr
+        open
+    }
+
+    /// Adds an expression that is not newer than the first ones.
+    fn insert(&mut self, expr: Expr) {
+        self.words[expr.0 / 64] |= 1 << (expr.0 % 64);
+    }
+
+    fn take_newest(&mut self) -> Option<Expr> {
+        while self.end > 0 {
+            let word = &mut self.words[self.end - 1];
+            if let Some(bit) = word.checked_ilog2() {
+                *word ^= 1 << bit;
+                return Some(Expr(64 * (self.end - 1) + bit as usize));
+            }
+            self.end -= 1;
+        }
+        None
     }
 }

@@ -11,6 +11,7 @@
 //! AFTER THIS the coefficient is outside (see [`crate::Sum`]) and the factors obey [`Product`].
 
 use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use num_traits::{One, Zero};
 
@@ -34,7 +35,7 @@ enum Reduction {
     Undefined,
 }
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `left·right`. A product of many factors is built by [`Pool::product`], like a sum by [`Pool::sum`].
     pub fn mul(&mut self, left: Expr, right: Expr) -> Expr {
         self.product(&[left, right])
@@ -49,6 +50,7 @@ impl<S: Clone + Ord> Pool<S> {
     pub fn product(&mut self, factors: &[Expr]) -> Expr {
         match factors {
             [only] => *only,
+            _ if factors.contains(&Expr::ZERO) && !factors.contains(&Expr::UNDEFINED) => Expr::ZERO,
             _ => self.powers(factors.iter().map(|factor| (*factor, Rational::one()))),
         }
     }

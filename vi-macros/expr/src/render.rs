@@ -4,6 +4,8 @@
 //! that are not needed, subtraction and division as such, and `sqrt`. At most [`MAX_CHARACTERS`], then `…`: the text of a
 //! shared expression can be exponentially longer than the expression.
 
+use std::hash::Hash;
+
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
@@ -29,7 +31,7 @@ enum Piece {
     Inside(Expr, Binding),
 }
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// The expression as text.
     #[must_use]
     pub fn render(&self, expr: Expr, name: &dyn Fn(&S) -> String) -> String {

@@ -3,22 +3,22 @@
 //! In: an expression and a replacement for some symbols. Out: the expression with all of them replaced at once, in canonical
 //! form again, so that `(q1 - q0)/h` with `q1 = q0 + h*v` is `v`.
 
-use std::collections::BTreeMap;
+use std::hash::Hash;
 
-use crate::{Expr, Node, Pool};
+use crate::{Expr, Node, Pool, Table};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `expr` with each symbol replaced by what the closure gives (asked once per symbol); nothing keeps the symbol.
     /// Replacements are not substituted into again.
     pub fn substitute(&mut self, expr: Expr, map: &mut dyn FnMut(&mut Self, &S) -> Option<Expr>) -> Expr {
         // Only nodes that change.
-        let mut changed: BTreeMap<Expr, Expr> = BTreeMap::new();
+        let mut changed: Table<Expr, Expr> = Table::default();
         for node in self.reachable(&[expr]) {
             let shared = self.shared_node(node);
             let new = if let Node::Symbol(symbol) = &*shared {
                 map(self, symbol).unwrap_or(node)
-            } else if shared.children().iter().any(|child| changed.contains_key(child)) {
-                self.rebuild(&shared, &|child| changed.get(&child).copied().unwrap_or(child))
+            } else if shared.any_child(|child| changed.contains(child)) {
+                self.rebuild(&shared, &|child| changed.get(child).copied().unwrap_or(child))
             } else {
                 node
             };
@@ -26,7 +26,7 @@ impl<S: Clone + Ord> Pool<S> {
                 changed.insert(node, new);
             }
         }
-        changed.get(&expr).copied().unwrap_or(expr)
+        changed.get(expr).copied().unwrap_or(expr)
     }
 
     /// The same operation on other operands.

@@ -4,13 +4,13 @@
 //! flattened, equal terms collected and numbers folded.
 //! AFTER THIS no term is a number or a sum, and a numeric coefficient stands nowhere but in a [`Sum`].
 
-use std::collections::BTreeMap;
+use std::hash::Hash;
 
 use num_traits::{One, Zero};
 
 use crate::{Expr, Node, Pool, Rational, Sum, number};
 
-impl<S: Clone + Ord> Pool<S> {
+impl<S: Clone + Eq + Hash> Pool<S> {
     /// `left + right`. A sum of many terms is built by [`Pool::sum`]: one by one, each addition copies what is there.
     pub fn add(&mut self, left: Expr, right: Expr) -> Expr {
         self.sum(&[left, right])
@@ -45,7 +45,7 @@ impl<S: Clone + Ord> Pool<S> {
     /// `Σ coefficient·term`, undefined if a term is, whatever its coefficient.
     pub(crate) fn combination(&mut self, parts: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
         let mut constant = Rational::zero();
-        let mut terms = BTreeMap::new();
+        let mut terms = Vec::new();
         for (expr, coefficient) in parts {
             if self.is_undefined(expr) {
                 return Expr::UNDEFINED;
@@ -58,13 +58,13 @@ impl<S: Clone + Ord> Pool<S> {
                 Node::Sum(sum) => {
                     constant = number::sum(&constant, &number::product(&coefficient, &sum.constant));
                     for (term, inner) in &sum.terms {
-                        collect(&mut terms, *term, number::product(&coefficient, inner));
+                        terms.push((*term, number::product(&coefficient, inner)));
                     }
                 }
-                _ => collect(&mut terms, expr, coefficient),
+                _ => terms.push((expr, coefficient)),
             }
         }
-        self.intern_sum(constant, terms.into_iter().filter(|(_, coefficient)| !coefficient.is_zero()).collect())
+        self.intern_sum(constant, collected(terms))
     }
 
     fn intern_sum(&mut self, constant: Rational, terms: Vec<(Expr, Rational)>) -> Expr {
@@ -76,12 +76,16 @@ impl<S: Clone + Ord> Pool<S> {
     }
 }
 
-fn collect(terms: &mut BTreeMap<Expr, Rational>, term: Expr, coefficient: Rational) {
-    use std::collections::btree_map::Entry;
-    match terms.entry(term) {
-        Entry::Vacant(entry) => {
-            entry.insert(coefficient);
+/// Equal terms as one, in ascending order.
+fn collected(mut terms: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
+    terms.sort_by_key(|(term, _)| *term);
+    let mut collected: Vec<(Expr, Rational)> = Vec::with_capacity(terms.len());
+    for (term, coefficient) in terms {
+        match collected.last_mut() {
+            Some((last, sum)) if *last == term => *sum = number::sum(sum, &coefficient),
+            _ => collected.push((term, coefficient)),
         }
-        Entry::Occupied(mut entry) => *entry.get_mut() = number::sum(entry.get(), &coefficient),
     }
+    collected.retain(|(_, coefficient)| !coefficient.is_zero());
+    collected
 }

@@ -1849,8 +1849,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     ///
     /// to first order at `v + dv`.
     ///
-    /// 344 operations.
-    #[inline(never)]
+    /// 294 operations.
+    #[inline]
     fn momentum_step(
         &self,
         node: &::vi_core::Node<10, T>,
@@ -1863,143 +1863,144 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     ) -> ::vi_core::SVector<T, 10> {
         let t0 = node.t;
         let t0_low = node.t_low;
-        let p0 = &node.p.data.0[0];
-        let p0_low = &node.p_low.data.0[0];
-        let v = &(*v).data.0[0];
-        let q_mid = &(*place).data.0[0];
+        let [p0_q_0, p0_q_1, p0_q_2, p0_q_3, p0_q_4, p0_q_5, p0_q_6, p0_q_7, p0_q_8,
+        p0_q_9]: [T; 10] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low, p0_q_2_low, p0_q_3_low, p0_q_4_low, p0_q_5_low,
+        p0_q_6_low, p0_q_7_low, p0_q_8_low, p0_q_9_low]: [T; 10] = node.p_low.into();
+        let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot,
+        q_8_dot, q_9_dot]: [T; 10] = (*v).into();
+        let [q_0_mid, q_1_mid, q_2_mid, q_3_mid, q_4_mid, q_5_mid, q_6_mid, q_7_mid,
+        q_8_mid, q_9_mid]: [T; 10] = (*place).into();
         let real = T::real;
         let s1 = h * real(0.5);
         let t_mid = t0 + (s1 + t0_low);
-        let s2 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
-        let s3 = self.k * h;
-        let s4 = s3 * real(0.5);
-        let s5 = self.k * real(3.0);
-        let s6 = h * h;
-        let s7 = self.k * s6;
-        let s8 = s7 * real(0.25);
-        let s9 = s6 * real(0.25);
-        let s10 = s6 * real(0.75);
-        let s11 = s7 * real(0.75);
-        let s12 = s7 * real(0.5);
-        let s13 = s6 * real(0.5);
-        let s14 = s6 * real(1.5);
-        let s15 = s7 * real(1.5);
-        let s16: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
-        let s17: [T; 9] = ::core::array::from_fn(|i| {
-            (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
-        });
-        let s18: [T; 9] = ::core::array::from_fn(|i| s17[i] * (q_mid[i + 1] - q_mid[i]));
-        let s19: [T; 10] = ::core::array::from_fn(|i| s2 * s16[i].0);
-        let s20: [T; 8] = ::core::array::from_fn(|i| {
-            self.k * (s18[i] - s18[i + 1]) + s19[i + 1]
-        });
-        let s21: [T; 9] = ::core::array::from_fn(|i| s3 * s16[i].1);
-        let s22: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
-        let s23: [T; 9] = ::core::array::from_fn(|i| s4 * s16[i].1);
-        let s24: [T; 8] = ::core::array::from_fn(|i| {
-            s22[i + 1] - (p0_low[i + 1] - s1 * s20[i] + s23[i + 1])
-        });
-        let s25: [T; 10] = ::core::array::from_fn(|i| s2 * s16[i].1);
-        let s26: [T; 8] = ::core::array::from_fn(|i| {
-            s5 * (s17[i] + s17[i + 1]) + s25[i + 1]
-        });
-        let s27: [T; 9] = ::core::array::from_fn(|i| s8 * s16[i].0);
-        let s28: [T; 8] = ::core::array::from_fn(|i| {
-            self.m + (s27[i + 1] + s9 * s26[i])
-        });
-        let s29: [T; 8] = ::core::array::from_fn(|i| s21[i + 1] - h * s20[i]);
-        let s30: [T; 9] = ::core::array::from_fn(|i| s12 * s16[i].0);
-        let s31: [T; 8] = ::core::array::from_fn(|i| -(s13 * s26[i]) - s30[i + 1]);
-        let s32 = self.k * s18[0] - s19[0];
-        let s33 = self.k * s18[8] + s19[9];
-        let s34 = self.k * s17[0];
-        let s35 = s34 * real(3.0) + s25[0];
-        let s36 = self.k * s17[8];
-        let s37 = s36 * real(3.0) + s25[9];
-        let s38 = -(s34 * s10);
-        let s39 = -(s11 * s17[1]);
-        let s40 = -(s11 * s17[2]);
-        let s41 = -(s11 * s17[3]);
-        let s42 = -(s11 * s17[4]);
-        let s43 = -(s11 * s17[5]);
-        let s44 = -(s11 * s17[6]);
-        let s45 = -(s11 * s17[7]);
-        let s46 = -(s36 * s10);
-        let s47 = s34 * s14;
-        let s48 = s15 * s17[1];
-        let s49 = s15 * s17[2];
-        let s50 = s15 * s17[3];
-        let s51 = s15 * s17[4];
-        let s52 = s15 * s17[5];
-        let s53 = s15 * s17[6];
-        let s54 = s15 * s17[7];
-        let s55 = s36 * s14;
-        let change: [T; 10] = solve(
-                &::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        s22[0] - (p0_low[0] + s1 * s32 + s23[0]),
-                        s24[0],
-                        s24[1],
-                        s24[2],
-                        s24[3],
-                        s24[4],
-                        s24[5],
-                        s24[6],
-                        s24[7],
-                        s22[9] - (p0_low[9] - s1 * s33),
-                    ]),
-                    jacobian: ::vi_core::linear::Tridiagonal {
-                        lower: [
-                            T::real(0.0),
-                            s38,
-                            s39,
-                            s40,
-                            s41,
-                            s42,
-                            s43,
-                            s44,
-                            s45,
-                            s46,
-                        ],
-                        diagonal: [
-                            self.m + (s27[0] + s9 * s35),
-                            s28[0],
-                            s28[1],
-                            s28[2],
-                            s28[3],
-                            s28[4],
-                            s28[5],
-                            s28[6],
-                            s28[7],
-                            self.m + s9 * s37,
-                        ],
-                        upper: [
-                            s38,
-                            s39,
-                            s40,
-                            s41,
-                            s42,
-                            s43,
-                            s44,
-                            s45,
-                            s46,
-                            T::real(0.0),
-                        ],
-                    },
-                },
-            )
-            .into();
+        let s2 = self.m * real(2.0);
+        let s3 = q_1_mid - q_0_mid;
+        let s4 = q_2_mid - q_1_mid;
+        let s5 = q_3_mid - q_2_mid;
+        let s6 = q_4_mid - q_3_mid;
+        let s7 = q_5_mid - q_4_mid;
+        let s8 = q_6_mid - q_5_mid;
+        let s9 = q_7_mid - q_6_mid;
+        let s10 = q_8_mid - q_7_mid;
+        let s11 = q_9_mid - q_8_mid;
+        let [(sin12, _), (sin13, cos13), (sin14, cos14), (sin15, cos15)] = T::sin_cos_each([
+            t_mid,
+            q_0_mid,
+            q_1_mid,
+            q_2_mid,
+        ]);
+        let s16 = sin12 * real(0.3333333333333333) + real(1.0);
+        let [(sin17, cos17), (sin18, cos18), (sin19, cos19), (sin20, cos20)] = T::sin_cos_each([
+            q_3_mid,
+            q_4_mid,
+            q_5_mid,
+            q_6_mid,
+        ]);
+        let [(sin21, cos21), (sin22, cos22), (sin23, cos23)] = T::sin_cos_each([
+            q_7_mid,
+            q_8_mid,
+            q_9_mid,
+        ]);
+        let s24 = s3 * s3;
+        let s25 = s24 * s3;
+        let s26 = self.k * s25 - s16 * sin13;
+        let s27 = s4 * s4;
+        let s28 = s27 * s4;
+        let s29 = self.k * (s25 - s28) + s16 * sin14;
+        let s30 = s5 * s5;
+        let s31 = s30 * s5;
+        let s32 = self.k * (s28 - s31) + s16 * sin15;
+        let s33 = s6 * s6;
+        let s34 = s33 * s6;
+        let s35 = self.k * (s31 - s34) + s16 * sin17;
+        let s36 = s7 * s7;
+        let s37 = s36 * s7;
+        let s38 = self.k * (s34 - s37) + s16 * sin18;
+        let s39 = s8 * s8;
+        let s40 = s39 * s8;
+        let s41 = self.k * (s37 - s40) + s16 * sin19;
+        let s42 = s9 * s9;
+        let s43 = s42 * s9;
+        let s44 = self.k * (s40 - s43) + s16 * sin20;
+        let s45 = s10 * s10;
+        let s46 = s45 * s10;
+        let s47 = self.k * (s43 - s46) + s16 * sin21;
+        let s48 = s11 * s11;
+        let s49 = s48 * s11;
+        let s50 = self.k * (s46 - s49) + s16 * sin22;
+        let s51 = self.k * s49 + s16 * sin23;
+        let s52 = self.k * h;
+        let s53 = s52 * real(0.5);
+        let s54 = self.k * s24;
+        let s55 = self.k * real(3.0);
+        let s56 = self.k * s48;
+        let s57 = h * h;
+        let s58 = self.k * s57;
+        let s59 = s58 * real(0.25);
+        let s60 = s57 * real(0.25);
+        let s61 = s57 * real(0.75);
+        let s62 = -(s54 * s61);
+        let s63 = s58 * real(0.75);
+        let s64 = -(s63 * s27);
+        let s65 = -(s63 * s30);
+        let s66 = -(s63 * s33);
+        let s67 = -(s63 * s36);
+        let s68 = -(s63 * s39);
+        let s69 = -(s63 * s42);
+        let s70 = -(s63 * s45);
+        let s71 = -(s56 * s61);
+        let momentum = ::vi_core::MomentumEquation {
+            residual: ::vi_core::SVector::from([
+                self.m * q_0_dot - p0_q_0 - (p0_q_0_low + s1 * s26 + s53 * cos13),
+                self.m * q_1_dot - p0_q_1 - (p0_q_1_low - s1 * s29 + s53 * cos14),
+                self.m * q_2_dot - p0_q_2 - (p0_q_2_low - s1 * s32 + s53 * cos15),
+                self.m * q_3_dot - p0_q_3 - (p0_q_3_low - s1 * s35 + s53 * cos17),
+                self.m * q_4_dot - p0_q_4 - (p0_q_4_low - s1 * s38 + s53 * cos18),
+                self.m * q_5_dot - p0_q_5 - (p0_q_5_low - s1 * s41 + s53 * cos19),
+                self.m * q_6_dot - p0_q_6 - (p0_q_6_low - s1 * s44 + s53 * cos20),
+                self.m * q_7_dot - p0_q_7 - (p0_q_7_low - s1 * s47 + s53 * cos21),
+                self.m * q_8_dot - p0_q_8 - (p0_q_8_low - s1 * s50 + s53 * cos22),
+                self.m * q_9_dot - p0_q_9 - (p0_q_9_low - s1 * s51),
+            ]),
+            jacobian: ::vi_core::linear::Tridiagonal {
+                lower: [T::real(0.0), s62, s64, s65, s66, s67, s68, s69, s70, s71],
+                diagonal: [
+                    self.m + (s59 * sin13 + s60 * (s54 * real(3.0) + s16 * cos13)),
+                    self.m + (s59 * sin14 + s60 * (s55 * (s24 + s27) + s16 * cos14)),
+                    self.m + (s59 * sin15 + s60 * (s55 * (s27 + s30) + s16 * cos15)),
+                    self.m + (s59 * sin17 + s60 * (s55 * (s30 + s33) + s16 * cos17)),
+                    self.m + (s59 * sin18 + s60 * (s55 * (s33 + s36) + s16 * cos18)),
+                    self.m + (s59 * sin19 + s60 * (s55 * (s36 + s39) + s16 * cos19)),
+                    self.m + (s59 * sin20 + s60 * (s55 * (s39 + s42) + s16 * cos20)),
+                    self.m + (s59 * sin21 + s60 * (s55 * (s42 + s45) + s16 * cos21)),
+                    self.m + (s59 * sin22 + s60 * (s55 * (s45 + s48) + s16 * cos22)),
+                    self.m + s60 * (s56 * real(3.0) + s16 * cos23),
+                ],
+                upper: [s62, s64, s65, s66, s67, s68, s69, s70, s71, T::real(0.0)],
+            },
+        };
+        let change: [T; 10] = solve(&momentum).into();
         ::vi_core::SVector::from([
-            h * s32 + s21[0] + ((-(s13 * s35) - s30[0]) * change[0] + (s47) * change[1]),
-            s29[0] + ((s47) * change[0] + (s31[0]) * change[1] + (s48) * change[2]),
-            s29[1] + ((s48) * change[1] + (s31[1]) * change[2] + (s49) * change[3]),
-            s29[2] + ((s49) * change[2] + (s31[2]) * change[3] + (s50) * change[4]),
-            s29[3] + ((s50) * change[3] + (s31[3]) * change[4] + (s51) * change[5]),
-            s29[4] + ((s51) * change[4] + (s31[4]) * change[5] + (s52) * change[6]),
-            s29[5] + ((s52) * change[5] + (s31[5]) * change[6] + (s53) * change[7]),
-            s29[6] + ((s53) * change[6] + (s31[6]) * change[7] + (s54) * change[8]),
-            s29[7] + ((s54) * change[7] + (s31[7]) * change[8] + (s55) * change[9]),
-            -(h * s33) + ((s55) * change[8] + (-(s13 * s37)) * change[9]),
+            h * s26 + s52 * cos13
+                + ((s2) * change[0] + (real(2.0)) * momentum.residual[0usize]),
+            s52 * cos14 - h * s29
+                + ((s2) * change[1] + (real(2.0)) * momentum.residual[1usize]),
+            s52 * cos15 - h * s32
+                + ((s2) * change[2] + (real(2.0)) * momentum.residual[2usize]),
+            s52 * cos17 - h * s35
+                + ((s2) * change[3] + (real(2.0)) * momentum.residual[3usize]),
+            s52 * cos18 - h * s38
+                + ((s2) * change[4] + (real(2.0)) * momentum.residual[4usize]),
+            s52 * cos19 - h * s41
+                + ((s2) * change[5] + (real(2.0)) * momentum.residual[5usize]),
+            s52 * cos20 - h * s44
+                + ((s2) * change[6] + (real(2.0)) * momentum.residual[6usize]),
+            s52 * cos21 - h * s47
+                + ((s2) * change[7] + (real(2.0)) * momentum.residual[7usize]),
+            s52 * cos22 - h * s50
+                + ((s2) * change[8] + (real(2.0)) * momentum.residual[8usize]),
+            -(h * s51) + ((s2) * change[9] + (real(2.0)) * momentum.residual[9usize]),
         ])
     }
 
@@ -2025,9 +2026,9 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     ///
     /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
     ///
-    /// at `(v + dv, h + dh)`.
+    /// to first order at `(v + dv, h + dh)`.
     ///
-    /// 702 operations.
+    /// 849 operations.
     #[inline(never)]
     fn extended_step(
         &self,
@@ -2050,193 +2051,212 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
         let real = T::real;
         let s1 = h * real(0.5);
         let t_mid = t0 + (s1 + t0_low);
-        let (sin2, cos2) = t_mid.sin_cos();
-        let s3 = sin2 * real(0.3333333333333333) + real(1.0);
-        let s4 = self.k * real(3.0);
-        let s5 = h * h;
-        let s6 = self.k * s5;
-        let s7 = s6 * real(0.25);
-        let s8 = s5 * real(0.25);
-        let s9 = s5 * real(0.75);
+        let s2 = self.m * real(2.0);
+        let (sin3, cos3) = t_mid.sin_cos();
+        let s4 = sin3 * real(0.3333333333333333) + real(1.0);
+        let s5 = self.k * real(3.0);
+        let s6 = h * h;
+        let s7 = self.k * s6;
+        let s8 = s7 * real(0.25);
+        let s9 = s6 * real(0.25);
         let s10 = s6 * real(0.75);
-        let s11 = self.k * real(0.75);
-        let s12 = self.k * real(0.25);
-        let s13 = self.k * real(1.5);
-        let s14 = s13 * v[2];
-        let s15 = s13 * v[4];
-        let s16 = s13 * v[6];
-        let s17: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
-        let s18: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
-        let s19: [T; 9] = ::core::array::from_fn(|i| {
+        let s11 = s7 * real(0.75);
+        let s12 = self.k * real(0.75);
+        let s13 = self.k * real(0.25);
+        let s14 = self.k * real(1.5);
+        let s15 = s14 * v[2];
+        let s16 = s14 * v[4];
+        let s17 = s14 * v[6];
+        let s18 = cos3 * real(0.16666666666666666);
+        let s19 = self.k * real(0.5);
+        let s20: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
+        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
+        let s22: [T; 9] = ::core::array::from_fn(|i| {
             (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
         });
-        let s20: [T; 9] = ::core::array::from_fn(|i| s19[i] * s19[i]);
-        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
-        let s22: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
-        let s23: [T; 9] = ::core::array::from_fn(|i| s19[i] * (q_mid[i + 1] - q_mid[i]));
-        let s24: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].0);
-        let s25: [T; 8] = ::core::array::from_fn(|i| self.k * (s23[i] - s23[i + 1]));
-        let s26: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
-        let s27: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * s1);
-        let s28: [T; 8] = ::core::array::from_fn(|i| {
-            s26[i + 1] - (p0_low[i + 1] - s1 * (s25[i] + s24[i + 1]) + s27[i + 1])
-        });
-        let s29: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s25[i] + s24[i + 1]));
-        let s30: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].1);
-        let s31: [T; 8] = ::core::array::from_fn(|i| {
-            s4 * (s19[i] + s19[i + 1]) + s30[i + 1]
-        });
-        let s32: [T; 9] = ::core::array::from_fn(|i| s7 * s22[i].0);
+        let s23: [T; 9] = ::core::array::from_fn(|i| s22[i] * s22[i]);
+        let s24: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
+        let s25: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
+        let s26: [T; 9] = ::core::array::from_fn(|i| s22[i] * (q_mid[i + 1] - q_mid[i]));
+        let s27: [T; 10] = ::core::array::from_fn(|i| s4 * s25[i].0);
+        let s28: [T; 8] = ::core::array::from_fn(|i| self.k * (s26[i] - s26[i + 1]));
+        let s29: [T; 9] = ::core::array::from_fn(|i| self.k * s25[i].1 * h);
+        let s30: [T; 9] = ::core::array::from_fn(|i| self.k * v[i] * s25[i].1);
+        let s31: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
+        let s32: [T; 9] = ::core::array::from_fn(|i| self.k * s25[i].1 * s1);
         let s33: [T; 8] = ::core::array::from_fn(|i| {
-            self.m + (s32[i + 1] + s8 * s31[i])
+            s31[i + 1] - (p0_low[i + 1] - s1 * (s28[i] + s27[i + 1]) + s32[i + 1])
         });
-        let s34: [T; 10] = ::core::array::from_fn(|i| s24[i] * real(0.5));
-        let s35: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * real(0.5));
-        let s36: [T; 10] = ::core::array::from_fn(|i| {
-            cos2 * s22[i].0 * real(0.08333333333333333)
+        let s34: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s28[i] + s27[i + 1]));
+        let s35: [T; 10] = ::core::array::from_fn(|i| s4 * s25[i].1);
+        let s36: [T; 8] = ::core::array::from_fn(|i| {
+            s5 * (s22[i] + s22[i + 1]) + s35[i + 1]
         });
-        let s37: [T; 9] = ::core::array::from_fn(|i| s11 * v[i + 1] * s19[i]);
-        let s38: [T; 9] = ::core::array::from_fn(|i| s36[i] + s12 * v[i] * s22[i].0);
-        let s39: [T; 8] = ::core::array::from_fn(|i| {
-            s25[i] * real(0.5) + s34[i + 1] - s35[i + 1]
+        let s37: [T; 9] = ::core::array::from_fn(|i| s8 * s25[i].0);
+        let s38: [T; 8] = ::core::array::from_fn(|i| {
+            self.m + (s37[i + 1] + s9 * s36[i])
         });
-        let s40: [T; 9] = ::core::array::from_fn(|i| s11 * v[i] * s19[i]);
-        let s41: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s31[i] * real(0.25));
-        let s42: [T; 8] = ::core::array::from_fn(|i| {
-            s39[i] + (s38[i + 1] - s40[i] + s41[i] - s37[i + 1]) * h
+        let s39: [T; 10] = ::core::array::from_fn(|i| s27[i] * real(0.5));
+        let s40: [T; 9] = ::core::array::from_fn(|i| self.k * s25[i].1 * real(0.5));
+        let s41: [T; 10] = ::core::array::from_fn(|i| cos3 * s25[i].0);
+        let s42: [T; 10] = ::core::array::from_fn(|i| {
+            s41[i] * real(0.08333333333333333)
         });
-        let s43: [T; 8] = ::core::array::from_fn(|i| {
-            s39[i] + (s40[i] - s41[i] + s37[i + 1] - s36[i + 1]) * h
+        let s43: [T; 9] = ::core::array::from_fn(|i| s12 * v[i + 1] * s22[i]);
+        let s44: [T; 9] = ::core::array::from_fn(|i| s42[i] + s13 * v[i] * s25[i].0);
+        let s45: [T; 8] = ::core::array::from_fn(|i| {
+            s28[i] * real(0.5) + s39[i + 1] - s40[i + 1]
         });
-        let s44: [T; 10] = ::core::array::from_fn(|i| v[i] * s22[i].0);
-        let s45 = (1..10).fold(s22[0].1, |sum, i| sum + s22[i].1);
-        let s46 = self.k * s23[0];
-        let s47 = s46 - s24[0];
-        let s48 = self.k * s23[8];
-        let s49 = s48 + s24[9];
-        let s50 = (1..10).fold(s18[0], |sum, i| sum + s18[i])
-            + self.k * (1..9).fold(s20[0], |sum, i| sum + s20[i]) * real(0.25) - energy0
-            - self.m * (1..10).fold(s21[0], |sum, i| sum + s21[i]) * real(0.5)
-            - s3 * s45;
-        let s51 = self.k * s19[0];
-        let s52 = s51 * real(3.0) + s30[0];
-        let s53 = self.k * s19[8];
-        let s54 = s53 * real(3.0) + s30[9];
-        let s55 = -(s51 * s9);
-        let s56 = -(s10 * s19[1]);
-        let s57 = -(s10 * s19[2]);
-        let s58 = -(s10 * s19[3]);
-        let s59 = -(s10 * s19[4]);
-        let s60 = -(s10 * s19[5]);
-        let s61 = -(s10 * s19[6]);
-        let s62 = -(s10 * s19[7]);
-        let s63 = -(s53 * s9);
-        let s64 = s34[0] - s46 * real(0.5) - s35[0];
-        let s65 = v[0] * s52 * real(0.25);
-        let s66 = s48 * real(0.5) + s34[9];
-        let s67 = v[9] * s54 * real(0.25);
-        let s68 = -(s21[0] * s52) - s21[2] * s31[1] - s21[4] * s31[3] - s21[6] * s31[5]
-            - s21[9] * s54 - sin2 * s45 * real(0.3333333333333333);
-        let s69 = s68 * real(0.25) + (s13 * v[9] * s19[8] - s41[7]) * v[8]
-            + (s16 * s19[6] - s41[6] + s13 * v[8] * s19[7]) * v[7];
-        let s70 = s69 + (s15 * s19[4] - s41[4] + s16 * s19[5]) * v[5]
-            + (s14 * s19[2] - s41[2] + s15 * s19[3]) * v[3];
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        s26[0] - (p0_low[0] + s1 * s47 + s27[0]),
-                        s28[0],
-                        s28[1],
-                        s28[2],
-                        s28[3],
-                        s28[4],
-                        s28[5],
-                        s28[6],
-                        s28[7],
-                        s26[9] - (p0_low[9] - s1 * s49),
-                    ]),
-                    jacobian: ::vi_core::linear::Tridiagonal {
-                        lower: [
-                            T::real(0.0),
-                            s55,
-                            s56,
-                            s57,
-                            s58,
-                            s59,
-                            s60,
-                            s61,
-                            s62,
-                            s63,
-                        ],
-                        diagonal: [
-                            self.m + (s32[0] + s8 * s52),
-                            s33[0],
-                            s33[1],
-                            s33[2],
-                            s33[3],
-                            s33[4],
-                            s33[5],
-                            s33[6],
-                            s33[7],
-                            self.m + s8 * s54,
-                        ],
-                        upper: [
-                            s55,
-                            s56,
-                            s57,
-                            s58,
-                            s59,
-                            s60,
-                            s61,
-                            s62,
-                            s63,
-                            T::real(0.0),
-                        ],
-                    },
+        let s46: [T; 9] = ::core::array::from_fn(|i| s12 * v[i] * s22[i]);
+        let s47: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s36[i] * real(0.25));
+        let s48: [T; 8] = ::core::array::from_fn(|i| {
+            s45[i] + (s44[i + 1] - s46[i] + s47[i] - s43[i + 1]) * h
+        });
+        let s49: [T; 8] = ::core::array::from_fn(|i| {
+            s45[i] + (s46[i] - s47[i] + s43[i + 1] - s42[i + 1]) * h
+        });
+        let s50: [T; 10] = ::core::array::from_fn(|i| v[i] * s25[i].0);
+        let s51: [T; 8] = ::core::array::from_fn(|i| {
+            s29[i + 1] - h * (s28[i] + s27[i + 1])
+        });
+        let s52: [T; 9] = ::core::array::from_fn(|i| {
+            (self.k * s25[i].1 + (s18 - self.k * v[i] * real(0.5)) * s25[i].0 * h) * h
+        });
+        let s53: [T; 9] = ::core::array::from_fn(|i| s19 * s24[i] * s25[i].0);
+        let s54 = (1..10).fold(s25[0].1, |sum, i| sum + s25[i].1);
+        let s55 = self.k * s26[0];
+        let s56 = s55 - s27[0];
+        let s57 = self.k * s26[8];
+        let s58 = s57 + s27[9];
+        let s59 = (1..10).fold(s21[0], |sum, i| sum + s21[i])
+            + self.k * (1..9).fold(s23[0], |sum, i| sum + s23[i]) * real(0.25) - energy0
+            - self.m * (1..10).fold(s24[0], |sum, i| sum + s24[i]) * real(0.5)
+            - s4 * s54;
+        let s60 = s54 * cos3 * real(0.3333333333333333);
+        let s61 = self.k * s22[0];
+        let s62 = s61 * real(3.0) + s35[0];
+        let s63 = self.k * s22[8];
+        let s64 = s63 * real(3.0) + s35[9];
+        let s65 = -(s61 * s10);
+        let s66 = -(s11 * s22[1]);
+        let s67 = -(s11 * s22[2]);
+        let s68 = -(s11 * s22[3]);
+        let s69 = -(s11 * s22[4]);
+        let s70 = -(s11 * s22[5]);
+        let s71 = -(s11 * s22[6]);
+        let s72 = -(s11 * s22[7]);
+        let s73 = -(s63 * s10);
+        let s74 = s39[0] - s55 * real(0.5) - s40[0];
+        let s75 = v[0] * s62 * real(0.25);
+        let s76 = s57 * real(0.5) + s39[9];
+        let s77 = v[9] * s64 * real(0.25);
+        let s78 = sin3 * s54;
+        let s79 = (1..10).fold(s50[0], |sum, i| sum + s50[i]) * cos3
+            * real(0.16666666666666666);
+        let s80 = -(s24[0] * s62) - s24[2] * s36[1] - s24[4] * s36[3] - s24[6] * s36[5]
+            - s24[9] * s64 - s78 * real(0.3333333333333333);
+        let s81 = s80 * real(0.25) + (s14 * v[9] * s22[8] - s47[7]) * v[8]
+            + (s17 * s22[6] - s47[6] + s14 * v[8] * s22[7]) * v[7];
+        let s82 = s81 + (s16 * s22[4] - s47[4] + s17 * s22[5]) * v[5]
+            + (s15 * s22[2] - s47[2] + s16 * s22[3]) * v[3];
+        let s83 = (1..9).fold(s30[0], |sum, i| sum + s30[i]) - s60;
+        let both = ::vi_core::ExtendedSystem {
+            momentum: ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([
+                    s31[0] - (p0_low[0] + s1 * s56 + s32[0]),
+                    s33[0],
+                    s33[1],
+                    s33[2],
+                    s33[3],
+                    s33[4],
+                    s33[5],
+                    s33[6],
+                    s33[7],
+                    s31[9] - (p0_low[9] - s1 * s58),
+                ]),
+                jacobian: ::vi_core::linear::Tridiagonal {
+                    lower: [T::real(0.0), s65, s66, s67, s68, s69, s70, s71, s72, s73],
+                    diagonal: [
+                        self.m + (s37[0] + s9 * s62),
+                        s38[0],
+                        s38[1],
+                        s38[2],
+                        s38[3],
+                        s38[4],
+                        s38[5],
+                        s38[6],
+                        s38[7],
+                        self.m + s9 * s64,
+                    ],
+                    upper: [s65, s66, s67, s68, s69, s70, s71, s72, s73, T::real(0.0)],
                 },
-                residual_dh: ::vi_core::SVector::from([
-                    s64 + (s38[0] + s65 - s37[0]) * h,
-                    s42[0],
-                    s42[1],
-                    s42[2],
-                    s42[3],
-                    s42[4],
-                    s42[5],
-                    s42[6],
-                    s42[7],
-                    s66 + (s36[9] - s40[8] + s67) * h,
-                ]),
-                energy_residual: s50
-                    + ((1..10).fold(s17[0], |sum, i| sum + s17[i]) - energy0_low
-                        + s1
-                            * ((0..8)
-                                .fold(
-                                    s45 * cos2 * real(0.3333333333333333) + v[0] * s47,
-                                    |sum, i| sum - s29[i],
-                                ) - v[9] * s49)),
-                energy_dv: ::vi_core::SVector::from([
-                    s64 + (s37[0] - s65 - s36[0]) * h,
-                    s43[0],
-                    s43[1],
-                    s43[2],
-                    s43[3],
-                    s43[4],
-                    s43[5],
-                    s43[6],
-                    s43[7],
-                    s66 + (s40[8] - s67 - s36[9]) * h,
-                ]),
-                energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
-                    - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
-                        * real(0.16666666666666666),
             },
-        );
-        self.increment(
-            node,
-            h + change_h,
-            &(::vi_core::SVector::<T, 10>::from(*v) + change),
-        )
+            residual_dh: ::vi_core::SVector::from([
+                s74 + (s44[0] + s75 - s43[0]) * h,
+                s48[0],
+                s48[1],
+                s48[2],
+                s48[3],
+                s48[4],
+                s48[5],
+                s48[6],
+                s48[7],
+                s76 + (s42[9] - s46[8] + s77) * h,
+            ]),
+            energy_residual: s59
+                + ((1..10).fold(s20[0], |sum, i| sum + s20[i]) - energy0_low
+                    + s1
+                        * ((0..8).fold(s60 + v[0] * s56, |sum, i| sum - s34[i])
+                            - v[9] * s58)),
+            energy_dv: ::vi_core::SVector::from([
+                s74 + (s43[0] - s75 - s42[0]) * h,
+                s49[0],
+                s49[1],
+                s49[2],
+                s49[3],
+                s49[4],
+                s49[5],
+                s49[6],
+                s49[7],
+                s76 + (s46[8] - s77 - s42[9]) * h,
+            ]),
+            energy_dh: s82 + (s14 * v[0] * s22[0] - s47[0] + s15 * s22[1]) * v[1] - s79,
+        };
+        let (change, change_h) = solve(&both);
+        let change: [T; 10] = change.into();
+        ::vi_core::Increment {
+            momentum: ::vi_core::SVector::from([
+                h * s56 + s29[0]
+                    + ((s2) * change[0] + (real(2.0)) * both.momentum.residual[0usize]),
+                s51[0]
+                    + ((s2) * change[1] + (real(2.0)) * both.momentum.residual[1usize]),
+                s51[1]
+                    + ((s2) * change[2] + (real(2.0)) * both.momentum.residual[2usize]),
+                s51[2]
+                    + ((s2) * change[3] + (real(2.0)) * both.momentum.residual[3usize]),
+                s51[3]
+                    + ((s2) * change[4] + (real(2.0)) * both.momentum.residual[4usize]),
+                s51[4]
+                    + ((s2) * change[5] + (real(2.0)) * both.momentum.residual[5usize]),
+                s51[5]
+                    + ((s2) * change[6] + (real(2.0)) * both.momentum.residual[6usize]),
+                s51[6]
+                    + ((s2) * change[7] + (real(2.0)) * both.momentum.residual[7usize]),
+                s51[7]
+                    + ((s2) * change[8] + (real(2.0)) * both.momentum.residual[8usize]),
+                -(h * s58)
+                    + ((s2) * change[9] + (real(2.0)) * both.momentum.residual[9usize]),
+            ]),
+            energy: s83 * h
+                + ((s52[0]) * change[0] + (s52[1]) * change[1] + (s52[2]) * change[2]
+                    + (s52[3]) * change[3] + (s52[4]) * change[4] + (s52[5]) * change[5]
+                    + (s52[6]) * change[6] + (s52[7]) * change[7] + (s52[8]) * change[8]
+                    + (s41[9] * (s6 * real(0.16666666666666666))) * change[9]
+                    + (s83
+                        + ((0..9)
+                            .fold(s78 * real(0.16666666666666666), |sum, i| sum - s53[i])
+                            + s79) * h) * change_h),
+        }
     }
 }
 

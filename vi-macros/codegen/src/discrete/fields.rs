@@ -13,12 +13,15 @@
 use super::Point;
 use crate::model::Model;
 use crate::symbol::{Field, Quantity, Symbol, Variable};
-use std::collections::{BTreeMap, BTreeSet};
-use vi_expr::{Expr, Pool};
+use std::collections::BTreeSet;
+use vi_expr::{Distinct, Expr, Pool};
 
 /// Partial derivatives of L and f in `(t, q, v)`.
 pub struct Fields {
-    definitions: BTreeMap<(Quantity, Vec<Variable>), Definition>,
+    /// What is defined: the quantity, and by what it is differentiated, in ascending order.
+    known: Distinct<(Quantity, Vec<Variable>)>,
+    definitions: Vec<Definition>,
+    zero: Definition,
 }
 
 /// A partial derivative, and what it depends on but parameters.
@@ -44,9 +47,13 @@ impl Fields {
     /// L and f themselves.
     pub(super) fn new(pool: &Pool<Symbol>, model: &Model) -> Self {
         let forces = model.forces.iter().enumerate().map(|(index, force)| (Quantity::Force(index), *force));
-        let quantities = forces.chain([(Quantity::Lagrangian, model.lagrangian)]);
-        let define = |(quantity, expr)| ((quantity, vec![]), Definition::new(pool, expr));
-        Self { definitions: quantities.map(define).collect() }
+        let zero = Definition::new(pool, pool.zero());
+        let mut fields = Self { known: Distinct::default(), definitions: Vec::new(), zero };
+        for (quantity, expr) in forces.chain([(Quantity::Lagrangian, model.lagrangian)]) {
+            fields.known.insert((quantity, Vec::new()));
+            fields.definitions.push(Definition::new(pool, expr));
+        }
+        fields
     }
 
     /// A partial derivative of L or f in `(t, q, v)`: `derivatives` in any order.
@@ -60,33 +67,35 @@ impl Fields {
         self.defined(pool, quantity, &derivatives).expr
     }
 
-    /// A partial derivative, kept from the first time on: `derivatives` ascend.
+    /// A partial derivative, kept from the first time on unless it is trivially zero: `derivatives` ascend.
     fn defined(&mut self, pool: &mut Pool<Symbol>, quantity: Quantity, derivatives: &[Variable]) -> &Definition {
         let key = (quantity, derivatives.to_vec());
-        if !self.definitions.contains_key(&key) {
-            // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
-            let derived = match derivatives.split_last() {
-                Some((last, basic)) => {
-                    let basic = self.defined(pool, quantity, basic);
-                    if basic.variables.contains(last) {
-                        pool.derivative(basic.expr, &mut |pool, symbol| {
-                            if *symbol == Symbol::Continuous(*last) { pool.one() } else { pool.zero() }
-                        })
-                    } else {
-                        pool.zero()
-                    }
-                }
-                None => pool.zero(),
-            };
-            self.definitions.insert(key.clone(), Definition::new(pool, derived));
+        if let Some(place) = self.known.find(&key) {
+            return &self.definitions[place];
         }
-        &self.definitions[&key]
+        // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
+        let Some((last, basic)) = derivatives.split_last() else { return &self.zero };
+        let basic = self.defined(pool, quantity, basic);
+        if !basic.variables.contains(last) {
+            return &self.zero;
+        }
+        let derived = pool.derivative(basic.expr, &mut |pool, symbol| {
+            if *symbol == Symbol::Continuous(*last) { pool.one() } else { pool.zero() }
+        });
+        let place = self.known.insert(key);
+        self.definitions.push(Definition::new(pool, derived));
+        &self.definitions[place]
+    }
+
+    fn known(&self, field: &Field) -> Option<&Definition> {
+        let place = self.known.find(&(field.quantity, field.derivatives.clone()))?;
+        self.definitions.get(place)
     }
 
     /// The definition of a field in `(t, q, v)`.
     #[must_use]
     pub fn definition(&self, field: &Field) -> Option<Expr> {
-        self.definitions.get(&(field.quantity, field.derivatives.clone())).map(|definition| definition.expr)
+        self.known(field).map(|definition| definition.expr)
     }
 
     /// A partial derivative at a point: a field, or its value in place where that depends on parameters only.
@@ -97,9 +106,9 @@ impl Fields {
 
     /// Whether a symbol changes with the points; others change by themselves only.
     pub(super) fn moves(&self, symbol: &Symbol, changes: &Changes) -> bool {
-        let Symbol::Field(Field { quantity, derivatives, point }) = symbol else { return false };
-        let definition = self.definitions.get(&(*quantity, derivatives.clone()));
-        definition.is_some_and(|of| changes[*point].iter().any(|(variable, _)| of.variables.contains(variable)))
+        let Symbol::Field(field) = symbol else { return false };
+        let moves = |of: &Definition| changes[field.point].iter().any(|(variable, _)| of.variables.contains(variable));
+        self.known(field).is_some_and(moves)
     }
 
     /// The fields of an expression that depend on parameters only, put in place.

@@ -17,7 +17,7 @@ use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet};
-use vi_expr::Function as Elementary;
+use vi_expr::{Function as Elementary, Table};
 
 /// A printed body.
 pub(super) struct Body {
@@ -57,10 +57,10 @@ struct Printer<'a> {
     model: &'a Model,
     function: &'a Function,
     names: Names<'a>,
-    uses: BTreeMap<OperationId, usize>,
-    results: BTreeSet<OperationId>,
-    written: BTreeMap<OperationId, Formula>,
-    named: BTreeMap<OperationId, Ident>,
+    uses: Table<OperationId, usize>,
+    results: Table<OperationId, ()>,
+    written: Table<OperationId, Formula>,
+    named: Table<OperationId, Ident>,
     inputs: BTreeMap<Symbol, Ident>,
     vectors: BTreeMap<Symbol, Ident>,
     statements: Vec<Statement>,
@@ -93,15 +93,15 @@ pub(super) fn body(model: &Model, function: &Function, points: usize, place: Pla
 }
 
 impl<'a> Printer<'a> {
-    fn new(model: &'a Model, function: &'a Function, names: Names<'a>, uses: BTreeMap<OperationId, usize>) -> Self {
+    fn new(model: &'a Model, function: &'a Function, names: Names<'a>, uses: Table<OperationId, usize>) -> Self {
         Self {
             model,
             function,
             names,
             uses,
-            results: function.results.iter().flatten().copied().collect(),
-            written: BTreeMap::new(),
-            named: BTreeMap::new(),
+            results: function.results.iter().flatten().map(|id| (*id, ())).collect(),
+            written: Table::default(),
+            named: Table::default(),
             inputs: BTreeMap::new(),
             vectors: BTreeMap::new(),
             statements: Vec::new(),
@@ -204,13 +204,13 @@ impl Printer<'_> {
     fn write(&mut self, id: OperationId) {
         let operation = self.function.operations.get(id).clone();
         let formula = self.formula(id, &operation);
-        if self.written.contains_key(&id) {
+        if self.written.contains(id) {
             return;
         }
-        let uses = self.uses.get(&id).copied().unwrap_or(0);
+        let uses = self.uses.get(id).copied().unwrap_or(0);
         let shared = uses > 1 && formula.operations > 0;
         // A long formula gets a line of its own. A result stands by itself already, but must come out of its piece.
-        let line = match (self.results.contains(&id), self.in_pieces) {
+        let line = match (self.results.contains(id), self.in_pieces) {
             (true, true) => 0,
             (true, false) => usize::MAX,
             (false, _) => LINE,
@@ -234,13 +234,13 @@ impl Printer<'_> {
 
     /// Sine and cosine of one angle are computed together, and those of angles that do not wait for each other.
     fn sine(&mut self, id: OperationId, function: Elementary, angle: OperationId) -> Option<Formula> {
-        if let Some(written) = self.written.get(&id) {
+        if let Some(written) = self.written.get(id) {
             return Some(written.clone());
         }
         let angles = self.angles.with(angle);
         let needed = |this: &Self, function, angle| {
             let call = this.function.operations.find(&Operation::Call(function, angle));
-            call.filter(|call| this.uses.contains_key(call))
+            call.filter(|call| this.uses.contains(*call))
         };
         let other = if function == Elementary::Sin { Elementary::Cos } else { Elementary::Sin };
         if angles.len() == 1 && needed(self, other, angle).is_none() {
@@ -269,7 +269,7 @@ impl Printer<'_> {
         };
         self.state(&binds, &angles, operations, tokens);
         self.written.extend(binds.iter().map(|(call, name)| (*call, Formula::name(name))));
-        self.written.get(&id).cloned()
+        self.written.get(id).cloned()
     }
 
     /// A statement that binds operations, computed from these operands.
@@ -284,7 +284,7 @@ impl Printer<'_> {
         if self.in_pieces {
             let mut open = operands.to_vec();
             while let Some(operand) = open.pop() {
-                if self.named.contains_key(&operand) {
+                if self.named.contains(operand) {
                     reads.push(operand);
                 } else {
                     open.extend(self.function.operations.get(operand).operands());
@@ -312,7 +312,7 @@ impl Printer<'_> {
     }
 
     fn operand(&self, id: OperationId) -> Formula {
-        self.written.get(&id).cloned().unwrap_or_else(|| {
+        self.written.get(id).cloned().unwrap_or_else(|| {
             // Operands come before results, so this is a constant or never reached.
             Formula::of(self.function.operations.get(id), &mut |inner| self.operand(inner))
         })

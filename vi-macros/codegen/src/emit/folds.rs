@@ -66,7 +66,7 @@ pub(super) fn folds(
         };
         let Some(of) = families.of(term) else { continue };
         let goes_on = |fold: &Fold| (fold.family, fold.places.end, fold.subtracts) == (of.family, of.place, subtracts);
-        let fold = if uses.get(&before) == Some(&1) && folds.get(&before).is_some_and(goes_on) {
+        let fold = if uses.get(before) == Some(&1) && folds.get(&before).is_some_and(goes_on) {
             folds.remove(&before).map(|mut fold| {
                 fold.places.end += 1;
                 fold.inner.push(before);

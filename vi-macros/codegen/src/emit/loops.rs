@@ -19,7 +19,7 @@ use crate::symbol::Symbol;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
-use vi_expr::Function as Elementary;
+use vi_expr::{Function as Elementary, Table};
 
 /// Operations that are done again rather than kept.
 const AGAIN: usize = 1;
@@ -43,7 +43,7 @@ pub(super) struct Writing<'a, 'n> {
     /// The names of the vectors among the inputs, by their components 0.
     pub(super) vectors: &'a BTreeMap<Symbol, Ident>,
     /// The formulas of operations in no family.
-    pub(super) singles: &'a BTreeMap<OperationId, Formula>,
+    pub(super) singles: &'a Table<OperationId, Formula>,
     pub(super) names: &'a mut Names<'n>,
 }
 
@@ -90,15 +90,15 @@ impl<'a> Loops<'a> {
     }
 
     /// How often lines read an operation that is in no family: a loop counts twice, so that it has a name there.
-    pub(super) fn uses(&self) -> BTreeMap<OperationId, usize> {
-        let mut uses = BTreeMap::new();
+    pub(super) fn uses(&self) -> Table<OperationId, usize> {
+        let mut uses = Table::default();
         let operands = |id: &OperationId| self.function.operations.get(*id).operands();
         let started = self.folds.values().map(|fold| fold.start);
         let once = self.singles.iter().flat_map(operands).chain(self.function.results.iter().flatten().copied());
         let once = once.chain(started);
         let twice = self.families.members.iter().flat_map(|members| operands(&members[0]));
         for (id, count) in once.map(|id| (id, 1)).chain(twice.map(|id| (id, 2))) {
-            *uses.entry(id).or_default() += count;
+            *uses.entry(id) += count;
         }
         uses
     }
@@ -220,6 +220,6 @@ impl Lines<'_, '_> {
         // What is in no family and is read here was written before; it would be the same written out.
         let operation = self.loops.function.operations.get(id);
         let again = || Formula::of(operation, &mut |operand| self.operand(operand, on));
-        self.writing.singles.get(&id).cloned().unwrap_or_else(again)
+        self.writing.singles.get(id).cloned().unwrap_or_else(again)
     }
 }

@@ -21,6 +21,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, quote};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use vi_expr::Table;
 
 /// A statement: `let x = a + b;`.
 pub(super) struct Statement {
@@ -46,7 +47,7 @@ pub(super) struct Writing<'a> {
     /// The statement that each piece starts with.
     pub(super) prelude: Option<&'a TokenStream>,
     /// What the operations are called.
-    pub(super) named: &'a BTreeMap<OperationId, Ident>,
+    pub(super) named: &'a Table<OperationId, Ident>,
 }
 
 /// A body in pieces.
@@ -89,7 +90,7 @@ impl Places {
 pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, names: &mut Names) -> Pieces {
     let cuts = cuts(statements, limit);
     let (inputs, values) = places(statements, writing, &cuts);
-    let (system, prelude, name_of) = (writing.system, writing.prelude, |id| writing.named.get(&id));
+    let (system, prelude, name_of) = (writing.system, writing.prelude, |id| writing.named.get(id));
     let (inputs_length, values_length) = (inputs.length(), values.length());
     let (mut functions, mut calls) = (TokenStream::new(), TokenStream::new());
     for (cut, number) in cuts.into_iter().zip(1_usize..) {

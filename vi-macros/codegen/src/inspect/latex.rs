@@ -5,6 +5,7 @@
 //! beyond [`vi_expr::MAX_CHARACTERS`].
 
 use num_traits::{One, Signed, Zero};
+use std::hash::Hash;
 use vi_expr::{Expr, Function, MAX_CHARACTERS, Node, Pool, Rational, Sum};
 
 /// How strongly an expression holds together.
@@ -30,7 +31,7 @@ fn text(part: impl Into<String>) -> Piece {
 
 /// An expression in LaTeX.
 #[must_use]
-pub fn expression<S: Clone + Ord>(pool: &Pool<S>, expr: Expr, name: &dyn Fn(&S) -> String) -> String {
+pub fn expression<S: Clone + Eq + Hash>(pool: &Pool<S>, expr: Expr, name: &dyn Fn(&S) -> String) -> String {
     let writer = Writer { pool, name };
     let mut written = String::new();
     let mut open = vec![Piece::Inside(expr, Binding::Sum)];
@@ -75,7 +76,7 @@ struct Writer<'a, S> {
 /// Bases with their exponents.
 type Factors = Vec<(Expr, Rational)>;
 
-impl<S: Clone + Ord> Writer<'_, S> {
+impl<S: Clone + Eq + Hash> Writer<'_, S> {
     fn pieces(&self, expr: Expr) -> (Binding, Vec<Piece>) {
         match self.pool.node(expr) {
             Node::Number(value) if value.is_negative() => {

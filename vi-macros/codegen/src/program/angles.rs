@@ -21,7 +21,7 @@ impl Lowering<'_> {
     pub(super) fn record_angles(&mut self, exprs: &[Expr]) {
         for expr in self.pool.reachable(exprs) {
             if let Node::Call(Function::Sin | Function::Cos, arguments) = self.pool.node(expr) {
-                self.angles.extend(arguments);
+                self.angles.extend(arguments.iter().map(|angle| (*angle, ())));
             }
         }
     }
@@ -31,7 +31,7 @@ impl Lowering<'_> {
         let Node::Sum(sum) = self.pool.node(angle).clone() else { return None };
         let [(left, left_factor), (right, right_factor)] = sum.terms.as_slice() else { return None };
         let (a, b) = (self.pool.scale(*left, &left_factor.abs()), self.pool.scale(*right, &right_factor.abs()));
-        if !sum.constant.is_zero() || !self.angles.contains(&a) || !self.angles.contains(&b) {
+        if !sum.constant.is_zero() || !self.angles.contains(a) || !self.angles.contains(b) {
             return None;
         }
         let same = left_factor.is_negative() == right_factor.is_negative();

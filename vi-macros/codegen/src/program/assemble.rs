@@ -3,7 +3,7 @@
 //! In: a [`Model`] and its [`DiscreteSystem`]. Out: a [`Program`]. Fields become derivatives of L and f at the points
 //! of the rule; the arguments of a point are evaluated once per function.
 
-use super::lower::Lowering;
+use super::lower::{Known, Lowering};
 use super::magnitude::magnitude;
 use super::{Function, Program};
 use super::{steps, verify};
@@ -51,6 +51,7 @@ pub(super) struct Assembly<'a> {
     fields: &'a Fields,
     /// Where the points are: what is not here, the function is told.
     pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
+    known: Known,
 }
 
 impl<'a> Assembly<'a> {
@@ -64,13 +65,13 @@ impl<'a> Assembly<'a> {
                 arguments.insert((index, variable), step_velocity(pool, argument).unwrap_or(argument));
             }
         }
-        Self { pool, fields: &system.fields, arguments }
+        Self { pool, fields: &system.fields, arguments, known: Known::default() }
     }
 
     /// An expression without fields: derivatives of L and f at the points, whose arguments stay closed unless they
     /// are bare symbols.
     fn open(&mut self, expr: Expr) -> Expr {
-        let Self { pool, fields, arguments } = self;
+        let Self { pool, fields, arguments, .. } = self;
         pool.substitute(expr, &mut |pool, symbol| {
             let Symbol::Field(field) = symbol else { return None };
             let definition = fields.definition(field)?;
@@ -106,7 +107,7 @@ impl<'a> Assembly<'a> {
                 }
             }
         }
-        let mut lowering = Lowering::new(self.pool, &used);
+        let mut lowering = Lowering::new(self.pool, &mut self.known, &used);
         let mut values = lowering.lower(&flat).into_iter();
         let operations = lowering.operations;
         let results = groups.iter().map(|group| values.by_ref().take(group.len()).collect()).collect();

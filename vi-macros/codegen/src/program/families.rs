@@ -13,12 +13,13 @@
 use super::{Function, Operation, OperationId};
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
+use vi_expr::{Distinct, Table};
 
 /// Members from which on there is a loop.
 const LEAST: usize = 8;
 
 /// What members of a family have in common.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
+#[derive(PartialEq, Eq, Hash)]
 enum Shape {
     /// The component of a vector.
     Input(Symbol),
@@ -27,7 +28,7 @@ enum Shape {
 }
 
 /// An operand as seen from the place of an operation.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
+#[derive(PartialEq, Eq, Hash)]
 enum Relative {
     /// The same everywhere.
     Fixed(OperationId),
@@ -48,14 +49,14 @@ pub struct Membership {
 pub struct Families {
     /// Their members, in order; a family stands behind those of its operands.
     pub members: Vec<Vec<OperationId>>,
-    of: BTreeMap<OperationId, Membership>,
+    of: Table<OperationId, Membership>,
 }
 
 impl Families {
     /// The membership of an operation that has one.
     #[must_use]
     pub fn of(&self, id: OperationId) -> Option<Membership> {
-        self.of.get(&id).copied()
+        self.of.get(id).copied()
     }
 }
 
@@ -63,14 +64,13 @@ impl Function {
     /// Its families.
     #[must_use]
     pub fn families(&self) -> Families {
-        let (mut shapes, mut placed) = (BTreeMap::new(), BTreeMap::new());
+        let (mut shapes, mut placed) = (Distinct::<Shape>::default(), Table::default());
         let mut rows: Vec<BTreeMap<usize, OperationId>> = Vec::new();
         for id in self.operations.needed(&self.results) {
             let Some((shape, place)) = shape(self.operations.get(id), &placed) else { continue };
-            let next = shapes.len();
-            let number = *shapes.entry(shape).or_insert(next);
+            let number = shapes.insert(shape);
             placed.insert(id, (number, place));
-            rows.resize_with(shapes.len(), BTreeMap::new);
+            rows.resize_with(shapes.values().len(), BTreeMap::new);
             rows[number].insert(place, id);
         }
         // Shapes are numbered after those of their operands.
@@ -85,12 +85,12 @@ impl Function {
 }
 
 /// The shape of an operation and the place of its first operand that has one; `None` where none has.
-fn shape(operation: &Operation, placed: &BTreeMap<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
+fn shape(operation: &Operation, placed: &Table<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
     if let Operation::Input(symbol) = operation {
         return symbol.component().map(|(vector, place)| (Shape::Input(vector), place));
     }
-    let start = operation.operands().find_map(|operand| placed.get(&operand).map(|(_, place)| *place))?;
-    let relative = operation.operands().map(|operand| match placed.get(&operand) {
+    let start = operation.operands().find_map(|operand| placed.get(operand).map(|(_, place)| *place))?;
+    let relative = operation.operands().map(|operand| match placed.get(operand) {
         Some(&(shape, place)) => {
             Relative::Shifted { shape, on: place.saturating_sub(start), back: start.saturating_sub(place) }
         }

@@ -10,8 +10,8 @@ use super::powers::{Factor, Occurrence};
 use super::sums::Way;
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, Zero};
-use std::collections::{BTreeMap, BTreeSet};
-use vi_expr::{Expr, Node, Pool, Rational, Sum};
+use std::collections::BTreeMap;
+use vi_expr::{Expr, Node, Pool, Rational, Sum, Table};
 
 /// What an expression depends on, the widest last.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,25 +26,37 @@ pub(super) enum Dependence {
     Step,
 }
 
+/// What is found out about expressions, whichever function they are lowered for.
+#[derive(Default)]
+pub(super) struct Known {
+    dependences: Table<Expr, Dependence>,
+    pub(super) ways: Table<Expr, Way>,
+}
+
 /// The lowering of one function.
 pub(super) struct Lowering<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
     pub(super) operations: Operations,
-    pub(super) occurrences: BTreeMap<Expr, Occurrence>,
+    pub(super) occurrences: Table<Expr, Occurrence>,
     /// The arguments of sines and cosines.
-    pub(super) angles: BTreeSet<Expr>,
-    values: BTreeMap<Expr, OperationId>,
-    dependences: BTreeMap<Expr, Dependence>,
-    pub(super) ways: BTreeMap<Expr, Way>,
+    pub(super) angles: Table<Expr, ()>,
+    values: Table<Expr, OperationId>,
+    /// The ways that this function has taken.
+    pub(super) ways: Table<Expr, Way>,
+    pub(super) known: &'a mut Known,
     arguments: &'a BTreeMap<(usize, Variable), Expr>,
 }
 
 impl<'a> Lowering<'a> {
     /// A function with these arguments of the points.
-    pub(super) fn new(pool: &'a mut Pool<Symbol>, arguments: &'a BTreeMap<(usize, Variable), Expr>) -> Self {
-        let (operations, occurrences, angles) = (Operations::default(), BTreeMap::new(), BTreeSet::new());
-        let (values, dependences, ways) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { pool, operations, occurrences, angles, values, dependences, ways, arguments }
+    pub(super) fn new(
+        pool: &'a mut Pool<Symbol>,
+        known: &'a mut Known,
+        arguments: &'a BTreeMap<(usize, Variable), Expr>,
+    ) -> Self {
+        let (operations, occurrences, angles) = (Operations::default(), Table::default(), Table::default());
+        let (values, ways) = (Table::default(), Table::default());
+        Self { pool, operations, occurrences, angles, values, ways, known, arguments }
     }
 
     /// Lowers expressions and all that they need, children first.
@@ -61,7 +73,7 @@ impl<'a> Lowering<'a> {
 
     /// The operation of an expression whose children are lowered.
     pub(super) fn value(&mut self, expr: Expr) -> OperationId {
-        if let Some(known) = self.values.get(&expr) {
+        if let Some(known) = self.values.get(expr) {
             return *known;
         }
         let node = self.pool.node(expr).clone();
@@ -86,7 +98,7 @@ impl<'a> Lowering<'a> {
 
     /// What an expression depends on; its children are known but for those that lowering made.
     pub(super) fn dependence(&mut self, expr: Expr) -> Dependence {
-        if let Some(known) = self.dependences.get(&expr) {
+        if let Some(known) = self.known.dependences.get(expr) {
             return *known;
         }
         let children: Vec<Expr> = match self.pool.node(expr) {
@@ -101,14 +113,14 @@ impl<'a> Lowering<'a> {
             Node::Symbol(_) => Dependence::Step,
             _ => children.into_iter().map(|child| self.dependence(child)).max().unwrap_or(Dependence::None),
         };
-        self.dependences.insert(expr, found);
+        self.known.dependences.insert(expr, found);
         found
     }
 
     /// Whether a base of a term is made of parameters, and not of numbers alone. It was asked when the base was lowered, before
     /// the term.
     pub(super) fn is_parameter(&self, expr: Expr) -> bool {
-        self.dependences.get(&expr) == Some(&Dependence::Parameters)
+        self.known.dependences.get(expr) == Some(&Dependence::Parameters)
     }
 
     fn symbol(&mut self, symbol: Symbol) -> OperationId {

@@ -20,7 +20,7 @@ pub use assemble::program;
 pub use families::{Families, Membership};
 pub use operations::{Operation, OperationId, Operations};
 
-use std::collections::BTreeMap;
+use vi_expr::Table;
 
 /// What one function computes.
 pub struct Function {
@@ -34,12 +34,12 @@ pub struct Function {
 
 impl Function {
     /// How often each operation that the results need is read: by others, and as a result.
-    pub(crate) fn uses(&self) -> BTreeMap<OperationId, usize> {
-        let mut uses = BTreeMap::new();
+    pub(crate) fn uses(&self) -> Table<OperationId, usize> {
+        let mut uses = Table::default();
         let needed = self.operations.needed(&self.results);
         let operands = needed.into_iter().flat_map(|id| self.operations.get(id).operands());
         for id in operands.chain(self.results.iter().flatten().copied()) {
-            *uses.entry(id).or_default() += 1;
+            *uses.entry(id) += 1;
         }
         uses
     }

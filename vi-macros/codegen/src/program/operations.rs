@@ -3,22 +3,27 @@
 //! In: requests for operations. Out: a list in which equal operations are one entry and operands come first.
 
 use crate::symbol::Symbol;
-use std::collections::BTreeMap;
-use vi_expr::Function;
+use vi_expr::{Distinct, Function, Index, Table};
 
 /// The index of an operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct OperationId(u32);
 
 impl OperationId {
-    /// As a place in the list of operations.
-    pub(super) fn index(self) -> usize {
+    /// More than 2^32 operations do not fit the limit on nodes of the pool.
+    fn at(place: usize) -> Self {
+        Self(u32::try_from(place).unwrap_or(u32::MAX))
+    }
+}
+
+impl Index for OperationId {
+    fn index(self) -> usize {
         self.0 as usize
     }
 }
 
 /// An operation, its operands by index.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operation {
     /// A number, by its bits.
     Constant(u64),
@@ -47,9 +52,8 @@ pub enum Operation {
 /// Operations, operands before results.
 #[derive(Clone, Default)]
 pub struct Operations {
-    list: Vec<Operation>,
-    index: BTreeMap<Operation, OperationId>,
-    names: BTreeMap<OperationId, Symbol>,
+    list: Distinct<Operation>,
+    names: Table<OperationId, Symbol>,
 }
 
 impl Operations {
@@ -58,14 +62,7 @@ impl Operations {
         if let Some(simple) = self.simplified(&operation) {
             return simple;
         }
-        if let Some(known) = self.index.get(&operation) {
-            return *known;
-        }
-        // More than 2^32 operations do not fit the limit on nodes of the pool.
-        let id = OperationId(u32::try_from(self.list.len()).unwrap_or(u32::MAX));
-        self.list.push(operation.clone());
-        self.index.insert(operation, id);
-        id
+        OperationId::at(self.list.insert(operation))
     }
 
     /// A number.
@@ -91,38 +88,38 @@ impl Operations {
     /// The index of an operation that is listed.
     #[must_use]
     pub fn find(&self, operation: &Operation) -> Option<OperationId> {
-        self.index.get(operation).copied()
+        self.list.find(operation).map(OperationId::at)
     }
 
     /// The operation is the argument of the rule that this symbol names.
     pub fn call_it(&mut self, id: OperationId, name: Symbol) {
-        if !matches!(self.get(id), Operation::Constant(_) | Operation::Input(_)) {
-            self.names.entry(id).or_insert(name);
+        if self.get(id).is_work() && !self.names.contains(id) {
+            self.names.insert(id, name);
         }
     }
 
     /// The name that an operation was given.
     #[must_use]
     pub fn name(&self, id: OperationId) -> Option<&Symbol> {
-        self.names.get(&id)
+        self.names.get(id)
     }
 
     /// How many operations are listed.
     pub(super) fn len(&self) -> usize {
-        self.list.len()
+        self.list.values().len()
     }
 
     /// All operations with their indices, operands before results.
     pub fn iter(&self) -> impl Iterator<Item = (OperationId, &Operation)> {
-        (0..).map(OperationId).zip(&self.list)
+        (0..).map(OperationId).zip(self.list.values())
     }
 
     /// The operations that the results need, operands before results.
     #[must_use]
     pub fn needed(&self, results: &[Vec<OperationId>]) -> Vec<OperationId> {
-        let mut needed = vec![false; self.list.len()];
+        let mut needed = vec![false; self.list.values().len()];
         results.iter().flatten().for_each(|id| needed[id.index()] = true);
-        for index in (0..self.list.len()).rev() {
+        for index in (0..self.list.values().len()).rev() {
             if needed[index] {
                 self.list[index].operands().for_each(|id| needed[id.index()] = true);
             }

@@ -6,6 +6,7 @@
 //! operands are there.
 
 use super::{Function, OperationId};
+use vi_expr::Index;
 
 impl Function {
     /// The operations that the results need, in an order in which few values are held at a time.

@@ -7,25 +7,20 @@
 use super::lower::Lowering;
 use super::operations::{Operation, OperationId};
 use num_traits::{One, Signed, ToPrimitive, Zero};
-use std::collections::BTreeSet;
 use vi_expr::{Expr, Function, Node, Rational};
 
 /// With which exponents a base occurs.
-#[derive(Clone, Default)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Occurrence {
-    exponents: BTreeSet<Rational>,
+    /// Some exponent is an odd multiple of 1/2.
+    has_root: bool,
     uses_below: usize,
 }
 
 impl Occurrence {
     pub(super) fn record(&mut self, exponent: &Rational) {
         self.uses_below += usize::from(exponent.is_negative());
-        self.exponents.insert(exponent.clone());
-    }
-
-    /// Some exponent is an odd multiple of 1/2.
-    fn has_root(&self) -> bool {
-        self.exponents.iter().any(|exponent| *exponent.denom() == 2.into())
+        self.has_root |= exponent.denom().to_u32() == Some(2);
     }
 }
 
@@ -41,7 +36,7 @@ impl Lowering<'_> {
         for expr in self.pool.reachable(exprs) {
             if let Node::Product(product) = self.pool.node(expr) {
                 for (base, exponent) in &product.factors {
-                    self.occurrences.entry(*base).or_default().record(exponent);
+                    self.occurrences.entry(*base).record(exponent);
                 }
             }
         }
@@ -50,14 +45,13 @@ impl Lowering<'_> {
     /// `base^exponent` as a factor of a product.
     pub(super) fn factor(&mut self, base: Expr, exponent: &Rational) -> Factor {
         let value = self.value(base);
-        let occurrence = self.occurrences.get(&base).cloned().unwrap_or_default();
-        let doubled = exponent * Rational::from_integer(2.into());
-        let Some(halves) = doubled.is_integer().then(|| doubled.to_integer().to_i32()).flatten() else {
+        let occurrence = self.occurrences.get(base).copied().unwrap_or_default();
+        let Some(halves) = halves(exponent) else {
             let exponent = self.operations.constant(exponent.to_f64().unwrap_or(f64::NAN));
             return Factor::Above(self.operations.add(Operation::Call2(Function::Pow, value, exponent)));
         };
         let count = halves.unsigned_abs();
-        if halves < 0 && occurrence.has_root() {
+        if halves < 0 && occurrence.has_root {
             let inverse = self.operations.add(Operation::Reciprocal(value));
             let power = self.integer_power(inverse, count.div_ceil(2));
             if count.is_multiple_of(2) {
@@ -107,5 +101,15 @@ impl Lowering<'_> {
         } else {
             value.to_f64().unwrap_or(f64::NAN)
         }
+    }
+}
+
+/// Twice an exponent, where that is an integer.
+fn halves(exponent: &Rational) -> Option<i32> {
+    let numerator = exponent.numer().to_i32()?;
+    match exponent.denom().to_u32() {
+        Some(1) => numerator.checked_mul(2),
+        Some(2) => Some(numerator),
+        _ => None,
     }
 }

@@ -28,18 +28,26 @@ pub(super) enum Way {
 impl Lowering<'_> {
     /// The way in which an expression is written.
     pub(super) fn way(&mut self, expr: Expr) -> Way {
-        if let Some(known) = self.ways.get(&expr) {
+        if let Some(known) = self.ways.get(expr) {
             return *known;
         }
-        let Node::Sum(sum) = self.pool.node(expr).clone() else { return Way::Term };
-        let way = if sum.terms.is_empty() || sum.constant.is_zero() && sum.terms.len() == 1 {
-            Way::Term
-        } else {
-            let way = self.by_size(&sum).or_else(|| self.common_factor(&sum));
-            way.or_else(|| self.common_coefficient(&sum)).unwrap_or(Way::Plain)
-        };
+        let way = self.known.ways.get(expr).copied().unwrap_or_else(|| self.find_way(expr));
+        // Its parts are new in each function.
+        if let Way::Factor { inside, rest, .. } = way {
+            self.record_powers(&[inside, rest.unwrap_or(inside)]);
+        }
+        self.known.ways.insert(expr, way);
         self.ways.insert(expr, way);
         way
+    }
+
+    fn find_way(&mut self, expr: Expr) -> Way {
+        let Node::Sum(sum) = self.pool.node(expr).clone() else { return Way::Term };
+        if sum.terms.is_empty() || sum.constant.is_zero() && sum.terms.len() == 1 {
+            return Way::Term;
+        }
+        let way = self.by_size(&sum).or_else(|| self.common_factor(&sum));
+        way.or_else(|| self.common_coefficient(&sum)).unwrap_or(Way::Plain)
     }
 
     /// Large terms and those of order h, where a sum has both.
@@ -105,7 +113,6 @@ impl Lowering<'_> {
             return None;
         }
         let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
-        self.record_powers(&[inside, rest]);
         Some(Way::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
     }
 

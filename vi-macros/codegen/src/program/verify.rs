@@ -12,7 +12,7 @@ use crate::symbol::Symbol;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 use syn::Result;
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, Pool, Table};
 
 /// Relative difference that reordering may cause: cancellation in the residuals included.
 const TOLERANCE: f64 = 1e-7;
@@ -67,9 +67,9 @@ pub(super) fn agrees(
 impl Function {
     /// The results, one after the other, for these inputs.
     pub fn evaluate(&self, input: &mut dyn FnMut(&Symbol) -> f64) -> Vec<f64> {
-        let mut values: BTreeMap<OperationId, f64> = BTreeMap::new();
+        let mut values: Table<OperationId, f64> = Table::default();
         for id in self.operations.needed(&self.results) {
-            let of = |id: &OperationId| values.get(id).copied().unwrap_or(f64::NAN);
+            let of = |id: &OperationId| values.get(*id).copied().unwrap_or(f64::NAN);
             let value = match self.operations.get(id) {
                 Operation::Constant(bits) => f64::from_bits(*bits),
                 Operation::Input(symbol) => input(symbol),
@@ -85,7 +85,7 @@ impl Function {
             };
             values.insert(id, value);
         }
-        self.results.iter().flatten().map(|id| values.get(id).copied().unwrap_or(f64::NAN)).collect()
+        self.results.iter().flatten().map(|id| values.get(*id).copied().unwrap_or(f64::NAN)).collect()
     }
 
     /// Operations that the results need: additions, products, divisions, roots and calls.

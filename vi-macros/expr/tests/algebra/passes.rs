@@ -103,7 +103,7 @@ fn questions() {
     assert!(below.is_sorted() && below.last() == Some(&expr));
     assert_eq!(below.len(), 5, "x, y, sin(y), x*sin(y) and the sum");
     for node in below.iter().copied() {
-        assert!(pool.node(node).children().iter().all(|child| *child < node && below.contains(child)));
+        pool.node(node).each_child(|child| assert!(child < node && below.contains(&child)));
     }
     assert_eq!(pool.reachable(&[]), []);
 }

@@ -1,0 +1,90 @@
+//! When two nodes are the same.
+//!
+//! In: two nodes. Out: whether they are equal, and a hash of each. Rationals are in lowest terms, so that they are equal where
+//! their parts are; to order them or to hash them by value takes a chain of divisions.
+
+use std::hash::{Hash, Hasher};
+
+use num_traits::ToPrimitive;
+
+use crate::{Expr, Node, Product, Rational, Sum};
+
+fn same(left: &Rational, right: &Rational) -> bool {
+    left.numer() == right.numer() && left.denom() == right.denom()
+}
+
+/// All handles before the first number: numbers are seldom looked at. Plain loops, because this is the innermost of a build
+/// without optimisation.
+fn same_parts(left: &[(Expr, Rational)], right: &[(Expr, Rational)]) -> bool {
+    if left.len() != right.len() {
+        return false;
+    }
+    for (left, right) in left.iter().zip(right) {
+        if left.0 != right.0 {
+            return false;
+        }
+    }
+    for (left, right) in left.iter().zip(right) {
+        if !same(&left.1, &right.1) {
+            return false;
+        }
+    }
+    true
+}
+
+impl<S: Eq> PartialEq for Node<S> {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Number(left), Self::Number(right)) => same(left, right),
+            (Self::Pi, Self::Pi) => true,
+            (Self::Symbol(left), Self::Symbol(right)) => left == right,
+            (Self::Sum(left), Self::Sum(right)) => {
+                same_parts(&left.terms, &right.terms) && same(&left.constant, &right.constant)
+            }
+            (Self::Product(left), Self::Product(right)) => same_parts(&left.factors, &right.factors),
+            (Self::Call(left, left_arguments), Self::Call(right, right_arguments)) => {
+                left == right && left_arguments == right_arguments
+            }
+            _ => false,
+        }
+    }
+}
+
+impl<S: Eq> Eq for Node<S> {}
+
+/// Long numbers are few: those with the same sign count as one.
+fn hash_number(number: &Rational, state: &mut impl Hasher) {
+    for part in [number.numer(), number.denom()] {
+        state.write_u64(part.to_i64().map_or(u64::MAX, i64::cast_unsigned));
+    }
+}
+
+fn hash_parts(parts: &[(Expr, Rational)], state: &mut impl Hasher) {
+    for (expr, number) in parts {
+        state.write_usize(expr.0);
+        hash_number(number, state);
+    }
+}
+
+impl<S: Hash> Hash for Node<S> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        match self {
+            Self::Number(number) => hash_number(number, state),
+            Self::Pi => state.write_u64(1),
+            Self::Symbol(symbol) => symbol.hash(state),
+            Self::Sum(Sum { constant, terms }) => {
+                state.write_u64(2);
+                hash_number(constant, state);
+                hash_parts(terms, state);
+            }
+            Self::Product(Product { factors }) => {
+                state.write_u64(3);
+                hash_parts(factors, state);
+            }
+            Self::Call(function, arguments) => {
+                function.hash(state);
+                arguments.hash(state);
+            }
+        }
+    }
+}
