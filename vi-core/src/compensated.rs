@@ -21,12 +21,17 @@ pub(crate) fn add<T: Real>(value: &mut T, low: &mut T, increment: T) {
     (*value, *low) = two_sum(sum, lost + *low);
 }
 
+/// What [`add_rounded`] makes of `value`.
+#[inline(always)]
+pub(crate) fn sum<T: Real>(value: T, low: T, increment: T) -> T {
+    value + (increment + low)
+}
+
 /// Adds `increment`, exact to an ulp of it, as it is itself rounded: Kahan's sum, a third of the operations.
 #[inline(always)]
 pub(crate) fn add_rounded<T: Real>(value: &mut T, low: &mut T, increment: T) {
-    let increment = increment + *low;
-    let sum = *value + increment;
-    (*value, *low) = (sum, increment - (sum - *value));
+    let sum = sum(*value, *low, increment);
+    (*value, *low) = (sum, (increment + *low) - (sum - *value));
 }
 
 /// The same, entry by entry.

@@ -149,21 +149,22 @@ where
                 return Err(failure);
             }
         } else if let Some(closed_form) = closed_form.as_ref().filter(|_| S::CLOSED_FORM) {
-            let (mut node, h, (way, gain)) = (run.node, run.stride.h, closed_form.step(&run.node));
-            node.advance(h, &way, &gain);
-            if node.is_finite() {
+            let (h, (way, gain)) = (run.stride.h, closed_form.step(&run.node));
+            if run.node.stays_finite(h, &way, &gain) {
                 run.stride.forecast.replace(way * h.recip());
-                run.node = node;
-                return Ok(node.state());
+                run.node.advance(h, &way, &gain);
+                return Ok(run.node.state());
             }
         } else if let Some(found) = run.stride.foretold(system, &run.node, run.place, inverse.as_ref()) {
-            let mut node = run.node;
-            node.advance(run.stride.h, &(found.v() * run.stride.h), &found.gain);
-            if node.is_finite() {
-                run.place = run.stride.place_after::<S>(&run.node, &found);
+            let (h, way) = (run.stride.h, found.v() * run.stride.h);
+            if run.node.stays_finite(h, &way, &found.gain) {
+                if S::PLACE.is_some() {
+                    run.place = run.stride.place_after::<S>(&run.node, &found);
+                }
                 run.stride.take::<S>(&found);
-                (run.node, run.iterations) = (node, found.iterations);
-                return Ok(node.state());
+                run.node.advance(h, &way, &found.gain);
+                run.iterations = found.iterations;
+                return Ok(run.node.state());
             }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers; and each number for itself, since

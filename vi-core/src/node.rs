@@ -119,6 +119,19 @@ impl<const N: usize, T: Real> Node<N, T> {
 }
 
 impl<const N: usize, T: Scalar> Node<N, T> {
+    /// Whether [`Node::advance`] leads to a node that is finite. Asked before, since what is asked after has to be taken back,
+    /// and a long node is not copied for nothing.
+    #[inline(always)]
+    pub(crate) fn stays_finite(&self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
+        let mut sums = [compensated::sum(self.t, self.t_low, h), self.energy, T::zero(), T::zero()];
+        for i in 0..N {
+            sums[2 * i % 4] += compensated::sum(self.q[i], self.q_low[i], way[i]);
+            sums[(2 * i + 1) % 4] += compensated::sum(self.p[i], self.p_low[i], momentum_gain[i]);
+        }
+        let [a, b, c, d] = sums;
+        ((a + b) + (c + d)).is_finite()
+    }
+
     /// Whether time, coordinates, momenta and energy are finite: by their sum, which is finite then unless they are huge.
     /// Four sums, that do not wait for each other.
     #[inline(always)]

@@ -39,7 +39,6 @@
 
 mod call;
 mod derivative;
-mod distinct;
 mod evaluate;
 mod expand;
 mod function;
@@ -53,7 +52,9 @@ mod substitute;
 mod sum;
 mod table;
 
-pub use distinct::Distinct;
+/// Values, each once, numbered as they came and found by hash: a search among ordered values compares with a dozen of them, here it
+/// is one or two, which shows in a macro, built without optimisation. The hasher has no seed.
+pub type Distinct<T> = indexmap::IndexSet<T, core::hash::BuildHasherDefault<rustc_hash::FxHasher>>;
 pub use expand::TooLarge;
 pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};

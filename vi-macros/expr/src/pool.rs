@@ -110,7 +110,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "no pool is empty")]
     pub fn len(&self) -> usize {
-        self.nodes.values().len()
+        self.nodes.len()
     }
 
     /// All nodes at and below the given expressions, each once, children before parents.
@@ -157,7 +157,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
 
     /// Handle of a node that is already canonical.
     pub(crate) fn intern(&mut self, node: Node<S>) -> Expr {
-        Expr(self.nodes.insert(node))
+        Expr(self.nodes.get_index_of(&node).unwrap_or_else(|| self.nodes.insert_full(Arc::new(node)).0))
     }
 }
 

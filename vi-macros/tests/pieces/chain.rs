@@ -2026,9 +2026,9 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     ///
     /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
     ///
-    /// to first order at `(v + dv, h + dh)`.
+    /// at `(v + dv, h + dh)`.
     ///
-    /// 849 operations.
+    /// 702 operations.
     #[inline(never)]
     fn extended_step(
         &self,
@@ -2051,212 +2051,193 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
         let real = T::real;
         let s1 = h * real(0.5);
         let t_mid = t0 + (s1 + t0_low);
-        let s2 = self.m * real(2.0);
-        let (sin3, cos3) = t_mid.sin_cos();
-        let s4 = sin3 * real(0.3333333333333333) + real(1.0);
-        let s5 = self.k * real(3.0);
-        let s6 = h * h;
-        let s7 = self.k * s6;
-        let s8 = s7 * real(0.25);
-        let s9 = s6 * real(0.25);
+        let (sin2, cos2) = t_mid.sin_cos();
+        let s3 = sin2 * real(0.3333333333333333) + real(1.0);
+        let s4 = self.k * real(3.0);
+        let s5 = h * h;
+        let s6 = self.k * s5;
+        let s7 = s6 * real(0.25);
+        let s8 = s5 * real(0.25);
+        let s9 = s5 * real(0.75);
         let s10 = s6 * real(0.75);
-        let s11 = s7 * real(0.75);
-        let s12 = self.k * real(0.75);
-        let s13 = self.k * real(0.25);
-        let s14 = self.k * real(1.5);
-        let s15 = s14 * v[2];
-        let s16 = s14 * v[4];
-        let s17 = s14 * v[6];
-        let s18 = cos3 * real(0.16666666666666666);
-        let s19 = self.k * real(0.5);
-        let s20: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
-        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
-        let s22: [T; 9] = ::core::array::from_fn(|i| {
+        let s11 = self.k * real(0.75);
+        let s12 = self.k * real(0.25);
+        let s13 = self.k * real(1.5);
+        let s14 = s13 * v[2];
+        let s15 = s13 * v[4];
+        let s16 = s13 * v[6];
+        let s17: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
+        let s18: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
+        let s19: [T; 9] = ::core::array::from_fn(|i| {
             (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
         });
-        let s23: [T; 9] = ::core::array::from_fn(|i| s22[i] * s22[i]);
-        let s24: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
-        let s25: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
-        let s26: [T; 9] = ::core::array::from_fn(|i| s22[i] * (q_mid[i + 1] - q_mid[i]));
-        let s27: [T; 10] = ::core::array::from_fn(|i| s4 * s25[i].0);
-        let s28: [T; 8] = ::core::array::from_fn(|i| self.k * (s26[i] - s26[i + 1]));
-        let s29: [T; 9] = ::core::array::from_fn(|i| self.k * s25[i].1 * h);
-        let s30: [T; 9] = ::core::array::from_fn(|i| self.k * v[i] * s25[i].1);
-        let s31: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
-        let s32: [T; 9] = ::core::array::from_fn(|i| self.k * s25[i].1 * s1);
+        let s20: [T; 9] = ::core::array::from_fn(|i| s19[i] * s19[i]);
+        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
+        let s22: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
+        let s23: [T; 9] = ::core::array::from_fn(|i| s19[i] * (q_mid[i + 1] - q_mid[i]));
+        let s24: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].0);
+        let s25: [T; 8] = ::core::array::from_fn(|i| self.k * (s23[i] - s23[i + 1]));
+        let s26: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
+        let s27: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * s1);
+        let s28: [T; 8] = ::core::array::from_fn(|i| {
+            s26[i + 1] - (p0_low[i + 1] - s1 * (s25[i] + s24[i + 1]) + s27[i + 1])
+        });
+        let s29: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s25[i] + s24[i + 1]));
+        let s30: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].1);
+        let s31: [T; 8] = ::core::array::from_fn(|i| {
+            s4 * (s19[i] + s19[i + 1]) + s30[i + 1]
+        });
+        let s32: [T; 9] = ::core::array::from_fn(|i| s7 * s22[i].0);
         let s33: [T; 8] = ::core::array::from_fn(|i| {
-            s31[i + 1] - (p0_low[i + 1] - s1 * (s28[i] + s27[i + 1]) + s32[i + 1])
+            self.m + (s32[i + 1] + s8 * s31[i])
         });
-        let s34: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s28[i] + s27[i + 1]));
-        let s35: [T; 10] = ::core::array::from_fn(|i| s4 * s25[i].1);
-        let s36: [T; 8] = ::core::array::from_fn(|i| {
-            s5 * (s22[i] + s22[i + 1]) + s35[i + 1]
+        let s34: [T; 10] = ::core::array::from_fn(|i| s24[i] * real(0.5));
+        let s35: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * real(0.5));
+        let s36: [T; 10] = ::core::array::from_fn(|i| {
+            cos2 * s22[i].0 * real(0.08333333333333333)
         });
-        let s37: [T; 9] = ::core::array::from_fn(|i| s8 * s25[i].0);
-        let s38: [T; 8] = ::core::array::from_fn(|i| {
-            self.m + (s37[i + 1] + s9 * s36[i])
+        let s37: [T; 9] = ::core::array::from_fn(|i| s11 * v[i + 1] * s19[i]);
+        let s38: [T; 9] = ::core::array::from_fn(|i| s36[i] + s12 * v[i] * s22[i].0);
+        let s39: [T; 8] = ::core::array::from_fn(|i| {
+            s25[i] * real(0.5) + s34[i + 1] - s35[i + 1]
         });
-        let s39: [T; 10] = ::core::array::from_fn(|i| s27[i] * real(0.5));
-        let s40: [T; 9] = ::core::array::from_fn(|i| self.k * s25[i].1 * real(0.5));
-        let s41: [T; 10] = ::core::array::from_fn(|i| cos3 * s25[i].0);
-        let s42: [T; 10] = ::core::array::from_fn(|i| {
-            s41[i] * real(0.08333333333333333)
+        let s40: [T; 9] = ::core::array::from_fn(|i| s11 * v[i] * s19[i]);
+        let s41: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s31[i] * real(0.25));
+        let s42: [T; 8] = ::core::array::from_fn(|i| {
+            s39[i] + (s38[i + 1] - s40[i] + s41[i] - s37[i + 1]) * h
         });
-        let s43: [T; 9] = ::core::array::from_fn(|i| s12 * v[i + 1] * s22[i]);
-        let s44: [T; 9] = ::core::array::from_fn(|i| s42[i] + s13 * v[i] * s25[i].0);
-        let s45: [T; 8] = ::core::array::from_fn(|i| {
-            s28[i] * real(0.5) + s39[i + 1] - s40[i + 1]
+        let s43: [T; 8] = ::core::array::from_fn(|i| {
+            s39[i] + (s40[i] - s41[i] + s37[i + 1] - s36[i + 1]) * h
         });
-        let s46: [T; 9] = ::core::array::from_fn(|i| s12 * v[i] * s22[i]);
-        let s47: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s36[i] * real(0.25));
-        let s48: [T; 8] = ::core::array::from_fn(|i| {
-            s45[i] + (s44[i + 1] - s46[i] + s47[i] - s43[i + 1]) * h
-        });
-        let s49: [T; 8] = ::core::array::from_fn(|i| {
-            s45[i] + (s46[i] - s47[i] + s43[i + 1] - s42[i + 1]) * h
-        });
-        let s50: [T; 10] = ::core::array::from_fn(|i| v[i] * s25[i].0);
-        let s51: [T; 8] = ::core::array::from_fn(|i| {
-            s29[i + 1] - h * (s28[i] + s27[i + 1])
-        });
-        let s52: [T; 9] = ::core::array::from_fn(|i| {
-            (self.k * s25[i].1 + (s18 - self.k * v[i] * real(0.5)) * s25[i].0 * h) * h
-        });
-        let s53: [T; 9] = ::core::array::from_fn(|i| s19 * s24[i] * s25[i].0);
-        let s54 = (1..10).fold(s25[0].1, |sum, i| sum + s25[i].1);
-        let s55 = self.k * s26[0];
-        let s56 = s55 - s27[0];
-        let s57 = self.k * s26[8];
-        let s58 = s57 + s27[9];
-        let s59 = (1..10).fold(s21[0], |sum, i| sum + s21[i])
-            + self.k * (1..9).fold(s23[0], |sum, i| sum + s23[i]) * real(0.25) - energy0
-            - self.m * (1..10).fold(s24[0], |sum, i| sum + s24[i]) * real(0.5)
-            - s4 * s54;
-        let s60 = s54 * cos3 * real(0.3333333333333333);
-        let s61 = self.k * s22[0];
-        let s62 = s61 * real(3.0) + s35[0];
-        let s63 = self.k * s22[8];
-        let s64 = s63 * real(3.0) + s35[9];
-        let s65 = -(s61 * s10);
-        let s66 = -(s11 * s22[1]);
-        let s67 = -(s11 * s22[2]);
-        let s68 = -(s11 * s22[3]);
-        let s69 = -(s11 * s22[4]);
-        let s70 = -(s11 * s22[5]);
-        let s71 = -(s11 * s22[6]);
-        let s72 = -(s11 * s22[7]);
-        let s73 = -(s63 * s10);
-        let s74 = s39[0] - s55 * real(0.5) - s40[0];
-        let s75 = v[0] * s62 * real(0.25);
-        let s76 = s57 * real(0.5) + s39[9];
-        let s77 = v[9] * s64 * real(0.25);
-        let s78 = sin3 * s54;
-        let s79 = (1..10).fold(s50[0], |sum, i| sum + s50[i]) * cos3
-            * real(0.16666666666666666);
-        let s80 = -(s24[0] * s62) - s24[2] * s36[1] - s24[4] * s36[3] - s24[6] * s36[5]
-            - s24[9] * s64 - s78 * real(0.3333333333333333);
-        let s81 = s80 * real(0.25) + (s14 * v[9] * s22[8] - s47[7]) * v[8]
-            + (s17 * s22[6] - s47[6] + s14 * v[8] * s22[7]) * v[7];
-        let s82 = s81 + (s16 * s22[4] - s47[4] + s17 * s22[5]) * v[5]
-            + (s15 * s22[2] - s47[2] + s16 * s22[3]) * v[3];
-        let s83 = (1..9).fold(s30[0], |sum, i| sum + s30[i]) - s60;
-        let both = ::vi_core::ExtendedSystem {
-            momentum: ::vi_core::MomentumEquation {
-                residual: ::vi_core::SVector::from([
-                    s31[0] - (p0_low[0] + s1 * s56 + s32[0]),
-                    s33[0],
-                    s33[1],
-                    s33[2],
-                    s33[3],
-                    s33[4],
-                    s33[5],
-                    s33[6],
-                    s33[7],
-                    s31[9] - (p0_low[9] - s1 * s58),
-                ]),
-                jacobian: ::vi_core::linear::Tridiagonal {
-                    lower: [T::real(0.0), s65, s66, s67, s68, s69, s70, s71, s72, s73],
-                    diagonal: [
-                        self.m + (s37[0] + s9 * s62),
-                        s38[0],
-                        s38[1],
-                        s38[2],
-                        s38[3],
-                        s38[4],
-                        s38[5],
-                        s38[6],
-                        s38[7],
-                        self.m + s9 * s64,
-                    ],
-                    upper: [s65, s66, s67, s68, s69, s70, s71, s72, s73, T::real(0.0)],
+        let s44: [T; 10] = ::core::array::from_fn(|i| v[i] * s22[i].0);
+        let s45 = (1..10).fold(s22[0].1, |sum, i| sum + s22[i].1);
+        let s46 = self.k * s23[0];
+        let s47 = s46 - s24[0];
+        let s48 = self.k * s23[8];
+        let s49 = s48 + s24[9];
+        let s50 = (1..10).fold(s18[0], |sum, i| sum + s18[i])
+            + self.k * (1..9).fold(s20[0], |sum, i| sum + s20[i]) * real(0.25) - energy0
+            - self.m * (1..10).fold(s21[0], |sum, i| sum + s21[i]) * real(0.5)
+            - s3 * s45;
+        let s51 = self.k * s19[0];
+        let s52 = s51 * real(3.0) + s30[0];
+        let s53 = self.k * s19[8];
+        let s54 = s53 * real(3.0) + s30[9];
+        let s55 = -(s51 * s9);
+        let s56 = -(s10 * s19[1]);
+        let s57 = -(s10 * s19[2]);
+        let s58 = -(s10 * s19[3]);
+        let s59 = -(s10 * s19[4]);
+        let s60 = -(s10 * s19[5]);
+        let s61 = -(s10 * s19[6]);
+        let s62 = -(s10 * s19[7]);
+        let s63 = -(s53 * s9);
+        let s64 = s34[0] - s46 * real(0.5) - s35[0];
+        let s65 = v[0] * s52 * real(0.25);
+        let s66 = s48 * real(0.5) + s34[9];
+        let s67 = v[9] * s54 * real(0.25);
+        let s68 = -(s21[0] * s52) - s21[2] * s31[1] - s21[4] * s31[3] - s21[6] * s31[5]
+            - s21[9] * s54 - sin2 * s45 * real(0.3333333333333333);
+        let s69 = s68 * real(0.25) + (s13 * v[9] * s19[8] - s41[7]) * v[8]
+            + (s16 * s19[6] - s41[6] + s13 * v[8] * s19[7]) * v[7];
+        let s70 = s69 + (s15 * s19[4] - s41[4] + s16 * s19[5]) * v[5]
+            + (s14 * s19[2] - s41[2] + s15 * s19[3]) * v[3];
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        s26[0] - (p0_low[0] + s1 * s47 + s27[0]),
+                        s28[0],
+                        s28[1],
+                        s28[2],
+                        s28[3],
+                        s28[4],
+                        s28[5],
+                        s28[6],
+                        s28[7],
+                        s26[9] - (p0_low[9] - s1 * s49),
+                    ]),
+                    jacobian: ::vi_core::linear::Tridiagonal {
+                        lower: [
+                            T::real(0.0),
+                            s55,
+                            s56,
+                            s57,
+                            s58,
+                            s59,
+                            s60,
+                            s61,
+                            s62,
+                            s63,
+                        ],
+                        diagonal: [
+                            self.m + (s32[0] + s8 * s52),
+                            s33[0],
+                            s33[1],
+                            s33[2],
+                            s33[3],
+                            s33[4],
+                            s33[5],
+                            s33[6],
+                            s33[7],
+                            self.m + s8 * s54,
+                        ],
+                        upper: [
+                            s55,
+                            s56,
+                            s57,
+                            s58,
+                            s59,
+                            s60,
+                            s61,
+                            s62,
+                            s63,
+                            T::real(0.0),
+                        ],
+                    },
                 },
+                residual_dh: ::vi_core::SVector::from([
+                    s64 + (s38[0] + s65 - s37[0]) * h,
+                    s42[0],
+                    s42[1],
+                    s42[2],
+                    s42[3],
+                    s42[4],
+                    s42[5],
+                    s42[6],
+                    s42[7],
+                    s66 + (s36[9] - s40[8] + s67) * h,
+                ]),
+                energy_residual: s50
+                    + ((1..10).fold(s17[0], |sum, i| sum + s17[i]) - energy0_low
+                        + s1
+                            * ((0..8)
+                                .fold(
+                                    s45 * cos2 * real(0.3333333333333333) + v[0] * s47,
+                                    |sum, i| sum - s29[i],
+                                ) - v[9] * s49)),
+                energy_dv: ::vi_core::SVector::from([
+                    s64 + (s37[0] - s65 - s36[0]) * h,
+                    s43[0],
+                    s43[1],
+                    s43[2],
+                    s43[3],
+                    s43[4],
+                    s43[5],
+                    s43[6],
+                    s43[7],
+                    s66 + (s40[8] - s67 - s36[9]) * h,
+                ]),
+                energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
+                    - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
+                        * real(0.16666666666666666),
             },
-            residual_dh: ::vi_core::SVector::from([
-                s74 + (s44[0] + s75 - s43[0]) * h,
-                s48[0],
-                s48[1],
-                s48[2],
-                s48[3],
-                s48[4],
-                s48[5],
-                s48[6],
-                s48[7],
-                s76 + (s42[9] - s46[8] + s77) * h,
-            ]),
-            energy_residual: s59
-                + ((1..10).fold(s20[0], |sum, i| sum + s20[i]) - energy0_low
-                    + s1
-                        * ((0..8).fold(s60 + v[0] * s56, |sum, i| sum - s34[i])
-                            - v[9] * s58)),
-            energy_dv: ::vi_core::SVector::from([
-                s74 + (s43[0] - s75 - s42[0]) * h,
-                s49[0],
-                s49[1],
-                s49[2],
-                s49[3],
-                s49[4],
-                s49[5],
-                s49[6],
-                s49[7],
-                s76 + (s46[8] - s77 - s42[9]) * h,
-            ]),
-            energy_dh: s82 + (s14 * v[0] * s22[0] - s47[0] + s15 * s22[1]) * v[1] - s79,
-        };
-        let (change, change_h) = solve(&both);
-        let change: [T; 10] = change.into();
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                h * s56 + s29[0]
-                    + ((s2) * change[0] + (real(2.0)) * both.momentum.residual[0usize]),
-                s51[0]
-                    + ((s2) * change[1] + (real(2.0)) * both.momentum.residual[1usize]),
-                s51[1]
-                    + ((s2) * change[2] + (real(2.0)) * both.momentum.residual[2usize]),
-                s51[2]
-                    + ((s2) * change[3] + (real(2.0)) * both.momentum.residual[3usize]),
-                s51[3]
-                    + ((s2) * change[4] + (real(2.0)) * both.momentum.residual[4usize]),
-                s51[4]
-                    + ((s2) * change[5] + (real(2.0)) * both.momentum.residual[5usize]),
-                s51[5]
-                    + ((s2) * change[6] + (real(2.0)) * both.momentum.residual[6usize]),
-                s51[6]
-                    + ((s2) * change[7] + (real(2.0)) * both.momentum.residual[7usize]),
-                s51[7]
-                    + ((s2) * change[8] + (real(2.0)) * both.momentum.residual[8usize]),
-                -(h * s58)
-                    + ((s2) * change[9] + (real(2.0)) * both.momentum.residual[9usize]),
-            ]),
-            energy: s83 * h
-                + ((s52[0]) * change[0] + (s52[1]) * change[1] + (s52[2]) * change[2]
-                    + (s52[3]) * change[3] + (s52[4]) * change[4] + (s52[5]) * change[5]
-                    + (s52[6]) * change[6] + (s52[7]) * change[7] + (s52[8]) * change[8]
-                    + (s41[9] * (s6 * real(0.16666666666666666))) * change[9]
-                    + (s83
-                        + ((0..9)
-                            .fold(s78 * real(0.16666666666666666), |sum, i| sum - s53[i])
-                            + s79) * h) * change_h),
-        }
+        );
+        self.increment(
+            node,
+            h + change_h,
+            &(::vi_core::SVector::<T, 10>::from(*v) + change),
+        )
     }
 }
 

@@ -1605,7 +1605,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     ///
     /// to first order at `(v + dv, h + dh)`.
     ///
-    /// 210 operations.
+    /// 224 operations.
     #[inline(always)]
     fn extended_step(
         &self,
@@ -1631,7 +1631,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         fn extended_step_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 62],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[1];
@@ -1667,19 +1667,19 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[31] = s8;
             values[34] = sin4;
             values[35] = s13;
-            values[36] = cos4;
-            values[37] = s9;
-            values[38] = s11;
-            values[40] = s12;
-            values[43] = s7;
-            values[44] = s6;
+            values[37] = cos4;
+            values[38] = s9;
+            values[39] = s11;
+            values[41] = s12;
+            values[45] = s7;
+            values[47] = s6;
         }
         /// Part 2 of `extended_step`: 27 operations.
         #[inline(never)]
         fn extended_step_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 62],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[1];
@@ -1693,10 +1693,10 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s5 = values[30];
             let s8 = values[31];
             let s13 = values[35];
-            let s9 = values[37];
-            let s12 = values[40];
-            let s7 = values[43];
-            let s6 = values[44];
+            let s9 = values[38];
+            let s12 = values[41];
+            let s7 = values[45];
+            let s6 = values[47];
             let s14 = s13 * sin2;
             let s15 = s12 + s14;
             let s16 = system.m * q_0_dot * real(2.0) + s6 - p0_q_0
@@ -1709,42 +1709,41 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s22 = s17 + (s18 + s19 * s21) * h;
             let s23 = s5 * real(0.25);
             let s24 = (q_0_dot + q_1_dot) * s9 * real(0.125);
-            values[39] = s14;
-            values[41] = s15;
+            values[40] = s14;
+            values[42] = s15;
             values[0] = s16;
-            values[46] = s20;
-            values[47] = s21;
-            values[48] = s17;
-            values[49] = s18;
-            values[50] = s19;
+            values[49] = s20;
+            values[50] = s21;
+            values[52] = s17;
+            values[53] = s18;
+            values[54] = s19;
             values[2] = s22;
-            values[51] = s23;
-            values[52] = s24;
+            values[55] = s23;
+            values[56] = s24;
         }
-        /// Part 3 of `extended_step`: 44 operations.
+        /// Part 3 of `extended_step`: 29 operations.
         #[inline(never)]
         fn extended_step_part_3<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 62],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[1];
             let q_0_dot = inputs[2];
             let q_1_dot = inputs[3];
             let sin2 = values[28];
-            let s5 = values[30];
-            let cos4 = values[36];
-            let s9 = values[37];
-            let s11 = values[38];
-            let s14 = values[39];
-            let s15 = values[41];
-            let s7 = values[43];
-            let s20 = values[46];
-            let s21 = values[47];
-            let s19 = values[50];
-            let s23 = values[51];
-            let s24 = values[52];
+            let cos4 = values[37];
+            let s9 = values[38];
+            let s11 = values[39];
+            let s14 = values[40];
+            let s15 = values[42];
+            let s7 = values[45];
+            let s20 = values[49];
+            let s21 = values[50];
+            let s19 = values[54];
+            let s23 = values[55];
+            let s24 = values[56];
             let s25 = s19 * s20;
             let s26 = s23 - (s24 + s25) * h;
             let s27 = s11 * real(0.5);
@@ -1755,41 +1754,27 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s32 = q_0_dot * s21;
             let s33 = q_1_dot * s20;
             let s34 = s29 + s19 * (s31 + s32 - s33);
-            let s35 = s29 + s19 * (s33 - s32 - s31);
-            let s36 = -(h * s15) - s7 * h;
-            let s37 = system.m * real(4.0);
-            let s38 = s19 * q_1_dot * s9;
-            let s39 = s37 - s38;
-            let s40 = s5 * real(0.5);
-            let s41 = s19 * q_0_dot * s9;
-            let s42 = s40 - s41;
-            let s43 = h * real(0.16666666666666666);
-            let s44 = (s30 * s43 - s7 * real(2.0)) * h;
-            let s45 = s40 + s38;
-            let s46 = s37 + s41;
+            let s35 = s33 - s32 - s31;
+            let s36 = s29 + s19 * s35;
+            let s37 = -(h * s15) - s7 * h;
             values[33] = s28;
-            values[53] = s25;
+            values[57] = s25;
             values[4] = s26;
-            values[54] = s27;
-            values[55] = s30;
-            values[56] = s32;
-            values[57] = s33;
+            values[58] = s27;
+            values[59] = s30;
+            values[60] = s32;
+            values[61] = s33;
             values[6] = s34;
-            values[9] = s35;
-            values[12] = s36;
-            values[61] = s43;
-            values[21] = s44;
-            values[15] = s39;
-            values[16] = s45;
-            values[18] = s42;
-            values[19] = s46;
+            values[64] = s35;
+            values[9] = s36;
+            values[12] = s37;
         }
-        /// Part 4 of `extended_step`: 50 operations.
+        /// Part 4 of `extended_step`: 47 operations.
         #[inline(never)]
         fn extended_step_part_4<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 62],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
             let h = inputs[1];
@@ -1802,129 +1787,165 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let sin3 = values[29];
             let s5 = values[30];
             let s13 = values[35];
-            let cos4 = values[36];
-            let s9 = values[37];
-            let s12 = values[40];
-            let s20 = values[46];
-            let s17 = values[48];
-            let s18 = values[49];
-            let s19 = values[50];
-            let s23 = values[51];
-            let s24 = values[52];
-            let s25 = values[53];
-            let s27 = values[54];
-            let s43 = values[61];
-            let s47 = sin3 * cos4;
-            let s48 = system.b * q_1_dot;
-            let s49 = (s47 * s43 - s48 * real(2.0)) * h;
-            let s50 = s13 * sin3;
-            let s51 = s12 - s50;
-            let s52 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
-                + (s48 * s1 - p0_q_1_low - s1 * s51);
-            let s53 = s23 + (s24 - s25) * h;
-            let s54 = s20 + s13 * cos3;
-            let s55 = s17 + (s18 + s19 * s54) * h;
-            let s56 = q_0_dot * q_0_dot;
-            let s57 = s50 * real(0.5) + s48 * real(0.5) - s27 - s56 * s9 * real(0.125);
-            let s58 = s47 * real(0.3333333333333333);
-            let s59 = q_0_dot * s20;
-            let s60 = q_1_dot * s54;
-            let s61 = s57 + s19 * (s58 - s59 + s60);
-            let s62 = s57 + s19 * (s59 - s60 - s58);
-            let s63 = h * s51 - s48 * h;
-            values[32] = s56;
-            values[42] = s51;
-            values[1] = s52;
-            values[3] = s53;
-            values[5] = s55;
-            values[58] = s47;
-            values[59] = s60;
-            values[7] = s61;
-            values[10] = s62;
-            values[13] = s63;
-            values[22] = s49;
+            let cos4 = values[37];
+            let s9 = values[38];
+            let s12 = values[41];
+            let s7 = values[45];
+            let s20 = values[49];
+            let s21 = values[50];
+            let s23 = values[55];
+            let s24 = values[56];
+            let s25 = values[57];
+            let s30 = values[59];
+            let s38 = q_1_dot * s9 * real(0.25);
+            let s39 = system.b + s38;
+            let s40 = (-s39 - s1 * s21) * h;
+            let s41 = s1 * s20;
+            let s42 = (s38 + s41) * h;
+            let s43 = h * real(0.16666666666666666);
+            let s44 = (s30 * s43 - s7 * real(2.0)) * h;
+            let s45 = q_0_dot * s9 * real(0.25);
+            let s46 = (s41 - s45) * h;
+            let s47 = s45 - system.b;
+            let s48 = s20 + s13 * cos3;
+            let s49 = (s47 - s1 * s48) * h;
+            let s50 = sin3 * cos4;
+            let s51 = system.b * q_1_dot;
+            let s52 = (s50 * s43 - s51 * real(2.0)) * h;
+            let s53 = s13 * sin3;
+            let s54 = s12 - s53;
+            let s55 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
+                + (s51 * s1 - p0_q_1_low - s1 * s54);
+            let s56 = s23 + (s24 - s25) * h;
+            values[43] = s53;
+            values[44] = s54;
+            values[46] = s51;
+            values[1] = s55;
+            values[51] = s48;
+            values[3] = s56;
+            values[62] = s50;
+            values[66] = s39;
+            values[15] = s40;
+            values[16] = s46;
+            values[18] = s42;
+            values[67] = s47;
+            values[19] = s49;
+            values[21] = s44;
+            values[22] = s52;
         }
-        /// Part 5 of `extended_step`: 48 operations.
+        /// Part 5 of `extended_step`: 50 operations.
         #[inline(never)]
         fn extended_step_part_5<T: ::vi_core::Real>(
             system: &Pendula<T>,
             inputs: &[T; 13],
-            values: &mut [T; 62],
+            values: &mut [T; 68],
         ) {
             let real = T::real;
+            let h = inputs[1];
+            let q_0_dot = inputs[2];
+            let q_1_dot = inputs[3];
+            let s1 = values[24];
+            let p0_q_1 = inputs[5];
+            let energy0 = inputs[6];
+            let s10 = values[25];
+            let cos2 = values[26];
+            let cos3 = values[27];
+            let s28 = values[33];
+            let sin4 = values[34];
+            let s13 = values[35];
+            let s9 = values[38];
+            let s11 = values[39];
+            let s14 = values[40];
+            let s53 = values[43];
+            let s54 = values[44];
+            let s51 = values[46];
+            let s20 = values[49];
+            let s48 = values[51];
+            let s17 = values[52];
+            let s18 = values[53];
+            let s19 = values[54];
+            let s27 = values[58];
+            let s50 = values[62];
+            let s35 = values[64];
+            let s39 = values[66];
+            let s47 = values[67];
+            let s57 = s17 + (s18 + s19 * s48) * h;
+            let s58 = q_0_dot * q_0_dot;
+            let s59 = s53 * real(0.5) + s51 * real(0.5) - s27 - s58 * s9 * real(0.125);
+            let s60 = s50 * real(0.3333333333333333);
+            let s61 = q_0_dot * s20;
+            let s62 = q_1_dot * s48;
+            let s63 = s59 + s19 * (s60 - s61 + s62);
+            let s64 = s61 - s62 - s60;
+            let s65 = s59 + s19 * s64;
+            let s66 = h * s54 - s51 * h;
+            let s67 = -(s39 * q_0_dot) - (s11 + s14) + s1 * s35;
+            let s68 = s11 - s53 + s47 * q_1_dot + s1 * s64;
+            let s69 = cos2 + cos3;
+            let s70 = q_1_dot * p0_q_1 + system.k * (s10 * s10) * real(0.5) - energy0
+                - system.m * (s58 + s28) - s13 * s69;
+            let s71 = sin4 * s69;
+            values[32] = s58;
+            values[36] = s69;
+            values[48] = s70;
+            values[5] = s57;
+            values[63] = s62;
+            values[7] = s63;
+            values[10] = s65;
+            values[65] = s71;
+            values[13] = s66;
+            values[17] = s67;
+            values[20] = s68;
+        }
+        /// Part 6 of `extended_step`: 45 operations.
+        #[inline(never)]
+        fn extended_step_part_6<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 13],
+            values: &mut [T; 68],
+        ) {
+            let real = T::real;
+            let h = inputs[1];
             let q_0_dot = inputs[2];
             let q_1_dot = inputs[3];
             let s1 = values[24];
             let p0_q_0_low = inputs[8];
             let p0_q_0 = inputs[4];
             let p0_q_1_low = inputs[9];
-            let p0_q_1 = inputs[5];
             let energy0_low = inputs[10];
-            let energy0 = inputs[6];
-            let s10 = values[25];
-            let cos2 = values[26];
-            let cos3 = values[27];
-            let s56 = values[32];
-            let s28 = values[33];
-            let sin4 = values[34];
-            let s13 = values[35];
-            let cos4 = values[36];
-            let s9 = values[37];
-            let s15 = values[41];
-            let s51 = values[42];
-            let s6 = values[44];
-            let s30 = values[55];
-            let s32 = values[56];
-            let s33 = values[57];
-            let s47 = values[58];
-            let s60 = values[59];
-            let s64 = (q_1_dot - q_0_dot) * s9 * real(0.25);
-            let s65 = s64 * q_1_dot;
-            let s66 = s64 * q_0_dot;
-            let s67 = cos2 + cos3;
-            let s68 = q_1_dot * p0_q_1 + system.k * (s10 * s10) * real(0.5) - energy0
-                - system.m * (s56 + s28) - s13 * s67;
-            let s69 = sin4 * s67;
-            let s70 = (-(s60 * real(0.25)) - s47 * real(0.16666666666666666)) * q_1_dot
-                - s69 * real(0.08333333333333333)
-                + (s33 * real(0.5) - s32 * real(0.25) - s30 * real(0.16666666666666666))
-                    * q_0_dot;
-            let s71 = s67 * cos4 * real(0.3333333333333333);
-            let s72 = s68 + (p0_q_0 - s6) * q_0_dot
-                + (q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
-                    + s1 * (s71 - q_0_dot * s15 + q_1_dot * s51));
-            values[45] = s71;
-            values[8] = s72;
-            values[60] = s69;
-            values[11] = s70;
-            values[17] = s65;
-            values[20] = s66;
-        }
-        /// Part 6 of `extended_step`: 15 operations.
-        #[inline(never)]
-        fn extended_step_part_6<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 62],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
             let sin2 = values[28];
             let sin3 = values[29];
-            let s56 = values[32];
+            let s58 = values[32];
             let s28 = values[33];
-            let cos4 = values[36];
-            let s71 = values[45];
-            let s69 = values[60];
-            let s73 = s71 + system.b * s56 + system.b * s28;
-            let s74 = -(s73 * h);
-            let s75 = (s69 * real(0.16666666666666666)
+            let s69 = values[36];
+            let cos4 = values[37];
+            let s15 = values[42];
+            let s54 = values[44];
+            let s6 = values[47];
+            let s70 = values[48];
+            let s30 = values[59];
+            let s32 = values[60];
+            let s33 = values[61];
+            let s50 = values[62];
+            let s62 = values[63];
+            let s71 = values[65];
+            let s72 = (-(s62 * real(0.25)) - s50 * real(0.16666666666666666)) * q_1_dot
+                - s71 * real(0.08333333333333333)
+                + (s33 * real(0.5) - s32 * real(0.25) - s30 * real(0.16666666666666666))
+                    * q_0_dot;
+            let s73 = s69 * cos4 * real(0.3333333333333333);
+            let s74 = s70 + (p0_q_0 - s6) * q_0_dot
+                + (q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
+                    + s1 * (s73 - q_0_dot * s15 + q_1_dot * s54));
+            let s75 = s73 + system.b * s58 + system.b * s28;
+            let s76 = -(s75 * h);
+            let s77 = (s71 * real(0.16666666666666666)
                 + (q_0_dot * sin2 + q_1_dot * sin3) * cos4 * real(0.16666666666666666))
-                * h - s73;
-            values[14] = s74;
-            values[23] = s75;
+                * h - s75;
+            values[8] = s74;
+            values[11] = s72;
+            values[14] = s76;
+            values[23] = s77;
         }
         let system = self;
         let inputs = [
@@ -1942,37 +1963,36 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             q_0_mid,
             q_1_mid,
         ];
-        let mut values = [T::real(0.0); 62];
+        let mut values = [T::real(0.0); 68];
         extended_step_part_1(system, &inputs, &mut values);
         extended_step_part_2(system, &inputs, &mut values);
         extended_step_part_3(system, &inputs, &mut values);
         extended_step_part_4(system, &inputs, &mut values);
         extended_step_part_5(system, &inputs, &mut values);
         extended_step_part_6(system, &inputs, &mut values);
-        let both = ::vi_core::ExtendedSystem {
-            momentum: ::vi_core::MomentumEquation {
-                residual: ::vi_core::SVector::from([values[0], values[1]]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[values[2], values[3], values[4], values[5]],
-                ),
+        let (change, change_h) = solve(
+            &::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([values[0], values[1]]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[values[2], values[3], values[4], values[5]],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([values[6], values[7]]),
+                energy_residual: values[8],
+                energy_dv: ::vi_core::SVector::from([values[9], values[10]]),
+                energy_dh: values[11],
             },
-            residual_dh: ::vi_core::SVector::from([values[6], values[7]]),
-            energy_residual: values[8],
-            energy_dv: ::vi_core::SVector::from([values[9], values[10]]),
-            energy_dh: values[11],
-        };
-        let (change, change_h) = solve(&both);
+        );
         let change: [T; 2] = change.into();
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
                 values[12]
                     + ((values[15]) * change[0] + (values[16]) * change[1]
-                        + (values[17]) * change_h
-                        + (real(2.0)) * both.momentum.residual[0usize]),
+                        + (values[17]) * change_h),
                 values[13]
                     + ((values[18]) * change[0] + (values[19]) * change[1]
-                        + (values[20]) * change_h
-                        + (real(2.0)) * both.momentum.residual[1usize]),
+                        + (values[20]) * change_h),
             ]),
             energy: values[14]
                 + ((values[21]) * change[0] + (values[22]) * change[1]

@@ -70,7 +70,7 @@ impl Fields {
     /// A partial derivative, kept from the first time on unless it is trivially zero: `derivatives` ascend.
     fn defined(&mut self, pool: &mut Pool<Symbol>, quantity: Quantity, derivatives: &[Variable]) -> &Definition {
         let key = (quantity, derivatives.to_vec());
-        if let Some(place) = self.known.find(&key) {
+        if let Some(place) = self.known.get_index_of(&key) {
             return &self.definitions[place];
         }
         // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
@@ -82,13 +82,13 @@ impl Fields {
         let derived = pool.derivative(basic.expr, &mut |pool, symbol| {
             if *symbol == Symbol::Continuous(*last) { pool.one() } else { pool.zero() }
         });
-        let place = self.known.insert(key);
+        let place = self.known.insert_full(key).0;
         self.definitions.push(Definition::new(pool, derived));
         &self.definitions[place]
     }
 
     fn known(&self, field: &Field) -> Option<&Definition> {
-        let place = self.known.find(&(field.quantity, field.derivatives.clone()))?;
+        let place = self.known.get_index_of(&(field.quantity, field.derivatives.clone()))?;
         self.definitions.get(place)
     }
 

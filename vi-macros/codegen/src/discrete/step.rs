@@ -41,8 +41,8 @@ pub struct Equations {
     /// The derivatives of p1 − p0 and, last, of E1 − E0: entry (i, j) by v_j, and by h where j is N. None for systems so large
     /// that no function would use them.
     pub increment_slopes: Vec<Vec<Expr>>,
-    /// The same of p1 − p0 + 2 r, which for the midpoint rule is 2 (L_v − p0) and knows no force. A Newton step makes r zero: it
-    /// changes p1 − p0 by these slopes times the step, and by 2 r.
+    /// The derivatives of p1 − p0 + 2 r, which for the midpoint rule is 2 (L_v − p0) and knows no force: entry (i, j) by v_j. A
+    /// Newton step in v makes r zero: it changes p1 − p0 by these times the step, and by 2 r.
     pub kick_slopes: Vec<Vec<Expr>>,
 }
 
@@ -81,7 +81,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let rows = rows.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];
-    let mut kick_slopes = vec![Vec::with_capacity(dimension + 1); dimension];
+    let mut kick_slopes = vec![Vec::with_capacity(dimension); dimension];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
         let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::StepVelocity(j))?;
@@ -93,7 +93,6 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
     increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
-    kick_slopes.iter_mut().zip(column.kicks).for_each(|(row, entry)| row.push(entry));
 
     Ok(Equations {
         place: place(pool, &points),

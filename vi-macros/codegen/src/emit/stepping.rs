@@ -211,9 +211,9 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
                 self.increment(node, h, &reached).momentum
             });
         };
-        let residual = |i: usize| (&residuals[0], quote!(momentum.residual[#i]));
+        let residual = |i: usize| Some((&residuals[0], quote!(momentum.residual[#i])));
         let gains = gains.iter().zip(slopes).enumerate();
-        let gains = gains.map(|(i, (gain, slopes))| carried(gain, slopes, Some(residual(i)), size));
+        let gains = gains.map(|(i, (gain, slopes))| carried(gain, slopes, residual(i), size));
         Some(quote! {
             let momentum = #equation;
             let change: [T; #dimension] = solve(&momentum).into();
@@ -241,21 +241,20 @@ fn extended_step(source: &Source) -> Option<TokenStream> {
     method.tokens(source, |body| {
         let (equations, rest) = body.results.split_at(size + 5);
         let equations = extended_fields(source, equations)?;
-        let [momentum, energy, residuals, slopes @ ..] = rest else {
+        // Of residuals they take none.
+        let [momentum, energy, _, slopes @ ..] = rest else {
             return Some(quote! {
                 let (change, change_h) = solve(&#equations);
                 self.increment(node, h + change_h, &(::vi_core::SVector::<T, #dimension>::from(*v) + change))
             });
         };
-        let residual = |i: usize| (&residuals[0], quote!(both.momentum.residual[#i]));
-        let momenta = momentum.iter().zip(slopes).enumerate();
-        let momenta = momenta.map(|(i, (gain, slopes))| carried(gain, slopes, Some(residual(i)), size));
-        let energy = carried(energy.first()?, slopes.last()?, None, size);
+        let mut gains =
+            momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, None, size));
+        let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
         Some(quote! {
-            let both = #equations;
-            let (change, change_h) = solve(&both);
+            let (change, change_h) = solve(&#equations);
             let change: [T; #dimension] = change.into();
-            ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #energy }
+            ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #(#gains)* }
         })
     })
 }

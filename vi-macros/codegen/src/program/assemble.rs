@@ -186,7 +186,7 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let increment = assembly.function("increment", &gains)?;
     let evaluated = [&equation, &system_of_both].map(|(function, _)| function.cost() + increment.0.cost());
     let mut functions = vec![equation, system_of_both, magnitudes, increment];
-    let short = functions[0].0.operation_count() <= steps::TOLD;
+    let short = functions[0].0.operation_count() <= steps::SHORT;
     functions.extend(steps::steps(assembly, of, [momentum, extended], &gains, (short, evaluated))?);
     Ok(functions)
 }

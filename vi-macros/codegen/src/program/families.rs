@@ -68,9 +68,9 @@ impl Function {
         let mut rows: Vec<BTreeMap<usize, OperationId>> = Vec::new();
         for id in self.operations.needed(&self.results) {
             let Some((shape, place)) = shape(self.operations.get(id), &placed) else { continue };
-            let number = shapes.insert(shape);
+            let number = shapes.insert_full(shape).0;
             placed.insert(id, (number, place));
-            rows.resize_with(shapes.values().len(), BTreeMap::new);
+            rows.resize_with(shapes.len(), BTreeMap::new);
             rows[number].insert(place, id);
         }
         // Shapes are numbered after those of their operands.

@@ -62,7 +62,7 @@ impl Operations {
         if let Some(simple) = self.simplified(&operation) {
             return simple;
         }
-        OperationId::at(self.list.insert(operation))
+        OperationId::at(self.list.insert_full(operation).0)
     }
 
     /// A number.
@@ -88,7 +88,7 @@ impl Operations {
     /// The index of an operation that is listed.
     #[must_use]
     pub fn find(&self, operation: &Operation) -> Option<OperationId> {
-        self.list.find(operation).map(OperationId::at)
+        self.list.get_index_of(operation).map(OperationId::at)
     }
 
     /// The operation is the argument of the rule that this symbol names.
@@ -106,20 +106,20 @@ impl Operations {
 
     /// How many operations are listed.
     pub(super) fn len(&self) -> usize {
-        self.list.values().len()
+        self.list.len()
     }
 
     /// All operations with their indices, operands before results.
     pub fn iter(&self) -> impl Iterator<Item = (OperationId, &Operation)> {
-        (0..).map(OperationId).zip(self.list.values())
+        (0..).map(OperationId).zip(&self.list)
     }
 
     /// The operations that the results need, operands before results.
     #[must_use]
     pub fn needed(&self, results: &[Vec<OperationId>]) -> Vec<OperationId> {
-        let mut needed = vec![false; self.list.values().len()];
+        let mut needed = vec![false; self.list.len()];
         results.iter().flatten().for_each(|id| needed[id.index()] = true);
-        for index in (0..self.list.values().len()).rev() {
+        for index in (0..self.list.len()).rev() {
             if needed[index] {
                 self.list[index].operands().for_each(|id| needed[id.index()] = true);
             }
