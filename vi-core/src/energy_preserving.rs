@@ -15,6 +15,7 @@
 //! |---|---|
 //! | `starts` | the node and the interval that the first step follows |
 //! | `foretold` | the root by one Newton step from v and h extrapolated over the last steps, where earlier steps taught that this will do |
+//! | `lesson` | how far one Newton step may be trusted, learnt at a root |
 //! | `guess` | else: v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `newton` | the n + 1 equations to the rounding floor |
 //! | `bracket` | where that fails: the smallest h > 0 that solves them, or the proof that there is none |

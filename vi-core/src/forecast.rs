@@ -12,8 +12,8 @@
 //! A step is short in time: what waits for its end should be little. A new u gives its part to all later guesses at once, and
 //! the next guess is there before the Newton step δ is, but for `w_0 δ`.
 //!
-//! C and whether to extrapolate change slowly along a motion. They are learnt from one step in 64 to 256, which starts on purpose
-//! from the last u: its first two Newton steps are C, and its solution shows which guess would have been better. A step
+//! C and whether to extrapolate change slowly along a motion. They are learnt from one step in 64 to 256, which starts from the last
+//! u: its first two Newton steps are C (in two unknowns: `energy_preserving::lesson`), and its solution shows which guess would have been better. A step
 //! whose Newton steps do not come below ρ is taken by the slow way, which measures every residual.
 
 use crate::{Real, Scalar};
@@ -260,6 +260,14 @@ mod tests {
             forecast.push(&SVector::from([u + 8.0]), &SVector::from([-8.0]));
             assert_eq!(forecast.newest()[0].to_bits(), u.to_bits());
         }
+    }
+
+    #[test]
+    fn a_polynomial_of_degree_five_is_judged_right() {
+        let sequence = |t: f64| 2.0 * t.powi(5) - 3.0 * t.powi(4) + t - 7.0;
+        let forecast = learnt(sequence);
+        // Integers below 2⁵³: no rounding.
+        assert_eq!(forecast.of_degree_five()[0].to_bits(), sequence(13.0).to_bits());
     }
 
     #[test]

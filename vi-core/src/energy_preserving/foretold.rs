@@ -1,7 +1,7 @@
 //! The step as the steps before it foretell it.
 //!
 //! In: the velocities and lengths of the last steps. Out: the root of both equations by Newton steps from the guess, the last
-//! of them shorter than what is trusted (`forecast`), the length stays inside the range and D keeps its sign. `None` else, and
+//! of them shorter than what is trusted (`lesson`), the length stays inside the range and D keeps its sign. `None` else, and
 //! for every 64th step, which learns what may be trusted.
 
 use super::lesson::Radii;

@@ -1,7 +1,7 @@
 //! How far one Newton step may be trusted, learnt at a root.
 //!
-//! In: a root (v, h), what is gained over it, and a displacement δv. Out: ρ² of v and of h. From a trial that is nearer to the
-//! root than both, one Newton step leaves a share of one rounding at most, in v, in h and in what is gained.
+//! In: a root (v, h) and a displacement δv. Out: how long δv, δh and their product may be, squared, in a Newton step that is the last:
+//! it leaves a share of one rounding at most, in v, in h and in what is gained over the step that it gives.
 //!
 //! To leading order what a step leaves is a quadratic form in what its trial was off by,
 //!

@@ -5,11 +5,12 @@
 //! δh,
 //!
 //! ```text
-//! S δh = −(c/h − energy_dv·a)        S = energy_dh − energy_dv·b = −D/4
+//! S δh = −((c + ½ a·r)/h − energy_dv·a)        S = energy_dh − energy_dv·b = −D/4
 //! δv = −a − b δh
 //! ```
 //!
-//! and S is the step density besides.
+//! and S is the step density besides. The term `½ a·r` is not Newton's: it is `½ δv·A δv`, by which the energy is curved along v
+//! (to leading order in h, and all of it where the mass is constant). Without it that is what δh is off by after a step.
 
 use crate::linear::{self, Matrix};
 use crate::momentum;
@@ -106,7 +107,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
             known +=
                 (equations.energy_dv[i] * trial.h - equations.momentum.residual[i] * T::real(0.5)) * self.residual[i];
         }
-        // The row over h, and S, both times h: one quotient, where two would wait for each other.
+        // The bent row over h, and S, both times h: one quotient, where two would wait for each other.
         let energy = equations.energy_residual * self.determinant - known;
         let dh = -(energy / (self.schur * trial.h));
         Step { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }

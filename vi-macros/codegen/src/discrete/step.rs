@@ -8,6 +8,7 @@
 //! c =  e − v·r                       combined row; its terms of order one have cancelled
 //! A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
 //! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      and their derivatives
+//! ∂(p1 − p0 + 2 r)/∂v                another way to the derivative of p1 − p0 where r becomes zero
 //! ```
 
 use super::fields::changes;
