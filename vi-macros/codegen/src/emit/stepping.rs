@@ -211,7 +211,10 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
                 self.increment(node, h, &reached).momentum
             });
         };
-        let residual = |i: usize| Some((&residuals[0], quote!(momentum.residual[#i])));
+        let residual = |i: usize| {
+            let i = Literal::usize_unsuffixed(i);
+            Some((&residuals[0], quote!(momentum.residual[#i])))
+        };
         let gains = gains.iter().zip(slopes).enumerate();
         let gains = gains.map(|(i, (gain, slopes))| carried(gain, slopes, residual(i), size));
         Some(quote! {
