@@ -158,8 +158,8 @@ where
         } else if let Some(found) = run.stride.foretold(system, &run.node, run.place, inverse.as_ref()) {
             let (h, way) = (run.stride.h, found.v() * run.stride.h);
             if run.node.stays_finite(h, &way, &found.gain) {
-                if S::PLACE.is_some() {
-                    run.place = run.stride.place_after::<S>(&run.node, &found);
+                if let Some(place) = run.stride.place_after::<S>(&run.node, &found) {
+                    run.place = place;
                 }
                 run.stride.take::<S>(&found);
                 run.node.advance(h, &way, &found.gain);

@@ -123,26 +123,17 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     /// and a long node is not copied for nothing.
     #[inline(always)]
     pub(crate) fn stays_finite(&self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
-        let mut sums = [compensated::sum(self.t, self.t_low, h), self.energy, T::zero(), T::zero()];
-        for i in 0..N {
-            sums[2 * i % 4] += compensated::sum(self.q[i], self.q_low[i], way[i]);
-            sums[(2 * i + 1) % 4] += compensated::sum(self.p[i], self.p_low[i], momentum_gain[i]);
-        }
-        let [a, b, c, d] = sums;
-        ((a + b) + (c + d)).is_finite()
+        let t = compensated::sum(self.t, self.t_low, h);
+        are_finite::<N, T>(t, self.energy, |i| {
+            let q = compensated::sum(self.q[i], self.q_low[i], way[i]);
+            (q, compensated::sum(self.p[i], self.p_low[i], momentum_gain[i]))
+        })
     }
 
-    /// Whether time, coordinates, momenta and energy are finite: by their sum, which is finite then unless they are huge.
-    /// Four sums, that do not wait for each other.
+    /// Whether time, coordinates, momenta and energy are finite.
     #[inline(always)]
     pub(crate) fn is_finite(&self) -> bool {
-        let mut sums = [self.t, self.energy, T::zero(), T::zero()];
-        for i in 0..N {
-            sums[2 * i % 4] += self.q[i];
-            sums[(2 * i + 1) % 4] += self.p[i];
-        }
-        let [a, b, c, d] = sums;
-        ((a + b) + (c + d)).is_finite()
+        are_finite::<N, T>(self.t, self.energy, |i| (self.q[i], self.p[i]))
     }
 
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
@@ -163,4 +154,18 @@ impl<const N: usize, T: Scalar> Node<N, T> {
             None => Ok(()),
         }
     }
+}
+
+/// Whether time, energy, and the N coordinates and momenta that `of` gives are finite: by their sum, which is finite then unless they
+/// are huge. Four sums, that do not wait for each other.
+#[inline(always)]
+fn are_finite<const N: usize, T: Scalar>(t: T, energy: T, of: impl Fn(usize) -> (T, T)) -> bool {
+    let mut sums = [t, energy, T::zero(), T::zero()];
+    for i in 0..N {
+        let (q, p) = of(i);
+        sums[2 * i % 4] += q;
+        sums[(2 * i + 1) % 4] += p;
+    }
+    let [a, b, c, d] = sums;
+    ((a + b) + (c + d)).is_finite()
 }

@@ -112,11 +112,14 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
         node.place::<S>(self.h, &self.forecast.guess())
     }
 
-    /// The same for the stride after the step `found` from this node.
+    /// The same for the stride after the step `found` from this node, where it is told at all.
     #[inline]
-    pub(crate) fn place_after<S: Stepping<N, T>>(&self, node: &Node<N, T>, found: &Found<N, T>) -> SVector<T, N> {
-        let Some(part) = S::PLACE.map(T::real) else { return node.q };
-        let h = self.h;
+    pub(crate) fn place_after<S: Stepping<N, T>>(
+        &self,
+        node: &Node<N, T>,
+        found: &Found<N, T>,
+    ) -> Option<SVector<T, N>> {
+        let (h, part) = (self.h, T::real(S::PLACE?));
         let change = h * (T::one() + part * self.forecast.weight());
         let mut place = node.q;
         for i in 0..N {
@@ -124,7 +127,7 @@ impl<const N: usize, T: Scalar> Stride<N, T> {
             let way = trial + self.forecast.after(i, trial) * part;
             place[i] = node.q[i] + (node.q_low[i] + h * way) + found.step[i] * change;
         }
-        place
+        Some(place)
     }
 
     /// The step from the velocity foretold and its `place`; `None` where it cannot be trusted. One loop, in line: a call that

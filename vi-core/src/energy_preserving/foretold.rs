@@ -78,20 +78,22 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
     #[inline]
     pub(super) fn push<S: Stepping<N, T>>(&mut self, node: &Node<N, T>, found: &Found<N, T>) {
         let Found { trial, step, .. } = found;
-        self.place = self.place_after::<S>(node, found);
+        if let Some(place) = self.place_after::<S>(node, found) {
+            self.place = place;
+        }
         self.v.push(&trial.v, &step.v);
         self.h.push(&SVector::repeat(trial.h), &SVector::repeat(step.h));
     }
 
-    /// Where [`Stepping::extended_step`] evaluates L in the step after `found` from this node, to which δ gives
-    /// a multiple of it only: what waits for δ is little.
+    /// Where [`Stepping::extended_step`] evaluates L in the step after `found` from this node, where it is told at all. To it δ gives
+    /// a multiple of itself only: what waits for δ is little.
     #[inline]
     fn place_after<S: Stepping<N, T>>(
         &self,
         node: &Node<N, T>,
         Found { trial, step, .. }: &Found<N, T>,
-    ) -> SVector<T, N> {
-        let Some(part) = S::PLACE.map(T::real) else { return node.q };
+    ) -> Option<SVector<T, N>> {
+        let part = T::real(S::PLACE?);
         let (weight_v, weight_h) = (self.v.weight() * part, self.h.weight());
         let h = self.h.after(0, trial.h);
         let (by_v, by_both) = (trial.h + h * weight_v, T::one() + weight_v * weight_h);
@@ -102,7 +104,7 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
             let by_h = trial.v[i] + v * weight_h;
             place[i] = foretold + (step.v[i] * (by_v + step.h * by_both) + step.h * by_h);
         }
-        place
+        Some(place)
     }
 
     /// The root and what is gained over it, where it was foretold.
@@ -130,8 +132,8 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
             let lengths = (length_squared(&step.v), step.h * step.h);
             // Steps that do not become much shorter lead to another root, or to none.
             let shorter = |now: T, before: T, radius: T| now <= (before * T::real(0.25)).max(radius);
-            let contracts = before
-                .is_none_or(|(v, h)| shorter(lengths.0, v, self.v.radius()) && shorter(lengths.1, h, self.h.radius()));
+            let contracts =
+                before.is_none_or(|(v, h)| shorter(lengths.0, v, self.radii.v) && shorter(lengths.1, h, self.radii.h));
             if !contracts {
                 return None;
             }

@@ -29,7 +29,7 @@
 //! | file | product |
 //! |---|---|
 //! | `node`, `identity`, `function`, `pool` | what an expression is, and where it lives |
-//! | `distinct`, `table` | values by what they are, and by index |
+//! | `table` | values by index |
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand` | new expressions from old |

@@ -43,9 +43,13 @@ pub struct Equations {
     /// that no function would use them.
     pub increment_slopes: Vec<Vec<Expr>>,
     /// The derivatives of p1 − p0 + 2 r, which for the midpoint rule is 2 (L_v − p0) and knows no force: entry (i, j) by v_j. A
-    /// Newton step in v makes r zero: it changes p1 − p0 by these times the step, and by 2 r.
+    /// Newton step in v makes r zero: it changes p1 − p0 by these times the step, and by 2 r. None for systems so small that it does not.
     pub kick_slopes: Vec<Vec<Expr>>,
 }
+
+/// Coordinates up to which the quotient of a momentum step is foretold: that step does not make r zero to all digits, so that r
+/// cannot stand for what it changes, and kicks are of no use.
+const FORETOLD_COORDINATES: usize = 2;
 
 /// Coordinates up to which the derivatives of the increments may be used.
 const CARRIED_COORDINATES: usize = 32;
@@ -66,32 +70,30 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let energy = pool.sub(power, start);
     let energy_residual = combined(pool, energy, &velocities, &residual)?;
 
-    let mut momentum_increment = Vec::with_capacity(dimension);
-    for i in 0..dimension {
-        let gain = pool.sum(&[slots.d2_ld[i], slots.d4_ld[i], slots.fd_minus[i], slots.fd_plus[i]]);
-        momentum_increment.push(pool.expand(gain)?);
-    }
+    let momentum_increment = momentum_increment(pool, slots)?;
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
 
-    let kicks = kicks(pool, &momentum_increment, &residual)?;
+    let kicked = if dimension > FORETOLD_COORDINATES { dimension } else { 0 };
+    let kicks = kicks(pool, &momentum_increment[..kicked], &residual)?;
 
     let (equations, increments) =
         (residual.iter().chain([&energy]), momentum_increment.iter().chain([&energy_increment]));
     let carried = if dimension <= CARRIED_COORDINATES { dimension + 1 } else { 0 };
-    let rows = equations.chain(&kicks).chain(increments.take(carried));
+    let rows = equations.chain(increments.take(carried)).chain(&kicks);
     let rows = rows.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];
-    let mut kick_slopes = vec![Vec::with_capacity(dimension); dimension];
+    let mut kick_slopes = vec![Vec::with_capacity(dimension); kicked];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::StepVelocity(j))?;
+        let column = by_unknown(pool, fields, &points, (&rows, [dimension, carried]), &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
         increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
         kick_slopes.iter_mut().zip(column.kicks).for_each(|(row, entry)| row.push(entry));
     }
-    let column = by_unknown(pool, fields, &points, (&rows, dimension), &Symbol::Step)?;
+    let rows = &rows[..rows.len() - kicked];
+    let column = by_unknown(pool, fields, &points, (rows, [dimension, carried]), &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
     increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
 
@@ -177,6 +179,17 @@ fn lies_at(pool: &mut Pool<Symbol>, point: &Point, part: &Rational) -> bool {
     })
 }
 
+/// p1 − p0, multiplied out.
+fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr>, TooLarge> {
+    let gain = |i: usize| [slots.d2_ld[i], slots.d4_ld[i], slots.fd_minus[i], slots.fd_plus[i]];
+    (0..slots.d2_ld.len())
+        .map(|i| {
+            let sum = pool.sum(&gain(i));
+            pool.expand(sum)
+        })
+        .collect()
+}
+
 /// `p1 − p0 + 2 r`, multiplied out.
 fn kicks(pool: &mut Pool<Symbol>, increments: &[Expr], residuals: &[Expr]) -> Result<Vec<Expr>, TooLarge> {
     let two = pool.integer(2);
@@ -189,19 +202,19 @@ fn kicks(pool: &mut Pool<Symbol>, increments: &[Expr], residuals: &[Expr]) -> Re
     .collect()
 }
 
-/// The derivatives of all rows by one unknown: those of momentum, that of energy, the kicks, the increments of both.
+/// The derivatives of all rows by one unknown: those of momentum, that of energy, the increments of both, the kicks.
 struct Column {
     residual: Vec<Expr>,
     energy: Expr,
-    kicks: Vec<Expr>,
     increments: Vec<Expr>,
+    kicks: Vec<Expr>,
 }
 
 fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
     points: &[Point],
-    (rows, dimension): (&[(Expr, BTreeSet<Symbol>)], usize),
+    (rows, [dimension, carried]): (&[(Expr, BTreeSet<Symbol>)], [usize; 2]),
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
     bounded(pool)?;
@@ -217,9 +230,9 @@ fn by_unknown(
         column.push(pool.expand(slope)?);
     }
     let mut energy = column.split_off(dimension);
-    let mut kicks = energy.split_off(1);
-    let increments = kicks.split_off(dimension);
-    Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), kicks, increments })
+    let mut increments = energy.split_off(1);
+    let kicks = increments.split_off(carried);
+    Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), increments, kicks })
 }
 
 /// `row − v·column`, multiplied out.

@@ -22,10 +22,6 @@ use vi_expr::{Expr, Pool, TooLarge};
 /// find it. And they carry gains by a diagonal matrix only: any other takes longer to compile, and gains nothing.
 pub(super) const SHORT: usize = 1000;
 
-/// Coordinates up to which the quotient of a momentum step is foretold: that step does not make r zero to all digits, so that r
-/// cannot stand for what it changes.
-const FORETOLD: usize = 2;
-
 /// Both steps, which cost less than `evaluated`: the equations, and the gains evaluated for themselves. Short ones are told the
 /// place of L, where there is one.
 pub(super) fn steps(
@@ -45,10 +41,8 @@ pub(super) fn steps(
     }
     let by_v = |rows: &[Vec<Expr>]| rows.iter().take(dimension).map(|row| row[..dimension].to_vec()).collect();
     let pool = &mut *assembly.pool;
-    let mut of_momentum = vec![Carrying::new(pool, 0, by_v(&by_gains), dimension)];
-    if dimension > FORETOLD {
-        of_momentum.push(Carrying::new(pool, 2, by_kicks, dimension));
-    }
+    let of_momentum =
+        vec![Carrying::new(pool, 0, by_v(&by_gains), dimension), Carrying::new(pool, 2, by_kicks, dimension)];
     let of_both = vec![Carrying::new(pool, 0, by_gains, dimension)];
 
     let steps = [
