@@ -160,12 +160,15 @@ impl<const N: usize, T: Scalar> Node<N, T> {
 /// are huge. Four sums, that do not wait for each other.
 #[inline(always)]
 fn are_finite<const N: usize, T: Scalar>(t: T, energy: T, of: impl Fn(usize) -> (T, T)) -> bool {
-    let mut sums = [t, energy, T::zero(), T::zero()];
-    for i in 0..N {
-        let (q, p) = of(i);
-        sums[2 * i % 4] += q;
-        sums[(2 * i + 1) % 4] += p;
+    let [mut a, mut b, mut c, mut d] = [t, energy, T::zero(), T::zero()];
+    for i in (1..N).step_by(2) {
+        let ((q, p), (next_q, next_p)) = (of(i - 1), of(i));
+        (a, b) = (a + q, b + next_q);
+        (c, d) = (c + p, d + next_p);
     }
-    let [a, b, c, d] = sums;
+    if N % 2 == 1 {
+        let (q, p) = of(N - 1);
+        (a, b) = (a + q, b + p);
+    }
     ((a + b) + (c + d)).is_finite()
 }

@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `SMatrix` | dense | closed form for N ≤ 3; else elimination with partial pivoting |
 //! | [`Symmetric`] | dense and symmetric, N ≥ 4 | `L D Lᵀ`; where a pivot is not positive, elimination with pivoting |
-//! | [`Tridiagonal`] | neighbours only | elimination from both ends at once |
+//! | [`Tridiagonal`] | neighbours only | elimination of two rows at a time, from both ends at once |
 //! | [`Banded`] | up to a few places from the diagonal | elimination inside the band |
 //! | [`Blocks`] | blocks that do not touch each other | each block for itself |
 //!

@@ -1,120 +1,195 @@
-//! Tridiagonal matrices, eliminated from both ends at once: the two halves do not wait for each other.
+//! Tridiagonal matrices, eliminated two rows at a time and from both ends at once: a row waits for half as many quotients as
+//! there are rows before it, and the two halves do not wait for each other.
 //!
 //! ```text
 //! lower_i x_{i−1} + diagonal_i x_i + upper_i x_{i+1} = b_i        lower_0 = upper_{N−1} = 0
+//! rows i, j = i + 1 from above, with y_i = b_i − lower_i y_{i−1}:
+//! d = diagonal_i − lower_i upper_{i−1} z     ρ = 1/(d diagonal_j − upper_i lower_j)     z = d ρ, which the next two take
+//! y_i ← (diagonal_j y_i − upper_i b_j) ρ     y_j = (d b_j − lower_j y_i) ρ
+//! x_i = y_i + upper_i ρ upper_j x_{j+1}      x_j = y_j − d ρ upper_j x_{j+1}
 //! ```
+//!
+//! and mirrored from below. One row or two in the middle close the elimination.
 
-use super::Matrix;
+use super::{GROWTH, Matrix};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix of three diagonals, entry i of each in row i.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tridiagonal<const N: usize, T> {
-    /// Left of the diagonal; the first is not used.
+    /// Left of the diagonal; the first is zero.
     pub lower: [T; N],
     /// The diagonal.
     pub diagonal: [T; N],
-    /// Right of the diagonal; the last is not used.
+    /// Right of the diagonal; the last is zero.
     pub upper: [T; N],
 }
 
-/// The matrix with the reciprocals of its pivots, which are those of the elimination from above in the rows before the
-/// middle, from below in the rows after it.
+/// The matrix, eliminated.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<const N: usize, T> {
     matrix: Tridiagonal<N, T>,
-    reciprocals: [T; N],
+    /// d and ρ of two rows, in the order of their elimination; of the rows in the middle the reciprocals.
+    pivots: [T; N],
+    /// What a row takes of the unknown that is known before it.
+    weights: [T; N],
+}
+
+/// How far the elimination from one end has come: what the next two rows take of the last two.
+#[derive(Clone, Copy)]
+struct Front<const M: usize, T> {
+    /// What the last row has of the next one.
+    beyond: T,
+    /// z.
+    corner: T,
+    /// y of the last row, for each right-hand side.
+    known: [T; M],
+}
+
+impl<const M: usize, T: Real> Front<M, T> {
+    /// Before the first rows.
+    fn start() -> Self {
+        Self { beyond: T::zero(), corner: T::zero(), known: [T::zero(); M] }
+    }
 }
 
 impl<const N: usize, T: Real> Tridiagonal<N, T> {
-    const MIDDLE: usize = N / 2;
+    /// Pairs of rows outside the middle: those from above, and those from below, which may be one more.
+    const PAIRS: usize = N.saturating_sub(1) / 2;
+    const ABOVE: usize = Self::PAIRS / 2;
+    const BELOW: usize = Self::PAIRS - Self::ABOVE;
+    /// The rows in the middle, the second of which may be the first.
+    const MIDDLE: [usize; 2] = [2 * Self::ABOVE, N - 1 - 2 * Self::BELOW];
 
-    /// The reciprocals of the pivots, those of the two halves in turn, and right-hand sides eliminated on the way, but for the
-    /// middle row: they wait for less than the pivots do. The lower half of an even N is a row shorter.
-    #[inline]
-    fn eliminate<const M: usize>(&self, x: &mut SMatrix<T, N, M>) -> [T; N] {
-        let Self { lower, diagonal, upper } = self;
-        let mut reciprocals = [T::zero(); N];
-        let (mut above, mut below) = (T::zero(), T::zero());
-        for step in 0..Self::MIDDLE {
-            let (i, j) = (step, N - 1 - step);
-            let from_above = if step == 0 { T::zero() } else { lower[i] * upper[i - 1] };
-            let from_below = if step == 0 { T::zero() } else { upper[j] * lower[j + 1] };
-            above = (diagonal[i] - from_above * above).recip();
-            reciprocals[i] = above;
-            if j > Self::MIDDLE {
-                below = (diagonal[j] - from_below * below).recip();
-                reciprocals[j] = below;
-            }
-            self.inward(&reciprocals, x, step);
-        }
-        let m = Self::MIDDLE;
-        let mut pivot = diagonal[m];
-        if m > 0 {
-            pivot -= lower[m] * upper[m - 1] * reciprocals[m - 1];
-        }
-        if m + 1 < N {
-            pivot -= upper[m] * lower[m + 1] * reciprocals[m + 1];
-        }
-        reciprocals[m] = pivot.recip();
-        // Everything passes through the middle.
-        if !self.is_kept_by(&reciprocals) {
-            reciprocals[m] = T::real(f64::NAN);
-        }
-        reciprocals
+    /// The rows of a pair.
+    #[inline(always)]
+    fn rows<const FROM_ABOVE: bool>(step: usize) -> [usize; 2] {
+        if FROM_ABOVE { [2 * step, 2 * step + 1] } else { [N - 1 - 2 * step, N - 2 - 2 * step] }
     }
 
-    /// Whether no pivot is so small beside its row that digits are lost.
+    /// What a row has of the one before it in the order of elimination, and of the one after it.
+    #[inline(always)]
+    fn beside<const FROM_ABOVE: bool>(&self, row: usize) -> [T; 2] {
+        if FROM_ABOVE { [self.lower[row], self.upper[row]] } else { [self.upper[row], self.lower[row]] }
+    }
+
+    /// Sums of the absolute values of each row.
+    #[inline(always)]
+    fn lengths(&self) -> [T; N] {
+        core::array::from_fn(|i| self.lower[i].abs() + self.diagonal[i].abs() + self.upper[i].abs())
+    }
+
+    /// The pivot of the next two rows, [d, ρ], and their weights.
+    #[inline(always)]
+    fn pivot<const FROM_ABOVE: bool, const M: usize>(
+        &self,
+        [i, j]: [usize; 2],
+        front: &mut Front<M, T>,
+    ) -> ([T; 2], [T; 2]) {
+        let ([before, after], [back, beyond]) = (self.beside::<FROM_ABOVE>(i), self.beside::<FROM_ABOVE>(j));
+        let ([near, far], product) = ([self.diagonal[i], self.diagonal[j]], before * front.beyond);
+        let first = near - product * front.corner;
+        // Of the corner at once, which is waited for.
+        let reciprocal = ((near * far - after * back) - far * product * front.corner).recip();
+        (front.beyond, front.corner) = (beyond, first * reciprocal);
+        let weight = beyond * reciprocal;
+        ([first, reciprocal], [after * weight, -(first * weight)])
+    }
+
+    /// The y of the next two rows.
+    #[inline(always)]
+    fn forward<const FROM_ABOVE: bool, const M: usize>(
+        &self,
+        [i, j]: [usize; 2],
+        [first, reciprocal]: [T; 2],
+        front: &mut Front<M, T>,
+        x: &mut SMatrix<T, N, M>,
+    ) {
+        let ([before, after], [back, _]) = (self.beside::<FROM_ABOVE>(i), self.beside::<FROM_ABOVE>(j));
+        for (mut x, known) in x.column_iter_mut().zip(&mut front.known) {
+            let (near, far) = (x[i] - before * *known, x[j]);
+            x[i] = (self.diagonal[j] * near - after * far) * reciprocal;
+            x[j] = (first * far - back * near) * reciprocal;
+            *known = x[j];
+        }
+    }
+
+    /// The matrix eliminated, and right-hand sides on the way: they wait for less than the pivots do.
     #[inline]
-    fn is_kept_by(&self, reciprocals: &[T; N]) -> bool {
-        let Self { lower, diagonal, upper } = self;
-        let is_kept = |i: usize, beside: T| {
-            let row = diagonal[i].abs() + beside;
-            (row * reciprocals[i].abs()).is_at_most(T::real(super::GROWTH))
+    fn eliminate<const M: usize>(&self, x: &mut SMatrix<T, N, M>) -> ([T; N], [T; N]) {
+        let (lengths, mut pivots, mut weights) = (self.lengths(), [T::zero(); N], [T::zero(); N]);
+        let (mut above, mut below, mut kept) = (Front::start(), Front::start(), true);
+        let mut enter = |[i, j]: [usize; 2], pivot: [T; 2], [near, far]: [T; 2]| {
+            [pivots[i], pivots[j]] = pivot;
+            (weights[i], weights[j]) = (near, far);
+            // Two rows that are nearly one lose digits.
+            kept &= (lengths[i] * lengths[j] * pivot[1].abs()).is_at_most(T::real(GROWTH));
         };
-        let inside = 1..N.max(1) - 1;
-        let kept = inside.fold(true, |kept, i| kept & is_kept(i, lower[i].abs() + upper[i].abs()));
-        // The ends of the diagonals that are not used may hold anything.
-        N < 2 || kept & is_kept(0, upper[0].abs()) & is_kept(N - 1, lower[N - 1].abs())
-    }
-
-    /// The rows so many steps from both ends, but for the middle one, less what they have of the rows before.
-    #[inline]
-    fn inward<const M: usize>(&self, reciprocals: &[T; N], x: &mut SMatrix<T, N, M>, step: usize) {
-        let (i, j) = (step, N - 1 - step);
-        for mut x in x.column_iter_mut() {
-            let known = if step == 0 { T::zero() } else { self.lower[i] * x[i - 1] };
-            x[i] = (x[i] - known) * reciprocals[i];
-            if j > Self::MIDDLE {
-                let known = if step == 0 { T::zero() } else { self.upper[j] * x[j + 1] };
-                x[j] = (x[j] - known) * reciprocals[j];
+        for step in 0..Self::BELOW {
+            if step < Self::ABOVE {
+                let rows = Self::rows::<true>(step);
+                let (pivot, weight) = self.pivot::<true, M>(rows, &mut above);
+                enter(rows, pivot, weight);
+                self.forward::<true, M>(rows, pivot, &mut above, x);
             }
+            let rows = Self::rows::<false>(step);
+            let (pivot, weight) = self.pivot::<false, M>(rows, &mut below);
+            enter(rows, pivot, weight);
+            self.forward::<false, M>(rows, pivot, &mut below, x);
         }
+        let [first, last] = Self::MIDDLE;
+        let mut pivot = self.diagonal[first] - self.lower[first] * above.beyond * above.corner;
+        if first < last {
+            pivots[first] = pivot.recip();
+            weights[first] = -(self.upper[first] * pivots[first]);
+            kept &= (lengths[first] * pivots[first].abs()).is_at_most(T::real(GROWTH));
+            pivot = self.diagonal[last] + self.lower[last] * weights[first];
+        }
+        pivots[last] = (pivot - self.upper[last] * below.beyond * below.corner).recip();
+        kept &= (lengths[last] * pivots[last].abs()).is_at_most(T::real(GROWTH));
+        // Everything passes through the middle.
+        if !kept {
+            pivots[last] = T::real(f64::NAN);
+        }
+        (pivots, weights)
     }
 
-    /// The middle row, and from there all others.
+    /// The middle, and from there all others.
     #[inline]
-    fn outward<const M: usize>(&self, reciprocals: &[T; N], x: &mut SMatrix<T, N, M>) {
-        let (Self { lower, upper, .. }, m) = (self, Self::MIDDLE);
+    fn outward<const M: usize>(&self, (pivots, weights): (&[T; N], &[T; N]), x: &mut SMatrix<T, N, M>) {
+        let [first, last] = Self::MIDDLE;
         for mut x in x.column_iter_mut() {
-            let mut middle = x[m];
-            if m > 0 {
-                middle -= lower[m] * x[m - 1];
+            if first > 0 {
+                let known = self.lower[first] * x[first - 1];
+                x[first] -= known;
             }
-            if m + 1 < N {
-                middle -= upper[m] * x[m + 1];
+            if last + 1 < N {
+                let known = self.upper[last] * x[last + 1];
+                x[last] -= known;
             }
-            x[m] = middle * reciprocals[m];
-            for step in 1..=m {
-                let i = m - step;
-                let known = upper[i] * reciprocals[i] * x[i + 1];
-                x[i] -= known;
-                if m + step < N {
-                    let j = m + step;
-                    let known = lower[j] * reciprocals[j] * x[j - 1];
-                    x[j] -= known;
+            if first < last {
+                x[first] *= pivots[first];
+                let known = self.lower[last] * x[first];
+                x[last] -= known;
+            }
+            x[last] *= pivots[last];
+            if first < last {
+                let after = weights[first] * x[last];
+                x[first] += after;
+            }
+            let [mut above, mut below] = [x[first], x[last]];
+            for step in (0..Self::BELOW).rev() {
+                if step < Self::ABOVE {
+                    let [i, j] = Self::rows::<true>(step);
+                    x[j] += weights[j] * above;
+                    x[i] += weights[i] * above;
+                    above = x[i];
                 }
+                let [i, j] = Self::rows::<false>(step);
+                x[j] += weights[j] * below;
+                x[i] += weights[i] * below;
+                below = x[i];
             }
         }
     }
@@ -126,20 +201,29 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
     #[inline]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let mut x = *rhs;
-        let reciprocals = self.eliminate(&mut x);
-        self.outward(&reciprocals, &mut x);
+        let (pivots, weights) = self.eliminate(&mut x);
+        self.outward((&pivots, &weights), &mut x);
         x
     }
 
     fn inverse(&self) -> Self::Inverse {
-        Factors { matrix: *self, reciprocals: self.eliminate(&mut SMatrix::<T, N, 0>::zeros()) }
+        let (pivots, weights) = self.eliminate(&mut SMatrix::<T, N, 0>::zeros());
+        Factors { matrix: *self, pivots, weights }
     }
 
     #[inline]
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N> {
-        let (Factors { matrix, reciprocals }, mut x) = (inverse, *rhs);
-        (0..Self::MIDDLE).for_each(|step| matrix.inward(reciprocals, &mut x, step));
-        matrix.outward(reciprocals, &mut x);
+        let (Factors { matrix, pivots, weights }, mut x) = (inverse, *rhs);
+        let (mut above, mut below) = (Front::start(), Front::start());
+        for step in 0..Self::BELOW {
+            if step < Self::ABOVE {
+                let [i, j] = Self::rows::<true>(step);
+                matrix.forward::<true, 1>([i, j], [pivots[i], pivots[j]], &mut above, &mut x);
+            }
+            let [i, j] = Self::rows::<false>(step);
+            matrix.forward::<false, 1>([i, j], [pivots[i], pivots[j]], &mut below, &mut x);
+        }
+        matrix.outward((pivots, weights), &mut x);
         x
     }
 
