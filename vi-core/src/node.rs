@@ -124,16 +124,15 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     #[inline(always)]
     pub(crate) fn stays_finite(&self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
         let t = compensated::sum(self.t, self.t_low, h);
-        are_finite::<N, T>(t, self.energy, |i| {
-            let q = compensated::sum(self.q[i], self.q_low[i], way[i]);
-            (q, compensated::sum(self.p[i], self.p_low[i], momentum_gain[i]))
-        })
+        let q = |i| compensated::sum(self.q[i], self.q_low[i], way[i]);
+        let p = |i| compensated::sum(self.p[i], self.p_low[i], momentum_gain[i]);
+        are_finite::<N, T>(t, self.energy, q, p)
     }
 
     /// Whether time, coordinates, momenta and energy are finite.
     #[inline(always)]
     pub(crate) fn is_finite(&self) -> bool {
-        are_finite::<N, T>(self.t, self.energy, |i| (self.q[i], self.p[i]))
+        are_finite::<N, T>(self.t, self.energy, |i| self.q[i], |i| self.p[i])
     }
 
     /// Whether every quantity is finite; else [`StepError::NonFinite`] names the first that is not. `t` is the time of
@@ -156,19 +155,19 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     }
 }
 
-/// Whether time, energy, and the N coordinates and momenta that `of` gives are finite: by their sum, which is finite then unless they
-/// are huge. Four sums, that do not wait for each other.
+/// Whether time, energy, and N coordinates and momenta are finite: by their sum, which is finite then unless they are huge.
 #[inline(always)]
-fn are_finite<const N: usize, T: Scalar>(t: T, energy: T, of: impl Fn(usize) -> (T, T)) -> bool {
-    let [mut a, mut b, mut c, mut d] = [t, energy, T::zero(), T::zero()];
+fn are_finite<const N: usize, T: Scalar>(t: T, energy: T, q: impl Fn(usize) -> T, p: impl Fn(usize) -> T) -> bool {
+    let ([a, b], [c, d]) = (halves::<N, T>(t, q), halves::<N, T>(energy, p));
+    ((a + c) + (b + d)).is_finite()
+}
+
+/// The sums of the entries with even indices and with odd ones: neighbours are added side by side, in vector registers.
+#[inline(always)]
+fn halves<const N: usize, T: Scalar>(start: T, entry: impl Fn(usize) -> T) -> [T; 2] {
+    let [mut even, mut odd] = [start, T::zero()];
     for i in (1..N).step_by(2) {
-        let ((q, p), (next_q, next_p)) = (of(i - 1), of(i));
-        (a, b) = (a + q, b + next_q);
-        (c, d) = (c + p, d + next_p);
+        (even, odd) = (even + entry(i - 1), odd + entry(i));
     }
-    if N % 2 == 1 {
-        let (q, p) = of(N - 1);
-        (a, b) = (a + q, b + p);
-    }
-    ((a + b) + (c + d)).is_finite()
+    if N % 2 == 1 { [even + entry(N - 1), odd] } else { [even, odd] }
 }
