@@ -1520,47 +1520,38 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
             + (s14 * s19[2] - s41[2] + s15 * s19[3]) * v[3];
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
-                residual: ::vi_core::SVector::from([
-                    s26[0] - (p0_low[0] + s1 * s47 + s27[0]),
-                    s28[0],
-                    s28[1],
-                    s28[2],
-                    s28[3],
-                    s28[4],
-                    s28[5],
-                    s28[6],
-                    s28[7],
-                    s26[9] - (p0_low[9] - s1 * s49),
-                ]),
+                residual: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s26[0] - (p0_low[0] + s1 * s47 + s27[0]);
+                    for i in 0..8 {
+                        entries[i + 1] = s28[i];
+                    }
+                    entries[9] = s26[9] - (p0_low[9] - s1 * s49);
+                    entries
+                }),
                 jacobian: ::vi_core::linear::Tridiagonal {
                     lower: [T::real(0.0), s55, s56, s57, s58, s59, s60, s61, s62, s63],
-                    diagonal: [
-                        self.m + (s32[0] + s8 * s52),
-                        s33[0],
-                        s33[1],
-                        s33[2],
-                        s33[3],
-                        s33[4],
-                        s33[5],
-                        s33[6],
-                        s33[7],
-                        self.m + s8 * s54,
-                    ],
+                    diagonal: {
+                        let mut entries = [T::real(0.0); 10];
+                        entries[0] = self.m + (s32[0] + s8 * s52);
+                        for i in 0..8 {
+                            entries[i + 1] = s33[i];
+                        }
+                        entries[9] = self.m + s8 * s54;
+                        entries
+                    },
                     upper: [s55, s56, s57, s58, s59, s60, s61, s62, s63, T::real(0.0)],
                 },
             },
-            residual_dh: ::vi_core::SVector::from([
-                s64 + (s38[0] + s65 - s37[0]) * h,
-                s42[0],
-                s42[1],
-                s42[2],
-                s42[3],
-                s42[4],
-                s42[5],
-                s42[6],
-                s42[7],
-                s66 + (s36[9] - s40[8] + s67) * h,
-            ]),
+            residual_dh: ::vi_core::SVector::from({
+                let mut entries = [T::real(0.0); 10];
+                entries[0] = s64 + (s38[0] + s65 - s37[0]) * h;
+                for i in 0..8 {
+                    entries[i + 1] = s42[i];
+                }
+                entries[9] = s66 + (s36[9] - s40[8] + s67) * h;
+                entries
+            }),
             energy_residual: s50
                 + ((1..10).fold(s17[0], |sum, i| sum + s17[i]) - energy0_low
                     + s1
@@ -1569,18 +1560,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                                 s45 * cos2 * real(0.3333333333333333) + v[0] * s47,
                                 |sum, i| sum - s29[i],
                             ) - v[9] * s49)),
-            energy_dv: ::vi_core::SVector::from([
-                s64 + (s37[0] - s65 - s36[0]) * h,
-                s43[0],
-                s43[1],
-                s43[2],
-                s43[3],
-                s43[4],
-                s43[5],
-                s43[6],
-                s43[7],
-                s66 + (s40[8] - s67 - s36[9]) * h,
-            ]),
+            energy_dv: ::vi_core::SVector::from({
+                let mut entries = [T::real(0.0); 10];
+                entries[0] = s64 + (s37[0] - s65 - s36[0]) * h;
+                for i in 0..8 {
+                    entries[i + 1] = s43[i];
+                }
+                entries[9] = s66 + (s40[8] - s67 - s36[9]) * h;
+                entries
+            }),
             energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
                 - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
                     * real(0.16666666666666666),
@@ -1695,20 +1683,17 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                     + (s35[8] - v[9] * s45 * real(0.5) - s33[9]) * h))
                 .abs();
         ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from([
-                s23[0] + s8 * s41 + s20[0] + s21[0]
-                    + (q_mid[0] * (-(s1 * s42) - s19[0])).abs() + s22[0],
-                s28[0],
-                s28[1],
-                s28[2],
-                s28[3],
-                s28[4],
-                s28[5],
-                s28[6],
-                s28[7],
-                s23[9] + s8 * s44 + s21[9] + s26[8]
-                    + (h * q_mid[9] * s45).abs() * real(0.5),
-            ]),
+            residual: ::vi_core::SVector::from({
+                let mut entries = [T::real(0.0); 10];
+                entries[0] = s23[0] + s8 * s41 + s20[0] + s21[0]
+                    + (q_mid[0] * (-(s1 * s42) - s19[0])).abs() + s22[0];
+                for i in 0..8 {
+                    entries[i + 1] = s28[i];
+                }
+                entries[9] = s23[9] + s8 * s44 + s21[9] + s26[8]
+                    + (h * q_mid[9] * s45).abs() * real(0.5);
+                entries
+            }),
             energy_residual: s49
                 + (sin2.abs() * real(0.3333333333333333)
                     + (h * cos2).abs() * real(0.16666666666666666) + real(1.0))
@@ -2145,18 +2130,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
         let (change, change_h) = solve(
             &::vi_core::ExtendedSystem {
                 momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        s26[0] - (p0_low[0] + s1 * s47 + s27[0]),
-                        s28[0],
-                        s28[1],
-                        s28[2],
-                        s28[3],
-                        s28[4],
-                        s28[5],
-                        s28[6],
-                        s28[7],
-                        s26[9] - (p0_low[9] - s1 * s49),
-                    ]),
+                    residual: ::vi_core::SVector::from({
+                        let mut entries = [T::real(0.0); 10];
+                        entries[0] = s26[0] - (p0_low[0] + s1 * s47 + s27[0]);
+                        for i in 0..8 {
+                            entries[i + 1] = s28[i];
+                        }
+                        entries[9] = s26[9] - (p0_low[9] - s1 * s49);
+                        entries
+                    }),
                     jacobian: ::vi_core::linear::Tridiagonal {
                         lower: [
                             T::real(0.0),
@@ -2170,18 +2152,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                             s62,
                             s63,
                         ],
-                        diagonal: [
-                            self.m + (s32[0] + s8 * s52),
-                            s33[0],
-                            s33[1],
-                            s33[2],
-                            s33[3],
-                            s33[4],
-                            s33[5],
-                            s33[6],
-                            s33[7],
-                            self.m + s8 * s54,
-                        ],
+                        diagonal: {
+                            let mut entries = [T::real(0.0); 10];
+                            entries[0] = self.m + (s32[0] + s8 * s52);
+                            for i in 0..8 {
+                                entries[i + 1] = s33[i];
+                            }
+                            entries[9] = self.m + s8 * s54;
+                            entries
+                        },
                         upper: [
                             s55,
                             s56,
@@ -2196,18 +2175,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                         ],
                     },
                 },
-                residual_dh: ::vi_core::SVector::from([
-                    s64 + (s38[0] + s65 - s37[0]) * h,
-                    s42[0],
-                    s42[1],
-                    s42[2],
-                    s42[3],
-                    s42[4],
-                    s42[5],
-                    s42[6],
-                    s42[7],
-                    s66 + (s36[9] - s40[8] + s67) * h,
-                ]),
+                residual_dh: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s64 + (s38[0] + s65 - s37[0]) * h;
+                    for i in 0..8 {
+                        entries[i + 1] = s42[i];
+                    }
+                    entries[9] = s66 + (s36[9] - s40[8] + s67) * h;
+                    entries
+                }),
                 energy_residual: s50
                     + ((1..10).fold(s17[0], |sum, i| sum + s17[i]) - energy0_low
                         + s1
@@ -2216,18 +2192,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                                     s45 * cos2 * real(0.3333333333333333) + v[0] * s47,
                                     |sum, i| sum - s29[i],
                                 ) - v[9] * s49)),
-                energy_dv: ::vi_core::SVector::from([
-                    s64 + (s37[0] - s65 - s36[0]) * h,
-                    s43[0],
-                    s43[1],
-                    s43[2],
-                    s43[3],
-                    s43[4],
-                    s43[5],
-                    s43[6],
-                    s43[7],
-                    s66 + (s40[8] - s67 - s36[9]) * h,
-                ]),
+                energy_dv: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s64 + (s37[0] - s65 - s36[0]) * h;
+                    for i in 0..8 {
+                        entries[i + 1] = s43[i];
+                    }
+                    entries[9] = s66 + (s40[8] - s67 - s36[9]) * h;
+                    entries
+                }),
                 energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
                     - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
                         * real(0.16666666666666666),

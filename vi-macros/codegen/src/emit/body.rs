@@ -8,7 +8,7 @@
 use super::angles::Angles;
 use super::folds::FoldText;
 use super::formula::{Formula, LINE};
-use super::loops::{Loops, Writing as Loop, Written};
+use super::loops::{Loops, Member, Writing as Loop, Written};
 use super::names::Names;
 use super::pieces::{Statement, Writing, pieces};
 use crate::model::Model;
@@ -33,9 +33,36 @@ pub(super) struct Body {
 
 /// One result.
 pub(super) struct Entry {
+    id: OperationId,
     tokens: TokenStream,
+    /// Where it is in an array of a loop.
+    member: Option<Member>,
     /// It is zero for every input.
     pub(super) zero: bool,
+}
+
+impl Entry {
+    /// The counter of loops over the arrays that such results are in.
+    pub(super) fn counter(&self) -> Option<&Ident> {
+        self.member.as_ref().map(|member| &member.counter)
+    }
+
+    /// Whether it is the same result.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+
+    /// Whether it is the entry of an array one place on.
+    pub(super) fn moves_on_from(&self, before: &Self) -> bool {
+        let members = self.member.as_ref().zip(before.member.as_ref());
+        members.is_some_and(|(this, before)| this.array == before.array && this.place == before.place + 1)
+    }
+
+    /// Its text; with a counter, that of the entry so many places on in its array.
+    pub(super) fn tokens(&self, counter: Option<&Ident>) -> TokenStream {
+        let moved = self.member.as_ref().filter(|_| counter.is_some());
+        moved.map_or_else(|| self.tokens.clone(), |member| member.array.entry(counter, member.place).tokens().clone())
+    }
 }
 
 impl ToTokens for Entry {
@@ -66,7 +93,9 @@ struct Printer<'a> {
     statements: Vec<Statement>,
     in_pieces: bool,
     angles: Angles,
-    /// Sums over what loops compute.
+    /// What loops compute.
+    members: BTreeMap<OperationId, Member>,
+    /// Sums over that.
     folds: BTreeMap<OperationId, (OperationId, FoldText)>,
 }
 
@@ -107,6 +136,7 @@ impl<'a> Printer<'a> {
             statements: Vec::new(),
             in_pieces: false,
             angles: Angles::default(),
+            members: BTreeMap::new(),
             folds: BTreeMap::new(),
         }
     }
@@ -140,8 +170,8 @@ impl<'a> Printer<'a> {
         let (vectors, singles) = (&self.vectors, &self.written);
         let Written { statements, members, folds } = loops.write(Loop { vectors, singles, names: &mut self.names });
         self.statements.clear();
-        self.written.extend(members);
-        self.folds = folds;
+        self.written.extend(members.iter().map(|(id, member)| (*id, member.array.entry(None, member.place))));
+        (self.members, self.folds) = (members, folds);
         for id in last {
             self.write(id);
         }
@@ -319,7 +349,8 @@ impl Printer<'_> {
     }
 
     fn result(&self, id: OperationId) -> Entry {
-        Entry { tokens: self.operand(id).tokens().clone(), zero: self.function.operations.as_constant(id) == Some(0.0) }
+        let (tokens, member) = (self.operand(id).tokens().clone(), self.members.get(&id).cloned());
+        Entry { id, tokens, member, zero: self.function.operations.as_constant(id) == Some(0.0) }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Source;
 use super::body::{Body, Entry, Place, body, state_parts};
+use super::entries;
 use super::matrix::matrix;
 use crate::model::Coordinate;
 use crate::symbol::Symbol;
@@ -83,7 +84,8 @@ impl Source<'_> {
 
 /// The vector of one group of results, its type known from where it stands.
 pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
-    quote!(::vi_core::SVector::from([#(#entries),*]))
+    let entries = entries::of(entries.iter().map(|entry| Some(entry).into()));
+    quote!(::vi_core::SVector::from(#entries))
 }
 
 fn number(source: &Source, name: &str, formula: &str) -> TokenStream {

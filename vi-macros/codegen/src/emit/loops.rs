@@ -11,6 +11,7 @@
 //! the ends of a chain, and sums over it. The operations stay the same, and their results, bit by bit; but a short one is done
 //! again rather than kept.
 
+use super::entries::index;
 use super::folds::{Fold, FoldText, folds};
 use super::formula::{Formula, LINE};
 use super::names::Names;
@@ -50,7 +51,7 @@ pub(super) struct Writing<'a, 'n> {
 /// What the loops leave: their statements, and where members are that are read outside.
 pub(super) struct Written {
     pub(super) statements: TokenStream,
-    pub(super) members: BTreeMap<OperationId, Formula>,
+    pub(super) members: BTreeMap<OperationId, Member>,
     /// Sums over members, by their last operations: what they start from, and what makes a formula of that.
     pub(super) folds: BTreeMap<OperationId, (OperationId, FoldText)>,
 }
@@ -108,12 +109,12 @@ impl<'a> Loops<'a> {
         let counter = writing.names.counter();
         let mut lines = Lines { loops: self, writing, counter, arrays: BTreeMap::new() };
         let statements = (0..self.families.members.len()).map(|family| lines.line(family)).collect();
-        let arrays = &lines.arrays;
+        let (arrays, counter) = (&lines.arrays, &lines.counter);
         let member = |(family, array): (&usize, &Array)| {
+            let member = |place| Member { array: array.clone(), place, counter: counter.clone() };
             let members = self.families.members[*family].iter().zip(0_usize..);
-            members.map(|(id, place)| (*id, array.entry(None, place))).collect::<Vec<_>>()
+            members.map(|(id, place)| (*id, member(place))).collect::<Vec<_>>()
         };
-        let counter = &lines.counter;
         let fold = |(id, fold): (&OperationId, &Fold)| {
             let term = arrays.get(&fold.family)?.entry(Some(counter), 0);
             Some((*id, (fold.start, fold.text(counter, &term))))
@@ -134,20 +135,28 @@ impl<'a> Loops<'a> {
     }
 }
 
-/// An array, or one part of an array of pairs.
+/// Where an operation of a family is.
 #[derive(Clone)]
-struct Array {
+pub(super) struct Member {
+    pub(super) array: Array,
+    pub(super) place: usize,
+    /// The counter of loops over the array.
+    pub(super) counter: Ident,
+}
+
+/// An array, or one part of an array of pairs.
+#[derive(Clone, PartialEq, Eq)]
+pub(super) struct Array {
     name: Ident,
-    part: Option<Literal>,
+    part: Option<usize>,
 }
 
 impl Array {
     /// Its entry so far behind the counter, or, without one, behind the first.
-    fn entry(&self, counter: Option<&Ident>, place: usize) -> Formula {
-        let (name, part) = (&self.name, self.part.iter());
-        let place = (place > 0 || counter.is_none()).then(|| Literal::usize_unsuffixed(place));
-        let plus = (counter.is_some() && place.is_some()).then(|| quote!(+));
-        Formula::atom(quote!(#name[#counter #plus #place] #(.#part)*), 0)
+    pub(super) fn entry(&self, counter: Option<&Ident>, place: usize) -> Formula {
+        let (name, index) = (&self.name, index(counter, place));
+        let part = self.part.map(Literal::usize_unsuffixed).into_iter();
+        Formula::atom(quote!(#name #index #(.#part)*), 0)
     }
 }
 
@@ -174,8 +183,7 @@ impl Lines<'_, '_> {
             // Of some angles one of both may not be needed.
             let length = Literal::usize_unsuffixed(members.len().max(loops.families.members[partner].len()));
             for (family, part) in [(family, own), (partner, other)] {
-                let part = Some(Literal::usize_unsuffixed(part));
-                self.arrays.insert(family, Array { name: name.clone(), part });
+                self.arrays.insert(family, Array { name: name.clone(), part: Some(part) });
             }
             return quote!(let #name: [(T, T); #length] = ::core::array::from_fn(|#counter| #receiver.sin_cos()););
         }

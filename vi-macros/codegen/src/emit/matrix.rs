@@ -1,6 +1,7 @@
 //! Matrices in the form that their zero pattern allows, as `vi_core::linear` solves them.
 
 use super::body::Entry;
+use super::entries::{self, Part, array};
 use crate::found::{CLOSED, Pattern};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -23,36 +24,29 @@ pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) ->
 }
 
 /// The entry at this row and column; outside the matrix, zero.
-fn entry(rows: &[Vec<Entry>], row: usize, column: Option<usize>) -> TokenStream {
-    let entry = column.and_then(|column| rows.get(row)?.get(column));
-    entry.map_or_else(|| quote!(T::real(0.0)), |entry| quote!(#entry))
+fn entry(rows: &[Vec<Entry>], row: usize, column: Option<usize>) -> Part<'_> {
+    column.and_then(|column| rows.get(row)?.get(column)).into()
 }
 
 fn tridiagonal(rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
     let size = Literal::usize_unsuffixed(rows.len());
-    let lower = (0..rows.len()).map(|row| entry(rows, row, row.checked_sub(1)));
-    let diagonal = (0..rows.len()).map(|row| entry(rows, row, Some(row)));
-    let upper = (0..rows.len()).map(|row| entry(rows, row, Some(row + 1)));
+    let diagonal =
+        |column: &dyn Fn(usize) -> Option<usize>| entries::of((0..rows.len()).map(|row| entry(rows, row, column(row))));
+    let [lower, middle, upper] =
+        [diagonal(&|row| row.checked_sub(1)), diagonal(&|row| Some(row)), diagonal(&|row| Some(row + 1))];
     (
         quote!(::vi_core::linear::Tridiagonal<#size, T>),
-        quote! {
-            ::vi_core::linear::Tridiagonal {
-                lower: [#(#lower),*],
-                diagonal: [#(#diagonal),*],
-                upper: [#(#upper),*],
-            }
-        },
+        quote!(::vi_core::linear::Tridiagonal { lower: #lower, diagonal: #middle, upper: #upper }),
     )
 }
 
 fn banded(rows: &[Vec<Entry>], width: usize) -> (TokenStream, TokenStream) {
     let places = 2 * width + 1;
     let (size, diagonals) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(places));
-    let bands = (0..rows.len()).map(|row| {
-        let entries = (0..places).map(|place| entry(rows, row, (row + place).checked_sub(width)));
-        quote!([#(#entries),*])
-    });
-    (quote!(::vi_core::linear::Banded<#size, #diagonals, T>), quote!(::vi_core::linear::Banded { rows: [#(#bands),*] }))
+    let band = |row: usize| (0..places).map(|place| entry(rows, row, (row + place).checked_sub(width))).collect();
+    let bands: Vec<Vec<Part>> = (0..rows.len()).map(band).collect();
+    let bands = array(&bands, &quote!([T::real(0.0); #diagonals]), |parts| quote!([#(#parts),*]));
+    (quote!(::vi_core::linear::Banded<#size, #diagonals, T>), quote!(::vi_core::linear::Banded { rows: #bands }))
 }
 
 fn in_blocks(rows: &[Vec<Entry>], blocks: &[Vec<usize>]) -> (TokenStream, TokenStream) {

@@ -9,6 +9,7 @@ mod angles;
 mod body;
 mod check;
 mod discrete;
+mod entries;
 mod folds;
 mod formula;
 mod lagrangian;

@@ -2,14 +2,15 @@
 
 use super::Source;
 use super::body::{Body, Entry, Place, part, parts};
+use super::entries::{Part, array};
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
 use crate::program::{Function, Operation};
 use crate::symbol::{Symbol, Variable};
 use num_traits::ToPrimitive;
-use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::TokenStream;
+use quote::{ToTokens, format_ident, quote};
 
 /// Operations up to which a function is always inlined.
 const INLINED: usize = 250;
@@ -211,16 +212,15 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
                 self.increment(node, h, &reached).momentum
             });
         };
-        let residual = |i: usize| {
-            let i = Literal::usize_unsuffixed(i);
-            Some((&residuals[0], quote!(momentum.residual[#i])))
-        };
+        let residual =
+            |i: usize| (!residuals[0].zero).then(|| Part::product(&residuals[0], quote!(momentum.residual), Some(i)));
         let gains = gains.iter().zip(slopes).enumerate();
-        let gains = gains.map(|(i, (gain, slopes))| carried(gain, slopes, residual(i), size));
+        let gains: Vec<_> = gains.map(|(i, (gain, slopes))| carried(gain, slopes, residual(i), size)).collect();
+        let gains = array(&gains, &quote!(T::real(0.0)), sum);
         Some(quote! {
             let momentum = #equation;
             let change: [T; #dimension] = solve(&momentum).into();
-            ::vi_core::SVector::from([#(#gains),*])
+            ::vi_core::SVector::from(#gains)
         })
     })
 }
@@ -251,13 +251,14 @@ fn extended_step(source: &Source) -> Option<TokenStream> {
                 self.increment(node, h + change_h, &(::vi_core::SVector::<T, #dimension>::from(*v) + change))
             });
         };
-        let mut gains =
-            momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, None, size));
-        let momenta: Vec<TokenStream> = gains.by_ref().take(size).collect();
+        let gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, None, size));
+        let mut momenta: Vec<_> = gains.collect();
+        let energy = sum(&momenta.pop()?.iter().map(Part::to_token_stream).collect::<Vec<_>>());
+        let momenta = array(&momenta, &quote!(T::real(0.0)), sum);
         Some(quote! {
             let (change, change_h) = solve(&#equations);
             let change: [T; #dimension] = change.into();
-            ::vi_core::Increment { momentum: ::vi_core::SVector::from([#(#momenta),*]), energy: #(#gains)* }
+            ::vi_core::Increment { momentum: ::vi_core::SVector::from(#momenta), energy: #energy }
         })
     })
 }
@@ -267,20 +268,22 @@ fn end(step: &Function, equations: usize) -> &'static str {
     if step.results.len() > equations { "to first order at" } else { "at" }
 }
 
-/// `gain + (Σ slope_j change_j + factor residual)`, without what is zero; the slope after those by v is that by h.
-fn carried(gain: &Entry, slopes: &[Entry], residual: Option<(&Entry, TokenStream)>, dimension: usize) -> TokenStream {
-    let products = slopes.iter().enumerate().map(|(j, slope)| {
-        let change = if j < dimension {
-            let j = Literal::usize_unsuffixed(j);
-            quote!(change[#j])
-        } else {
-            quote!(change_h)
-        };
-        (slope, change)
+/// The gain and what it is carried by, the changes times their slopes and the residual times its own, without what is zero; the
+/// slope after those by v is that by h.
+fn carried<'a>(gain: &'a Entry, slopes: &'a [Entry], residual: Option<Part<'a>>, dimension: usize) -> Vec<Part<'a>> {
+    let products = slopes.iter().enumerate().filter(|(_, slope)| !slope.zero).map(|(j, slope)| {
+        let in_v = j < dimension;
+        Part::product(slope, if in_v { quote!(change) } else { quote!(change_h) }, in_v.then_some(j))
     });
-    let terms = products.chain(residual).filter(|(factor, _)| !factor.zero);
-    let sum = terms.map(|(factor, of)| quote!((#factor) * #of)).reduce(|sum, term| quote!(#sum + #term));
-    sum.map_or_else(|| quote!(#gain), |sum| quote!(#gain + (#sum)))
+    [Part::from(Some(gain))].into_iter().chain(products).chain(residual).collect()
+}
+
+/// `gain + (product + product)`.
+fn sum(parts: &[TokenStream]) -> TokenStream {
+    match parts {
+        [gain, products @ ..] if !products.is_empty() => quote!(#gain + (#(#products)+*)),
+        parts => quote!(#(#parts)*),
+    }
 }
 
 fn magnitudes(source: &Source) -> Option<TokenStream> {

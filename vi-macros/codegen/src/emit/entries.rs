@@ -1,0 +1,142 @@
+//! Results side by side: the entries of vectors and matrices.
+//!
+//! In: rows of results, each joined into one expression by a form. Out: `[a, b, c]`; or, where rows follow each other in the
+//! arrays of a long body,
+//!
+//! ```text
+//! {
+//!     let mut entries = [T::real(0.0); 64];
+//!     entries[0] = s12[0] - s18;
+//!     for i in 0..62 { entries[i + 1] = s13[i]; }
+//!     entries[63] = s12[63] - s19;
+//!     entries
+//! }
+//! ```
+
+use super::body::Entry;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{ToTokens, quote};
+use std::ops::Range;
+
+/// Rows from which on there is a loop.
+const LEAST: usize = 8;
+
+/// What a row is made of: a result, or zero, times a number or the entry of a vector where it has such a factor.
+pub(super) struct Part<'a> {
+    entry: Option<&'a Entry>,
+    factor: Option<(TokenStream, Option<usize>)>,
+}
+
+impl<'a> From<Option<&'a Entry>> for Part<'a> {
+    fn from(entry: Option<&'a Entry>) -> Self {
+        Self { entry, factor: None }
+    }
+}
+
+impl<'a> Part<'a> {
+    /// A result times a number, or times the entry of a vector at this place.
+    pub(super) fn product(entry: &'a Entry, factor: TokenStream, place: Option<usize>) -> Self {
+        Self { entry: Some(entry), factor: Some((factor, place)) }
+    }
+
+    /// Whether it stands one place on from the same part of the row above, or is that again; `None` where it is something else.
+    fn moves_on_from(&self, above: &Self) -> Option<bool> {
+        let place = |part: &Self| part.factor.as_ref().map(|(_, place)| *place);
+        if place(self) != place(above).map(|place| place.map(|place| place + 1)) {
+            return None;
+        }
+        match (self.entry, above.entry) {
+            (Some(this), Some(above)) if this.moves_on_from(above) => Some(true),
+            (Some(this), Some(above)) => this.is(above).then_some(false),
+            (this, above) => (this.is_none() && above.is_none()).then_some(false),
+        }
+    }
+
+    /// Its text; in a loop with this counter that of the first row, which moves on there or does not.
+    fn tokens(&self, counter: Option<&Ident>, moves: bool) -> TokenStream {
+        let zero = || quote!(T::real(0.0));
+        let entry = self.entry.map_or_else(zero, |entry| entry.tokens(counter.filter(|_| moves)));
+        let Some((name, place)) = &self.factor else { return entry };
+        let index = place.map(|place| index(counter, place));
+        quote!((#entry) * #name #index)
+    }
+}
+
+impl ToTokens for Part<'_> {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        tokens.extend(self.tokens(None, false));
+    }
+}
+
+/// `[3]`, or in a loop `[i + 3]`.
+pub(super) fn index(counter: Option<&Ident>, place: usize) -> TokenStream {
+    let number = (place > 0 || counter.is_none()).then(|| Literal::usize_unsuffixed(place));
+    let plus = (counter.is_some() && number.is_some()).then(|| quote!(+));
+    quote!([#counter #plus #number])
+}
+
+/// The array of such numbers.
+pub(super) fn of<'a>(parts: impl Iterator<Item = Part<'a>>) -> TokenStream {
+    let rows: Vec<Vec<Part>> = parts.map(|part| vec![part]).collect();
+    array(&rows, &quote!(T::real(0.0)), |parts| quote!(#(#parts)*))
+}
+
+/// The array of rows, each joined from its parts by a form; `zero` is a row of nothing.
+pub(super) fn array(
+    rows: &[Vec<Part>],
+    zero: &TokenStream,
+    form: impl Fn(&[TokenStream]) -> TokenStream,
+) -> TokenStream {
+    let counter = rows.iter().flatten().find_map(|part| part.entry?.counter());
+    let runs = if counter.is_some() { runs(rows) } else { Vec::new() };
+    let Some(counter) = counter.filter(|_| runs.iter().any(Run::is_loop)) else {
+        let rows = rows.iter().map(|row| form(&texts(row)));
+        return quote!([#(#rows),*]);
+    };
+    let assignments = runs.iter().map(|run| {
+        if run.is_loop() {
+            let (place, length) = (index(Some(counter), run.rows.start), Literal::usize_unsuffixed(run.rows.len()));
+            let parts = rows[run.rows.start].iter().zip(&run.moves);
+            let row = form(&parts.map(|(part, moves)| part.tokens(Some(counter), *moves)).collect::<Vec<_>>());
+            return quote!(for #counter in 0..#length { entries #place = #row; });
+        }
+        let rows = run.rows.clone().map(|place| (index(None, place), form(&texts(&rows[place]))));
+        rows.map(|(place, row)| quote!(entries #place = #row;)).collect()
+    });
+    let (assignments, length) = (assignments.collect::<TokenStream>(), Literal::usize_unsuffixed(rows.len()));
+    quote!({ let mut entries = [#zero; #length]; #assignments entries })
+}
+
+fn texts(row: &[Part]) -> Vec<TokenStream> {
+    row.iter().map(Part::to_token_stream).collect()
+}
+
+/// Rows that follow each other.
+struct Run {
+    rows: Range<usize>,
+    /// Which of their parts move on from row to row.
+    moves: Vec<bool>,
+}
+
+impl Run {
+    fn is_loop(&self) -> bool {
+        self.rows.len() >= LEAST
+    }
+}
+
+/// Rows, in runs: in each the same parts move on.
+fn runs(rows: &[Vec<Part>]) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (place, row) in rows.iter().enumerate() {
+        let above = place.checked_sub(1).map(|above| &rows[above]).filter(|above| above.len() == row.len());
+        let moves =
+            above.and_then(|above| row.iter().zip(above).map(|(part, above)| part.moves_on_from(above)).collect());
+        match (runs.last_mut(), moves) {
+            (Some(run), Some(moves)) if run.rows.len() == 1 || run.moves == moves => {
+                (run.rows.end, run.moves) = (place + 1, moves);
+            }
+            _ => runs.push(Run { rows: place..place + 1, moves: Vec::new() }),
+        }
+    }
+    runs
+}
