@@ -75,7 +75,8 @@ fn is_finite<T: Real, const N: usize, const M: usize>(solution: &SMatrix<T, N, M
     solution.iter().all(|entry| entry.is_finite())
 }
 
-/// How many times a pivot may be smaller than its row: so many of its roundings are lost.
+/// How many times a pivot may be smaller than its row, or the determinant of two rows than the product of both: so many of its
+/// roundings are lost.
 const GROWTH: f64 = 1024.0;
 
 /// The acceleration a with `mass · a = applied`, as generated code asks for it.
