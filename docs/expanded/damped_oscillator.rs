@@ -488,7 +488,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         let change: [T; 1] = solve(&momentum).into();
         ::vi_core::SVector::from([
             -((self.k * x_mid + self.c * x_dot) * h)
-                + (((-self.c - s2 * real(0.5)) * h) * change[0]),
+                + (-self.c - s2 * real(0.5)) * h * change[0],
         ])
     }
 

@@ -771,9 +771,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let change: [T; 2] = solve(&momentum).into();
         ::vi_core::SVector::from([
             -(h * s16)
-                + (((-s25 - s18 * s19) * h) * change[0] + ((s27 - s26) * h) * change[1]),
-            h * s17
-                + (((s25 + s27) * h) * change[0] + ((s26 - s18 * s20) * h) * change[1]),
+                + ((-s25 - s18 * s19) * h * change[0] + (s27 - s26) * h * change[1]),
+            h * s17 + ((s25 + s27) * h * change[0] + (s26 - s18 * s20) * h * change[1]),
         ])
     }
 
@@ -879,13 +878,11 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
                 -(h * s24)
-                    + (((-s44 - s27 * s29) * h) * change[0]
-                        + ((s46 - s45) * h) * change[1]
+                    + ((-s44 - s27 * s29) * h * change[0] + (s46 - s45) * h * change[1]
                         + ((s33 * θ1_dot * s6 * s9 - s37 * real(0.5)) * h - s24)
                             * change_h),
                 h * s26
-                    + (((s44 + s46) * h) * change[0]
-                        + ((s45 - s27 * s30) * h) * change[1]
+                    + ((s44 + s46) * h * change[0] + (s45 - s27 * s30) * h * change[1]
                         + (s26 + (s33 * s5 * θ2_dot * s9 - s42 * real(0.5)) * h)
                             * change_h),
             ]),

@@ -619,8 +619,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         };
         let change: [T; 2] = solve(&momentum).into();
         ::vi_core::SVector::from([
-            -(s8 * x_mid * s7) + ((s16 * s11) * change[0] + (s17) * change[1]),
-            -(s8 * y_mid * s7) + ((s17) * change[0] + (s16 * s15) * change[1]),
+            -(s8 * x_mid * s7) + (s16 * s11 * change[0] + s17 * change[1]),
+            -(s8 * y_mid * s7) + (s17 * change[0] + s16 * s15 * change[1]),
         ])
     }
 

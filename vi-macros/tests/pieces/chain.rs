@@ -1967,25 +1967,16 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
         };
         let change: [T; 10] = solve(&momentum).into();
         ::vi_core::SVector::from([
-            h * s26 + s52 * cos13
-                + ((s2) * change[0] + (real(2.0)) * momentum.residual[0]),
-            s52 * cos14 - h * s29
-                + ((s2) * change[1] + (real(2.0)) * momentum.residual[1]),
-            s52 * cos15 - h * s32
-                + ((s2) * change[2] + (real(2.0)) * momentum.residual[2]),
-            s52 * cos17 - h * s35
-                + ((s2) * change[3] + (real(2.0)) * momentum.residual[3]),
-            s52 * cos18 - h * s38
-                + ((s2) * change[4] + (real(2.0)) * momentum.residual[4]),
-            s52 * cos19 - h * s41
-                + ((s2) * change[5] + (real(2.0)) * momentum.residual[5]),
-            s52 * cos20 - h * s44
-                + ((s2) * change[6] + (real(2.0)) * momentum.residual[6]),
-            s52 * cos21 - h * s47
-                + ((s2) * change[7] + (real(2.0)) * momentum.residual[7]),
-            s52 * cos22 - h * s50
-                + ((s2) * change[8] + (real(2.0)) * momentum.residual[8]),
-            -(h * s51) + ((s2) * change[9] + (real(2.0)) * momentum.residual[9]),
+            h * s26 + s52 * cos13 + (s2 * change[0] + real(2.0) * momentum.residual[0]),
+            s52 * cos14 - h * s29 + (s2 * change[1] + real(2.0) * momentum.residual[1]),
+            s52 * cos15 - h * s32 + (s2 * change[2] + real(2.0) * momentum.residual[2]),
+            s52 * cos17 - h * s35 + (s2 * change[3] + real(2.0) * momentum.residual[3]),
+            s52 * cos18 - h * s38 + (s2 * change[4] + real(2.0) * momentum.residual[4]),
+            s52 * cos19 - h * s41 + (s2 * change[5] + real(2.0) * momentum.residual[5]),
+            s52 * cos20 - h * s44 + (s2 * change[6] + real(2.0) * momentum.residual[6]),
+            s52 * cos21 - h * s47 + (s2 * change[7] + real(2.0) * momentum.residual[7]),
+            s52 * cos22 - h * s50 + (s2 * change[8] + real(2.0) * momentum.residual[8]),
+            -(h * s51) + (s2 * change[9] + real(2.0) * momentum.residual[9]),
         ])
     }
 

@@ -1592,8 +1592,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         };
         let change: [T; 2] = solve(&momentum).into();
         ::vi_core::SVector::from([
-            values[6] + ((values[8]) * change[0] + (values[9]) * change[1]),
-            values[7] + ((values[10]) * change[0] + (values[11]) * change[1]),
+            values[6] + (values[8] * change[0] + values[9] * change[1]),
+            values[7] + (values[10] * change[0] + values[11] * change[1]),
         ])
     }
 
@@ -1988,15 +1988,15 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         ::vi_core::Increment {
             momentum: ::vi_core::SVector::from([
                 values[12]
-                    + ((values[15]) * change[0] + (values[16]) * change[1]
-                        + (values[17]) * change_h),
+                    + (values[15] * change[0] + values[16] * change[1]
+                        + values[17] * change_h),
                 values[13]
-                    + ((values[18]) * change[0] + (values[19]) * change[1]
-                        + (values[20]) * change_h),
+                    + (values[18] * change[0] + values[19] * change[1]
+                        + values[20] * change_h),
             ]),
             energy: values[14]
-                + ((values[21]) * change[0] + (values[22]) * change[1]
-                    + (values[23]) * change_h),
+                + (values[21] * change[0] + values[22] * change[1]
+                    + values[23] * change_h),
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) struct Body {
 /// One result.
 pub(super) struct Entry {
     id: OperationId,
-    tokens: TokenStream,
+    formula: Formula,
     /// Where it is in an array of a loop.
     member: Option<Member>,
     /// It is zero for every input.
@@ -58,16 +58,16 @@ impl Entry {
         members.is_some_and(|(this, before)| this.array == before.array && this.place == before.place + 1)
     }
 
-    /// Its text; with a counter, that of the entry so many places on in its array.
-    pub(super) fn tokens(&self, counter: Option<&Ident>) -> TokenStream {
+    /// Its formula; with a counter, that of the entry so many places on in its array.
+    pub(super) fn formula(&self, counter: Option<&Ident>) -> Formula {
         let moved = self.member.as_ref().filter(|_| counter.is_some());
-        moved.map_or_else(|| self.tokens.clone(), |member| member.array.entry(counter, member.place).tokens().clone())
+        moved.map_or_else(|| self.formula.clone(), |member| member.array.entry(counter, member.place))
     }
 }
 
 impl ToTokens for Entry {
     fn to_tokens(&self, tokens: &mut TokenStream) {
-        self.tokens.to_tokens(tokens);
+        self.formula.tokens().to_tokens(tokens);
     }
 }
 
@@ -349,8 +349,8 @@ impl Printer<'_> {
     }
 
     fn result(&self, id: OperationId) -> Entry {
-        let (tokens, member) = (self.operand(id).tokens().clone(), self.members.get(&id).cloned());
-        Entry { id, tokens, member, zero: self.function.operations.as_constant(id) == Some(0.0) }
+        let (formula, member) = (self.operand(id), self.members.get(&id).cloned());
+        Entry { id, formula, member, zero: self.function.operations.as_constant(id) == Some(0.0) }
     }
 }
 

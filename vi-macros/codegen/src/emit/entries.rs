@@ -54,11 +54,11 @@ impl<'a> Part<'a> {
 
     /// Its text; in a loop with this counter that of the first row, which moves on there or does not.
     fn tokens(&self, counter: Option<&Ident>, moves: bool) -> TokenStream {
-        let zero = || quote!(T::real(0.0));
-        let entry = self.entry.map_or_else(zero, |entry| entry.tokens(counter.filter(|_| moves)));
-        let Some((name, place)) = &self.factor else { return entry };
-        let index = place.map(|place| index(counter, place));
-        quote!((#entry) * #name #index)
+        let Some(entry) = self.entry else { return quote!(T::real(0.0)) };
+        let formula = entry.formula(counter.filter(|_| moves));
+        let Some((name, place)) = &self.factor else { return formula.tokens().clone() };
+        let (factor, index) = (formula.factor(), place.map(|place| index(counter, place)));
+        quote!(#factor * #name #index)
     }
 }
 
@@ -100,8 +100,9 @@ pub(super) fn array(
             let row = form(&parts.map(|(part, moves)| part.tokens(Some(counter), *moves)).collect::<Vec<_>>());
             return quote!(for #counter in 0..#length { entries #place = #row; });
         }
-        let rows = run.rows.clone().map(|place| (index(None, place), form(&texts(&rows[place]))));
-        rows.map(|(place, row)| quote!(entries #place = #row;)).collect()
+        let is_there = |place: &usize| rows[*place].iter().any(|part| part.entry.is_some());
+        let places = run.rows.clone().filter(is_there).map(|place| (index(None, place), form(&texts(&rows[place]))));
+        places.map(|(place, row)| quote!(entries #place = #row;)).collect()
     });
     let (assignments, length) = (assignments.collect::<TokenStream>(), Literal::usize_unsuffixed(rows.len()));
     quote!({ let mut entries = [#zero; #length]; #assignments entries })

@@ -281,6 +281,7 @@ fn carried<'a>(gain: &'a Entry, slopes: &'a [Entry], residual: Option<Part<'a>>,
 /// `gain + (product + product)`.
 fn sum(parts: &[TokenStream]) -> TokenStream {
     match parts {
+        [gain, product] => quote!(#gain + #product),
         [gain, products @ ..] if !products.is_empty() => quote!(#gain + (#(#products)+*)),
         parts => quote!(#(#parts)*),
     }
