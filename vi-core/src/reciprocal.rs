@@ -1,7 +1,7 @@
 //! The reciprocal of what a Newton step is divided by, foretold from the last three steps.
 //!
-//! In: 1/det A of the last steps, or 1/(S h) of energy-preserving ones. Out: that of the next one with an error of the third order in h, before its divisor is
-//! there: in a step that waits for the one before, a quotient is a third of the time.
+//! In: 1/det A of the last steps, or 1/(S h) of energy-preserving ones. Out: that of the next one with an error of the third
+//! order in h, before its divisor is there: in a step that waits for the one before, a quotient is a third of the time.
 //!
 //! ```text
 //! next     3 (a − b) + c,  a the newest

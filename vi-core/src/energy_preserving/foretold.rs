@@ -2,7 +2,7 @@
 //!
 //! In: the velocities and lengths of the last steps. Out: the root of both equations by Newton steps from the guess, the last
 //! of them shorter than what is trusted (`lesson`), the length stays inside the range and D keeps its sign. `None` else, and
-//! for every 64th step, which learns what may be trusted.
+//! for every 64th step, which learns what may be trusted. The quotient by S h is foretold, too (`reciprocal`).
 
 use super::lesson::Radii;
 use super::newton::{self, Elimination, Root, Trial};
@@ -171,12 +171,14 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         root: &Root<N, T>,
         end: &Node<N, T>,
     ) {
-        let change = root.v - last.v;
-        self.radii = if S::SMOOTH { Radii::learnt(system, node, root, change) } else { Radii::zero() };
+        self.radii = Radii::zero();
+        if S::SMOOTH {
+            self.radii = Radii::learnt(system, node, root, root.v - last.v);
+            let elimination = Elimination::of(&system.extended_system(node, root.h, &root.v));
+            self.reciprocal.hope();
+            self.reciprocal.push(elimination.divisor(&Trial { v: root.v, h: root.h }).recip(), true);
+        }
         self.v.learn(root.v, self.radii.v);
-        let elimination = Elimination::of(&system.extended_system(node, root.h, &root.v));
-        self.reciprocal.hope();
-        self.reciprocal.push(elimination.divisor(&Trial { v: root.v, h: root.h }).recip(), true);
         self.h.learn(SVector::repeat(root.h), self.radii.h);
         let Trial { v, h } = self.guess();
         self.place = end.place::<S>(h, &v);

@@ -24,7 +24,7 @@ const SHARE_OF_GAIN: f64 = 1.0 / 16.0;
 /// Displacement of h, as a part of it: far above rounding, and small beside what bends the equations.
 const DISPLACEMENT: f64 = 1.0 / 256.0;
 
-/// Squares of how far a trial may be off; zero where nothing is trusted.
+/// Squares of how far a trial may be off, and of what is rounding; zero where nothing is trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Radii<T> {
