@@ -1,11 +1,11 @@
-//! The reciprocal of what a Newton step is divided by, foretold from the last three steps.
+//! The reciprocal of a determinant, foretold from the last three steps.
 //!
-//! In: 1/det A of the last steps, or 1/(S h) of energy-preserving ones. Out: that of the next one with an error of the third
-//! order in h, before its divisor is there: in a step that waits for the one before, a quotient is a third of the time.
+//! In: 1/det A of the last steps. Out: that of the next one with an error of the third order in h, before its determinant is
+//! there: in a step that waits for the one before, a quotient is a third of the time.
 //!
 //! ```text
 //! next     3 (a − b) + c,  a the newest
-//! trusted  |next divisor − 1| |δ| below a share of one rounding: the Newton step δ is off by that part of itself
+//! trusted  |next det − 1| |δ| below a share of one rounding: the Newton step δ is off by that part of itself
 //! ```
 
 use crate::Scalar;
@@ -14,7 +14,7 @@ use core::hint::black_box;
 /// Part of a rounding that a Newton step may be off by.
 const SHARE: f64 = 1.0 / 16.0;
 
-/// The reciprocals of the last three steps.
+/// 1/det A over the last three steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Reciprocal<T> {
@@ -48,7 +48,7 @@ impl<T: Scalar> Reciprocal<T> {
         (a - b) * T::real(3.0) + c
     }
 
-    /// Whether a Newton step of |δ|² = `length` is good, where `product` is the foretold reciprocal times the divisor and
+    /// Whether a Newton step of |δ|² = `length` is good, where `product` is the foretold reciprocal times the determinant and
     /// `rounding` is |δ|² of a step that is all rounding.
     #[inline]
     pub(crate) fn is_good(product: T, length: T, rounding: T) -> bool {

@@ -2,13 +2,12 @@
 //!
 //! In: the velocities and lengths of the last steps. Out: the root of both equations by Newton steps from the guess, the last
 //! of them shorter than what is trusted (`lesson`), the length stays inside the range and D keeps its sign. `None` else, and
-//! for every 64th step, which learns what may be trusted. The quotient by S h is foretold, too (`reciprocal`).
+//! for every 64th step, which learns what may be trusted.
 
 use super::lesson::Radii;
 use super::newton::{self, Elimination, Root, Trial};
 use super::{Last, RATIO};
 use crate::forecast::{Forecast, length_squared};
-use crate::reciprocal::Reciprocal;
 use crate::{Increment, Node, Scalar, Stepping};
 use nalgebra::SVector;
 
@@ -32,8 +31,6 @@ pub(super) struct Forecasts<const N: usize, T> {
     v: Forecast<N, T>,
     h: Forecast<1, T>,
     radii: Radii<T>,
-    /// Of S h.
-    reciprocal: Reciprocal<T>,
     /// Where the next step evaluates L.
     place: SVector<T, N>,
 }
@@ -49,15 +46,13 @@ pub(super) struct Found<const N: usize, T> {
     trial: Trial<N, T>,
     /// and that step.
     step: newton::Step<N, T>,
-    /// 1/(S h) there.
-    reciprocal: T,
 }
 
 impl<const N: usize, T: Scalar> Forecasts<N, T> {
     /// Before the first step, which follows the interval `(v, h)`.
     pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
         let (v, h) = (Forecast::new(v), Forecast::new(SVector::repeat(h)));
-        Self { v, h, radii: Radii::zero(), reciprocal: Reciprocal::new(), place: SVector::zeros() }
+        Self { v, h, radii: Radii::zero(), place: SVector::zeros() }
     }
 
     /// Whether the next step is one that learns.
@@ -88,7 +83,6 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         }
         self.v.push(&trial.v, &step.v);
         self.h.push(&SVector::repeat(trial.h), &SVector::repeat(step.h));
-        self.reciprocal.push(found.reciprocal, found.root.iterations == 1);
     }
 
     /// Where [`Stepping::extended_step`] evaluates L in the step after `found` from this node, where it is told at all. To it δ gives
@@ -126,11 +120,10 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         }
         let (mut trial, mut place, mut before) = (self.guess(), self.place, None);
         for iterations in 1..=ATTEMPTS {
-            let foretold = (iterations == 1 && self.reciprocal.is_foretold()).then(|| self.reciprocal.next());
             let mut newton = None;
             let gain = system.extended_step(node, &place, trial.h, &trial.v, |equations| {
                 let elimination = Elimination::of(equations);
-                let step = elimination.step(equations, &trial, foretold);
+                let step = elimination.step(equations, &trial);
                 newton = Some((elimination, step));
                 (step.v, step.h)
             });
@@ -144,17 +137,13 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
             if !contracts {
                 return None;
             }
-            let divisor = elimination.divisor(&trial);
-            let certain =
-                foretold.is_none_or(|foretold| Reciprocal::is_good(foretold * divisor, lengths.1, self.radii.rounding));
-            if certain && self.radii.admit(lengths) {
+            if self.radii.admit(lengths) {
                 let (Trial { v, h }, density) = (next, elimination.density_or_infinite());
                 let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
                 // At the smallest root D has the sign that it had.
                 let forward = density * last.density > T::zero() && !elimination.is_degenerate();
                 let root = Root { v, h, density, iterations, residual: UNCONFIRMED };
-                let reciprocal = divisor.recip();
-                return (in_range && forward).then_some(Found { root, gain, trial, step, reciprocal });
+                return (in_range && forward).then_some(Found { root, gain, trial, step });
             }
             (before, trial) = (Some(lengths), next);
             place = node.place::<S>(trial.h, &trial.v);
@@ -171,13 +160,8 @@ impl<const N: usize, T: Scalar> Forecasts<N, T> {
         root: &Root<N, T>,
         end: &Node<N, T>,
     ) {
-        self.radii = Radii::zero();
-        if S::SMOOTH {
-            self.radii = Radii::learnt(system, node, root, root.v - last.v);
-            let elimination = Elimination::of(&system.extended_system(node, root.h, &root.v));
-            self.reciprocal.hope();
-            self.reciprocal.push(elimination.divisor(&Trial { v: root.v, h: root.h }).recip(), true);
-        }
+        let change = root.v - last.v;
+        self.radii = if S::SMOOTH { Radii::learnt(system, node, root, change) } else { Radii::zero() };
         self.v.learn(root.v, self.radii.v);
         self.h.learn(SVector::repeat(root.h), self.radii.h);
         let Trial { v, h } = self.guess();

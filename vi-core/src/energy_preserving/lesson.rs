@@ -24,7 +24,7 @@ const SHARE_OF_GAIN: f64 = 1.0 / 16.0;
 /// Displacement of h, as a part of it: far above rounding, and small beside what bends the equations.
 const DISPLACEMENT: f64 = 1.0 / 256.0;
 
-/// Squares of how far a trial may be off, and of what is rounding; zero where nothing is trusted.
+/// Squares of how far a trial may be off; zero where nothing is trusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Radii<T> {
@@ -34,14 +34,12 @@ pub(super) struct Radii<T> {
     pub(super) h: T,
     /// and of the product of both.
     pub(super) product: T,
-    /// |δh|² of a Newton step that is all rounding.
-    pub(super) rounding: T,
 }
 
 impl<T: Scalar> Radii<T> {
     /// No trust.
     pub(super) fn zero() -> Self {
-        Self { v: T::zero(), h: T::zero(), product: T::zero(), rounding: T::zero() }
+        Self { v: T::zero(), h: T::zero(), product: T::zero() }
     }
 
     /// What the step `root` from `node` shows.
@@ -60,14 +58,13 @@ impl<T: Scalar> Radii<T> {
         let third = |part: &Remainder<N, T>| T::real(1.0 / (3.0 * part.over(&rounding)));
         let (v, h, product) = (third(&by_v), third(&by_h), third(&by_both));
         let (dv, dh) = (length_squared(&dv), dh * dh);
-        let rounding = rounding.h * rounding.h;
-        let radii = Self { v: v * dv, h: h * dh, product: product * product * dv * dh, rounding };
+        let radii = Self { v: v * dv, h: h * dh, product: product * product * dv * dh };
         if radii.is_finite() { radii } else { Self::zero() }
     }
 
     /// Whether these are numbers.
     pub(super) fn is_finite(&self) -> bool {
-        [self.v, self.h, self.product, self.rounding].iter().all(|number| number.is_finite())
+        [self.v, self.h, self.product].iter().all(|number| number.is_finite())
     }
 
     /// Whether a Newton step with these squares of lengths is the last one.
@@ -92,7 +89,7 @@ impl<const N: usize, T: Scalar> Remainder<N, T> {
         let mut reached = trial;
         let place = node.place::<S>(trial.h, &trial.v);
         let carried = system.extended_step(node, &place, trial.h, &trial.v, |equations| {
-            let step = Elimination::of(equations).step(equations, &trial, None);
+            let step = Elimination::of(equations).step(equations, &trial);
             reached = Trial { v: trial.v + step.v, h: trial.h + step.h };
             (step.v, step.h)
         });

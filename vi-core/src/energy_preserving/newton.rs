@@ -99,28 +99,18 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Self { residual, residual_dh, schur, schur_magnitude, determinant, reciprocal: determinant.recip() }
     }
 
-    /// The trial that follows, `(δv, δh)` taken; by the reciprocal of [`Elimination::divisor`] where that is foretold.
+    /// The trial that follows, `(δv, δh)` taken.
     #[inline]
-    pub(super) fn step(
-        &self,
-        equations: &ExtendedSystem<N, T, impl Matrix<N, T>>,
-        trial: &Trial<N, T>,
-        foretold: Option<T>,
-    ) -> Step<N, T> {
+    pub(super) fn step(&self, equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, trial: &Trial<N, T>) -> Step<N, T> {
         let mut known = T::zero();
         for i in 0..N {
             known +=
                 (equations.energy_dv[i] * trial.h - equations.momentum.residual[i] * T::real(0.5)) * self.residual[i];
         }
+        // The bent row over h, and S, both times h: one quotient, where two would wait for each other.
         let energy = equations.energy_residual * self.determinant - known;
-        let dh = -foretold.map_or_else(|| energy / self.divisor(trial), |reciprocal| energy * reciprocal);
+        let dh = -(energy / (self.schur * trial.h));
         Step { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
-    }
-
-    /// `S h`, by which the bent row times h is divided: one quotient, where those by S and by h would wait for each other.
-    #[inline]
-    pub(super) fn divisor(&self, trial: &Trial<N, T>) -> T {
-        self.schur * trial.h
     }
 
     /// −4 S, the step density D of the interval.
@@ -174,7 +164,7 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
             let root = Root { v, h, density, iterations, residual };
             return if elimination.is_degenerate() { Err(Failure::Degenerate { h, density }) } else { Ok(root) };
         }
-        let step = elimination.step(&equations, &trial, None);
+        let step = elimination.step(&equations, &trial);
         trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
         if !(trial.h >= shortest && trial.h <= longest) {
             return Err(Failure::NoRoot);
