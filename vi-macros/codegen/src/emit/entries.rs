@@ -54,7 +54,7 @@ impl<'a> Part<'a> {
 
     /// Its text; in a loop with this counter that of the first row, which moves on there or does not.
     fn tokens(&self, counter: Option<&Ident>, moves: bool) -> TokenStream {
-        let Some(entry) = self.entry else { return quote!(T::real(0.0)) };
+        let Some(entry) = self.entry else { return zero() };
         let formula = entry.formula(counter.filter(|_| moves));
         let Some((name, place)) = &self.factor else { return formula.tokens().clone() };
         let (factor, index) = (formula.factor(), place.map(|place| index(counter, place)));
@@ -78,7 +78,12 @@ pub(super) fn index(counter: Option<&Ident>, place: usize) -> TokenStream {
 /// The array of such numbers.
 pub(super) fn of<'a>(parts: impl Iterator<Item = Part<'a>>) -> TokenStream {
     let rows: Vec<Vec<Part>> = parts.map(|part| vec![part]).collect();
-    array(&rows, &quote!(T::real(0.0)), |parts| quote!(#(#parts)*))
+    array(&rows, &zero(), |parts| quote!(#(#parts)*))
+}
+
+/// The number zero.
+pub(super) fn zero() -> TokenStream {
+    quote!(T::real(0.0))
 }
 
 /// The array of rows, each joined from its parts by a form; `zero` is a row of nothing.

@@ -45,7 +45,8 @@ fn banded(rows: &[Vec<Entry>], width: usize) -> (TokenStream, TokenStream) {
     let (size, diagonals) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(places));
     let band = |row: usize| (0..places).map(|place| entry(rows, row, (row + place).checked_sub(width))).collect();
     let bands: Vec<Vec<Part>> = (0..rows.len()).map(band).collect();
-    let bands = array(&bands, &quote!([T::real(0.0); #diagonals]), |parts| quote!([#(#parts),*]));
+    let zero = entries::zero();
+    let bands = array(&bands, &quote!([#zero; #diagonals]), |parts| quote!([#(#parts),*]));
     (quote!(::vi_core::linear::Banded<#size, #diagonals, T>), quote!(::vi_core::linear::Banded { rows: #bands }))
 }
 

@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::body::{Body, Entry, Place, part, parts};
-use super::entries::{Part, array};
+use super::entries::{Part, array, zero};
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
@@ -212,11 +212,9 @@ fn momentum_step(source: &Source) -> Option<TokenStream> {
                 self.increment(node, h, &reached).momentum
             });
         };
-        let residual =
-            |i: usize| (!residuals[0].zero).then(|| Part::product(&residuals[0], quote!(momentum.residual), Some(i)));
-        let gains = gains.iter().zip(slopes).enumerate();
-        let gains: Vec<_> = gains.map(|(i, (gain, slopes))| carried(gain, slopes, residual(i), size)).collect();
-        let gains = array(&gains, &quote!(T::real(0.0)), sum);
+        let rows = gains.iter().zip(slopes).enumerate();
+        let rows = rows.map(|(i, (gain, slopes))| carried(gain, slopes, Some((&residuals[0], i)), size));
+        let gains = array(&rows.collect::<Vec<_>>(), &zero(), sum);
         Some(quote! {
             let momentum = #equation;
             let change: [T; #dimension] = solve(&momentum).into();
@@ -254,7 +252,7 @@ fn extended_step(source: &Source) -> Option<TokenStream> {
         let gains = momentum.iter().chain(energy).zip(slopes).map(|(gain, slopes)| carried(gain, slopes, None, size));
         let mut momenta: Vec<_> = gains.collect();
         let energy = sum(&momenta.pop()?.iter().map(Part::to_token_stream).collect::<Vec<_>>());
-        let momenta = array(&momenta, &quote!(T::real(0.0)), sum);
+        let momenta = array(&momenta, &zero(), sum);
         Some(quote! {
             let (change, change_h) = solve(&#equations);
             let change: [T; #dimension] = change.into();
@@ -270,12 +268,19 @@ fn end(step: &Function, equations: usize) -> &'static str {
 
 /// The gain and what it is carried by, the changes times their slopes and the residual times its own, without what is zero; the
 /// slope after those by v is that by h.
-fn carried<'a>(gain: &'a Entry, slopes: &'a [Entry], residual: Option<Part<'a>>, dimension: usize) -> Vec<Part<'a>> {
-    let products = slopes.iter().enumerate().filter(|(_, slope)| !slope.zero).map(|(j, slope)| {
+fn carried<'a>(
+    gain: &'a Entry,
+    slopes: &'a [Entry],
+    residual: Option<(&'a Entry, usize)>,
+    dimension: usize,
+) -> Vec<Part<'a>> {
+    let changes = slopes.iter().enumerate().map(|(j, slope)| {
         let in_v = j < dimension;
-        Part::product(slope, if in_v { quote!(change) } else { quote!(change_h) }, in_v.then_some(j))
+        (slope, if in_v { quote!(change) } else { quote!(change_h) }, in_v.then_some(j))
     });
-    [Part::from(Some(gain))].into_iter().chain(products).chain(residual).collect()
+    let products = changes.chain(residual.map(|(factor, i)| (factor, quote!(momentum.residual), Some(i))));
+    let products = products.filter(|(slope, ..)| !slope.zero).map(|(slope, of, place)| Part::product(slope, of, place));
+    [Part::from(Some(gain))].into_iter().chain(products).collect()
 }
 
 /// `gain + (product + product)`.
