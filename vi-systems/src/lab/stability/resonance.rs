@@ -29,7 +29,9 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         "Below the linear limit a method may still fail where the step resonates with the motion: where three or four \
          steps make one oscillation, small nonlinear terms push at the same phase every time. The oscillator of these \
          charts, <i>V</i> = <i>x</i>²/2 + <i>x</i>³/3 + <i>x</i>⁴/4, has a single well, so that the true motion keeps its \
-         amplitude for ever.",
+         amplitude for ever. At 1:3 any quadratic force drives it away; at 1:4, with <i>a x</i>³/3 and <i>b x</i>⁴/4, it is \
+         driven away for 0 &lt; <i>b</i> &lt; 2<i>a</i>² (Verlet) and <i>a</i>² &lt; <i>b</i> &lt; 2<i>a</i>² (midpoint rule), \
+         and bounded beyond.",
     );
     let grid = atlas.grid((Axis::linear("h ω").over(0.0, 2.2), amplitudes()));
     let lines = vertical(&[2_f64.sqrt(), 3_f64.sqrt(), 2.0]);
