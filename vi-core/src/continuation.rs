@@ -68,12 +68,12 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     while reached < 1.0 {
         let target = f64::min(reached + part, 1.0);
         let (mut residuals, mut iterations) = (Residuals::new(), 0);
-        let observe = |residual| {
+        let mut observe = |residual| {
             residuals.push(residual);
             iterations += u32::from(residual > momentum::FLOOR);
         };
         let at = h * T::real(target);
-        let solution = momentum::observed(system, node, at, v, observe);
+        let solution = momentum::observed(system, node, at, v, &mut observe);
         match solution {
             Ok(solution) if iterations <= pace.iterations && sign(at, &solution.v) == forward => {
                 (v, reached, part) = (solution.v, target, pace.largest_part.min(2.0 * part));

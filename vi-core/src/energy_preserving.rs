@@ -207,7 +207,7 @@ where
         let range = (last.h / ratio, last.h * ratio);
         // At the smallest root D has the sign that it had: past a change of sign lies another root.
         let forward = |root: &Root<N, T>| root.density.to_f64() * last.density.to_f64() > 0.0;
-        let root = match newton::solve(system, node, guess::predict(system, node, last), range, |_| ()) {
+        let root = match newton::solve(system, node, guess::predict(system, node, last), range, &mut |_| ()) {
             Ok(root) if forward(&root) => root,
             Err(Failure::Degenerate { h, density }) => {
                 let (t, h, density) = (node.t.to_f64(), h.to_f64(), density.to_f64());

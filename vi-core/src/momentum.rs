@@ -118,17 +118,17 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     h: T,
     v: SVector<T, N>,
 ) -> Result<Solution<N, T>, Failure> {
-    observed(system, node, h, v, |_| ())
+    observed(system, node, h, v, &mut |_| ())
 }
 
-/// As [`solve`], with `observe` told the residual before each iteration, in roundings.
-#[inline]
+/// As [`solve`], with `observe` told the residual before each iteration, in roundings. Behind a pointer, that there is one copy of
+/// this long function.
 pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
     mut v: SVector<T, N>,
-    mut observe: impl FnMut(f64),
+    observe: &mut dyn FnMut(f64),
 ) -> Result<Solution<N, T>, Failure> {
     let mut last = Trial::at(system, node, h, &v);
     let mut iterations = 0;
@@ -206,7 +206,7 @@ pub(crate) fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
         return Ok(solution.v);
     }
     let mut residuals = Residuals::new();
-    observed(system, node, T::zero(), second, |residual| residuals.push(residual))
+    observed(system, node, T::zero(), second, &mut |residual| residuals.push(residual))
         .map(|solution| solution.v)
         .map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix", residuals))
 }

@@ -236,7 +236,7 @@ fn polished<const N: usize, T: Scalar, S: Stepping<N, T>>(
     let mut residuals = Residuals::new();
     let trial = Trial { v: after.v, h: after.h };
     let range = (after.h * half, after.h / half);
-    let root = newton::solve(system, node, trial, range, |residual| residuals.push(residual));
+    let root = newton::solve(system, node, trial, range, &mut |residual| residuals.push(residual));
     let root = root.map_err(|failure| match failure {
         Failure::Degenerate { h, density } => StepError::DegenerateStep { t, h: h.to_f64(), density: density.to_f64() },
         Failure::NoRoot if beyond(h) => StepError::StepRatio { t, previous, found: h },

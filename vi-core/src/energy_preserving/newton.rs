@@ -150,7 +150,7 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     node: &Node<N, T>,
     mut trial: Trial<N, T>,
     (shortest, longest): (T, T),
-    mut observe: impl FnMut(f64),
+    observe: &mut dyn FnMut(f64),
 ) -> Result<Root<N, T>, Failure<T>> {
     let mut before = Rows { momentum: f64::INFINITY, energy: f64::INFINITY };
     for iterations in 0..=ITERATIONS {
