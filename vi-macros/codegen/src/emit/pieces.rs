@@ -15,6 +15,7 @@
 //! The time that rustc takes grows faster than the length of a function: values that travel by name, or pieces that are
 //! inlined again, bring that back. The operations stay the same, and their results, bit by bit.
 
+use super::entries::zero;
 use super::names::Names;
 use crate::program::OperationId;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -126,11 +127,12 @@ pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, 
         calls.extend(quote!(#name(system, &inputs, &mut values);));
     }
     let given = writing.inputs.iter().map(|id| name_of(*id).map(ToTokens::to_token_stream));
+    let zero = zero();
     let statements = quote! {
         #functions
         let system = self;
         let inputs = [#(#given),*];
-        let mut values = [T::real(0.0); #values_length];
+        let mut values = [#zero; #values_length];
         #calls
     };
     Pieces { statements, results: writing.results.iter().filter_map(|id| Some((*id, values.place(*id)?))).collect() }

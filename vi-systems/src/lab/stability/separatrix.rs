@@ -43,7 +43,8 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         |v, h| course(Pendulum::default(), 0.0, v, h),
     )?;
     let caption = "Phase plane of the double well: how a run from each point ends. Dashed: <i>D</i> = 0; dots: the last steps \
-                   of some runs. What ends meets that curve sooner or later; what runs never does.";
+                   of some runs. What ends meets that curve sooner or later; what runs never does, but for a rare run \
+                   whose steps, long where <i>D</i> is small, lead over it every time.";
     let names = ("plane-well", "Double well: phase plane", caption);
     plane(atlas, names, "double-well", ["q=-1.5:1.5", "v_q=-1.2:1.2"])?;
     let caption = "Phase plane of the pendulum: librations run, rotations end on <i>D</i> = 0.";
