@@ -17,7 +17,6 @@
 //! 66 (1997) 1089.
 
 use crate::fixed_step::{Branch, check_step};
-use crate::momentum;
 use crate::stride::{Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
@@ -126,8 +125,7 @@ where
     pub fn new(system: S, scheme: Scheme, state: State<N, T>, h: T) -> Result<Self, StepError> {
         check_step(h)?;
         let node = Node::new(state, T::zero());
-        node.check_finite(T::zero())?;
-        let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p])?;
+        let v = state.velocity(&system)?;
         let strides: Vec<_> = scheme.weights.iter().map(|weight| Stride::new(h * T::real(*weight), v)).collect();
         let inverses = strides.iter().map(|stride| stride.inverse(&system, &node)).collect();
         Ok(Self { system, scheme, node, following: strides.clone(), strides, inverses, failure: None })

@@ -16,7 +16,7 @@
 use crate::closed_form::ClosedForm;
 use crate::stride::{Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
-use crate::{continuation, momentum};
+use crate::continuation;
 use core::hint::black_box;
 use nalgebra::SVector;
 
@@ -89,11 +89,7 @@ where
     pub fn new(system: S, state: State<N, T>, h: T) -> Result<Self, StepError> {
         check_step(h)?;
         let node = Node::new(state, T::zero());
-        let explained = |failure: StepError| failure.explained(&system, &node, h, &SVector::zeros());
-        node.check_finite(T::zero()).map_err(explained)?;
-        // Most Lagrangians give the velocity in one iteration from rest; where the mass matrix vanishes there,
-        // any other start will do.
-        let v = momentum::velocity(&system, &node, [SVector::zeros(), node.p]).map_err(explained)?;
+        let v = state.velocity(&system)?;
         let stride = Stride::new(h, v);
         let run = Checkpoint { node, stride, place: node.q, iterations: 0, branch: Branch::Nearest };
         Ok(Self::prepared(system, run))
