@@ -5,8 +5,8 @@ mod support;
 use core::any::type_name;
 use vi_core::linear::Matrix;
 use vi_core::{
-    DiscreteLagrangian, EnergyPreserving, ExtendedSystem, FixedStep, Increment, Interval, Lagrangian, Magnitudes,
-    MomentumEquation, Node, SMatrix, SVector, State, StepError, Stepping, lagrangian,
+    DiscreteLagrangian, EnergyPreserving, ExtendedResidual, ExtendedSystem, FixedStep, Interval, Lagrangian,
+    MomentumEquation, MomentumResidual, Node, Rounding, SMatrix, SVector, State, StepError, Stepping, lagrangian,
 };
 use vi_systems::FpuChain;
 
@@ -182,45 +182,25 @@ fn dense_in_both<const N: usize>(system: ExtendedSystem<N, f64, impl Matrix<N, f
 impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
     type Jacobian = SMatrix<f64, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
-    const SMOOTH: bool = S::SMOOTH;
-    const PLACE: Option<f64> = S::PLACE;
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
         dense(self.0.momentum_equation(node, h, v))
+    }
+
+    fn momentum_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumResidual<N> {
+        self.0.momentum_residual(node, h, v)
     }
 
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
         dense_in_both(self.0.extended_system(node, h, v))
     }
 
-    fn magnitudes(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Magnitudes<N> {
-        self.0.magnitudes(node, h, v)
+    fn extended_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedResidual<N> {
+        self.0.extended_residual(node, h, v)
     }
 
-    fn increment(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Increment<N> {
-        self.0.increment(node, h, v)
-    }
-
-    fn momentum_step(
-        &self,
-        node: &Node<N>,
-        place: &SVector<f64, N>,
-        h: f64,
-        v: &SVector<f64, N>,
-        solve: impl FnOnce(&MomentumEquation<N>) -> SVector<f64, N>,
-    ) -> SVector<f64, N> {
-        self.0.momentum_step(node, place, h, v, |equation| solve(&dense(*equation)))
-    }
-
-    fn extended_step(
-        &self,
-        node: &Node<N>,
-        place: &SVector<f64, N>,
-        h: f64,
-        v: &SVector<f64, N>,
-        solve: impl FnOnce(&ExtendedSystem<N>) -> (SVector<f64, N>, f64),
-    ) -> Increment<N> {
-        self.0.extended_step(node, place, h, v, |system| solve(&dense_in_both(*system)))
+    fn rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
+        self.0.rounding(node, h, v)
     }
 }
 

@@ -17,9 +17,8 @@
 //! 66 (1997) 1089.
 
 use crate::fixed_step::{Branch, check_step};
-use crate::stride::{Inverse, Stride};
+use crate::momentum::{Steps, Way};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
-use nalgebra::SVector;
 
 /// A symmetric composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,11 +104,11 @@ where
     system: S,
     scheme: Scheme,
     node: Node<N, T>,
-    /// The substeps: each is foretold from itself in the whole steps before.
-    strides: Vec<Stride<N, T>>,
-    /// The strides after the whole step that is under way.
-    following: Vec<Stride<N, T>>,
-    inverses: Vec<Option<Inverse<S, N, T>>>,
+    /// The substeps: each is predicted from itself in the whole steps before.
+    substeps: Vec<Steps<N, T>>,
+    /// The substeps after the whole step that is under way.
+    following: Vec<Steps<N, T>>,
+    ways: Vec<Way<S, N, T>>,
     failure: Option<StepError>,
 }
 
@@ -126,9 +125,10 @@ where
         check_step(h)?;
         let node = Node::new(state, T::zero());
         let v = state.velocity(&system)?;
-        let strides: Vec<_> = scheme.weights.iter().map(|weight| Stride::new(h * T::real(*weight), v)).collect();
-        let inverses = strides.iter().map(|stride| stride.inverse(&system, &node)).collect();
-        Ok(Self { system, scheme, node, following: strides.clone(), strides, inverses, failure: None })
+        let lengths = scheme.weights.iter().map(|weight| h * T::real(*weight));
+        let substeps: Vec<_> = lengths.map(|h| Steps::new(h, v)).collect();
+        let ways = substeps.iter().map(|substep| Way::of(&system, substep.h)).collect();
+        Ok(Self { system, scheme, node, following: substeps.clone(), substeps, ways, failure: None })
     }
 
     /// Takes one whole step and returns the state reached.
@@ -148,6 +148,12 @@ where
         self.node.state()
     }
 
+    /// Largest residual of the substeps of the last whole step, measured at the velocities that were taken, in roundings; see
+    /// [`FixedStep::residual`](crate::FixedStep::residual). Zero before the first step.
+    pub fn residual(&self) -> f64 {
+        self.substeps.iter().map(|substep| substep.measured().roundings()).fold(0.0, f64::max)
+    }
+
     /// The weights.
     pub fn scheme(&self) -> Scheme {
         self.scheme
@@ -156,27 +162,26 @@ where
     fn advance(&mut self) -> Result<State<N, T>, StepError> {
         let (mut node, system) = (self.node, &self.system);
         // Before the first whole step the velocities of the substeps are not known: each follows the one before.
-        let mut known: Option<SVector<T, N>> = None;
-        self.following.copy_from_slice(&self.strides);
-        for (stride, inverse) in self.following.iter_mut().zip(&self.inverses) {
-            if let Some(v) = known.filter(|_| stride.forecast.is_new()) {
-                *stride = Stride::new(stride.h, v);
+        let mut before = None;
+        self.following.copy_from_slice(&self.substeps);
+        for (substep, way) in self.following.iter_mut().zip(&self.ways) {
+            if let Some(v) = before.filter(|_| substep.is_new()) {
+                *substep = Steps::new(substep.h, v);
             }
-            let found = if let Some(found) = stride.foretold(system, &node, stride.place::<S>(&node), inverse.as_ref())
-            {
-                stride.take::<S>(&found);
-                found
-            } else {
-                let guess = stride.forecast.newest();
-                let sought = stride.seek(system, &node, Branch::Nearest);
-                sought.map_err(|failure| failure.explained(system, &node, stride.h, &guess))?
+            let h = substep.h;
+            let solved = match substep.corrected_often(system, &node, way, substep.guess()) {
+                Some(solved) => solved,
+                None => substep
+                    .searched(system, &node, Branch::Nearest)
+                    .map_err(|failure| failure.explained(system, &node, h, &substep.v()))?,
             };
-            node.advance(stride.h, &(found.v() * stride.h), &found.gain);
+            node.advance(h, &(solved.v * h), &solved.increment);
             node.check_finite(self.node.t)?;
-            known = Some(found.v());
+            substep.push(&solved);
+            before = Some(solved.v);
         }
         self.node = node;
-        core::mem::swap(&mut self.strides, &mut self.following);
+        core::mem::swap(&mut self.substeps, &mut self.following);
         Ok(self.state())
     }
 }

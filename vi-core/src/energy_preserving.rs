@@ -14,26 +14,24 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `starts` | the node and the interval that the first step follows |
-//! | `foretold` | the root by one Newton step from v and h extrapolated over the last steps, where earlier steps taught that this will do |
-//! | `lesson` | how far one Newton step may be trusted, learnt at a root |
+//! | `predicted` | the root by one or a few Newton steps from v and h extrapolated over the last steps |
 //! | `guess` | else: v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `newton` | the n + 1 equations to the rounding floor |
 //! | `bracket` | where that fails: the smallest h > 0 that solves them, or the proof that there is none |
 //! | `fallback` | what is done then: an error, or fixed steps until a step exists again |
 //! | `checkpoint` | what a run carries, to be stored and resumed bit for bit |
 //!
-//! AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! AFTER A STEP both residuals were measured at the (v, h) that was taken, and are at the rounding floor. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 mod bracket;
 mod checkpoint;
 mod fallback;
-mod foretold;
 mod guess;
-mod lesson;
 mod newton;
+mod predicted;
 mod starts;
 
-pub use checkpoint::Checkpoint;
+pub use checkpoint::{Checkpoint, Run};
 pub use fallback::{Fallback, Switches};
 
 use crate::condition::Condition;
@@ -77,7 +75,7 @@ impl<const N: usize, T: Real> Last<N, T> {
 #[derive(Clone, Debug)]
 pub struct EnergyPreserving<S, const N: usize, T = f64> {
     system: S,
-    run: Checkpoint<N, T>,
+    run: Run<N, T>,
     failure: Option<StepError>,
 }
 
@@ -98,33 +96,33 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        if let Some(found) = self.foretold() {
-            let foretold::Found { root, gain, .. } = &found;
-            let (node, last, step) = self.run.reached::<S>(&self.run.node, root, gain, Method::EnergyPreserving);
+        if let Some(predicted) = self.predicted() {
+            let predicted::Predicted { root, increment, .. } = &predicted;
+            let (node, last, step) = self.run.reached::<S>(&self.run.node, root, increment, Method::EnergyPreserving);
             if node.is_finite() {
-                self.run.forecasts.push::<S>(&self.run.node, &found);
+                self.run.predictors.push(&predicted);
                 (self.run.node, self.run.last) = (node, last);
                 return Ok(step);
             }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers.
-        let (run, outcome) = sought(self.system, self.run);
+        let (run, outcome) = searched(self.system, self.run);
         self.run = run;
         outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
 
-    /// The next step, where it has not to be sought.
-    #[inline]
-    fn foretold(&self) -> Option<foretold::Found<N, T>> {
+    /// The next step, where it has not to be searched.
+    #[inline(always)]
+    fn predicted(&self) -> Option<predicted::Predicted<N, T>> {
         let Self { system, run, .. } = self;
-        let Checkpoint { node, last, forecasts, bounds, phase, .. } = run;
+        let Run { node, last, predictors, bounds, phase, .. } = run;
         if phase.is_some() {
             return None;
         }
-        let found = forecasts.root(system, node, last)?;
-        let h = found.root.h;
+        let predicted = predictors.step(system, node, last)?;
+        let h = predicted.root.h;
         let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.runs_away(h);
-        allowed.then_some(found)
+        allowed.then_some(predicted)
     }
 
     /// The state reached last.
@@ -174,7 +172,7 @@ where
         Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
     }
 
-    /// Takes one step, sought from the interval before.
+    /// Takes one step, searched from the interval before.
     fn advance(&mut self) -> Result<Step<N, T>, StepError> {
         if let Some(phase) = self.run.phase {
             return self.advance_in_phase(phase);
@@ -186,15 +184,15 @@ where
         }
     }
 
-    /// Takes the step `root` from `start`, and learns from it.
+    /// Takes the step `root` from `start`.
     fn take(&mut self, start: Node<N, T>, root: Root<N, T>, method: Method<T>) -> Result<Step<N, T>, StepError> {
-        let gain = self.system.increment(&start, root.h, &root.v);
-        let (node, last, step) = self.run.reached::<S>(&start, &root, &gain, method);
+        let increment = self.system.extended_residual(&start, root.h, &root.v).increment;
+        let (node, last, step) = self.run.reached::<S>(&start, &root, &increment, method);
         node.check_finite(start.t)?;
         match method {
-            // A length that was given foretells none.
-            Method::FixedStep => self.run.forecasts = foretold::Forecasts::new(root.v, root.h),
-            _ => self.run.forecasts.learn(&self.system, &start, &self.run.last, &root, &node),
+            // A length that was given predicts none.
+            Method::FixedStep => self.run.predictors = predicted::Predictors::new(root.v, root.h),
+            _ => self.run.predictors.restart(&root),
         }
         (self.run.node, self.run.last) = (node, last);
         Ok(step)
@@ -202,7 +200,7 @@ where
 
     /// The forward step from `node`, within the bounds.
     fn root(&self, node: &Node<N, T>) -> Result<Root<N, T>, StepError> {
-        let Self { system, run: Checkpoint { last, .. }, .. } = self;
+        let Self { system, run: Run { last, .. }, .. } = self;
         let ratio = T::real(RATIO);
         let range = (last.h / ratio, last.h * ratio);
         // At the smallest root D has the sign that it had: past a change of sign lies another root.
@@ -222,13 +220,13 @@ where
     }
 }
 
-/// The run after a step that has to be sought, and the step; after an error the run as it was.
+/// The run after a step that has to be searched, and the step; after an error the run as it was.
 #[cold]
 #[inline(never)]
-fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn searched<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: S,
-    run: Checkpoint<N, T>,
-) -> (Checkpoint<N, T>, Result<Step<N, T>, StepError>) {
+    run: Run<N, T>,
+) -> (Run<N, T>, Result<Step<N, T>, StepError>) {
     let mut integrator = EnergyPreserving { system, run, failure: None };
     let outcome = integrator.advance();
     let Last { v, h, .. } = integrator.run.last;
@@ -236,18 +234,18 @@ fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
     (integrator.run, outcome.map_err(explained))
 }
 
-impl<const N: usize, T: Real> Checkpoint<N, T> {
+impl<const N: usize, T: Real> Run<N, T> {
     /// The node and the interval after the step `root` from `start`, and the step.
     #[inline]
     fn reached<S: Stepping<N, T>>(
         &self,
         start: &Node<N, T>,
         root: &Root<N, T>,
-        gain: &Increment<N, T>,
+        increment: &Increment<N, T>,
         method: Method<T>,
     ) -> (Node<N, T>, Last<N, T>, Step<N, T>) {
         let Root { v, h, density, iterations, residual, .. } = *root;
-        let node = start.advanced::<S>(h, &v, gain);
+        let node = start.advanced::<S>(h, &v, increment);
         let (t_mid, q_mid) = start.midpoint(h, &v);
         let last = &self.last;
         // One over the time between the middles of the two intervals.

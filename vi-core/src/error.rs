@@ -77,6 +77,17 @@ pub enum StepError {
         /// The part of L or f that is not finite there, where the system says so.
         expression: Option<&'static str>,
     },
+    /// A checkpoint was taken of another system, or with another value of a parameter.
+    OtherSystem {
+        /// Name of the system that was to be restarted.
+        system: &'static str,
+        /// The parameter whose values differ; `None` where the systems do.
+        parameter: Option<&'static str>,
+        /// Its value in the checkpoint; not a number where the systems differ.
+        stored: f64,
+        /// Its value in the system that was to be restarted; not a number where the systems differ.
+        given: f64,
+    },
     /// The caller gave a number with which no step can be taken.
     InvalidInput {
         /// Which input.
@@ -138,6 +149,16 @@ impl fmt::Display for StepError {
             Self::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
+            Self::OtherSystem { system, parameter: None, .. } => {
+                write!(
+                    f,
+                    "the checkpoint is of another system than `{system}`; restart the system that it was taken of"
+                )
+            }
+            Self::OtherSystem { system, parameter: Some(parameter), stored, given } => write!(
+                f,
+                "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}; restart with the parameters that it was taken with"
+            ),
             Self::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value}"),
         }
     }

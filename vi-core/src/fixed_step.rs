@@ -7,17 +7,16 @@
 //!  p1 = D4 L_d + f_d⁺       as p0 plus its gain; for the midpoint rule p1 = p0 + h (L_q + f)
 //! ```
 //!
-//! A linear step of a few degrees of freedom is one matrix (`closed_form`); where A does not change, v comes by one product with
-//! its inverse. Else v is foretold from the last steps and one Newton step follows, trusted by what earlier steps taught
-//! of its convergence (`stride`, `forecast`); sums are compensated. Where that does not do, Newton's iteration goes on to the rounding floor, every residual measured; and where it fails, v is followed
-//! from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several roots: see
-//! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! v is predicted from the last steps, corrected, and its residual measured (`momentum::steps`); a linear step of a few degrees of
+//! freedom is one matrix; sums are compensated. Where that does not do, Newton's iteration goes on to the rounding floor; and where
+//! it fails, v is followed from the velocity that belongs to p by continuation in h. Beyond a certain h the equation has several
+//! roots: see [`Branch`]. AFTER A STEP its residual was measured at the v that was taken, and is at the rounding floor. AFTER AN
+//! ERROR the integrator holds the last good state and keeps returning that error.
+//!
+//! q and p are carried with what rounding takes from them, so that an increment below an ulp of theirs is not lost, only later seen.
 
-use crate::closed_form::ClosedForm;
-use crate::stride::{Inverse, Stride};
-use crate::{Node, Real, Scalar, State, StepError, Stepping};
-use crate::continuation;
-use core::hint::black_box;
+use crate::momentum::{Steps, Trial, Way};
+use crate::{Node, Real, Scalar, State, StepError, Stepping, checkpoint};
 use nalgebra::SVector;
 
 /// The variational integrator with a given step; see the [module](self).
@@ -28,14 +27,11 @@ where
     T: Real,
 {
     system: S,
-    /// The inverse of A, where it is the same in every step.
-    inverse: Option<Inverse<S, N, T>>,
-    /// The step as one matrix, where it is that.
-    closed_form: Option<ClosedForm<N, T>>,
-    run: Checkpoint<N, T>,
+    way: Way<S, N, T>,
+    run: Run<N, T>,
     failure: Option<StepError>,
-    /// Whether no step is foretold: by the branch, or after a failure. One question before a step instead of two.
-    is_sought: bool,
+    /// Whether a step is not predicted: by the branch, or after a failure. One question before a step instead of two.
+    is_searched: bool,
 }
 
 /// Which root of the momentum equation is a step, where it has several.
@@ -56,8 +52,7 @@ pub enum Branch {
     Connected,
 }
 
-/// Everything that [`FixedStep`] carries but the system, to be stored and resumed bit for bit; see
-/// [`energy_preserving::Checkpoint`](crate::energy_preserving::Checkpoint), which is the same for the other integrator.
+/// What a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -67,14 +62,15 @@ pub enum Branch {
         deserialize = "T: crate::Real + serde::Deserialize<'de>"
     ))
 )]
-pub struct Checkpoint<const N: usize, T = f64> {
+pub struct Run<const N: usize, T = f64> {
     node: Node<N, T>,
-    stride: Stride<N, T>,
-    /// Where the next stride evaluates L.
-    place: SVector<T, N>,
+    steps: Steps<N, T>,
     iterations: u32,
     branch: Branch,
 }
+
+/// Everything that a run of [`FixedStep`] carries, to be stored and resumed bit for bit.
+pub type Checkpoint<const N: usize, T = f64> = checkpoint::Checkpoint<Run<N, T>, T>;
 
 impl<S, const N: usize, T> FixedStep<S, N, T>
 where
@@ -84,15 +80,13 @@ where
     /// The integrator of `system` from `state` with the step `h`, in units of time.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an h that is zero or not finite, [`StepError::NonFinite`] for such a state,
+    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a state,
     /// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to its momenta.
     pub fn new(system: S, state: State<N, T>, h: T) -> Result<Self, StepError> {
         check_step(h)?;
+        let steps = Steps::new(h, state.velocity(&system)?);
         let node = Node::new(state, T::zero());
-        let v = state.velocity(&system)?;
-        let stride = Stride::new(h, v);
-        let run = Checkpoint { node, stride, place: node.q, iterations: 0, branch: Branch::Nearest };
-        Ok(Self::prepared(system, run))
+        Ok(Self::prepared(system, Run { node, steps, iterations: 0, branch: Branch::Nearest }))
     }
 
     /// Which root to take where there are several; [`Branch::Nearest`] unless this is called.
@@ -102,34 +96,34 @@ where
         Self::prepared(self.system, self.run)
     }
 
-    /// Everything that the run carries: the node with its low parts, the step, and what the next guess is made of.
+    /// Everything that the run carries: the node with its low parts, the step, what the next guess is made of; and of which
+    /// system with which parameters. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
-        self.run
+        checkpoint::Checkpoint::of(&self.system, self.run)
     }
 
-    /// The run that was at `checkpoint`, bit for bit. The system must be the one that it was taken of, with the same
-    /// parameters.
+    /// The run that was at `checkpoint`, bit for bit.
     ///
     /// # Errors
-    /// [`StepError::NonFinite`] and [`StepError::InvalidInput`] for a checkpoint that no run can have left.
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
+    /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
-        let Checkpoint { node, stride, .. } = &checkpoint;
-        check_step(stride.h)?;
+        let run = checkpoint.run_of(&system)?;
+        let Run { node, steps, .. } = &run;
+        check_step(steps.h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
-        if !(stride.forecast.is_finite() && checkpoint.place.iter().all(|entry| entry.is_finite())) {
+        if !steps.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None });
         }
-        Ok(Self::prepared(system, checkpoint))
+        Ok(Self::prepared(system, run))
     }
 
     /// With what is the same in every step.
-    fn prepared(system: S, run: Checkpoint<N, T>) -> Self {
-        let Checkpoint { node, stride, branch, .. } = &run;
-        let is_sought = *branch != Branch::Nearest;
-        let inverse = stride.inverse(&system, node).filter(|_| *branch == Branch::Nearest);
-        let closed_form = ClosedForm::of(&system, node, stride.h, inverse.as_ref());
-        Self { system, inverse, closed_form, run, failure: None, is_sought }
+    fn prepared(system: S, run: Run<N, T>) -> Self {
+        let way = Way::of(&system, run.steps.h);
+        let is_searched = run.branch != Branch::Nearest;
+        Self { system, way, run, failure: None, is_searched }
     }
 
     /// Takes one step and returns the state reached.
@@ -137,44 +131,32 @@ where
     /// # Errors
     /// [`StepError::NotConverged`] where the momentum equation has no solution that can be reached, with the iterations
     /// spent; [`StepError::NonFinite`], [`StepError::Singular`]. The same error again after an error.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
-        let Self { system, inverse, closed_form, run, is_sought, .. } = self;
-        if *is_sought {
-            if let Some(failure) = self.failure {
-                return Err(failure);
-            }
-        } else if let Some(closed_form) = closed_form.as_ref().filter(|_| S::CLOSED_FORM) {
-            let (h, (way, gain)) = (run.stride.h, closed_form.step(&run.node));
-            if run.node.stays_finite(h, &way, &gain) {
-                run.stride.forecast.replace(way * h.recip());
-                run.node.advance(h, &way, &gain);
-                return Ok(run.node.state());
-            }
-        } else if let Some(found) = run.stride.foretold(system, &run.node, run.place, inverse.as_ref()) {
-            let (h, way) = (run.stride.h, found.v() * run.stride.h);
-            if run.node.stays_finite(h, &way, &found.gain) {
-                if let Some(place) = run.stride.place_after::<S>(&run.node, &found) {
-                    run.place = place;
+        let Self { system, way, run, is_searched, .. } = self;
+        let mut trial = None;
+        if !*is_searched {
+            match run.steps.common(system, &run.node, way) {
+                Ok(solved) => {
+                    let (h, displacement) = (run.steps.h, solved.v * run.steps.h);
+                    if run.node.stays_finite(h, &displacement, &solved.increment) {
+                        run.steps.push_common::<S>(&solved);
+                        run.node.advance(h, &displacement, &solved.increment);
+                        run.iterations = solved.iterations;
+                        return Ok(run.node.state());
+                    }
                 }
-                run.stride.take::<S>(&found);
-                run.node.advance(h, &way, &found.gain);
-                run.iterations = found.iterations;
-                return Ok(run.node.state());
+                Err(uncommon) => trial = Some(uncommon),
             }
         }
-        // The rare path gets copies, so that a loop over steps may keep the run in registers; and each number for itself, since
-        // the compiler joins those that it stores side by side, and then one waits for the other.
-        let (run, outcome) = sought(self.system, self.run.apart());
-        let run = run.apart();
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        // The rare path gets copies, so that a loop over steps may keep the run in registers.
+        let (run, outcome) = uncommon(self.system, self.way, self.run, trial);
         match outcome {
-            // The rest is as it was, and known to be.
-            Ok(()) => {
-                let Checkpoint { node, stride, place, iterations, .. } = run;
-                (self.run.node, self.run.place, self.run.iterations) = (node, place, iterations);
-                self.run.stride.resume(stride);
-            }
-            Err(failure) => (self.failure, self.is_sought) = (Some(failure), true),
+            Ok(()) => self.run = run,
+            Err(failure) => (self.failure, self.is_searched) = (Some(failure), true),
         }
         outcome.map(|()| self.run.node.state())
     }
@@ -197,13 +179,19 @@ where
 
     /// The step, in units of time.
     pub fn h(&self) -> T {
-        self.run.stride.h
+        self.run.steps.h
     }
 
     /// Velocity of the last interval, `(q1 − q0)/h` without its cancellation; before the first step the velocity that
     /// belongs to the momenta.
     pub fn v(&self) -> SVector<T, N> {
-        self.run.stride.forecast.newest()
+        self.run.steps.v()
+    }
+
+    /// Largest residual of the last step, measured at the v that was taken, in roundings: one is an ulp of what the row is a sum
+    /// of. Zero before the first step.
+    pub fn residual(&self) -> f64 {
+        self.run.steps.measured().roundings()
     }
 
     /// Newton iterations of the last step.
@@ -216,44 +204,48 @@ where
     /// Evaluated from v inside the interval: from the stored nodes it would carry the cancellation of `(q1 − q0)/h`.
     pub fn discrete_energy(&self) -> Option<T> {
         let v = self.v();
-        (!self.run.stride.forecast.is_new()).then(|| {
+        (!self.run.steps.is_new()).then(|| {
             let mut start = self.run.node;
-            start.shift(-self.run.stride.h, &(v * -self.run.stride.h));
-            let start = start.leaving(&self.system, self.run.stride.h, &v);
-            start.energy + self.system.increment(&start, self.run.stride.h, &v).energy
+            start.shift(-self.run.steps.h, &(v * -self.run.steps.h));
+            let start = start.leaving(&self.system, self.run.steps.h, &v);
+            start.energy + self.system.extended_residual(&start, self.run.steps.h, &v).increment.energy
         })
     }
 }
 
-impl<const N: usize, T: Scalar> Checkpoint<N, T> {
-    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
-    fn apart(self) -> Self {
-        let Self { node, stride, place, iterations, branch } = self;
-        Self { node: node.apart(), stride: stride.apart(), place: black_box(place), iterations, branch }
-    }
-
-    /// Takes a step that has to be sought.
-    fn seek<S: Stepping<N, T>>(&mut self, system: &S) -> Result<(), StepError> {
-        let t = self.node.t;
-        let found = self.stride.seek(system, &self.node, self.branch)?;
-        self.node.advance(self.stride.h, &(found.v() * self.stride.h), &found.gain);
-        self.iterations = found.iterations;
-        self.place = self.stride.place::<S>(&self.node);
-        self.node.check_finite(t)
+impl<const N: usize, T: Scalar> Run<N, T> {
+    /// Takes a step by corrections of a trial, or one that has to be searched.
+    fn take<S: Stepping<N, T>>(
+        &mut self,
+        system: &S,
+        way: &Way<S, N, T>,
+        trial: Option<Trial<N, T>>,
+    ) -> Result<(), StepError> {
+        let (t, h) = (self.node.t, self.steps.h);
+        let solved = match trial.and_then(|trial| self.steps.corrected_often(system, &self.node, way, trial)) {
+            Some(solved) => solved,
+            None => self.steps.searched(system, &self.node, self.branch)?,
+        };
+        self.node.advance(h, &(solved.v * h), &solved.increment);
+        self.node.check_finite(t)?;
+        self.steps.push(&solved);
+        self.iterations = solved.iterations;
+        Ok(())
     }
 }
 
-/// The run after a step that has to be sought; or the error, with the expression that is not finite.
-#[cold]
+/// The run after a step that is not the common one; or the error, with the expression that is not finite.
 #[inline(never)]
-fn sought<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: S,
-    before: Checkpoint<N, T>,
-) -> (Checkpoint<N, T>, Result<(), StepError>) {
+    way: Way<S, N, T>,
+    before: Run<N, T>,
+    trial: Option<Trial<N, T>>,
+) -> (Run<N, T>, Result<(), StepError>) {
     let mut run = before;
-    let outcome = run.seek(&system);
-    let v = before.stride.forecast.newest();
-    (run, outcome.map_err(|failure| failure.explained(&system, &before.node, before.stride.h, &v)))
+    let outcome = run.take(&system, &way, trial);
+    let v = before.steps.v();
+    (run, outcome.map_err(|failure| failure.explained(&system, &before.node, before.steps.h, &v)))
 }
 
 impl<S, const N: usize, T> Iterator for FixedStep<S, N, T>
@@ -264,36 +256,18 @@ where
     type Item = Result<State<N, T>, StepError>;
 
     /// The next step; never `None`. After an error, the same error.
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
         Some(self.step())
     }
 }
 
-/// The velocity of one step of length h from a node, as [`FixedStep`] finds it by [`Branch::Nearest`]: from `guess`, or,
-/// where Newton's iteration fails from there, by the continuation from `last`, the velocity of the step before.
-///
-/// # Errors
-/// Those of [`FixedStep::step`].
-#[cold]
-pub fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
-    system: &S,
-    node: &Node<N, T>,
-    h: T,
-    guess: SVector<T, N>,
-    last: SVector<T, N>,
-) -> Result<SVector<T, N>, StepError> {
-    continuation::nearest(system, node, h, guess, last)
-        .map(|solution| solution.v)
-        .map_err(|failure| failure.explained(system, node, h, &last))
-}
-
-/// A step must lead somewhere.
+/// A step must lead somewhere: a subnormal h has no quotients.
 pub(crate) fn check_step<T: Scalar>(h: T) -> Result<(), StepError> {
     let value = h.to_f64();
-    if value.is_finite() && value != 0.0 {
+    if value.is_normal() {
         Ok(())
     } else {
-        Err(StepError::InvalidInput { input: "the step h", allowed: "finite and not zero", value })
+        Err(StepError::InvalidInput { input: "the step h", allowed: "finite, not zero and not subnormal", value })
     }
 }

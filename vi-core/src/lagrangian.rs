@@ -10,6 +10,7 @@
 //! ```
 
 use crate::linear::Matrix;
+use crate::real::Rounded;
 use crate::{Interval, Node, Real, StepError};
 use nalgebra::{SMatrix, SVector};
 
@@ -25,7 +26,13 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     const FORCED: bool;
     /// Which coordinates do not appear in L and have no force: their momenta are conserved.
     const CYCLIC: [bool; N];
+    /// Names of the parameters, as declared.
+    const PARAMETERS: &'static [&'static str] = &[];
 
+    /// The value of the parameter of this index in [`Lagrangian::PARAMETERS`].
+    fn parameter(&self, _index: usize) -> T {
+        T::zero()
+    }
     /// L(t, q, v).
     fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
     /// Energy `v·∂L/∂v − L`.
@@ -83,56 +90,24 @@ pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Co
     type Jacobian: Matrix<N, T>;
     /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
     const CONSTANT_JACOBIAN: bool;
-    /// Whether what a step adds to q and p is a constant matrix times (q, p), but for a constant: A is constant, so are the
-    /// derivatives of the gain, and nothing depends on the time. Worth it for a few coordinates only.
+    /// Whether v and what a step adds to p are a constant matrix times (q, p), but for a constant: A is constant, the momenta
+    /// gain what is linear in the state, and nothing depends on the time. Worth it for a few coordinates only.
     const CLOSED_FORM: bool = false;
-    /// Whether L and f are made of functions without a kink or a jump, so that Newton's iteration is quadratic everywhere.
-    const SMOOTH: bool;
-    /// The part of the step at whose end [`Stepping::momentum_step`] and [`Stepping::extended_step`] are told the coordinates: one
-    /// half for the middle. `None` where they find out themselves.
-    const PLACE: Option<f64> = None;
+    /// Whether the functions of a step are so short that they are always inlined: a loop over trajectories becomes vector
+    /// instructions then.
+    const INLINED: bool = false;
 
     /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the
     /// velocity that belongs to `p`.
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, Self::Jacobian>;
+    /// The residual of that equation, and what the momenta gain over the step.
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T>;
     /// Momentum and energy equation at the trial `(v, h)`.
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
-    /// What the rounding of their residuals is measured in.
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T>;
-    /// What momentum and energy gain over the solved step.
-    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T>;
-
-    /// What the momenta gain over the step of velocity `v + δv`, where `solve` gives δv from the momentum equation at `v`; the
-    /// coordinates after the part [`Stepping::PLACE`] of the step `v` are `place`. The
-    /// generator writes it to first order in δv where that costs less than another evaluation: what it leaves
-    /// out is of the second order, as Newton's iteration does.
-    #[inline(always)]
-    fn momentum_step(
-        &self,
-        node: &Node<N, T>,
-        _place: &SVector<T, N>,
-        h: T,
-        v: &SVector<T, N>,
-        solve: impl FnOnce(&MomentumEquation<N, T, Self::Jacobian>) -> SVector<T, N>,
-    ) -> SVector<T, N> {
-        let dv = solve(&self.momentum_equation(node, h, v));
-        self.increment(node, h, &(v + dv)).momentum
-    }
-
-    /// The same in both unknowns: what momentum and energy gain over the step `(v + δv, h + δh)`, where `solve` gives
-    /// (δv, δh) from both equations at `(v, h)`.
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &Node<N, T>,
-        _place: &SVector<T, N>,
-        h: T,
-        v: &SVector<T, N>,
-        solve: impl FnOnce(&ExtendedSystem<N, T, Self::Jacobian>) -> (SVector<T, N>, T),
-    ) -> Increment<N, T> {
-        let (dv, dh) = solve(&self.extended_system(node, h, v));
-        self.increment(node, h + dh, &(v + dv))
-    }
+    /// The residuals of both, and what momentum and energy gain over the step.
+    fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T>;
+    /// What the rounding of both residuals is measured in.
+    fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
 }
 
 /// The momentum equation at a trial velocity.
@@ -170,14 +145,45 @@ pub struct ExtendedSystem<const N: usize, T = f64, J = SMatrix<T, N, N>> {
     pub energy_dh: T,
 }
 
-/// Sums of the absolute values of the terms of the residuals at a trial `(v, h)`, and of what the rounding of the node
-/// moves them by.
+/// The residual of the momentum equation, and what follows from the same evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Magnitudes<const N: usize, T = f64> {
+pub struct MomentumResidual<const N: usize, T = f64> {
+    /// `r = −D2 L_d − f_d⁻ − p0`.
+    pub residual: SVector<T, N>,
+    /// `p1 − p0`; see [`Increment::momentum`].
+    pub increment: SVector<T, N>,
+}
+
+/// The residuals of both equations, and what follows from the same evaluation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtendedResidual<const N: usize, T = f64> {
+    /// `r = −D2 L_d − f_d⁻ − p0`.
+    pub residual: SVector<T, N>,
+    /// `c = e − v·r`, `e = D1 L_d + g_d⁻ − E0`.
+    pub energy_residual: T,
+    /// `p1 − p0` and `E1 − E0`.
+    pub increment: Increment<N, T>,
+}
+
+/// What rounding moves the residuals at a trial `(v, h)` by at most, in ulps of 1: a residual of `ε` times this is one rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding<const N: usize, T = f64> {
     /// Of each momentum residual.
     pub residual: SVector<T, N>,
     /// Of the combined energy residual c.
     pub energy_residual: T,
+}
+
+impl<const N: usize, T: Real> Rounding<N, T> {
+    /// That of a system, given in numbers that carry a bound of their rounding; v and h are the numbers nearest to a root.
+    pub fn of(system: &impl Stepping<N, Rounded>, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Self {
+        let nearest = |number: T| Rounded::nearest(number.to_f64());
+        let node = node.map(|number| Rounded::exact(number.to_f64()));
+        let found = system.extended_residual(&node, nearest(h), &v.map(nearest));
+        // Bounds are in halves of an ulp.
+        let ulps = |number: Rounded| T::real(0.5 * number.error());
+        Self { residual: found.residual.map(ulps), energy_residual: ulps(found.energy_residual) }
+    }
 }
 
 /// What momentum and energy gain over one solved step.
@@ -189,10 +195,8 @@ pub struct Increment<const N: usize, T = f64> {
     pub energy: T,
 }
 
-/// The parameters of a system, by name.
+/// The parameters of a system, by name; [`Lagrangian::PARAMETERS`] lists them.
 pub trait Parameters<T: Real = f64> {
-    /// Names of the parameters, as declared.
-    const PARAMETERS: &'static [&'static str];
     /// The parameter of this name, for reading and writing.
     fn parameter_mut(&mut self, name: &str) -> Option<&mut T>;
 }
@@ -216,6 +220,11 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for &S {
     const AUTONOMOUS: bool = S::AUTONOMOUS;
     const FORCED: bool = S::FORCED;
     const CYCLIC: [bool; N] = S::CYCLIC;
+    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+
+    fn parameter(&self, index: usize) -> T {
+        S::parameter(self, index)
+    }
 
     #[inline]
     fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
@@ -302,50 +311,29 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const CLOSED_FORM: bool = S::CLOSED_FORM;
-    const SMOOTH: bool = S::SMOOTH;
-    const PLACE: Option<f64> = S::PLACE;
+    const INLINED: bool = S::INLINED;
 
-    #[inline]
+    #[inline(always)]
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, S::Jacobian> {
         S::momentum_equation(self, node, h, v)
     }
 
-    #[inline]
+    #[inline(always)]
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
+        S::momentum_residual(self, node, h, v)
+    }
+
+    #[inline(always)]
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, S::Jacobian> {
         S::extended_system(self, node, h, v)
     }
 
-    #[inline]
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T> {
-        S::magnitudes(self, node, h, v)
-    }
-
-    #[inline]
-    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
-        S::increment(self, node, h, v)
-    }
-
     #[inline(always)]
-    fn momentum_step(
-        &self,
-        node: &Node<N, T>,
-        place: &SVector<T, N>,
-        h: T,
-        v: &SVector<T, N>,
-        solve: impl FnOnce(&MomentumEquation<N, T, S::Jacobian>) -> SVector<T, N>,
-    ) -> SVector<T, N> {
-        S::momentum_step(self, node, place, h, v, solve)
+    fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
+        S::extended_residual(self, node, h, v)
     }
 
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &Node<N, T>,
-        place: &SVector<T, N>,
-        h: T,
-        v: &SVector<T, N>,
-        solve: impl FnOnce(&ExtendedSystem<N, T, S::Jacobian>) -> (SVector<T, N>, T),
-    ) -> Increment<N, T> {
-        S::extended_step(self, node, place, h, v, solve)
+    fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        S::rounding(self, node, h, v)
     }
 }

@@ -14,40 +14,40 @@
 //! | [`composition`] | fixed steps of order 4, 6 and 8 |
 //! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
 //! | [`condition`] | condition numbers of the equations that a step solves |
+//! | [`checkpoint`] | a run between two steps, with the system that it is of |
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
 //!
 //! Nothing here panics, allocates in a step, or prints.
 
-// A call in the loop over steps is a wall: what it is lent cannot stay in registers.
+// A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
 
 pub mod check;
-mod closed_form;
+pub mod checkpoint;
 mod compensated;
 pub mod composition;
 pub mod condition;
-mod continuation;
 pub mod energy_preserving;
 pub mod error;
 pub mod fixed_step;
-mod forecast;
 pub mod lagrangian;
 pub mod linear;
 mod momentum;
 pub mod node;
+mod predictor;
 pub mod real;
-mod reciprocal;
 pub mod state;
-mod stride;
+#[doc(hidden)]
+pub mod support;
 
 pub use composition::{Composition, Scheme};
 pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
 pub use lagrangian::{
-    Batch, DiscreteLagrangian, ExtendedSystem, Increment, Lagrangian, Magnitudes, MomentumEquation, Parameters,
-    Stepping,
+    Batch, DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Increment, Lagrangian, MomentumEquation,
+    MomentumResidual, Parameters, Rounding, Stepping,
 };
 pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};

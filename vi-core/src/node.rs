@@ -4,7 +4,6 @@
 //! compensated. AFTER A STEP each low part is below half an ulp of its number.
 
 use crate::{Increment, Real, Scalar, State, StepError, Stepping, compensated};
-use core::hint::black_box;
 use nalgebra::SVector;
 
 /// A node as the steppers carry it: each quantity as the unevaluated sum of a number and its low part, so that
@@ -42,18 +41,22 @@ impl<const N: usize, T: Real> Node<N, T> {
         Self { t, t_low: zero, q, q_low: zeros, p, p_low: zeros, energy, energy_low: zero }
     }
 
-    /// The same, each number stored for itself: see the rare path of [`FixedStep::step`](crate::FixedStep::step).
-    pub(crate) fn apart(self) -> Self {
-        let Self { t, t_low, q, q_low, p, p_low, energy, energy_low } = self;
-        Self {
-            t: black_box(t),
-            t_low: black_box(t_low),
-            q: black_box(q),
-            q_low: black_box(q_low),
-            p: black_box(p),
-            p_low: black_box(p_low),
-            energy: black_box(energy),
-            energy_low: black_box(energy_low),
+    /// The node at the origin, at rest.
+    pub(crate) fn zeros() -> Self {
+        Self::new(State { t: T::zero(), q: SVector::zeros(), p: SVector::zeros() }, T::zero())
+    }
+
+    /// The same node in other numbers.
+    pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U + Copy) -> Node<N, U> {
+        Node {
+            t: convert(self.t),
+            t_low: convert(self.t_low),
+            q: self.q.map(convert),
+            q_low: self.q_low.map(convert),
+            p: self.p.map(convert),
+            p_low: self.p_low.map(convert),
+            energy: convert(self.energy),
+            energy_low: convert(self.energy_low),
         }
     }
 
@@ -69,39 +72,33 @@ impl<const N: usize, T: Real> Node<N, T> {
         (self.t + (self.t_low + half), self.moved(half, v))
     }
 
-    /// Where the step `(v, h)` of a system evaluates L, as it is told; see [`Stepping::PLACE`].
-    #[inline]
-    pub fn place<S: Stepping<N, T>>(&self, h: T, v: &SVector<T, N>) -> SVector<T, N> {
-        S::PLACE.map_or(self.q, |part| self.moved(h * T::real(part), v))
-    }
-
     /// `q + h v`.
     #[inline]
     fn moved(&self, h: T, v: &SVector<T, N>) -> SVector<T, N> {
         self.q + (self.q_low + v * h)
     }
 
-    /// Moves time by `h` and coordinates by `way = h v`; momenta and energy stay.
+    /// Moves time by `h` and coordinates by `displacement = h v`; momenta and energy stay.
     #[inline(always)]
-    pub(crate) fn shift(&mut self, h: T, way: &SVector<T, N>) {
+    pub(crate) fn shift(&mut self, h: T, displacement: &SVector<T, N>) {
         compensated::add_rounded(&mut self.t, &mut self.t_low, h);
-        compensated::add_vector(&mut self.q, &mut self.q_low, way);
+        compensated::add_vector(&mut self.q, &mut self.q_low, displacement);
     }
 
-    /// Moves to the end of the step of length h that adds `way = h v` to q; the energy stays.
+    /// Moves to the end of the step of length h that adds `displacement = h v` to q; the energy stays.
     #[inline(always)]
-    pub fn advance(&mut self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) {
-        self.shift(h, way);
-        compensated::add_vector(&mut self.p, &mut self.p_low, momentum_gain);
+    pub fn advance(&mut self, h: T, displacement: &SVector<T, N>, increment: &SVector<T, N>) {
+        self.shift(h, displacement);
+        compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
     /// The node at the end of the step `(v, h)` of a system.
     #[inline]
-    pub(crate) fn advanced<S: Stepping<N, T>>(mut self, h: T, v: &SVector<T, N>, gain: &Increment<N, T>) -> Self {
-        self.advance(h, &(v * h), &gain.momentum);
-        // Else the gain is the number zero, which the compiler may not leave out of a sum.
+    pub(crate) fn advanced<S: Stepping<N, T>>(mut self, h: T, v: &SVector<T, N>, increment: &Increment<N, T>) -> Self {
+        self.advance(h, &(v * h), &increment.momentum);
+        // Else the increment is the number zero, which the compiler may not leave out of a sum.
         if !S::AUTONOMOUS || S::FORCED {
-            compensated::add(&mut self.energy, &mut self.energy_low, gain.energy);
+            compensated::add(&mut self.energy, &mut self.energy_low, increment.energy);
         }
         self
     }
@@ -122,10 +119,10 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     /// Whether [`Node::advance`] leads to a node that is finite. Asked before, since what is asked after has to be taken back,
     /// and a long node is not copied for nothing.
     #[inline(always)]
-    pub(crate) fn stays_finite(&self, h: T, way: &SVector<T, N>, momentum_gain: &SVector<T, N>) -> bool {
+    pub(crate) fn stays_finite(&self, h: T, displacement: &SVector<T, N>, increment: &SVector<T, N>) -> bool {
         let t = compensated::sum(self.t, self.t_low, h);
-        let q = |i| compensated::sum(self.q[i], self.q_low[i], way[i]);
-        let p = |i| compensated::sum(self.p[i], self.p_low[i], momentum_gain[i]);
+        let q = |i| compensated::sum(self.q[i], self.q_low[i], displacement[i]);
+        let p = |i| compensated::sum(self.p[i], self.p_low[i], increment[i]);
         are_finite::<N, T>(t, self.energy, q, p)
     }
 

@@ -4,7 +4,10 @@
 //! [`Real`] holds what a formula needs and nothing that a lane of several numbers could not answer;
 //! [`Scalar`] adds what the control flow of a stepper needs: order.
 
+mod rounded;
 pub mod sine;
+
+pub use rounded::Rounded;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

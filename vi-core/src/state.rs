@@ -90,8 +90,8 @@ pub struct Step<const N: usize, T = f64> {
     pub density_next: T,
     /// Newton iterations on the n + 1 equations that found the step.
     pub iterations: u32,
-    /// Largest residual left, in units of rounding: 1 is one ulp of the sum of the absolute values of the terms. 1 too where
-    /// the step was foretold, and what earlier steps taught of Newton's iteration stands for another evaluation.
+    /// Largest residual left at the `(v, h)` that was taken, in roundings: one is an ulp of what the row is a sum of, or what
+    /// running error analysis finds that its evaluation loses.
     pub residual: T,
     /// How the step was found.
     pub method: Method<T>,

@@ -2,7 +2,7 @@
 
 mod systems;
 
-use systems::{DoubleWell, ForcedDuffing, Kepler, Potential, UnitMass};
+use systems::{DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
 use vi_core::{EnergyPreserving, Fallback, FixedStep, State, Step, StepError, energy_preserving, fixed_step};
 
 /// Through the text of a file and back.
@@ -17,7 +17,7 @@ fn bits<const N: usize>(step: Result<Step<N>, StepError>) -> String {
 }
 
 /// `first` steps, stored, and `second` more are the same steps as without the interruption.
-fn assert_resumes<const N: usize, P: Potential<N, f64> + Clone>(
+fn assert_resumes<const N: usize, P: Steppable<N> + Clone>(
     start: &EnergyPreserving<UnitMass<P>, N>,
     first: u32,
     second: u32,
@@ -39,7 +39,7 @@ fn assert_resumes<const N: usize, P: Potential<N, f64> + Clone>(
     assert_eq!(whole.switches(), resumed.switches());
 }
 
-fn started<const N: usize, P: Potential<N, f64>>(
+fn started<const N: usize, P: Steppable<N>>(
     potential: P,
     q: [f64; N],
     v: [f64; N],
@@ -114,7 +114,7 @@ fn a_checkpoint_that_no_run_has_left_is_refused() {
     let good = serde_json::to_value(run.checkpoint()).unwrap_or_else(|error| panic!("{error}"));
     let h = |value: f64| {
         let mut changed = good.clone();
-        changed["last"]["h"] = value.into();
+        changed["run"]["last"]["h"] = value.into();
         let checkpoint = serde_json::from_value(changed).unwrap_or_else(|error| panic!("{error}"));
         EnergyPreserving::<_, 1>::restart(UnitMass(DoubleWell), checkpoint).map(|run| run.h())
     };
@@ -124,7 +124,7 @@ fn a_checkpoint_that_no_run_has_left_is_refused() {
     }
     let mut checkpoint: energy_preserving::Checkpoint<1> = run.checkpoint();
     let mut changed = good.clone();
-    changed["node"]["q"] = serde_json::Value::Null;
+    changed["run"]["node"]["q"] = serde_json::Value::Null;
     assert!(serde_json::from_value::<energy_preserving::Checkpoint<1>>(changed).is_err());
     checkpoint = through_json(&checkpoint);
     assert_eq!(checkpoint, run.checkpoint());

@@ -100,7 +100,7 @@ fn wrong_derivatives_are_seen() {
         Fault::Energy,
         Fault::Acceleration,
         Fault::StepDensity,
-        Fault::Magnitude,
+        Fault::Rounding,
         Fault::Jacobian,
         Fault::ResidualDh,
         Fault::EnergyDh,

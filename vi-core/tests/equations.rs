@@ -2,12 +2,12 @@
 
 mod systems;
 
-use systems::{DampedOscillator, ForcedDuffing, Kepler, Potential, PumpedPendulum, UnitMass};
+use systems::{DampedOscillator, ForcedDuffing, Kepler, PumpedPendulum, Steppable, UnitMass};
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, SVector, State, Stepping};
 
 /// Largest difference between the derivatives of `system` and central differences, and between its equations and the slot
 /// derivatives, at one point.
-fn largest_difference<const N: usize, P: Potential<N, f64>>(
+fn largest_difference<const N: usize, P: Steppable<N>>(
     system: &UnitMass<P>,
     q: [f64; N],
     v: [f64; N],
@@ -43,7 +43,7 @@ fn largest_difference<const N: usize, P: Potential<N, f64>>(
 
     let interval = Interval { t0: node.t, q0: node.q, t1: node.t + h, q1: node.q + v * h };
     let slots = -system.d2_ld(&interval) - system.fd_minus(&interval) - node.p;
-    let gain = system.increment(&node, h, &v);
+    let gain = system.extended_residual(&node, h, &v).increment;
     let p1 = system.d4_ld(&interval) + system.fd_plus(&interval);
     for i in 0..N {
         compare(here.momentum.residual[i], slots[i]);

@@ -3,7 +3,7 @@
 
 mod systems;
 
-use systems::{DampedOscillator, DoubleWell, Kepler, Potential, UnitMass};
+use systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass};
 use vi_core::{EnergyPreserving, Fallback, Lagrangian, Method, StepError, Switches};
 
 fn kepler(e: f64, h0: f64) -> EnergyPreserving<UnitMass<Kepler>, 2> {
@@ -22,7 +22,7 @@ struct Run {
     switches: Switches,
 }
 
-fn run<const N: usize, P: Potential<N, f64>>(mut integrator: EnergyPreserving<UnitMass<P>, N>, end: f64) -> Run {
+fn run<const N: usize, P: Steppable<N>>(mut integrator: EnergyPreserving<UnitMass<P>, N>, end: f64) -> Run {
     let e1 = integrator.energy();
     let (mut steps, mut fixed_steps, mut energy_error, mut preserved_error) = (0, 0, 0.0_f64, 0.0_f64);
     while integrator.state().t < end {

@@ -2,7 +2,7 @@
 
 mod systems;
 
-use systems::{DampedOscillator, DoubleWell, Kepler, Potential, UnitMass, point_after};
+use systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass, point_after};
 use vi_core::condition::Condition;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError};
 
@@ -25,7 +25,7 @@ struct Run {
     iterations: f64,
 }
 
-fn run<const N: usize, P: Potential<N, f64>>(mut integrator: EnergyPreserving<UnitMass<P>, N>, steps: u32) -> Run {
+fn run<const N: usize, P: Steppable<N>>(mut integrator: EnergyPreserving<UnitMass<P>, N>, steps: u32) -> Run {
     let (e1, h0) = (integrator.energy(), integrator.h());
     let (mut energy_error, mut stretch, mut iterations) = (0.0_f64, 1.0_f64, 0.0);
     for _ in 0..steps {

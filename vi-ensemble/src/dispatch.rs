@@ -1,12 +1,16 @@
-//! Copies of the loops of [`sweep`] for the instruction sets of a processor.
+//! Copies of a loop for the instruction sets of a processor.
 //!
-//! In: what a sweep takes. Out: the same, by the widest vector instructions that this processor has. The compiler makes
+//! In: a [`Loop`]. Out: what it computes, by the widest vector instructions that this processor has. The compiler makes
 //! each copy of the same source; a build for one processor (`-C target-cpu=native`) needs none of them.
 
-use crate::ensemble::HALF;
-use crate::rows::{Nodes, Rows};
-use crate::sweep::{self, Clock, Fixed, Verdict};
-use vi_core::Batch;
+/// A loop over numbers, inlined with all that it calls.
+pub(crate) trait Loop {
+    /// What it computes.
+    type Output;
+
+    /// Runs it; `FUSED` where the processor adds products in one instruction.
+    fn run<const FUSED: bool>(self) -> Self::Output;
+}
 
 /// What a processor can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,43 +41,28 @@ impl Instructions {
         }
         Self::Baseline
     }
-}
 
-/// For a loop of [`sweep`] the function of its name that takes [`Instructions`] before its arguments.
-macro_rules! copies {
-    ($($name:ident($($argument:ident: $kind:ty),*);)*) => {$(
-        #[doc = concat!("`sweep::", stringify!($name), "` by the instructions of this processor.")]
-        #[allow(unsafe_code, clippy::too_many_arguments)]
-        pub(crate) fn $name<S: Batch<N>, const N: usize>(instructions: Instructions, $($argument: $kind),*) -> bool {
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2,fma")]
-            fn avx2<S: Batch<N>, const N: usize>($($argument: $kind),*) -> bool {
-                sweep::$name::<S, N, true>($($argument),*)
-            }
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
-            fn avx512<S: Batch<N>, const N: usize>($($argument: $kind),*) -> bool {
-                sweep::$name::<S, N, true>($($argument),*)
-            }
-            match instructions {
-                Instructions::Baseline => sweep::$name::<S, N, { cfg!(target_feature = "fma") }>($($argument),*),
-                // SAFETY: `Instructions::detected` saw that the processor has these instructions.
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx2 => unsafe { avx2::<S, N>($($argument),*) },
-                // SAFETY: as above.
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx512 => unsafe { avx512::<S, N>($($argument),*) },
-            }
+    /// Runs a loop by these instructions.
+    #[allow(unsafe_code)]
+    pub(crate) fn run<L: Loop>(self, of: L) -> L::Output {
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2,fma")]
+        fn avx2<L: Loop>(of: L) -> L::Output {
+            of.run::<true>()
         }
-    )*};
-}
-
-copies! {
-    foretold(fixed: &Fixed<[S::Rows<HALF>; 2]>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
-        verdict: &mut Verdict, v1: &Rows<N>, v2: &Rows<N>, v3: &Rows<N>, v4: &Rows<N>, v5: &Rows<N>, v6: &Rows<N>,
-        v7: &Rows<N>, v8: &Rows<N>, v9: &Rows<N>, v10: &Rows<N>);
-    again(fixed: &Fixed<[S::Rows<HALF>; 2]>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
-        verdict: &mut Verdict);
-    lesson(fixed: &Fixed<[S::Rows<HALF>; 2]>, clock: Clock, start: &Nodes<N>, end: &mut Nodes<N>, velocity: &mut Rows<N>,
-        verdict: &mut Verdict, v1: &Rows<N>);
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
+        fn avx512<L: Loop>(of: L) -> L::Output {
+            of.run::<true>()
+        }
+        match self {
+            Self::Baseline => of.run::<{ cfg!(target_feature = "fma") }>(),
+            // SAFETY: `Instructions::detected` saw that the processor has these instructions.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { avx2(of) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { avx512(of) },
+        }
+    }
 }

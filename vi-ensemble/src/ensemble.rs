@@ -1,19 +1,14 @@
 //! The trajectories of a caller.
 //!
 //! In: systems, states, a step h; then how many steps to take. Out: for each trajectory, in the order given, the state
-//! reached or how it [`Ended`]. Groups of [`WIDTH`] trajectories are shared among the threads of rayon's current pool.
+//! reached or how it [`Ended`]. Groups of 64 trajectories are shared among the threads of rayon's current pool.
 
 use crate::dispatch::Instructions;
+use crate::ended::Ended;
 use crate::group::Group;
-use core::fmt;
+use crate::layout::WIDTH;
 use rayon::prelude::*;
 use vi_core::{Batch, State, StepError};
-
-/// Trajectories in a group: several vectors, so that one is computed while another waits.
-pub const WIDTH: usize = 2 * HALF;
-
-/// Trajectories in half of a block.
-pub(crate) const HALF: usize = 32;
 
 /// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
 const WORTHWHILE: u64 = 1 << 14;
@@ -44,29 +39,6 @@ pub struct Ensemble<S: Batch<N>, const N: usize> {
     steps: u64,
 }
 
-/// How a trajectory ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ended<const N: usize> {
-    /// The last good state.
-    pub state: State<N>,
-    /// Steps taken up to there.
-    pub steps: u64,
-    /// Why there was no other.
-    pub error: StepError,
-}
-
-impl<const N: usize> fmt::Display for Ended<N> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "ended after {} steps: {}", self.steps, self.error)
-    }
-}
-
-impl<const N: usize> core::error::Error for Ended<N> {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        Some(&self.error)
-    }
-}
-
 impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
     /// The trajectories of `systems` from `states`, pair by pair, with the step `h` in units of time (negative: backwards).
     /// A state from which no step can be taken is a trajectory that ended before its first step.
@@ -89,13 +61,13 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
         Ok(Self { groups, h, steps: 0 })
     }
 
-    /// Takes `steps` steps of every trajectory that has not ended.
+    /// Takes `steps` steps of every trajectory that has not ended; none are left to take where all have.
     pub fn run(&mut self, steps: u64) {
-        self.steps += steps;
+        self.steps = self.steps.saturating_add(steps);
         if let [group] = &mut self.groups[..] {
             return group.run(steps);
         }
-        let together = WORTHWHILE / (WIDTH as u64 * steps.max(1));
+        let together = WORTHWHILE / (WIDTH as u64).saturating_mul(steps.max(1));
         let together = usize::try_from(together).unwrap_or(usize::MAX).max(1);
         self.groups.par_iter_mut().with_min_len(together).for_each(|group| group.run(steps));
     }

@@ -1,17 +1,16 @@
 //! Trajectories that one thread takes on: side by side where that pays, else one after the other.
 //!
-//! In: systems and states, at most [`WIDTH`](crate::ensemble::WIDTH). Out: where each is after so many steps, or how it
+//! In: systems and states, at most [`WIDTH`](crate::layout::WIDTH). Out: where each is after so many steps, or how it
 //! ended.
 //!
-//! Beyond three degrees of freedom the formulas are too long to be written into a loop over trajectories, and their
-//! matrices are solved by loops themselves: nothing would become a vector instruction. And Newton's iteration across a kink
-//! is watched in every step. These are fixed steps, each trajectory for itself.
+//! Side by side go systems whose functions are short enough to be inlined into the loop over trajectories, and of up to three degrees
+//! of freedom: longer ones are calls, and their matrices are solved by loops themselves, so that nothing would become a vector
+//! instruction. Those are fixed steps, each trajectory for itself.
 
 use crate::block::Block;
 use crate::dispatch::Instructions;
-use crate::ensemble::Ended;
-use vi_core::fixed_step::Checkpoint;
-use vi_core::{Batch, FixedStep, State, StepError};
+use crate::ended::Ended;
+use vi_core::{Batch, FixedStep, State};
 
 /// Degrees of freedom up to which trajectories go side by side.
 const LARGEST: usize = 3;
@@ -23,23 +22,22 @@ pub(crate) enum Group<S: Batch<N>, const N: usize> {
     Apart(Vec<Alone<S, N>>),
 }
 
-/// A trajectory by itself, as far as it has come: the integrator does not go from thread to thread.
+/// A trajectory by itself, as far as it has come.
 #[derive(Clone, Debug)]
-pub(crate) struct Alone<S, const N: usize> {
-    system: S,
-    run: Result<(Checkpoint<N>, State<N>), Ended<N>>,
+pub(crate) struct Alone<S: Batch<N>, const N: usize> {
+    run: Result<FixedStep<S, N>, Ended<N>>,
     steps: u64,
 }
 
 impl<S: Batch<N>, const N: usize> Group<S, N> {
     /// The group of these trajectories, at least one.
     pub(crate) fn new(trajectories: &[(S, State<N>)], h: f64, instructions: Instructions) -> Self {
-        if N <= LARGEST && S::SMOOTH {
+        if N <= LARGEST && S::INLINED {
             return Self::Together(Box::new(Block::new(trajectories, h, instructions)));
         }
         let alone = |&(system, state): &(S, State<N>)| {
-            let run = FixedStep::new(system, state, h).map(|run| (run.checkpoint(), state));
-            Alone { system, run: run.map_err(|error| Ended { state, steps: 0, error }), steps: 0 }
+            let run = FixedStep::new(system, state, h).map_err(|error| Ended { state, steps: 0, error });
+            Alone { run, steps: 0 }
         };
         Self::Apart(trajectories.iter().map(alone).collect())
     }
@@ -64,7 +62,7 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
     pub(crate) fn result(&self, index: usize) -> Result<State<N>, Ended<N>> {
         match self {
             Self::Together(block) => block.result(index),
-            Self::Apart(all) => all[index].run.map(|(_, state)| state),
+            Self::Apart(all) => all[index].run.as_ref().map(FixedStep::state).map_err(|ended| *ended),
         }
     }
 
@@ -79,26 +77,14 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
 
 impl<S: Batch<N>, const N: usize> Alone<S, N> {
     fn take(&mut self, steps: u64) {
-        if let Ok((checkpoint, state)) = self.run {
-            self.run = self.taken(checkpoint, steps).map_err(|(last, error)| Ended {
-                state: last.unwrap_or(state),
-                steps: self.steps,
-                error,
-            });
-        }
-    }
-
-    /// The run after the steps; or the last state of this part, if there was one, and why there was no other.
-    fn taken(
-        &mut self,
-        checkpoint: Checkpoint<N>,
-        steps: u64,
-    ) -> Result<(Checkpoint<N>, State<N>), (Option<State<N>>, StepError)> {
-        let mut run = FixedStep::restart(self.system, checkpoint).map_err(|error| (None, error))?;
+        let Ok(run) = &mut self.run else { return };
         for _ in 0..steps {
-            run.step().map_err(|error| (Some(run.state()), error))?;
+            if let Err(error) = run.step() {
+                let state = run.state();
+                self.run = Err(Ended { state, steps: self.steps, error });
+                return;
+            }
             self.steps += 1;
         }
-        Ok((run.checkpoint(), run.state()))
     }
 }

@@ -7,12 +7,11 @@
 //! |---|---|
 //! | [`ensemble`] | the trajectories of a caller, in groups, over threads |
 //! | `group` | whether trajectories go side by side or one after the other |
-//! | `block` | [`WIDTH`](ensemble::WIDTH) trajectories side by side, and what becomes of one that the common path refuses |
+//! | `block` | 64 trajectories side by side, and what becomes of one that the common path refuses |
 //! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
-//! | `cramer` | small linear systems, in line |
-//! | `dispatch` | copies of these loops for the instruction sets of a processor, chosen at run time |
+//! | `dispatch` | copies of a loop for the instruction sets of a processor, chosen at run time |
+//! | `layout` | nodes and velocities of a block, one row per coordinate |
 //! | `lane` | the number that the loops compute with: products are added in one instruction |
-//! | `rows` | nodes and velocities of a block, one row per coordinate |
 //!
 //! A trajectory depends neither on its neighbours nor on the number of threads, bit for bit; on processors with and
 //! without fused multiply-add it differs by rounding.
@@ -23,12 +22,13 @@
 //! it need not agree.
 
 mod block;
-mod cramer;
 mod dispatch;
+mod ended;
 pub mod ensemble;
 mod group;
 mod lane;
-mod rows;
+mod layout;
 mod sweep;
 
-pub use ensemble::{Ended, Ensemble};
+pub use ended::Ended;
+pub use ensemble::Ensemble;

@@ -1,7 +1,7 @@
 //! An ensemble against each of its trajectories alone: as [`FixedStep`] takes it, and converged in every step.
 
 use std::collections::BTreeSet;
-use vi_core::fixed_step::velocity;
+use vi_core::support::step_alone;
 use vi_core::{Batch, FixedStep, Node, State, StepError, lagrangian};
 use vi_ensemble::{Ended, Ensemble};
 use vi_systems::{
@@ -23,7 +23,7 @@ fn outcomes<S: Batch<N>, const N: usize>(
     Ok(ensemble.results().collect())
 }
 
-/// The state after `steps` steps of which each is solved until its residual is a rounding: nothing is foretold or trusted.
+/// The state after `steps` steps of which each is solved by Newton's iteration from the last velocity: nothing is extrapolated.
 fn converged<S: Batch<N>, const N: usize>(
     &(system, start): &Start<S, N>,
     h: f64,
@@ -32,9 +32,7 @@ fn converged<S: Batch<N>, const N: usize>(
     let mut v = FixedStep::new(system, start, h)?.v();
     let mut node = Node::new(start, 0.0);
     for _ in 0..steps {
-        v = velocity(&system, &node, h, v, v)?;
-        let gain = system.increment(&node, h, &v).momentum;
-        node.advance(h, &(v * h), &gain);
+        (node, v) = step_alone(&system, &node, h, v)?;
     }
     Ok(node.state())
 }

@@ -111,12 +111,12 @@ where
         energy_low: 1e-17,
     };
     let (equation, extended) = (system.momentum_equation(&node, h, &v), system.extended_system(&node, h, &v));
-    let (magnitudes, increment) = (system.magnitudes(&node, h, &v), system.increment(&node, h, &v));
+    let (measured, both) = (system.momentum_residual(&node, h, &v), system.extended_residual(&node, h, &v));
     let mut numbers = vec![system.lagrangian(t, &q, &v), system.energy(t, &q, &v), extended.energy_residual];
     numbers.extend([system.ld(&interval), system.d1_ld(&interval), system.d3_ld(&interval)]);
     numbers.extend([system.gd_minus(&interval), system.gd_plus(&interval)]);
     numbers.extend([system.step_density(t, &q, &v).expect("a density"), extended.energy_dh]);
-    numbers.extend([magnitudes.energy_residual, increment.energy]);
+    numbers.extend([both.energy_residual, both.increment.energy]);
     let vectors = [
         system.momentum(t, &q, &v),
         system.force(t, &q, &v),
@@ -129,8 +129,10 @@ where
         extended.momentum.residual,
         extended.residual_dh,
         extended.energy_dv,
-        magnitudes.residual,
-        increment.momentum,
+        measured.residual,
+        measured.increment,
+        both.residual,
+        both.increment.momentum,
     ];
     numbers.extend(vectors.iter().flat_map(|vector| vector.iter()));
     numbers.extend(equation.jacobian.dense().iter().chain(extended.momentum.jacobian.dense().iter()));

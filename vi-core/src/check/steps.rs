@@ -49,7 +49,7 @@ fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut C
     let (h, node) = (*h, node(sample));
     let interval = Interval { t0: node.t, q0: node.q, t1: node.t + h, q1: node.q + v * h };
     let (found, alone) = (system.extended_system(&node, h, v), system.momentum_equation(&node, h, v));
-    let gain = system.increment(&node, h, v);
+    let (measured, both) = (system.momentum_residual(&node, h, v), system.extended_residual(&node, h, v));
 
     let [d2, d4] = [system.d2_ld(&interval), system.d4_ld(&interval)];
     let [fd_minus, fd_plus] = [system.fd_minus(&interval), system.fd_plus(&interval)];
@@ -58,14 +58,19 @@ fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut C
     let scale = Scale { size: d2.amax() + fd_minus.amax() + node.p.amax(), slack };
     check.vector("residual", &found.momentum.residual, &row, scale)?;
     check.vector("residual alone", &alone.residual, &row, scale)?;
-    check.vector("p1 - p0", &gain.momentum, &(d2 + d4 + fd_minus + fd_plus), scale)?;
+    check.vector("residual measured", &measured.residual, &row, scale)?;
+    check.vector("residual measured in both", &both.residual, &row, scale)?;
+    let increment = d2 + d4 + fd_minus + fd_plus;
+    check.vector("p1 - p0", &measured.increment, &increment, scale)?;
+    check.vector("p1 - p0 of both", &both.increment.momentum, &increment, scale)?;
 
     let energy = system.d1_ld(&interval) + system.gd_minus(&interval) - node.energy;
     let size = sample.scale().size + node.energy.abs() + scale.size * v.abs().sum();
     let scale = Scale { size, slack: sample.scale().slack + slack * v.abs().sum() };
     check.number("energy residual", found.energy_residual, energy - v.dot(&row), scale)?;
+    check.number("energy residual measured", both.energy_residual, energy - v.dot(&row), scale)?;
     let wanted = energy + node.energy + system.d3_ld(&interval) + system.gd_plus(&interval);
-    check.number("E1 - E0", gain.energy, -wanted, scale)
+    check.number("E1 - E0", both.increment.energy, -wanted, scale)
 }
 
 /// What the slots say of the step between two states.

@@ -14,7 +14,7 @@ use super::newton::{self, Failure, Root, Trial};
 use super::{Last, RATIO};
 use crate::error::Residuals;
 use crate::momentum;
-use crate::{Node, Scalar, StepError, Stepping, linear};
+use crate::{Node, Scalar, StepError, Stepping};
 use nalgebra::SVector;
 
 /// φ is looked at from `h_last/REACH` to `REACH · h_last`: wide enough to tell a step beyond the factor from none.
@@ -24,9 +24,6 @@ const POINTS: u32 = 32;
 const BISECTIONS: u32 = 200;
 /// Sections of an extremum: each leaves 0.62 of it.
 const SECTIONS: u32 = 48;
-/// Newton step, in roundings of v, that moves v no more than its rounding does.
-const STILL: f64 = 4.0;
-const ITERATIONS: u32 = 20;
 /// Roundings within which φ counts as zero.
 const NOISE: f64 = 16.0;
 
@@ -47,14 +44,10 @@ impl<const N: usize, T: Scalar> Point<N, T> {
         h: T,
         guess: SVector<T, N>,
     ) -> Result<Self, momentum::Failure> {
-        let v = match momentum::solve(system, node, h, guess) {
-            Ok(solution) => solution.v,
-            Err(failure @ momentum::Failure::Stalled { .. }) => settled(system, node, h, guess).ok_or(failure)?,
-            Err(failure) => return Err(failure),
-        };
+        let v = momentum::solve(system, node, h, guess)?.v;
         let equations = system.extended_system(node, h, &v);
-        let magnitude = system.magnitudes(node, h, &v).energy_residual;
-        let size = momentum::roundings(equations.energy_residual, magnitude);
+        let scale = system.rounding(node, h, &v).energy_residual;
+        let size = momentum::roundings(equations.energy_residual, scale);
         let negative = equations.energy_residual.to_f64() < 0.0;
         let roundings = if negative { -size } else { size };
         if size.is_finite() { Ok(Self { v, h, roundings }) } else { Err(momentum::Failure::NonFinite) }
@@ -64,26 +57,6 @@ impl<const N: usize, T: Scalar> Point<N, T> {
     fn sign(&self) -> i8 {
         sign(self.roundings)
     }
-}
-
-/// The v that Newton's iteration on the momentum equation no longer moves but by its rounding. For `h ω ≫ 1`, where the
-/// terms cancel inside their magnitudes, this is all that can be had: enough to see the sign of φ, not to take a step.
-fn settled<const N: usize, T: Scalar, S: Stepping<N, T>>(
-    system: &S,
-    node: &Node<N, T>,
-    h: T,
-    mut v: SVector<T, N>,
-) -> Option<SVector<T, N>> {
-    let largest = |vector: &SVector<T, N>| vector.iter().fold(0.0, |most, x| momentum::worse(x.to_f64().abs(), most));
-    for _ in 0..ITERATIONS {
-        let equation = system.momentum_equation(node, h, &v);
-        let step = linear::solve(&equation.jacobian, &equation.residual)?;
-        v -= step;
-        if largest(&step) <= STILL * T::EPSILON * largest(&v) {
-            return Some(v);
-        }
-    }
-    None
 }
 
 /// −1 or 1; 0 at the rounding floor.

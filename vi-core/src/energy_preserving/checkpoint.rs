@@ -1,20 +1,20 @@
 //! What a run carries from step to step, as one value.
 //!
-//! In: a run, between two steps. Out: a [`Checkpoint`] that may be stored, with the feature `serde` in any format that
-//! keeps numbers exactly (`serde_json` with its feature `float_roundtrip`), and the run again. AFTER A RESTART every number of every further step, and every error, is bit
-//! for bit that of the run which was not interrupted. An error is not stored: the restarted run meets it again, for the
-//! state before it is unchanged and nothing else enters.
+//! In: a run, between two steps. Out: a [`Checkpoint`], and the run again (see [`crate::checkpoint`]).
 //!
 //! A run of 10⁹ steps holds: t, q, p and E are sums of a number and its low part, each addition exact to ε² of the sum,
 //! so that 10⁹ of them lose at most 5e-23 of it. Measured: after 10⁷ steps of 0.01, t is k·h with no error in either part.
 
 use super::fallback::{Fallback, Phase, StepBounds, Switches};
-use super::foretold::Forecasts;
+use super::predicted::Predictors;
 use super::{EnergyPreserving, Last};
-use crate::{Node, Scalar, StepError, Stepping};
+use crate::{Node, Scalar, StepError, Stepping, checkpoint};
 use nalgebra::SVector;
 
-/// Everything that [`EnergyPreserving`] carries but the system.
+/// Everything that a run of [`EnergyPreserving`] carries, to be stored and resumed bit for bit.
+pub type Checkpoint<const N: usize, T = f64> = checkpoint::Checkpoint<Run<N, T>, T>;
+
+/// What a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -24,10 +24,10 @@ use nalgebra::SVector;
         deserialize = "T: crate::Real + serde::Deserialize<'de>"
     ))
 )]
-pub struct Checkpoint<const N: usize, T = f64> {
+pub struct Run<const N: usize, T = f64> {
     pub(super) node: Node<N, T>,
     pub(super) last: Last<N, T>,
-    pub(super) forecasts: Forecasts<N, T>,
+    pub(super) predictors: Predictors<N, T>,
     pub(super) bounds: Option<StepBounds<T>>,
     pub(super) fallback: Fallback,
     /// The fixed steps under way.
@@ -35,22 +35,22 @@ pub struct Checkpoint<const N: usize, T = f64> {
     pub(super) switches: Switches<T>,
 }
 
-impl<const N: usize, T: Scalar> Checkpoint<N, T> {
+impl<const N: usize, T: Scalar> Run<N, T> {
     /// A run at `node` after the interval `last`, with no fallback and no bounds.
     pub(super) fn new(node: Node<N, T>, last: Last<N, T>) -> Self {
-        let forecasts = Forecasts::new(last.v, last.h);
+        let predictors = Predictors::new(last.v, last.h);
         let (bounds, fallback, switches) = (None, Fallback::Stop, Switches::default());
-        Self { node, last, forecasts, bounds, fallback, phase: None, switches }
+        Self { node, last, predictors, bounds, fallback, phase: None, switches }
     }
 
     /// Whether a step can follow: what a file says may be anything.
     fn check(&self) -> Result<(), StepError> {
-        let Self { node, last, forecasts, bounds, phase, .. } = self;
+        let Self { node, last, predictors, bounds, phase, .. } = self;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
         let numbers = [last.density, last.previous];
         let mut numbers = numbers.iter().chain(last.v.iter()).chain(last.change.iter());
-        if !numbers.all(|number| number.is_finite()) || !forecasts.is_finite() {
+        if !numbers.all(|number| number.is_finite()) || !predictors.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last interval", expression: None });
         }
         super::starts::check_step("the last step h", last.h)?;
@@ -66,23 +66,25 @@ where
     S: Stepping<N, T>,
     T: Scalar,
 {
-    /// Everything that the run carries: the node with its low parts, the last interval, bounds, fallback and switches.
-    /// Finite numbers only, so that a text format without infinities can hold it.
+    /// Everything that the run carries: the node with its low parts, the last interval, bounds, fallback and switches; and of
+    /// which system with which parameters. Finite numbers only, so that a text format without infinities can hold it. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
-        let mut checkpoint = self.run;
+        let mut run = self.run;
         // The change only extrapolates v, and where it has overflowed the guess goes without it.
-        if !checkpoint.last.change.iter().all(|entry| entry.is_finite()) {
-            checkpoint.last.change = SVector::zeros();
+        if !run.last.change.iter().all(|entry| entry.is_finite()) {
+            run.last.change = SVector::zeros();
         }
-        checkpoint
+        checkpoint::Checkpoint::of(&self.system, run)
     }
 
-    /// The run that was at `checkpoint`. The system must be the one that it was taken of, with the same parameters.
+    /// The run that was at `checkpoint`.
     ///
     /// # Errors
-    /// [`StepError::NonFinite`] and [`StepError::InvalidInput`] for a checkpoint that no run can have left.
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
+    /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
-        checkpoint.check()?;
-        Ok(Self { system, run: checkpoint, failure: None })
+        let run = checkpoint.run_of(&system)?;
+        run.check()?;
+        Ok(Self { system, run, failure: None })
     }
 }

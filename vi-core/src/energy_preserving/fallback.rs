@@ -19,8 +19,7 @@
 //! AFTER A SWITCH q, p and t go on without a jump.
 
 use super::{EnergyPreserving, Last, newton::Elimination};
-use crate::continuation;
-use crate::momentum::{self, Solution};
+use crate::momentum::{self, Solution, continuation};
 use crate::state::Method;
 use crate::{Node, Scalar, Step, StepError, Stepping, compensated};
 

@@ -188,10 +188,10 @@ impl Rows {
         equations: &ExtendedSystem<N, T, S::Jacobian>,
         trial: &Trial<N, T>,
     ) -> Self {
-        let magnitudes = system.magnitudes(node, trial.h, &trial.v);
+        let rounding = system.rounding(node, trial.h, &trial.v);
         Self {
-            momentum: momentum::worst(&equations.momentum.residual, &magnitudes.residual),
-            energy: momentum::roundings(equations.energy_residual, magnitudes.energy_residual),
+            momentum: momentum::worst(&equations.momentum.residual, &rounding.residual),
+            energy: momentum::roundings(equations.energy_residual, rounding.energy_residual),
         }
     }
 

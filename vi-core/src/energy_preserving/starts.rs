@@ -4,7 +4,7 @@
 //! the end of that interval, with the p1 and E1 of the slot derivatives.
 
 use super::newton::Elimination;
-use super::{Checkpoint, EnergyPreserving, Last};
+use super::{EnergyPreserving, Last, Run};
 use crate::{Node, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -95,11 +95,11 @@ fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
     start: Node<N, T>,
     h: T,
     v: SVector<T, N>,
-) -> Result<Checkpoint<N, T>, StepError> {
+) -> Result<Run<N, T>, StepError> {
     let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
     start.check_finite(t)?;
     let start = start.leaving(system, h, &v);
-    let node = start.advanced::<S>(h, &v, &system.increment(&start, h, &v));
+    let node = start.advanced::<S>(h, &v, &system.extended_residual(&start, h, &v).increment);
     node.check_finite(t)?;
     let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
     let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
@@ -108,15 +108,15 @@ fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
     let (t_mid, q_mid) = start.midpoint(h, &v);
     // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
     let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
-    Ok(Checkpoint::new(node, Last { v, h, previous: h, density, change: acceleration * h }))
+    Ok(Run::new(node, Last { v, h, previous: h, density, change: acceleration * h }))
 }
 
 /// A step must lead forward.
 pub(super) fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
     let value = h.to_f64();
-    if value.is_finite() && value > 0.0 {
+    if value.is_normal() && value > 0.0 {
         Ok(())
     } else {
-        Err(StepError::InvalidInput { input, allowed: "positive and finite", value })
+        Err(StepError::InvalidInput { input, allowed: "positive, finite and not subnormal", value })
     }
 }

@@ -7,84 +7,96 @@ use nalgebra::{SMatrix, SVector};
 
 impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     type Inverse = Self;
-    const QUOTIENT: bool = N <= 2;
 
-    #[inline]
+    #[inline(always)]
     fn quotient<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> (SMatrix<T, N, M>, T) {
         match N {
             1 => (*rhs, self[(0, 0)]),
-            2 => (numerators_2(self, rhs), determinant_2(self)),
-            _ => (self.solve(rhs), T::one()),
+            2 => cramer_2(self, rhs),
+            3 => cramer_3(self, rhs),
+            _ => (eliminate(*self, *rhs), T::one()),
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-        match N {
-            1 => solve_1(self, rhs),
-            2 => solve_2(self, rhs),
-            3 => solve_3(self, rhs),
-            _ => eliminate(*self, *rhs),
+        let (mut x, determinant) = self.quotient(rhs);
+        if N <= 3 {
+            let reciprocal = determinant.recip();
+            for column in 0..M {
+                for row in 0..N {
+                    x[(row, column)] *= reciprocal;
+                }
+            }
         }
+        x
     }
 
     fn inverse(&self) -> Self {
         self.solve(&Self::identity())
     }
 
-    #[inline]
+    #[inline(always)]
     fn apply(inverse: &Self, rhs: &SVector<T, N>) -> SVector<T, N> {
         inverse * rhs
     }
 
-    #[inline]
+    #[inline(always)]
     fn dense(&self) -> Self {
         *self
     }
+
+    #[inline(always)]
+    fn magnitude(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        let mut sums = *x;
+        for row in 0..N {
+            sums[row] = (self[(row, 0)] * x[0]).abs();
+            for column in 1..N {
+                sums[row] += (self[(row, column)] * x[column]).abs();
+            }
+        }
+        sums
+    }
 }
 
-#[inline]
-fn solve_1<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-    SMatrix::from_fn(|_, column| b[(0, column)] / a[(0, 0)])
-}
-
-/// Cramer's rule for two unknowns.
-#[inline]
-fn solve_2<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-    let determinant = determinant_2(a);
-    numerators_2(a, b).map(|numerator| numerator / determinant)
-}
-
-#[inline]
-fn determinant_2<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> T {
-    a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)]
-}
-
-#[inline]
-fn numerators_2<T: Real, const N: usize, const M: usize>(
+/// Numerators and determinant of Cramer's rule for two unknowns.
+#[inline(always)]
+fn cramer_2<T: Real, const N: usize, const M: usize>(
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, M>,
-) -> SMatrix<T, N, M> {
-    SMatrix::from_fn(|row, column| {
+) -> (SMatrix<T, N, M>, T) {
+    let mut x = *b;
+    for column in 0..M {
         let (b0, b1) = (b[(0, column)], b[(1, column)]);
-        if row == 0 { a[(1, 1)] * b0 - a[(0, 1)] * b1 } else { a[(0, 0)] * b1 - a[(1, 0)] * b0 }
-    })
+        x[(0, column)] = a[(1, 1)] * b0 - a[(0, 1)] * b1;
+        x[(1, column)] = a[(0, 0)] * b1 - a[(1, 0)] * b0;
+    }
+    (x, a[(0, 0)] * a[(1, 1)] - a[(0, 1)] * a[(1, 0)])
 }
 
-/// Cramer's rule for three unknowns, by cofactors.
-#[inline]
-fn solve_3<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
-    // Cyclic indices carry the sign of the cofactor.
-    let cofactor = |i: usize, j: usize| {
-        let (i1, i2, j1, j2) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
-        a[(i1, j1)] * a[(i2, j2)] - a[(i1, j2)] * a[(i2, j1)]
-    };
-    let determinant = a[(0, 0)] * cofactor(0, 0) + a[(0, 1)] * cofactor(0, 1) + a[(0, 2)] * cofactor(0, 2);
-    SMatrix::from_fn(|row, column| {
-        let numerator =
-            cofactor(0, row) * b[(0, column)] + cofactor(1, row) * b[(1, column)] + cofactor(2, row) * b[(2, column)];
-        numerator / determinant
-    })
+/// The same for three unknowns, by cofactors.
+#[inline(always)]
+fn cramer_3<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+) -> (SMatrix<T, N, M>, T) {
+    let mut cofactors = [[T::zero(); 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            // Cyclic indices carry the sign of the cofactor.
+            let (i1, i2, j1, j2) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+            cofactors[i][j] = a[(i1, j1)] * a[(i2, j2)] - a[(i1, j2)] * a[(i2, j1)];
+        }
+    }
+    let mut x = *b;
+    for column in 0..M {
+        for row in 0..3 {
+            let [c0, c1, c2] = [0, 1, 2].map(|i| cofactors[i][row]);
+            x[(row, column)] = c0 * b[(0, column)] + c1 * b[(1, column)] + c2 * b[(2, column)];
+        }
+    }
+    let [c0, c1, c2] = cofactors[0];
+    (x, a[(0, 0)] * c0 + a[(0, 1)] * c1 + a[(0, 2)] * c2)
 }
 
 /// Swaps the row with the largest entry of `column` onto the diagonal; which row, where it was another one.

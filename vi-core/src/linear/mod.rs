@@ -32,9 +32,7 @@ use nalgebra::{SMatrix, SVector};
 /// A square matrix in the form that its zero pattern allows.
 pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     /// What is kept of A to solve with it many times.
-    type Inverse: Copy + Debug;
-    /// Whether A is solved by one quotient, as [`Matrix::quotient`] gives it.
-    const QUOTIENT: bool = false;
+    type Inverse: Copy + Debug + Send + Sync;
 
     /// The X with `A X = rhs`; not finite where A is singular.
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M>;
@@ -49,6 +47,11 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N>;
     /// A with its zeros.
     fn dense(&self) -> SMatrix<T, N, N>;
+    /// The sums `Σ_j |A_ij| |x_j|`.
+    #[inline]
+    fn magnitude(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        self.dense().map(T::abs) * x.map(T::abs)
+    }
 }
 
 /// The X with `matrix · X = rhs`; `None` where it is not finite. Where elimination without pivoting loses a matrix that is

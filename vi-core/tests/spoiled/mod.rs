@@ -3,8 +3,8 @@
 use vi_core::check::Checked;
 use vi_core::linear::Matrix;
 use vi_core::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, Magnitudes, MomentumEquation, Node,
-    Parameters, Real, SMatrix, SVector, StepError, Stepping,
+    DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation,
+    MomentumResidual, Node, Parameters, Real, Rounding, SMatrix, SVector, StepError, Stepping,
 };
 
 /// The damping of [`Fault::Damping`].
@@ -43,8 +43,8 @@ pub(crate) enum Fault {
     Residual,
     /// A damping that nobody declared stands in the residual, in its Jacobian and in the gain.
     Damping,
-    /// The magnitudes are too small.
-    Magnitude,
+    /// The rounding is too small.
+    Rounding,
     /// The last entry of the Jacobian lacks a term of order h².
     Jacobian,
     /// ∂r/∂h has the wrong sign.
@@ -76,7 +76,6 @@ impl<S> Spoiled<S> {
 }
 
 impl<S: Parameters> Parameters for Spoiled<S> {
-    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
     fn parameter_mut(&mut self, name: &str) -> Option<&mut f64> {
         self.system.parameter_mut(name)
     }
@@ -95,6 +94,11 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
     const AUTONOMOUS: bool = S::AUTONOMOUS;
     const FORCED: bool = S::FORCED;
     const CYCLIC: [bool; N] = S::CYCLIC;
+    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+
+    fn parameter(&self, index: usize) -> T {
+        self.system.parameter(index)
+    }
 
     fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
         self.system.lagrangian(t, q, v)
@@ -162,26 +166,53 @@ impl<S> Spoiled<S> {
     where
         S: Stepping<N, T>,
     {
-        let mut wrong = MomentumEquation { residual: right.residual, jacobian: right.jacobian.dense() };
-        let half = h * T::real(0.5);
+        let mut jacobian = right.jacobian.dense();
         match self.fault {
-            Fault::Residual => wrong.residual += self.system.force(node.t + half, &(node.q + v * half), v) * half,
-            Fault::Damping => {
-                let damping = T::real(DAMPING) * half;
-                wrong.residual += v * damping;
-                (0..N).for_each(|i| wrong.jacobian[(i, i)] += damping);
-            }
-            Fault::Jacobian => wrong.jacobian[(N - 1, N - 1)] += T::real(1e-3) * h * h,
+            Fault::Damping => (0..N).for_each(|i| jacobian[(i, i)] += T::real(DAMPING) * h * T::real(0.5)),
+            Fault::Jacobian => jacobian[(N - 1, N - 1)] += T::real(1e-3) * h * h,
             _ => {}
         }
-        wrong
+        MomentumEquation { residual: self.spoil_residual(right.residual, node, h, v), jacobian }
+    }
+
+    fn spoil_residual<const N: usize, T: Real>(
+        &self,
+        right: SVector<T, N>,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> SVector<T, N>
+    where
+        S: Stepping<N, T>,
+    {
+        let half = h * T::real(0.5);
+        match self.fault {
+            Fault::Residual => right + self.system.force(node.t + half, &(node.q + v * half), v) * half,
+            Fault::Damping => right + v * (T::real(DAMPING) * half),
+            _ => right,
+        }
+    }
+
+    fn spoil_increment<const N: usize, T: Real>(
+        &self,
+        mut increment: Increment<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> Increment<N, T> {
+        match self.fault {
+            Fault::MomentumGain => increment.momentum[N - 1] += T::real(1e-6) * h,
+            Fault::Damping => increment.momentum -= v * (T::real(DAMPING) * h),
+            Fault::DirectedGain => increment.momentum[0] += h * h,
+            Fault::EnergyGain => increment.energy += T::real(1e-6) * h,
+            _ => {}
+        }
+        increment
     }
 }
 
 impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
     type Jacobian = SMatrix<T, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
-    const SMOOTH: bool = S::SMOOTH;
 
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
         self.spoil_momentum(self.system.momentum_equation(node, h, v), node, h, v)
@@ -203,21 +234,27 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
         }
         found
     }
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T> {
-        self.unless(Fault::Magnitude, self.system.magnitudes(node, h, v), |right| Magnitudes {
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
+        let right = self.system.momentum_residual(node, h, v);
+        let increment = Increment { momentum: right.increment, energy: T::zero() };
+        MomentumResidual {
+            residual: self.spoil_residual(right.residual, node, h, v),
+            increment: self.spoil_increment(increment, h, v).momentum,
+        }
+    }
+    fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
+        let right = self.system.extended_residual(node, h, v);
+        let spoilt = self.unless(Fault::EnergyResidual, right.energy_residual, |residual| residual + node.energy);
+        ExtendedResidual {
+            residual: self.spoil_residual(right.residual, node, h, v),
+            energy_residual: spoilt,
+            increment: self.spoil_increment(right.increment, h, v),
+        }
+    }
+    fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        self.unless(Fault::Rounding, self.system.rounding(node, h, v), |right| Rounding {
             residual: right.residual * T::real(1e-3),
             ..right
         })
-    }
-    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
-        let mut gain = self.system.increment(node, h, v);
-        match self.fault {
-            Fault::MomentumGain => gain.momentum[N - 1] += T::real(1e-6) * h,
-            Fault::Damping => gain.momentum -= v * (T::real(DAMPING) * h),
-            Fault::DirectedGain => gain.momentum[0] += h * h,
-            Fault::EnergyGain => gain.energy += T::real(1e-6) * h,
-            _ => {}
-        }
-        gain
     }
 }

@@ -12,9 +12,10 @@
 //!     D = |V_q − f|² + v·V_qq v + 2 v·V_tq + V_tt          for f = 0
 #![allow(dead_code, reason = "each test file takes the systems it needs")]
 
+use vi_core::real::Rounded;
 use vi_core::{
-    DiscreteLagrangian, ExtendedSystem, Increment, Interval, Lagrangian, Magnitudes, MomentumEquation, Node, Real,
-    SMatrix, SVector, StepError, Stepping,
+    DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation,
+    MomentumResidual, Node, Real, Rounding, SMatrix, SVector, StepError, Stepping,
 };
 
 /// A potential and a force at one point, with their derivatives.
@@ -57,6 +58,11 @@ impl<const N: usize, T: Real> Fields<N, T> {
 pub(crate) trait Potential<const N: usize, T: Real>: Copy {
     fn fields(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Fields<N, T>;
 }
+
+/// What steps can be taken with: in their numbers, and in those that carry a bound of their rounding.
+pub(crate) trait Steppable<const N: usize>: Potential<N, f64> + Potential<N, Rounded> {}
+
+impl<const N: usize, P: Potential<N, f64> + Potential<N, Rounded>> Steppable<N> for P {}
 
 /// `V = (q⁴ − q²)/2`.
 #[derive(Clone, Copy)]
@@ -268,10 +274,9 @@ impl<const N: usize, T: Real, P: Potential<N, T>> DiscreteLagrangian<N, T> for U
     }
 }
 
-impl<const N: usize, T: Real, P: Potential<N, T>> Stepping<N, T> for UnitMass<P> {
+impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Stepping<N, T> for UnitMass<P> {
     type Jacobian = SMatrix<T, N, N>;
     const CONSTANT_JACOBIAN: bool = false;
-    const SMOOTH: bool = true;
 
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
         let (t, q) = node.midpoint(h, v);
@@ -305,29 +310,27 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Stepping<N, T> for UnitMass<P>
         }
     }
 
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Magnitudes<N, T> {
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
+        let both = self.extended_residual(node, h, v);
+        MomentumResidual { residual: both.residual, increment: both.increment.momentum }
+    }
+
+    fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
+        let system = self.extended_system(node, h, v);
         let (t, q) = node.midpoint(h, v);
         let fields = self.0.fields(t, &q, v);
-        let half = T::real(0.5);
-        Magnitudes {
-            residual: v.map(Real::abs)
-                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * half).abs()
-                + node.p.map(Real::abs),
-            energy_residual: v.dot(v) * half
-                + fields.potential_magnitude
-                + (h * half).abs() * (fields.potential_t.abs() + magnitude(v, &fields.gradient))
-                + magnitude(v, &node.p)
-                + node.energy.abs(),
+        ExtendedResidual {
+            residual: system.momentum.residual,
+            energy_residual: system.energy_residual,
+            increment: Increment {
+                momentum: (fields.force - fields.gradient) * h,
+                energy: h * (fields.potential_t + fields.force.dot(v)),
+            },
         }
     }
 
-    fn increment(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Increment<N, T> {
-        let (t, q) = node.midpoint(h, v);
-        let fields = self.0.fields(t, &q, v);
-        Increment {
-            momentum: (fields.force - fields.gradient) * h,
-            energy: h * (fields.potential_t + fields.force.dot(v)),
-        }
+    fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        Rounding::of(self, node, h, v)
     }
 }
 

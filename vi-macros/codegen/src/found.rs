@@ -22,6 +22,7 @@ use crate::model::Model;
 use crate::program::{Function, Operation, OperationId, Program};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
+use vi_expr::Table;
 
 /// Rows up to which a matrix that is not diagonal is solved in closed form.
 pub const CLOSED: usize = 3;
@@ -52,8 +53,8 @@ pub struct Findings {
     pub pattern: Pattern,
     /// A is its own transpose.
     pub symmetric: bool,
-    /// The derivatives of what the momenta gain depend on parameters and h only.
-    pub constant_gain: bool,
+    /// The momentum row and what the momenta gain are linear in what changes from step to step, their coefficients free of it.
+    pub affine: bool,
     /// Operations of each function, in the order in which they are emitted.
     pub operations: Vec<(&'static str, usize)>,
 }
@@ -95,10 +96,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         jacobian: equation.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
         pattern: equation.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         symmetric: equation.is_some_and(|(_, rows)| symmetric(rows)),
-        // After the equations, 1 + N rows, come the gains and their slopes, where these are carried.
-        constant_gain: rows("momentum_step").is_some_and(|(step, rows)| {
-            step.results.len() > model.dimension() + 1 && dependence(step, rows) <= Dependence::Step
-        }),
+        affine: program.function("momentum_residual").is_some_and(affine),
         operations: program.functions().map(|function| (function.name, function.operation_count())).collect(),
     }
 }
@@ -147,6 +145,26 @@ fn dependence(function: &Function, rows: &[Vec<OperationId>]) -> Dependence {
     inputs(function, rows).into_iter().map(of).max().unwrap_or(Dependence::Parameters)
 }
 
+/// Whether all results of a function are linear in what changes from step to step, but for a constant.
+fn affine(function: &Function) -> bool {
+    // The degree of each operation; `None` where it is no polynomial, or one of degree 2 or more.
+    let mut degrees: Table<OperationId, Option<u8>> = Table::default();
+    for id in function.operations.needed(&function.results) {
+        let degree = |id: &OperationId| degrees.get(*id).copied().flatten();
+        let found = match function.operations.get(id) {
+            Operation::Constant(_) | Operation::Input(Symbol::Parameter(_) | Symbol::Step) => Some(0),
+            Operation::Input(_) => Some(1),
+            Operation::Negate(a) => degree(a),
+            Operation::Add(a, b) | Operation::Subtract(a, b) => degree(a).zip(degree(b)).map(|(a, b)| a.max(b)),
+            Operation::Multiply(a, b) => degree(a).zip(degree(b)).map(|(a, b)| a + b),
+            Operation::Divide(a, b) => degree(a).filter(|_| degree(b) == Some(0)),
+            other => other.operands().all(|operand| degree(&operand) == Some(0)).then_some(0),
+        };
+        degrees.insert(id, found.filter(|degree| *degree <= 1));
+    }
+    function.results.iter().flatten().all(|id| degrees.get(*id).copied().flatten().is_some())
+}
+
 fn symmetric(rows: &[Vec<OperationId>]) -> bool {
     let entry = |i: usize, j: usize| rows.get(i).and_then(|row| row.get(j));
     (0..rows.len()).all(|i| (0..i).all(|j| entry(i, j) == entry(j, i)))
@@ -162,7 +180,7 @@ impl Findings {
     /// What a step adds to q and p is a constant matrix times (q, p) but for a constant, computed once per run.
     #[must_use]
     pub fn closed_form(&self) -> bool {
-        self.constant_jacobian() && self.constant_gain && self.autonomous && self.size <= CLOSED
+        self.constant_jacobian() && self.affine && self.autonomous && self.size <= CLOSED
     }
 
     /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
@@ -191,7 +209,8 @@ impl Findings {
         lines.push(format!(
             "The step's equation in `v` is {}",
             match self.jacobian {
-                _ if !self.smooth => "not smooth: each residual is measured before a step is taken",
+                _ if !self.smooth =>
+                    "not smooth: it has a kink or a jump, across which Newton's iteration may have to be damped",
                 _ if self.closed_form() => "linear, and the whole step one constant matrix, computed once per run",
                 Dependence::Parameters =>
                     "explicit: its Jacobian `A` depends on parameters only and is inverted once per run",

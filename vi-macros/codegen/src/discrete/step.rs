@@ -7,8 +7,7 @@
 //! e =  D1 L_d + g_d⁻ − E0            energy row
 //! c =  e − v·r                       combined row; its terms of order one have cancelled
 //! A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
-//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      and their derivatives
-//! ∂(p1 − p0 + 2 r)/∂v                another way to the derivative of p1 − p0 where r becomes zero
+//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
 //! ```
 
 use super::fields::changes;
@@ -21,8 +20,6 @@ use vi_expr::{Expr, Pool, Rational, TooLarge};
 pub struct Equations {
     /// Where L and f are evaluated, in the node and the unknowns.
     pub points: Vec<Point>,
-    /// The one point that moves with v, where there is one: its number, and c where its coordinates are q0 + c h v.
-    pub place: Option<(usize, Rational)>,
     /// r.
     pub residual: Vec<Expr>,
     /// A, row by row: entry (i, j) is ∂r_i/∂v_j.
@@ -39,20 +36,7 @@ pub struct Equations {
     pub momentum_increment: Vec<Expr>,
     /// E1 − E0.
     pub energy_increment: Expr,
-    /// The derivatives of p1 − p0 and, last, of E1 − E0: entry (i, j) by v_j, and by h where j is N. None for systems so large
-    /// that no function would use them.
-    pub increment_slopes: Vec<Vec<Expr>>,
-    /// The derivatives of p1 − p0 + 2 r, which for the midpoint rule is 2 (L_v − p0) and knows no force: entry (i, j) by v_j. A
-    /// Newton step in v makes r zero: it changes p1 − p0 by these times the step, and by 2 r. None for systems so small that it does not.
-    pub kick_slopes: Vec<Vec<Expr>>,
 }
-
-/// Coordinates up to which the quotient of a momentum step is foretold: that step does not make r zero to all digits, so that r
-/// cannot stand for what it changes, and kicks are of no use.
-const FORETOLD_COORDINATES: usize = 2;
-
-/// Coordinates up to which the derivatives of the increments may be used.
-const CARRIED_COORDINATES: usize = 32;
 
 /// Derives the equations of a step.
 pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Slots) -> Result<Equations, TooLarge> {
@@ -73,32 +57,19 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let momentum_increment = momentum_increment(pool, slots)?;
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
 
-    let kicked = if dimension > FORETOLD_COORDINATES { dimension } else { 0 };
-    let kicks = kicks(pool, &momentum_increment[..kicked], &residual)?;
-
-    let (equations, increments) =
-        (residual.iter().chain([&energy]), momentum_increment.iter().chain([&energy_increment]));
-    let carried = if dimension <= CARRIED_COORDINATES { dimension + 1 } else { 0 };
-    let rows = equations.chain(increments.take(carried)).chain(&kicks);
+    let rows = residual.iter().chain([&energy]);
     let rows = rows.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
-    let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];
-    let mut kick_slopes = vec![Vec::with_capacity(dimension); kicked];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, (&rows, [dimension, carried]), &Symbol::StepVelocity(j))?;
+        let column = by_unknown(pool, fields, &points, &rows, &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
-        increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
-        kick_slopes.iter_mut().zip(column.kicks).for_each(|(row, entry)| row.push(entry));
     }
-    let rows = &rows[..rows.len() - kicked];
-    let column = by_unknown(pool, fields, &points, (rows, [dimension, carried]), &Symbol::Step)?;
+    let column = by_unknown(pool, fields, &points, &rows, &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
-    increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
 
     Ok(Equations {
-        place: place(pool, &points),
         points,
         residual,
         residual_dv,
@@ -108,8 +79,6 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
         energy_dh,
         momentum_increment,
         energy_increment,
-        increment_slopes,
-        kick_slopes,
     })
 }
 
@@ -155,30 +124,6 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
     Point { time, coordinates, velocities }
 }
 
-/// The point whose coordinates move with v, where there is only one and it lies on the way to the end.
-fn place(pool: &mut Pool<Symbol>, points: &[Point]) -> Option<(usize, Rational)> {
-    let moves = |pool: &Pool<Symbol>, expr: Expr| {
-        pool.symbols(expr).iter().any(|symbol| matches!(symbol, Symbol::Step | Symbol::StepVelocity(_)))
-    };
-    let mut moving = (0..points.len()).filter(|k| points[*k].coordinates.iter().any(|e| moves(pool, *e)));
-    let point = moving.next().filter(|_| moving.next().is_none())?;
-    let parts = [(1, 2), (1, 1)].map(|(over, under)| Rational::new(over.into(), under.into()));
-    parts.into_iter().find(|part| lies_at(pool, &points[point], part)).map(|part| (point, part))
-}
-
-/// Whether the coordinates of a point are q0 + c h v.
-fn lies_at(pool: &mut Pool<Symbol>, point: &Point, part: &Rational) -> bool {
-    let (step, zero) = (pool.symbol(Symbol::Step), pool.zero());
-    let factor = pool.number(part.clone());
-    point.coordinates.iter().enumerate().all(|(i, coordinate)| {
-        let (start, velocity) = (carried(pool, Symbol::Q0(i)), pool.symbol(Symbol::StepVelocity(i)));
-        let way = pool.product(&[factor, step, velocity]);
-        let there = pool.add(start, way);
-        let difference = pool.sub(*coordinate, there);
-        pool.expand(difference).is_ok_and(|difference| difference == zero)
-    })
-}
-
 /// p1 − p0, multiplied out.
 fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr>, TooLarge> {
     let gain = |i: usize| [slots.d2_ld[i], slots.d4_ld[i], slots.fd_minus[i], slots.fd_plus[i]];
@@ -190,31 +135,18 @@ fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr
         .collect()
 }
 
-/// `p1 − p0 + 2 r`, multiplied out.
-fn kicks(pool: &mut Pool<Symbol>, increments: &[Expr], residuals: &[Expr]) -> Result<Vec<Expr>, TooLarge> {
-    let two = pool.integer(2);
-    let rows = increments.iter().zip(residuals);
-    rows.map(|(increment, residual)| {
-        let twice = pool.mul(two, *residual);
-        let kick = pool.add(*increment, twice);
-        pool.expand(kick)
-    })
-    .collect()
-}
-
-/// The derivatives of all rows by one unknown: those of momentum, that of energy, the increments of both, the kicks.
+/// The derivatives of both rows by one unknown.
 struct Column {
     residual: Vec<Expr>,
     energy: Expr,
-    increments: Vec<Expr>,
-    kicks: Vec<Expr>,
 }
 
+/// The derivatives of the rows, those of momentum and then that of energy, each with the symbols in it.
 fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
     points: &[Point],
-    (rows, [dimension, carried]): (&[(Expr, BTreeSet<Symbol>)], [usize; 2]),
+    rows: &[(Expr, BTreeSet<Symbol>)],
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
     bounded(pool)?;
@@ -222,17 +154,15 @@ fn by_unknown(
         if symbol == unknown { pool.one() } else { pool.zero() }
     };
     let changes = changes(pool, points, &direct);
-    let mut column = Vec::with_capacity(rows.len());
+    let mut residual = Vec::with_capacity(rows.len());
     for (row, symbols) in rows {
         // Most rows of a long chain do not know most unknowns.
         let varies = symbols.iter().any(|symbol| symbol == unknown || fields.moves(symbol, &changes));
         let slope = if varies { fields.derivative(pool, *row, &direct, &changes) } else { pool.zero() };
-        column.push(pool.expand(slope)?);
+        residual.push(pool.expand(slope)?);
     }
-    let mut energy = column.split_off(dimension);
-    let mut increments = energy.split_off(1);
-    let kicks = increments.split_off(carried);
-    Ok(Column { residual: column, energy: energy.pop().unwrap_or(pool.zero()), increments, kicks })
+    let energy = residual.pop().unwrap_or(pool.zero());
+    Ok(Column { residual, energy })
 }
 
 /// `row − v·column`, multiplied out.

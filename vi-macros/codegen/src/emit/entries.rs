@@ -21,31 +21,20 @@ use std::ops::Range;
 /// Rows from which on there is a loop.
 const LEAST: usize = 8;
 
-/// What a row is made of: a result, or zero, times a number or the entry of a vector where it has such a factor.
-pub(super) struct Part<'a> {
-    entry: Option<&'a Entry>,
-    factor: Option<(TokenStream, Option<usize>)>,
-}
+/// What a row is made of: a result, or zero.
+#[derive(Clone, Copy)]
+pub(super) struct Part<'a>(Option<&'a Entry>);
 
 impl<'a> From<Option<&'a Entry>> for Part<'a> {
     fn from(entry: Option<&'a Entry>) -> Self {
-        Self { entry, factor: None }
+        Self(entry)
     }
 }
 
-impl<'a> Part<'a> {
-    /// A result times a number, or times the entry of a vector at this place.
-    pub(super) fn product(entry: &'a Entry, factor: TokenStream, place: Option<usize>) -> Self {
-        Self { entry: Some(entry), factor: Some((factor, place)) }
-    }
-
+impl Part<'_> {
     /// Whether it stands one place on from the same part of the row above, or is that again; `None` where it is something else.
-    fn moves_on_from(&self, above: &Self) -> Option<bool> {
-        let place = |part: &Self| part.factor.as_ref().map(|(_, place)| *place);
-        if place(self) != place(above).map(|place| place.map(|place| place + 1)) {
-            return None;
-        }
-        match (self.entry, above.entry) {
+    fn moves_on_from(self, above: Self) -> Option<bool> {
+        match (self.0, above.0) {
             (Some(this), Some(above)) if this.moves_on_from(above) => Some(true),
             (Some(this), Some(above)) => this.is(above).then_some(false),
             (this, above) => (this.is_none() && above.is_none()).then_some(false),
@@ -53,12 +42,8 @@ impl<'a> Part<'a> {
     }
 
     /// Its text; in a loop with this counter that of the first row, which moves on there or does not.
-    fn tokens(&self, counter: Option<&Ident>, moves: bool) -> TokenStream {
-        let Some(entry) = self.entry else { return zero() };
-        let formula = entry.formula(counter.filter(|_| moves));
-        let Some((name, place)) = &self.factor else { return formula.tokens().clone() };
-        let (factor, index) = (formula.factor(), place.map(|place| index(counter, place)));
-        quote!(#factor * #name #index)
+    fn tokens(self, counter: Option<&Ident>, moves: bool) -> TokenStream {
+        self.0.map_or_else(zero, |entry| entry.formula(counter.filter(|_| moves)).tokens().clone())
     }
 }
 
@@ -92,7 +77,7 @@ pub(super) fn array(
     zero: &TokenStream,
     form: impl Fn(&[TokenStream]) -> TokenStream,
 ) -> TokenStream {
-    let counter = rows.iter().flatten().find_map(|part| part.entry?.counter());
+    let counter = rows.iter().flatten().find_map(|part| part.0?.counter());
     let runs = if counter.is_some() { runs(rows) } else { Vec::new() };
     let Some(counter) = counter.filter(|_| runs.iter().any(Run::is_loop)) else {
         let rows = rows.iter().map(|row| form(&texts(row)));
@@ -105,7 +90,7 @@ pub(super) fn array(
             let row = form(&parts.map(|(part, moves)| part.tokens(Some(counter), *moves)).collect::<Vec<_>>());
             return quote!(for #counter in 0..#length { entries #place = #row; });
         }
-        let is_there = |place: &usize| rows[*place].iter().any(|part| part.entry.is_some());
+        let is_there = |place: &usize| rows[*place].iter().any(|part| part.0.is_some());
         let places = run.rows.clone().filter(is_there).map(|place| (index(None, place), form(&texts(&rows[place]))));
         places.map(|(place, row)| quote!(entries #place = #row;)).collect()
     });
@@ -136,7 +121,7 @@ fn runs(rows: &[Vec<Part>]) -> Vec<Run> {
     for (place, row) in rows.iter().enumerate() {
         let above = place.checked_sub(1).map(|above| &rows[above]).filter(|above| above.len() == row.len());
         let moves =
-            above.and_then(|above| row.iter().zip(above).map(|(part, above)| part.moves_on_from(above)).collect());
+            above.and_then(|above| row.iter().zip(above).map(|(part, above)| part.moves_on_from(*above)).collect());
         match (runs.last_mut(), moves) {
             (Some(run), Some(moves)) if run.rows.len() == 1 || run.moves == moves => {
                 (run.rows.end, run.moves) = (place + 1, moves);

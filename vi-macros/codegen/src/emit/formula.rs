@@ -58,11 +58,6 @@ impl Formula {
         self.within(Binding::Atom)
     }
 
-    /// The formula as the first factor of a product.
-    pub(super) fn factor(&self) -> TokenStream {
-        self.within(Binding::Product)
-    }
-
     /// The formula as an operand that must bind at least so tightly.
     fn within(&self, binding: Binding) -> TokenStream {
         let tokens = &self.tokens;

@@ -19,6 +19,8 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&model.name, source.dimension());
     let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
     let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
+    let parameters: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
+    let names = parameters.iter().map(ToString::to_string);
     let functions = [
         number(source, "lagrangian", &source.formula("L", of.lagrangian)),
         number(source, "energy", &source.formula("v·L_v − L", of.energy)),
@@ -36,6 +38,12 @@ pub(super) fn item(source: &Source) -> TokenStream {
             const AUTONOMOUS: bool = #autonomous;
             const FORCED: bool = #forced;
             const CYCLIC: [bool; #dimension] = [#(#cyclic),*];
+            const PARAMETERS: &'static [&'static str] = &[#(#names),*];
+
+            fn parameter(&self, index: usize) -> T {
+                [#(self.#parameters),*][index]
+            }
+
             #(#functions)*
         }
     }

@@ -14,7 +14,6 @@ pub(super) fn items(source: &Source) -> TokenStream {
     let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
     let names: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
     let texts = names.iter().map(ToString::to_string);
-    let spellings = texts.clone();
     let defaults = model.parameters.iter().map(|parameter| number(parameter.default));
     let fields = model.parameters.iter().map(|parameter| {
         let (name, attributes) = (&parameter.name, &parameter.attributes);
@@ -47,11 +46,15 @@ pub(super) fn items(source: &Source) -> TokenStream {
             pub fn from_f64(system: &#name<f64>) -> Self {
                 Self { #(#names: T::real(system.#names),)* #marker_value }
             }
+
+            /// The same system in another kind of number, every parameter rounded to it.
+            #[allow(dead_code)]
+            fn convert<U: ::vi_core::Real>(&self) -> #name<U> {
+                #name { #(#names: U::real(self.#names.to_f64()),)* #marker_value }
+            }
         }
 
         impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for #name<T> {
-            const PARAMETERS: &'static [&'static str] = &[#(#spellings),*];
-
             fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
                 match name {
                     #(#arms,)*
@@ -172,11 +175,11 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#n, T> for #name<T> {
             type Jacobian = ::vi_core::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
-            const SMOOTH: bool = false;
             fn momentum_equation(#from) -> ::vi_core::MomentumEquation<#n, T> #none
+            fn momentum_residual(#from) -> ::vi_core::MomentumResidual<#n, T> #none
             fn extended_system(#from) -> ::vi_core::ExtendedSystem<#n, T> #none
-            fn magnitudes(#from) -> ::vi_core::Magnitudes<#n, T> #none
-            fn increment(#from) -> ::vi_core::Increment<#n, T> #none
+            fn extended_residual(#from) -> ::vi_core::ExtendedResidual<#n, T> #none
+            fn rounding(#from) -> ::vi_core::Rounding<#n, T> #none
         }
     }
 }

@@ -4,9 +4,8 @@
 //! of the rule; the arguments of a point are evaluated once per function.
 
 use super::lower::{Known, Lowering};
-use super::magnitude::magnitude;
+use super::verify;
 use super::{Function, Program};
-use super::{steps, verify};
 use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
 use crate::messages::{Message, error};
 use crate::model::Model;
@@ -88,10 +87,6 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| self.open(*expr)).collect()
     }
 
-    fn magnitudes(&mut self, exprs: &[Expr]) -> Vec<Expr> {
-        exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
-    }
-
     pub(super) fn function(
         &mut self,
         name: &'static str,
@@ -170,23 +165,22 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
 fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.equations;
     let residual = assembly.open_all(&of.residual);
-    let energy = assembly.open_all(&[of.energy_residual]);
-    let magnitudes = vec![assembly.magnitudes(&residual), assembly.magnitudes(&energy)];
-    let mut momentum = vec![residual];
-    momentum.extend(of.residual_dv.iter().map(|row| assembly.open_all(row)));
-    let mut extended = momentum.clone();
+    let energy_residual = assembly.open_all(&[of.energy_residual]);
+    let momentum_increment = assembly.open_all(&of.momentum_increment);
+    let energy_increment = assembly.open_all(&[of.energy_increment]);
+    let jacobian = of.residual_dv.iter().map(|row| assembly.open_all(row));
+    let equation: Vec<_> = [residual.clone()].into_iter().chain(jacobian).collect();
+    let mut extended = equation.clone();
     extended.push(assembly.open_all(&of.residual_dh));
-    extended.push(energy);
+    extended.push(energy_residual.clone());
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
-    let gains = vec![assembly.open_all(&of.momentum_increment), assembly.open_all(&[of.energy_increment])];
-    let equation = assembly.function("momentum_equation", &momentum)?;
-    let system_of_both = assembly.function("extended_system", &extended)?;
-    let magnitudes = assembly.function("magnitudes", &magnitudes)?;
-    let increment = assembly.function("increment", &gains)?;
-    let evaluated = [&equation, &system_of_both].map(|(function, _)| function.cost() + increment.0.cost());
-    let mut functions = vec![equation, system_of_both, magnitudes, increment];
-    let short = functions[0].0.operation_count() <= steps::SHORT;
-    functions.extend(steps::steps(assembly, of, [momentum, extended], &gains, (short, evaluated))?);
-    Ok(functions)
+    let measured = [residual.clone(), momentum_increment.clone()];
+    let both_measured = [residual, energy_residual, momentum_increment, energy_increment];
+    Ok(vec![
+        assembly.function("momentum_equation", &equation)?,
+        assembly.function("momentum_residual", &measured)?,
+        assembly.function("extended_system", &extended)?,
+        assembly.function("extended_residual", &both_measured)?,
+    ])
 }

@@ -8,11 +8,9 @@ mod angles;
 mod assemble;
 mod families;
 mod lower;
-mod magnitude;
 mod operations;
 mod order;
 mod powers;
-mod steps;
 mod sums;
 mod verify;
 

@@ -51,10 +51,10 @@ impl RawNode {
             ([r, e], self.velocity_newton(system, trial, [r, e]))
         });
         let (middle, velocity) = (self.state.q + SVector::from([v * h / 2.0]), SVector::from([v]));
-        let gain = system.increment(&Node::new(self.state, self.energy), h, &velocity);
+        let increment = system.extended_residual(&Node::new(self.state, self.energy), h, &velocity).increment;
         let t = self.state.t + h / 2.0;
-        let p = system.momentum(t, &middle, &velocity) + gain.momentum / 2.0;
-        let energy = system.energy(t, &middle, &velocity) + gain.energy / 2.0;
+        let p = system.momentum(t, &middle, &velocity) + increment.momentum / 2.0;
+        let energy = system.energy(t, &middle, &velocity) + increment.energy / 2.0;
         let state = State { t: self.state.t + h, q: self.state.q + velocity * h, p };
         energy.is_finite().then_some(Self { state, energy, h, v })
     }
@@ -63,7 +63,7 @@ impl RawNode {
     fn velocity_residuals<S: Stepping<1>>(&self, system: &S, (v, h): (f64, f64)) -> [f64; 2] {
         let (node, velocity) = (Node::new(self.state, self.energy), SVector::from([v]));
         let middle = self.state.q + velocity * (h / 2.0);
-        let lost = -system.increment(&node, h, &velocity).energy / 2.0;
+        let lost = -system.extended_residual(&node, h, &velocity).increment.energy / 2.0;
         let energy = system.energy(self.state.t + h / 2.0, &middle, &velocity);
         [system.momentum_equation(&node, h, &velocity).residual.x, energy + lost - self.energy]
     }

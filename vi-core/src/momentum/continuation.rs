@@ -5,9 +5,9 @@
 //! singular derivative of the equation, no part is small enough and the step has no such root. On the way there the
 //! determinant of the derivative keeps its sign, and beyond the turn it has the other one.
 
+use super::{FLOOR, Failure, Solution, newton};
 use crate::error::Residuals;
 use crate::linear::{self, Matrix};
-use crate::momentum::{self, Failure, Solution};
 use crate::{Node, Scalar, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -44,7 +44,7 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: Stepping<N, T>>(
     guess: SVector<T, N>,
     start: SVector<T, N>,
 ) -> Result<Solution<N, T>, StepError> {
-    momentum::solve(system, node, h, guess).or_else(|_| solve(system, node, h, start, Pace::RESCUE))
+    newton::solve(system, node, h, guess).or_else(|_| solve(system, node, h, start, Pace::RESCUE))
 }
 
 /// The root at `h` on the branch connected with h = 0.
@@ -59,7 +59,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     guess: SVector<T, N>,
     pace: Pace,
 ) -> Result<Solution<N, T>, StepError> {
-    let mut v = momentum::velocity(system, node, [guess, node.p])?;
+    let mut v = newton::velocity(system, node, [guess, node.p])?;
     let sign = |h: T, v: &SVector<T, N>| {
         if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian.dense()) } else { 1 }
     };
@@ -70,24 +70,24 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
         let (mut residuals, mut iterations) = (Residuals::new(), 0);
         let mut observe = |residual| {
             residuals.push(residual);
-            iterations += u32::from(residual > momentum::FLOOR);
+            iterations += u32::from(residual > FLOOR);
         };
         let at = h * T::real(target);
-        let solution = momentum::observed(system, node, at, v, &mut observe);
+        let solution = newton::observed(system, node, at, v, &mut observe);
         match solution {
             Ok(solution) if iterations <= pace.iterations && sign(at, &solution.v) == forward => {
                 (v, reached, part) = (solution.v, target, pace.largest_part.min(2.0 * part));
                 spent += solution.iterations;
             }
             Ok(_) if part <= pace.least_part => {
-                let residual = momentum::residual(system, node, h, &v);
+                let residual = newton::residual(system, node, h, &v);
                 let failure = Failure::Stalled { iterations: spent, residual };
                 return Err(failure.at(node.t.to_f64(), h.to_f64(), "derivative of the momentum equation", residuals));
             }
             Err(failure) if part <= pace.least_part => {
                 let failure = match failure {
                     // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
-                    Failure::Singular => match momentum::residual(system, node, h, &v) {
+                    Failure::Singular => match newton::residual(system, node, h, &v) {
                         residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
                         _ => Failure::NonFinite,
                     },

@@ -1,17 +1,18 @@
 //! Newton's iteration on the momentum equation, the step h given.
 //!
 //! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor: each residual is at most
-//! one ulp of the sum of the absolute values of its terms, or stopped decreasing within [`FLOOR`] of it.
+//! one rounding, or stopped decreasing within [`FLOOR`] of them. A rounding is what evaluating the row loses at most, by running
+//! error analysis, with v the nearest number to the root ([`Stepping::rounding`]).
 //! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
+//! AFTER IT the matrix A at the root has an inverse.
 
 use crate::error::Residuals;
 use crate::linear::{self, Matrix};
-use crate::{Magnitudes, MomentumEquation, Node, Scalar, StepError, Stepping};
+use crate::{MomentumEquation, Node, Scalar, StepError, Stepping};
 use nalgebra::{SMatrix, SVector};
 
-/// Residual, in roundings, below which an iteration that no longer gains is at the floor: the magnitudes do not know of
-/// cancellation inside a term.
-pub(crate) const FLOOR: f64 = 256.0;
+/// Residual, in roundings, below which an iteration that no longer gains is at the floor.
+pub(crate) const FLOOR: f64 = 4.0;
 const ITERATIONS: u32 = 40;
 const HALVINGS: u32 = 12;
 
@@ -48,15 +49,15 @@ pub(crate) fn is_at_floor(residual: f64, before: f64) -> bool {
     residual <= 1.0 || (residual <= FLOOR && before <= FLOOR && residual >= 0.5 * before)
 }
 
-/// `|residual|` in units of one ulp of `magnitude`. Not a number where either is not finite.
+/// `|residual|` in units of one ulp of `scale`. Not a number where either is not finite.
 #[inline]
-pub(crate) fn roundings<T: Scalar>(residual: T, magnitude: T) -> f64 {
-    let (residual, magnitude) = (residual.to_f64().abs(), magnitude.to_f64());
-    if residual == 0.0 && magnitude.is_finite() {
+pub(crate) fn roundings<T: Scalar>(residual: T, scale: T) -> f64 {
+    let (residual, scale) = (residual.to_f64().abs(), scale.to_f64());
+    if residual == 0.0 && scale.is_finite() {
         return 0.0;
     }
-    // ∞/∞ is not a number, and x/∞ shall be none either: a magnitude that overflows proves nothing about x.
-    if magnitude.is_finite() { residual / magnitude / T::EPSILON } else { f64::NAN }
+    // ∞/∞ is not a number, and x/∞ shall be none either: a scale that overflows proves nothing about x.
+    if scale.is_finite() { residual / scale / T::EPSILON } else { f64::NAN }
 }
 
 /// The larger of two numbers; not a number where either is not.
@@ -65,28 +66,27 @@ pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
 
-/// The largest residual in units of one ulp of its magnitude.
+/// The largest residual in units of one ulp of its scale.
 #[inline]
-pub(crate) fn worst<T: Scalar, const N: usize>(residual: &SVector<T, N>, magnitude: &SVector<T, N>) -> f64 {
-    residual.iter().zip(magnitude.iter()).fold(0.0, |worst, (r, m)| worse(roundings(*r, *m), worst))
+pub(crate) fn worst<T: Scalar, const N: usize>(residual: &SVector<T, N>, scale: &SVector<T, N>) -> f64 {
+    residual.iter().zip(scale.iter()).fold(0.0, |worst, (r, s)| worse(roundings(*r, *s), worst))
 }
 
 /// The momentum equation at a trial velocity, with what its rounding is measured in.
 #[derive(Clone, Copy, Debug)]
 struct Trial<const N: usize, T, J> {
     equation: MomentumEquation<N, T, J>,
-    magnitude: SVector<T, N>,
+    scale: SVector<T, N>,
 }
 
 impl<const N: usize, T: Scalar, J: Matrix<N, T>> Trial<N, T, J> {
     fn at<S: Stepping<N, T, Jacobian = J>>(system: &S, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Self {
-        let Magnitudes { residual: magnitude, .. } = system.magnitudes(node, h, v);
-        Self { equation: system.momentum_equation(node, h, v), magnitude }
+        Self { equation: system.momentum_equation(node, h, v), scale: system.rounding(node, h, v).residual }
     }
 
     /// The largest residual, in roundings.
     fn residual(&self) -> f64 {
-        worst(&self.equation.residual, &self.magnitude)
+        worst(&self.equation.residual, &self.scale)
     }
 
     /// The Newton step that would follow from `residual`.
@@ -135,23 +135,23 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
     loop {
         let residual = last.residual();
         observe(residual);
-        if residual <= 1.0 {
-            return Ok(Solution { v, iterations });
-        }
         if !residual.is_finite() {
             return Err(Failure::NonFinite);
+        }
+        let mut step = last.step(&last.equation.residual).ok_or(Failure::Singular)?;
+        if residual <= 1.0 {
+            return Ok(Solution { v, iterations });
         }
         if iterations == ITERATIONS {
             return Err(Failure::Stalled { iterations, residual });
         }
         iterations += 1;
-        let mut step = last.step(&last.equation.residual).ok_or(Failure::Singular)?;
         let (mut halvings, mut pivoted) = (0, false);
         loop {
             let trial_v = v - step;
             let trial = Trial::at(system, node, h, &trial_v);
-            // Measured in the magnitude at v: one far away would make any residual look small.
-            if worst(&trial.equation.residual, &last.magnitude) < residual && trial.residual().is_finite() {
+            // Measured in the scale at v: one far away would make any residual look small.
+            if worst(&trial.equation.residual, &last.scale) < residual && trial.residual().is_finite() {
                 (v, last) = (trial_v, trial);
                 break;
             }
@@ -180,7 +180,7 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
 
 /// Whether the step that would follow, by the same matrix, is less than half as long: Newton's own measure (Deuflhard,
 /// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at v, as at rest at the bottom
-/// of a potential, and so no magnitude to measure its residual in.
+/// of a potential, and so no scale to measure its residual in.
 #[cold]
 fn contracts<const N: usize, T: Scalar, J: Matrix<N, T>>(
     last: &Trial<N, T, J>,

@@ -1,0 +1,140 @@
+//! The step from a guess that the steps before it give.
+//!
+//! In: the velocities and lengths of the last steps. Out: the root of both equations, by Newton steps from (v, h) extrapolated
+//! over them (`predictor`), each followed by a measurement:
+//!
+//! ```text
+//! accept     where |r_i| ≤ ε (|p0_i| + |p1_i − p0_i| + Σ_j |A_ij| |v_j|)  and  |c| ≤ ε (|E0| + |E1 − E0| + Σ_i |v_i p0_i|)
+//! ```
+//!
+//! `None` where three Newton steps do not come there, the length leaves its range or D changes its sign. What is left of the
+//! momentum rows is carried to the next step, as in `momentum::steps`.
+//! AFTER A STEP both residuals were measured at the (v, h) that was taken.
+
+use super::newton::{Elimination, Root, Trial};
+use super::{Last, RATIO};
+use crate::linear::Matrix;
+use crate::momentum::{roundings, worse, worst};
+use crate::predictor::Predictor;
+use crate::{ExtendedResidual, Increment, Node, Scalar, Stepping};
+use nalgebra::SVector;
+
+/// Newton steps that may follow a guess.
+const ATTEMPTS: u32 = 3;
+
+/// The predictors of v and h.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "T: crate::Real + serde::Serialize",
+        deserialize = "T: crate::Real + serde::Deserialize<'de>"
+    ))
+)]
+pub(super) struct Predictors<const N: usize, T> {
+    v: Predictor<N, T>,
+    h: Predictor<1, T>,
+    /// What the last step left of its momentum rows.
+    remainder: SVector<T, N>,
+}
+
+/// A step that was predicted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Predicted<const N: usize, T> {
+    /// What solves the equations.
+    pub(super) root: Root<N, T>,
+    /// What momentum and energy gain over it.
+    pub(super) increment: Increment<N, T>,
+    /// What it leaves of its momentum rows.
+    remainder: SVector<T, N>,
+}
+
+impl<const N: usize, T: Scalar> Predictors<N, T> {
+    /// Before the first step, which follows the interval `(v, h)`.
+    pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
+        Self { v: Predictor::new(v), h: Predictor::new(SVector::repeat(h)), remainder: SVector::zeros() }
+    }
+
+    /// Whether every number is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.v.is_finite() && self.h.is_finite() && self.remainder.iter().all(|entry| entry.is_finite())
+    }
+
+    /// Takes a step that was predicted.
+    #[inline(always)]
+    pub(super) fn push(&mut self, step: &Predicted<N, T>) {
+        self.v.push(&step.root.v);
+        self.h.push(&SVector::repeat(step.root.h));
+        self.remainder = step.remainder;
+    }
+
+    /// Takes a step that was searched.
+    pub(super) fn restart(&mut self, root: &Root<N, T>) {
+        self.v.restart(&root.v);
+        self.h.restart(&SVector::repeat(root.h));
+        self.remainder = SVector::zeros();
+    }
+
+    /// The step from `node` after the interval `last`.
+    #[inline(always)]
+    pub(super) fn step<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        last: &Last<N, T>,
+    ) -> Option<Predicted<N, T>> {
+        let [h]: [T; 1] = self.h.guess().into();
+        let mut trial = Trial { v: self.v.guess(), h };
+        for iterations in 1..=ATTEMPTS {
+            let mut equations = system.extended_system(node, trial.h, &trial.v);
+            equations.momentum.residual += self.remainder;
+            equations.energy_residual -= trial.v.dot(&self.remainder);
+            let elimination = Elimination::of(&equations);
+            let step = elimination.step(&equations, &trial);
+            trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
+            let at = system.extended_residual(node, trial.h, &trial.v);
+            let Some((remainder, residual)) = self.measured(node, &equations.momentum.jacobian, &trial.v, &at) else {
+                continue;
+            };
+            let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
+            let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
+            // At the smallest root D has the sign that it had: past a change of sign lies another root.
+            let forward = density * last.density > T::zero() && !elimination.is_degenerate();
+            let root = Root { v, h, density, iterations, residual };
+            return (in_range && forward).then_some(Predicted { root, increment: at.increment, remainder });
+        }
+        None
+    }
+
+    /// What is left of the momentum rows with what was carried to them, and the largest residual in roundings, where every row is
+    /// at the floor.
+    #[inline(always)]
+    fn measured(
+        &self,
+        node: &Node<N, T>,
+        jacobian: &impl Matrix<N, T>,
+        v: &SVector<T, N>,
+        at: &ExtendedResidual<N, T>,
+    ) -> Option<(SVector<T, N>, f64)> {
+        let remainder = at.residual + self.remainder;
+        let energy_residual = at.energy_residual - v.dot(&self.remainder);
+        let mut scale = node.p.zip_map(&at.increment.momentum, |p, increment| p.abs() + increment.abs());
+        let own = node.energy.abs() + at.increment.energy.abs();
+        let energy_scale = node.p.iter().zip(v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs());
+        let at_floor = |residual: T, scale: T| residual.abs() <= scale * T::real(T::EPSILON);
+        let rows_at_floor = |scale: &SVector<T, N>| (0..N).fold(true, |all, i| all & at_floor(remainder[i], scale[i]));
+        if !at_floor(energy_residual, energy_scale) {
+            return None;
+        }
+        if !rows_at_floor(&scale) {
+            // Where momenta vanish, the velocities that they are sums of need not.
+            scale += jacobian.magnitude(v);
+            if !rows_at_floor(&scale) {
+                return None;
+            }
+        }
+        let residual = worse(worst(&at.residual, &scale), roundings(at.energy_residual, energy_scale));
+        Some((remainder, residual))
+    }
+}

@@ -1,0 +1,313 @@
+//! Momentum steps of one length, one after the other.
+//!
+//! In: a node, the step h, the velocities of the steps before. Out: the velocity v that solves the momentum equation
+//! `r(v) = −D2 L_d − f_d⁻ − p0 = 0`, and what the momenta gain. A step is predicted, corrected, and measured:
+//!
+//! ```text
+//! guess      v0 extrapolated over the last steps (`predictor`)
+//! correct    v = v0 − A⁻¹ r(v0)                A = ∂r/∂v at v0; where A is constant, its inverse is computed once per run
+//! measure    r(v) and p1 − p0, by one evaluation at v
+//! accept     where each row has |r_i| ≤ ε (|p0_i| + |p1_i − p0_i| + Σ_j |A_ij| |v_j|)
+//! else       one more correction by the same A, measured again; then Newton's iteration to the rounding floor (`newton`)
+//! ```
+//!
+//! The next step needs v, not what r(v) is: that is compared while the next step is under way.
+//!
+//! What an accepted step leaves of its equation is below a rounding, yet it may have a sign, and would add up. So it is carried to
+//! the next step, which solves `r(v) + remainder = 0`: over many steps remainders cancel, as in a compensated sum.
+//!
+//! AFTER A STEP the residual was measured at the velocity that was taken.
+
+use super::closed_form::ClosedForm;
+use super::{Solution, continuation, newton};
+use crate::fixed_step::Branch;
+use crate::linear::Matrix;
+use crate::predictor::Predictor;
+use crate::{MomentumResidual, Node, Real, Scalar, StepError, Stepping};
+use nalgebra::SVector;
+
+/// Corrections that may follow a guess.
+const CORRECTIONS: u32 = 3;
+
+/// The inverse of a constant A.
+pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
+
+/// How a step is corrected. It depends on the system, its parameters and h alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Way<S: Stepping<N, T>, const N: usize, T: Real> {
+    /// The whole step is one matrix; A is constant.
+    ClosedForm(ClosedForm<N, T>, Inverse<S, N, T>),
+    /// By the inverse of A, which is constant.
+    Inverse(Inverse<S, N, T>),
+    /// By A where the guess is.
+    Newton,
+}
+
+impl<S: Stepping<N, T>, const N: usize, T: Scalar> Way<S, N, T> {
+    /// That of steps of length h.
+    pub(crate) fn of(system: &S, h: T) -> Self {
+        if !S::CONSTANT_JACOBIAN {
+            return Self::Newton;
+        }
+        let anywhere = Node::zeros();
+        let inverse = system.momentum_equation(&anywhere, h, &SVector::zeros()).jacobian.inverse();
+        if S::CLOSED_FORM {
+            Self::ClosedForm(ClosedForm::of(system, h, &inverse), inverse)
+        } else {
+            Self::Inverse(inverse)
+        }
+    }
+}
+
+/// What a step left of its equation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub(crate) struct Measured<const N: usize, T> {
+    /// r(v).
+    residual: SVector<T, N>,
+    /// What a rounding of each row is ε times of.
+    scale: SVector<T, N>,
+}
+
+impl<const N: usize, T: Scalar> Measured<N, T> {
+    /// Before the first step.
+    fn none() -> Self {
+        Self { residual: SVector::zeros(), scale: SVector::zeros() }
+    }
+
+    /// Whether each row, with what is carried to it, is at most one rounding.
+    #[inline(always)]
+    fn is_at_floor(&self, carried: &SVector<T, N>) -> bool {
+        let mut all = true;
+        for i in 0..N {
+            all &= (self.residual[i] + carried[i]).abs() <= self.scale[i] * T::real(T::EPSILON);
+        }
+        all
+    }
+
+    /// The largest residual in roundings.
+    pub(crate) fn roundings(&self) -> f64 {
+        newton::worst(&self.residual, &self.scale)
+    }
+}
+
+/// A velocity to start from, after so many corrections.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Trial<const N: usize, T> {
+    v: SVector<T, N>,
+    iterations: u32,
+}
+
+/// A momentum step that was found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solved<const N: usize, T> {
+    /// The velocity.
+    pub(crate) v: SVector<T, N>,
+    /// What the momenta gain.
+    pub(crate) increment: SVector<T, N>,
+    /// Corrections that it took.
+    pub(crate) iterations: u32,
+    measured: Measured<N, T>,
+    /// What is left for the next step to make up for.
+    remainder: SVector<T, N>,
+    /// Whether the guess was of use.
+    predicted: bool,
+}
+
+/// Momentum steps of one length; see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub(crate) struct Steps<const N: usize, T> {
+    pub(crate) h: T,
+    predictor: Predictor<N, T>,
+    remainder: SVector<T, N>,
+    measured: Measured<N, T>,
+    /// Whether a step was taken.
+    begun: bool,
+}
+
+impl<const N: usize, T: Scalar> Steps<N, T> {
+    /// Before the first step, with a guess of its velocity.
+    pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
+        let (predictor, measured) = (Predictor::new(guess), Measured::none());
+        Self { h, predictor, remainder: SVector::zeros(), measured, begun: false }
+    }
+
+    /// Whether there was no step yet.
+    pub(crate) fn is_new(&self) -> bool {
+        !self.begun
+    }
+
+    /// Velocity of the last step; before the first one its guess.
+    pub(crate) fn v(&self) -> SVector<T, N> {
+        self.predictor.newest()
+    }
+
+    /// What the last step left of its equation.
+    pub(crate) fn measured(&self) -> &Measured<N, T> {
+        &self.measured
+    }
+
+    /// Whether every number is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let Measured { residual, scale } = &self.measured;
+        let vectors = [&self.remainder, residual, scale];
+        self.predictor.is_finite() && vectors.into_iter().flat_map(|u| u.iter()).all(|entry| entry.is_finite())
+    }
+
+    /// The common step from `node`: by one matrix, or by one correction of a guess of the highest order. Else what was found on
+    /// the way there.
+    #[inline(always)]
+    pub(crate) fn common<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        way: &Way<S, N, T>,
+    ) -> Result<Solved<N, T>, Trial<N, T>> {
+        match way {
+            Way::ClosedForm(form, _) => self.by_matrix(system, node, form),
+            _ if self.predictor.is_highest() => self.corrected_often(system, node, way, self.guess()).ok_or(self.guess()),
+            _ => Err(self.guess()),
+        }
+    }
+
+    /// The step from `node` by corrections of a trial; `None` where they do not solve it.
+    #[inline(always)]
+    pub(crate) fn corrected_often<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        way: &Way<S, N, T>,
+        mut trial: Trial<N, T>,
+    ) -> Option<Solved<N, T>> {
+        while trial.iterations < CORRECTIONS {
+            match self.corrected(system, node, way, &trial) {
+                Ok(solved) => return Some(solved),
+                Err(corrected) => trial = corrected,
+            }
+        }
+        None
+    }
+
+    /// The velocity that the last steps give.
+    #[inline(always)]
+    pub(crate) fn guess(&self) -> Trial<N, T> {
+        Trial { v: self.predictor.guess(), iterations: 0 }
+    }
+
+    /// The step by one matrix, where that solves it to rounding; else its velocity.
+    #[inline(always)]
+    fn by_matrix<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        form: &ClosedForm<N, T>,
+    ) -> Result<Solved<N, T>, Trial<N, T>> {
+        let (v, increment) = form.step(node);
+        let at = system.momentum_residual(node, self.h, &v);
+        let measured = Measured { residual: at.residual, scale: scale(node, &increment) };
+        let lost = Measured { residual: increment - at.increment, ..measured };
+        let remainder = SVector::zeros();
+        if measured.is_at_floor(&remainder) && lost.is_at_floor(&remainder) {
+            Ok(Solved { v, increment, iterations: 0, measured, remainder, predicted: true })
+        } else {
+            Err(Trial { v, iterations: 0 })
+        }
+    }
+
+    /// The step from `node` after a correction of a trial, where its residual is at the floor then; else the trial corrected.
+    #[inline(always)]
+    fn corrected<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        way: &Way<S, N, T>,
+        trial: &Trial<N, T>,
+    ) -> Result<Solved<N, T>, Trial<N, T>> {
+        let equation = system.momentum_equation(node, self.h, &trial.v);
+        let sought = equation.residual + self.remainder;
+        let correction = match way {
+            Way::ClosedForm(_, inverse) | Way::Inverse(inverse) => S::Jacobian::apply(inverse, &sought),
+            Way::Newton => equation.jacobian.solve(&sought),
+        };
+        let (v, iterations) = (trial.v - correction, trial.iterations + 1);
+        let MomentumResidual { residual, increment } = system.momentum_residual(node, self.h, &v);
+        let mut measured = Measured { residual, scale: scale(node, &increment) };
+        if !measured.is_at_floor(&self.remainder) {
+            // Where momenta vanish, the velocities that they are sums of need not.
+            measured.scale += equation.jacobian.magnitude(&v);
+            if !measured.is_at_floor(&self.remainder) {
+                return Err(Trial { v, iterations });
+            }
+        }
+        let remainder = residual + self.remainder;
+        Ok(Solved { v, increment, iterations, measured, remainder, predicted: true })
+    }
+
+    /// The step from `node` by Newton's iteration, or by continuation.
+    ///
+    /// # Errors
+    /// Those of Newton's iteration and of the continuation.
+    #[cold]
+    pub(crate) fn searched<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        branch: Branch,
+    ) -> Result<Solved<N, T>, StepError> {
+        let (h, start) = (self.h, self.v());
+        let Solution { v, iterations } = match branch {
+            Branch::Nearest => continuation::nearest(system, node, h, start, start)?,
+            Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
+        };
+        let MomentumResidual { residual, increment } = system.momentum_residual(node, h, &v);
+        let measured = Measured { residual, scale: system.rounding(node, h, &v).residual };
+        Ok(Solved { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
+    }
+
+    /// Takes a common step.
+    #[inline(always)]
+    pub(crate) fn push_common<S: Stepping<N, T>>(&mut self, solved: &Solved<N, T>) {
+        if S::CLOSED_FORM {
+            self.predictor.replace(&solved.v);
+        } else {
+            self.predictor.push_highest(&solved.v);
+        }
+        self.keep(solved);
+    }
+
+    /// Takes any step.
+    pub(crate) fn push(&mut self, solved: &Solved<N, T>) {
+        if solved.predicted {
+            self.predictor.push(&solved.v);
+        } else {
+            self.predictor.restart(&solved.v);
+        }
+        self.keep(solved);
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, solved: &Solved<N, T>) {
+        self.remainder = solved.remainder;
+        self.measured = solved.measured;
+        self.begun = true;
+    }
+}
+
+/// What a rounding of each row is ε times of, at least.
+#[inline(always)]
+fn scale<const N: usize, T: Scalar>(node: &Node<N, T>, increment: &SVector<T, N>) -> SVector<T, N> {
+    let mut scale = *increment;
+    for i in 0..N {
+        scale[i] = node.p[i].abs() + increment[i].abs();
+    }
+    scale
+}

@@ -1,0 +1,221 @@
+//! Numbers that carry a bound of their rounding: running error analysis.
+//!
+//! In: a formula generic over [`Real`]. Out: its value, and how far rounding can have moved it, to first order and in units of
+//! half an ulp of 1, when it was evaluated in any of the numbers that steps are taken with. With `z = x ∘ y`,
+//!
+//! ```text
+//! e(x ± y) = e(x) + e(y) + |z|          e(x y) = |x| e(y) + |y| e(x) + |z|          e(f(x)) = |f'(x)| e(x) + 2 |z|
+//! ```
+//!
+//! so that what cancels inside a formula stays in the bound: a residual below it is zero as far as the arithmetic can tell.
+//! Library functions are trusted to an ulp. A kink or a jump (`abs`, `sign`) is taken where the value is.
+//! It runs on rare paths, and each operation is a call: the formulas of a system stay short in the program.
+//!
+//! Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3.
+
+use super::Real;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A number with a bound of its rounding; see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounded {
+    value: f64,
+    /// The bound, in units of half an ulp of 1.
+    error: f64,
+}
+
+impl Rounded {
+    /// A number that is exact.
+    #[must_use]
+    pub fn exact(value: f64) -> Self {
+        Self { value, error: 0.0 }
+    }
+
+    /// A number that is the nearest of its kind to the one that is meant.
+    #[must_use]
+    pub fn nearest(value: f64) -> Self {
+        Self { value, error: value.abs() }
+    }
+
+    /// The bound of its rounding, in units of half an ulp of 1.
+    #[must_use]
+    pub fn error(self) -> f64 {
+        self.error
+    }
+
+    /// What an operation makes of operands whose errors come to `carried`.
+    fn rounding(value: f64, carried: f64, ulps: f64) -> Self {
+        // Below the smallest normal number a rounding is as large as there.
+        Self { value, error: carried + ulps * value.abs() + f64::MIN_POSITIVE }
+    }
+
+    /// A library function with this slope.
+    #[inline(never)]
+    fn function(self, value: f64, slope: f64) -> Self {
+        Self::rounding(value, product(slope.abs(), self.error), 2.0)
+    }
+}
+
+/// `a b`, and 0 where an error is zero: an infinite slope does not matter then.
+fn product(a: f64, b: f64) -> f64 {
+    if b == 0.0 { 0.0 } else { a * b }
+}
+
+impl Add for Rounded {
+    type Output = Self;
+    #[inline(never)]
+    fn add(self, other: Self) -> Self {
+        Self::rounding(self.value + other.value, self.error + other.error, 1.0)
+    }
+}
+
+impl Sub for Rounded {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Rounded {
+    type Output = Self;
+    #[inline(never)]
+    fn mul(self, other: Self) -> Self {
+        let carried = product(self.value.abs(), other.error) + product(other.value.abs(), self.error);
+        Self::rounding(self.value * other.value, carried, 1.0)
+    }
+}
+
+impl Div for Rounded {
+    type Output = Self;
+    #[inline(never)]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let carried = (self.error + product(value.abs(), other.error)) / other.value.abs();
+        Self::rounding(value, carried, 1.0)
+    }
+}
+
+impl Neg for Rounded {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, error: self.error }
+    }
+}
+
+macro_rules! assignments {
+    ($($operator:ident $function:ident $operation:ident),*) => {$(
+        impl $operator for Rounded {
+            fn $function(&mut self, other: Self) { *self = (*self).$operation(other); }
+        }
+    )*};
+}
+
+assignments!(AddAssign add_assign add, SubAssign sub_assign sub, MulAssign mul_assign mul);
+
+impl num_traits::Zero for Rounded {
+    fn zero() -> Self {
+        Self::exact(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        self.value == 0.0
+    }
+}
+
+impl num_traits::One for Rounded {
+    fn one() -> Self {
+        Self::exact(1.0)
+    }
+}
+
+impl Real for Rounded {
+    const EPSILON: f64 = f64::EPSILON;
+
+    /// A constant or a parameter, which is what its number is.
+    fn real(value: f64) -> Self {
+        Self::exact(value)
+    }
+    fn recip(self) -> Self {
+        Self::exact(1.0) / self
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.function(root, 0.5 / root)
+    }
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.function(value, value)
+    }
+    fn ln(self) -> Self {
+        self.function(self.value.ln(), self.value.recip())
+    }
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = self.value.sin_cos();
+        (self.function(sine, cosine), self.function(cosine, sine))
+    }
+    fn tan(self) -> Self {
+        let value = self.value.tan();
+        self.function(value, 1.0 + value * value)
+    }
+    fn asin(self) -> Self {
+        self.function(self.value.asin(), (1.0 - self.value * self.value).sqrt().recip())
+    }
+    fn acos(self) -> Self {
+        self.function(self.value.acos(), (1.0 - self.value * self.value).sqrt().recip())
+    }
+    fn atan(self) -> Self {
+        self.function(self.value.atan(), (1.0 + self.value * self.value).recip())
+    }
+    fn atan2(self, other: Self) -> Self {
+        let square = self.value * self.value + other.value * other.value;
+        let carried = product(self.value.abs(), other.error) + product(other.value.abs(), self.error);
+        Self::rounding(self.value.atan2(other.value), product(square.recip(), carried), 2.0)
+    }
+    fn sinh(self) -> Self {
+        self.function(self.value.sinh(), self.value.cosh())
+    }
+    fn cosh(self) -> Self {
+        self.function(self.value.cosh(), self.value.sinh())
+    }
+    fn tanh(self) -> Self {
+        let value = self.value.tanh();
+        self.function(value, 1.0 - value * value)
+    }
+    fn abs(self) -> Self {
+        Self { value: self.value.abs(), error: self.error }
+    }
+    fn sign(self) -> Self {
+        Self::exact(Real::sign(self.value))
+    }
+    fn hypot(self, other: Self) -> Self {
+        let value = self.value.hypot(other.value);
+        let carried = product(self.value.abs(), self.error) + product(other.value.abs(), other.error);
+        Self::rounding(value, product(value.recip(), carried), 2.0)
+    }
+    fn pow(self, exponent: Self) -> Self {
+        let value = self.value.powf(exponent.value);
+        let by_base = product((exponent.value / self.value * value).abs(), self.error);
+        let by_exponent = product((self.value.ln() * value).abs(), exponent.error);
+        Self::rounding(value, by_base + by_exponent, 2.0)
+    }
+    fn max(self, other: Self) -> Self {
+        if other.value > self.value { other } else { self }
+    }
+    fn is_finite(self) -> bool {
+        self.value.is_finite()
+    }
+    fn is_positive(self) -> bool {
+        self.value > 0.0
+    }
+    fn is_at_most(self, bound: Self) -> bool {
+        self.value <= bound.value
+    }
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+}

@@ -1,0 +1,26 @@
+//! What the other crates of this project need, and no one else: it may change with any version.
+
+use crate::fixed_step::Branch;
+use crate::momentum::Steps;
+use crate::{Node, Scalar, StepError, Stepping};
+use nalgebra::SVector;
+
+/// The node and the velocity after one step of length h from `node`, by Newton's iteration from `last`, the velocity of the step
+/// before.
+///
+/// # Errors
+/// Those of [`FixedStep::step`](crate::FixedStep::step).
+#[cold]
+pub fn step_alone<const N: usize, T: Scalar, S: Stepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    h: T,
+    last: SVector<T, N>,
+) -> Result<(Node<N, T>, SVector<T, N>), StepError> {
+    let explained = |failure: StepError| failure.explained(system, node, h, &last);
+    let solved = Steps::new(h, last).searched(system, node, Branch::Nearest).map_err(explained)?;
+    let mut next = *node;
+    next.advance(h, &(solved.v * h), &solved.increment);
+    next.check_finite(node.t).map_err(explained)?;
+    Ok((next, solved.v))
+}

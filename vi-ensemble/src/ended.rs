@@ -1,0 +1,27 @@
+//! How a trajectory ended.
+
+use core::fmt;
+use vi_core::{State, StepError};
+
+/// How a trajectory ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ended<const N: usize> {
+    /// The last good state.
+    pub state: State<N>,
+    /// Steps taken up to there.
+    pub steps: u64,
+    /// Why there was no other.
+    pub error: StepError,
+}
+
+impl<const N: usize> fmt::Display for Ended<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "ended after {} steps: {}", self.steps, self.error)
+    }
+}
+
+impl<const N: usize> core::error::Error for Ended<N> {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        Some(&self.error)
+    }
+}

@@ -1,0 +1,131 @@
+//! Nodes and velocities of a block, one row per coordinate.
+//!
+//! In: vectors of N entries, one per trajectory. Out: N rows of [`WIDTH`] numbers each, in which one vector instruction
+//! meets the same coordinate of neighbouring trajectories.
+
+use crate::lane::Lane;
+use nalgebra::SVector;
+use vi_core::{Node, Real, State};
+
+/// Trajectories in a block: several vectors, so that one is computed while another waits.
+pub(crate) const WIDTH: usize = 2 * HALF;
+
+/// Trajectories in half of a block.
+pub(crate) const HALF: usize = 32;
+
+/// One number of each trajectory of a block.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Row<U = f64>([[U; HALF]; 2]);
+
+/// Where a trajectory stands in a row: its half, and its index there. Both are known to be inside, one as a constant and
+/// the other as the counter of a loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaneIndex {
+    pub(crate) half: usize,
+    pub(crate) index: usize,
+}
+
+impl LaneIndex {
+    /// That of a trajectory by its number in the block.
+    pub(crate) fn of(number: usize) -> Self {
+        Self { half: number / HALF, index: number % HALF }
+    }
+}
+
+impl<U: Copy> Row<U> {
+    /// The row of one number.
+    pub(crate) fn filled(value: U) -> Self {
+        Self([[value; HALF]; 2])
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self, lane: LaneIndex) -> U {
+        self.0[lane.half][lane.index]
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: LaneIndex, value: U) {
+        self.0[lane.half][lane.index] = value;
+    }
+}
+
+/// One vector of each trajectory of a block, row by row.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows<const N: usize>([Row; N]);
+
+impl<const N: usize> Rows<N> {
+    pub(crate) fn zeros() -> Self {
+        Self([Row::filled(0.0); N])
+    }
+
+    /// The vector of one trajectory.
+    #[inline(always)]
+    pub(crate) fn get<T: Real>(&self, lane: LaneIndex) -> SVector<T, N> {
+        SVector::from(core::array::from_fn(|k| T::real(self.0[k].get(lane))))
+    }
+
+    /// Sets the vector of one trajectory.
+    #[inline(always)]
+    pub(crate) fn set<T: Real>(&mut self, lane: LaneIndex, vector: &SVector<T, N>) {
+        for k in 0..N {
+            self.0[k].set(lane, vector[k].to_f64());
+        }
+    }
+
+    /// Sets it where it is not `kept`.
+    #[inline(always)]
+    pub(crate) fn set_unless<T: Real>(&mut self, kept: bool, lane: LaneIndex, vector: &SVector<T, N>) {
+        for k in 0..N {
+            let (old, new) = (self.0[k].get(lane), vector[k].to_f64());
+            self.0[k].set(lane, if kept { old } else { new });
+        }
+    }
+
+    /// Adds `factor` times other rows to these.
+    #[inline(always)]
+    pub(crate) fn add<const FUSED: bool>(&mut self, factor: f64, other: &Self) {
+        for (row, other) in self.0.iter_mut().zip(&other.0) {
+            for (sum, entry) in row.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+                *sum = (Lane::<FUSED>::new(*sum) + Lane::new(factor) * Lane::new(*entry)).get();
+            }
+        }
+    }
+}
+
+/// Coordinates and momenta of a block with their low parts.
+#[derive(Clone, Debug)]
+pub(crate) struct Nodes<const N: usize> {
+    q: Rows<N>,
+    q_low: Rows<N>,
+    p: Rows<N>,
+    p_low: Rows<N>,
+}
+
+impl<const N: usize> Nodes<N> {
+    pub(crate) fn zeros() -> Self {
+        Self { q: Rows::zeros(), q_low: Rows::zeros(), p: Rows::zeros(), p_low: Rows::zeros() }
+    }
+
+    /// The node of one trajectory, at the time t. Its energy has no meaning.
+    #[inline(always)]
+    pub(crate) fn get<T: Real>(&self, lane: LaneIndex, t: f64) -> Node<N, T> {
+        let state = State { t: T::real(t), q: self.q.get(lane), p: self.p.get(lane) };
+        Node { q_low: self.q_low.get(lane), p_low: self.p_low.get(lane), ..Node::new(state, T::zero()) }
+    }
+
+    /// Sets the node of one trajectory.
+    #[inline(always)]
+    pub(crate) fn set<T: Real>(&mut self, lane: LaneIndex, node: &Node<N, T>) {
+        self.set_unless(false, lane, node);
+    }
+
+    /// Sets it where it is not `kept`.
+    #[inline(always)]
+    pub(crate) fn set_unless<T: Real>(&mut self, kept: bool, lane: LaneIndex, node: &Node<N, T>) {
+        self.q.set_unless(kept, lane, &node.q);
+        self.q_low.set_unless(kept, lane, &node.q_low);
+        self.p.set_unless(kept, lane, &node.p);
+        self.p_low.set_unless(kept, lane, &node.p_low);
+    }
+}
