@@ -43,7 +43,7 @@ pub use step_law::step_law;
 pub use steps::steps;
 pub use symmetries::{momenta, reversibility, symplecticity};
 
-use crate::{Parameters, Real, Stepping};
+use crate::{DiscreteLagrangian, Parameters, Real, Stepping};
 use nalgebra::SVector;
 
 /// Steps of the place's length over which the motion from there is followed.
@@ -64,9 +64,9 @@ pub struct Place<const N: usize> {
 }
 
 /// A system that can be evaluated in other kinds of numbers, as every generated one can.
-pub trait Checked<const N: usize>: Stepping<N> + Parameters + Clone {
+pub trait Checked<const N: usize>: Stepping<N> + DiscreteLagrangian<N> + Parameters + Clone {
     /// The same system in the numbers T.
-    type In<T: Real>: Stepping<N, T>;
+    type In<T: Real>: Stepping<N, T> + DiscreteLagrangian<N, T>;
 
     /// The same system, every parameter converted.
     fn convert<T: Real>(&self) -> Self::In<T>;

@@ -16,6 +16,7 @@
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of Computation
 //! 66 (1997) 1089.
 
+use crate::called::Called;
 use crate::fixed_step::{Branch, check_step};
 use crate::momentum::{Steps, Way};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
@@ -108,7 +109,7 @@ where
     substeps: Vec<Steps<N, T>>,
     /// The substeps after the whole step that is under way.
     following: Vec<Steps<N, T>>,
-    ways: Vec<Way<S, N, T>>,
+    ways: Vec<Way<S::Jacobian, N, T>>,
     failure: Option<StepError>,
 }
 
@@ -127,7 +128,7 @@ where
         let v = state.velocity(&system)?;
         let lengths = scheme.weights.iter().map(|weight| h * T::real(*weight));
         let substeps: Vec<_> = lengths.map(|h| Steps::new(h, v)).collect();
-        let ways = substeps.iter().map(|substep| Way::of(&system, substep.h)).collect();
+        let ways = substeps.iter().map(|substep| Way::of(&Called(system), substep.h)).collect();
         Ok(Self { system, scheme, node, following: substeps.clone(), substeps, ways, failure: None })
     }
 
@@ -160,7 +161,7 @@ where
     }
 
     fn advance(&mut self) -> Result<State<N, T>, StepError> {
-        let (mut node, system) = (self.node, &self.system);
+        let (mut node, system, called) = (self.node, &self.system, &Called(self.system));
         // Before the first whole step the velocities of the substeps are not known: each follows the one before.
         let mut before = None;
         self.following.copy_from_slice(&self.substeps);
@@ -169,10 +170,10 @@ where
                 *substep = Steps::new(substep.h, v);
             }
             let h = substep.h;
-            let solved = match substep.corrected_often(system, &node, way, substep.guess()) {
+            let solved = match substep.predicted(system, &node, way) {
                 Some(solved) => solved,
                 None => substep
-                    .searched(system, &node, Branch::Nearest)
+                    .searched(called, &node, Branch::Nearest)
                     .map_err(|failure| failure.explained(system, &node, h, &substep.v()))?,
             };
             node.advance(h, &(solved.v * h), &solved.increment);

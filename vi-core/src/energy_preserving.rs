@@ -34,11 +34,13 @@ mod starts;
 pub use checkpoint::{Checkpoint, Run};
 pub use fallback::{Fallback, Switches};
 
+use crate::called::Called;
 use crate::condition::Condition;
 use crate::state::Method;
 use crate::{Increment, Node, Real, Scalar, State, Step, StepError, Stepping};
 use nalgebra::SVector;
 use newton::{Failure, Root};
+use predicted::{Predicted, Predictors};
 
 /// A step may be longer or shorter than the last one by this factor at most.
 const RATIO: f64 = 3.0;
@@ -91,38 +93,42 @@ where
     /// of 3 of the last, [`StepError::StepBounds`] where it is outside the bounds, [`StepError::DegenerateStep`] where
     /// every length would do; instead of these a fixed step with [`Fallback::FixedSteps`].
     /// [`StepError::NotConverged`], [`StepError::Singular`], [`StepError::NonFinite`]. The same error again after an error.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self) -> Result<Step<N, T>, StepError> {
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        if let Some(predicted) = self.predicted() {
-            let predicted::Predicted { root, increment, .. } = &predicted;
-            let (node, last, step) = self.run.reached::<S>(&self.run.node, root, increment, Method::EnergyPreserving);
+        if self.run.is_common()
+            && let Some(predicted) = self.predicted()
+        {
+            let (node, last, step) = self.reached(&predicted);
             if node.is_finite() {
-                self.run.predictors.push(&predicted);
+                self.run.predictors.push_common(&predicted);
                 (self.run.node, self.run.last) = (node, last);
                 return Ok(step);
             }
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers.
-        let (run, outcome) = searched(self.system, self.run);
+        let (run, outcome) = uncommon(self.system, self.run);
         self.run = run;
         outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
 
     /// The next step, where it has not to be searched.
     #[inline(always)]
-    fn predicted(&self) -> Option<predicted::Predicted<N, T>> {
+    fn predicted(&self) -> Option<Predicted<N, T>> {
         let Self { system, run, .. } = self;
-        let Run { node, last, predictors, bounds, phase, .. } = run;
-        if phase.is_some() {
-            return None;
-        }
-        let predicted = predictors.step(system, node, last)?;
+        let predicted = run.predictors.step(system, &run.node, &run.last)?;
         let h = predicted.root.h;
-        let allowed = bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.runs_away(h);
+        let allowed = run.bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.runs_away(h);
         allowed.then_some(predicted)
+    }
+
+    /// Where a step leads that was predicted.
+    #[inline(always)]
+    fn reached(&self, predicted: &Predicted<N, T>) -> (Node<N, T>, Last<N, T>, Step<N, T>) {
+        let Predicted { root, increment, .. } = predicted;
+        self.run.reached::<S>(&self.run.node, root, increment, Method::EnergyPreserving)
     }
 
     /// The state reached last.
@@ -172,10 +178,19 @@ where
         Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
     }
 
-    /// Takes one step, searched from the interval before.
+    /// Takes one step that is not the common one.
     fn advance(&mut self) -> Result<Step<N, T>, StepError> {
         if let Some(phase) = self.run.phase {
             return self.advance_in_phase(phase);
+        }
+        if !self.run.is_common()
+            && let Some(predicted) = self.predicted()
+        {
+            let (node, last, step) = self.reached(&predicted);
+            node.check_finite(self.run.node.t)?;
+            self.run.predictors.push(&predicted);
+            (self.run.node, self.run.last) = (node, last);
+            return Ok(step);
         }
         match self.root(&self.run.node) {
             Ok(root) if self.runs_away(root.h) => self.fall_back_from(root),
@@ -191,7 +206,7 @@ where
         node.check_finite(start.t)?;
         match method {
             // A length that was given predicts none.
-            Method::FixedStep => self.run.predictors = predicted::Predictors::new(root.v, root.h),
+            Method::FixedStep => self.run.predictors = Predictors::new(root.v, root.h),
             _ => self.run.predictors.restart(&root),
         }
         (self.run.node, self.run.last) = (node, last);
@@ -220,14 +235,13 @@ where
     }
 }
 
-/// The run after a step that has to be searched, and the step; after an error the run as it was.
-#[cold]
+/// The run after a step that is not the common one, and the step; after an error the run as it was.
 #[inline(never)]
-fn searched<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: S,
     run: Run<N, T>,
 ) -> (Run<N, T>, Result<Step<N, T>, StepError>) {
-    let mut integrator = EnergyPreserving { system, run, failure: None };
+    let mut integrator = EnergyPreserving { system: Called(system), run, failure: None };
     let outcome = integrator.advance();
     let Last { v, h, .. } = integrator.run.last;
     let explained = |failure: StepError| failure.explained(&system, &integrator.run.node, h, &v);

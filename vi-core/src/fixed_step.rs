@@ -15,7 +15,8 @@
 //!
 //! q and p are carried with what rounding takes from them, so that an increment below an ulp of theirs is not lost, only later seen.
 
-use crate::momentum::{Steps, Trial, Way};
+use crate::called::Called;
+use crate::momentum::{Steps, Way};
 use crate::{Node, Real, Scalar, State, StepError, Stepping, checkpoint};
 use nalgebra::SVector;
 
@@ -27,7 +28,7 @@ where
     T: Real,
 {
     system: S,
-    way: Way<S, N, T>,
+    way: Way<S::Jacobian, N, T>,
     run: Run<N, T>,
     failure: Option<StepError>,
     /// Whether a step is not predicted: by the branch, or after a failure. One question before a step instead of two.
@@ -121,7 +122,7 @@ where
 
     /// With what is the same in every step.
     fn prepared(system: S, run: Run<N, T>) -> Self {
-        let way = Way::of(&system, run.steps.h);
+        let way = Way::of(&Called(system), run.steps.h);
         let is_searched = run.branch != Branch::Nearest;
         Self { system, way, run, failure: None, is_searched }
     }
@@ -134,26 +135,23 @@ where
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
         let Self { system, way, run, is_searched, .. } = self;
-        let mut trial = None;
-        if !*is_searched {
-            match run.steps.common(system, &run.node, way) {
-                Ok(solved) => {
-                    let (h, displacement) = (run.steps.h, solved.v * run.steps.h);
-                    if run.node.stays_finite(h, &displacement, &solved.increment) {
-                        run.steps.push_common::<S>(&solved);
-                        run.node.advance(h, &displacement, &solved.increment);
-                        run.iterations = solved.iterations;
-                        return Ok(run.node.state());
-                    }
-                }
-                Err(uncommon) => trial = Some(uncommon),
+        if run.steps.is_common::<S>()
+            && !*is_searched
+            && let Some(solved) = run.steps.predicted(system, &run.node, way)
+        {
+            let (h, displacement) = (run.steps.h, solved.v * run.steps.h);
+            if run.node.stays_finite(h, &displacement, &solved.increment) {
+                run.steps.push_common::<S>(&solved);
+                run.node.advance(h, &displacement, &solved.increment);
+                run.iterations = solved.iterations;
+                return Ok(run.node.state());
             }
         }
         if let Some(failure) = self.failure {
             return Err(failure);
         }
         // The rare path gets copies, so that a loop over steps may keep the run in registers.
-        let (run, outcome) = uncommon(self.system, self.way, self.run, trial);
+        let (run, outcome) = uncommon(self.system, self.way, self.run);
         match outcome {
             Ok(()) => self.run = run,
             Err(failure) => (self.failure, self.is_searched) = (Some(failure), true),
@@ -214,15 +212,12 @@ where
 }
 
 impl<const N: usize, T: Scalar> Run<N, T> {
-    /// Takes a step by corrections of a trial, or one that has to be searched.
-    fn take<S: Stepping<N, T>>(
-        &mut self,
-        system: &S,
-        way: &Way<S, N, T>,
-        trial: Option<Trial<N, T>>,
-    ) -> Result<(), StepError> {
+    /// Takes a step that is not the common one.
+    fn take<S: Stepping<N, T>>(&mut self, system: &S, way: &Way<S::Jacobian, N, T>) -> Result<(), StepError> {
         let (t, h) = (self.node.t, self.steps.h);
-        let solved = match trial.and_then(|trial| self.steps.corrected_often(system, &self.node, way, trial)) {
+        let is_tried = self.steps.is_common::<S>() || self.branch != Branch::Nearest;
+        let predicted = if is_tried { None } else { self.steps.predicted(system, &self.node, way) };
+        let solved = match predicted {
             Some(solved) => solved,
             None => self.steps.searched(system, &self.node, self.branch)?,
         };
@@ -238,12 +233,11 @@ impl<const N: usize, T: Scalar> Run<N, T> {
 #[inline(never)]
 fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
     system: S,
-    way: Way<S, N, T>,
+    way: Way<S::Jacobian, N, T>,
     before: Run<N, T>,
-    trial: Option<Trial<N, T>>,
 ) -> (Run<N, T>, Result<(), StepError>) {
     let mut run = before;
-    let outcome = run.take(&system, &way, trial);
+    let outcome = run.take(&Called(system), &way);
     let v = before.steps.v();
     (run, outcome.map_err(|failure| failure.explained(&system, &before.node, before.steps.h, &v)))
 }

@@ -85,7 +85,7 @@ pub trait DiscreteLagrangian<const N: usize, T: Real = f64>: Lagrangian<N, T> {
 ///
 /// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
 /// the numbers of the common path stay in registers.
-pub trait Stepping<const N: usize, T: Real = f64>: DiscreteLagrangian<N, T> + Copy {
+pub trait Stepping<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// The form of A, by its zero pattern.
     type Jacobian: Matrix<N, T>;
     /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
@@ -213,52 +213,62 @@ pub trait Batch<const N: usize>: Stepping<N> + Copy + Send + Sync {
     fn pick<T: Real, const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self::In<T>;
 }
 
-/// A system may be lent as well as given.
-impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for &S {
-    const NAME: &'static str = S::NAME;
-    const COORDINATES: [&'static str; N] = S::COORDINATES;
-    const AUTONOMOUS: bool = S::AUTONOMOUS;
-    const FORCED: bool = S::FORCED;
-    const CYCLIC: [bool; N] = S::CYCLIC;
-    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+/// What a system says of itself, said by what dereferences to it.
+macro_rules! lagrangian_of_target {
+    ($of:ty) => {
+        impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for $of {
+            const NAME: &'static str = S::NAME;
+            const COORDINATES: [&'static str; N] = S::COORDINATES;
+            const AUTONOMOUS: bool = S::AUTONOMOUS;
+            const FORCED: bool = S::FORCED;
+            const CYCLIC: [bool; N] = S::CYCLIC;
+            const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
 
-    fn parameter(&self, index: usize) -> T {
-        S::parameter(self, index)
-    }
+            fn parameter(&self, index: usize) -> T {
+                S::parameter(self, index)
+            }
 
-    #[inline]
-    fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        S::lagrangian(self, t, q, v)
-    }
+            #[inline]
+            fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+                S::lagrangian(self, t, q, v)
+            }
 
-    #[inline]
-    fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        S::energy(self, t, q, v)
-    }
+            #[inline]
+            fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+                S::energy(self, t, q, v)
+            }
 
-    #[inline]
-    fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        S::momentum(self, t, q, v)
-    }
+            #[inline]
+            fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+                S::momentum(self, t, q, v)
+            }
 
-    #[inline]
-    fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        S::force(self, t, q, v)
-    }
+            #[inline]
+            fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+                S::force(self, t, q, v)
+            }
 
-    #[inline]
-    fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
-        S::acceleration(self, t, q, v)
-    }
+            #[inline]
+            fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
+                S::acceleration(self, t, q, v)
+            }
 
-    #[inline]
-    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
-        S::step_density(self, t, q, v)
-    }
-    fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
-        S::non_finite(self, t, q, v)
-    }
+            #[inline]
+            fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+                S::step_density(self, t, q, v)
+            }
+
+            fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
+                S::non_finite(self, t, q, v)
+            }
+        }
+    };
 }
+
+pub(crate) use lagrangian_of_target;
+
+// A system may be lent as well as given.
+lagrangian_of_target!(&S);
 
 impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N, T> for &S {
     #[inline]

@@ -23,6 +23,7 @@
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
 
+mod called;
 pub mod check;
 pub mod checkpoint;
 mod compensated;

@@ -56,26 +56,26 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         self.differences[0]
     }
 
+    /// Whether every number is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.differences.iter().chain([&self.guess]).flat_map(|u| u.iter()).all(|entry| entry.is_finite())
+    }
+
     /// Whether the guess is of the highest order.
     #[inline(always)]
     pub(crate) fn is_highest(&self) -> bool {
         self.order == ORDER
     }
 
-    /// Whether every number is finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        self.differences.iter().chain([&self.guess]).flat_map(|u| u.iter()).all(|entry| entry.is_finite())
-    }
-
     /// Takes the step `u` where no guess is needed.
     #[inline(always)]
-    pub(crate) fn replace(&mut self, u: &SVector<T, M>) {
-        self.differences[0] = *u;
+    pub(crate) fn replace(&mut self, u: SVector<T, M>) {
+        self.differences[0] = u;
     }
 
-    /// Takes the step `u`, at the highest order.
+    /// Takes the step `u` at the highest order.
     #[inline(always)]
-    pub(crate) fn push_highest(&mut self, u: &SVector<T, M>) {
+    pub(crate) fn push_highest(&mut self, u: SVector<T, M>) {
         for i in 0..M {
             let error = u[i] - self.guess[i];
             let mut predicted = self.differences[ORDER][i];
@@ -100,16 +100,16 @@ const WEIGHT: f64 = (ORDER + 1) as f64;
 
 impl<const M: usize, T: Scalar> Predictor<M, T> {
     /// Takes the step `u`.
-    pub(crate) fn push(&mut self, u: &SVector<T, M>) {
+    pub(crate) fn push(&mut self, u: SVector<T, M>) {
         if self.is_highest() { self.push_highest(u) } else { self.push_lower(u) }
     }
 
     /// Takes the step `u` below the highest order, which grows by one where the guess of the next order would not have been
     /// worse, or as good as rounding allows.
-    fn push_lower(&mut self, u: &SVector<T, M>) {
+    fn push_lower(&mut self, u: SVector<T, M>) {
         let (order, error) = (self.order, u - self.guess);
         let better = error - self.differences[order + 1];
-        let noise = length_squared(u) * T::real(NOISE * T::EPSILON * NOISE * T::EPSILON);
+        let noise = length_squared(&u) * T::real(NOISE * T::EPSILON * NOISE * T::EPSILON);
         let grows = length_squared(&better) <= length_squared(&error) || length_squared(&error) <= noise;
         self.enter(u);
         self.differences[order + 1] = error;
@@ -124,8 +124,8 @@ impl<const M: usize, T: Scalar> Predictor<M, T> {
 
     /// Takes the step `u` after a guess that was too poor to use: the order becomes that which would have guessed best.
     #[cold]
-    pub(crate) fn restart(&mut self, u: &SVector<T, M>) {
-        let mut error = *u;
+    pub(crate) fn restart(&mut self, u: SVector<T, M>) {
+        let mut error = u;
         let (mut best, mut least) = (0, None);
         for (order, difference) in self.differences.iter().enumerate().take(self.order + 1) {
             error -= difference;
@@ -140,12 +140,12 @@ impl<const M: usize, T: Scalar> Predictor<M, T> {
         self.enter(u);
         self.sum();
         if !self.is_finite() {
-            *self = Self::new(*u);
+            *self = Self::new(u);
         }
     }
 
     /// The differences up to the order, after the step `u`.
-    fn enter(&mut self, u: &SVector<T, M>) {
+    fn enter(&mut self, u: SVector<T, M>) {
         let error = u - self.guess;
         for j in (0..self.order).rev() {
             let above = self.differences[j + 1];
@@ -154,7 +154,7 @@ impl<const M: usize, T: Scalar> Predictor<M, T> {
         for difference in &mut self.differences[..=self.order] {
             *difference += error;
         }
-        self.differences[0] = *u;
+        self.differences[0] = u;
     }
 
     /// The guess, from the differences.
@@ -182,7 +182,7 @@ mod tests {
     /// A predictor that has taken the steps 0 … 12 of a sequence.
     fn after_twelve(sequence: impl Fn(f64) -> f64) -> Predictor<1, f64> {
         let mut predictor = Predictor::new(one(sequence(0.0)));
-        (1..=12).for_each(|step| predictor.push(&one(sequence(f64::from(step)))));
+        (1..=12).for_each(|step| predictor.push(one(sequence(f64::from(step)))));
         predictor
     }
 
@@ -195,7 +195,7 @@ mod tests {
             let u = sequence(f64::from(step));
             // Integers below 2⁵³: no rounding.
             assert_eq!(predictor.guess()[0].to_bits(), u.to_bits(), "step {step}");
-            predictor.push(&one(u));
+            predictor.push(one(u));
             assert_eq!(predictor.newest()[0].to_bits(), u.to_bits());
         }
     }
@@ -204,10 +204,10 @@ mod tests {
     fn an_error_is_forgotten_after_as_many_steps_as_there_are_differences() {
         let sequence = |t: f64| t.powi(3) - 2.0 * t;
         let mut predictor = after_twelve(sequence);
-        predictor.push(&one(1e6));
+        predictor.push(one(1e6));
         for step in 14..14 + ORDER as u32 + 1 {
             assert_ne!(predictor.guess()[0].to_bits(), sequence(f64::from(step)).to_bits());
-            predictor.push(&one(sequence(f64::from(step))));
+            predictor.push(one(sequence(f64::from(step))));
         }
         assert_eq!(predictor.guess()[0].to_bits(), sequence(21.0).to_bits());
     }
@@ -222,10 +222,10 @@ mod tests {
     #[test]
     fn what_leaps_is_guessed_by_the_last_step() {
         let mut predictor = after_twelve(f64::sin);
-        predictor.restart(&one(-5.0));
+        predictor.restart(one(-5.0));
         assert_eq!((predictor.order, predictor.guess()[0].to_bits()), (0, (-5.0_f64).to_bits()));
-        predictor.push(&one(-4.0));
-        predictor.push(&one(-3.0));
+        predictor.push(one(-4.0));
+        predictor.push(one(-3.0));
         assert!((predictor.guess()[0] + 2.0).abs() < 1e-15);
     }
 
@@ -235,7 +235,7 @@ mod tests {
         let mut predictor = after_twelve(|t| t * t);
         predictor.differences[5] = one(3.0);
         predictor.sum();
-        predictor.restart(&one(169.0));
+        predictor.restart(one(169.0));
         assert!(predictor.order <= 4 && predictor.order >= 2, "{}", predictor.order);
         assert_eq!(predictor.guess()[0].to_bits(), 196.0_f64.to_bits());
     }

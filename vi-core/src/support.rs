@@ -1,5 +1,6 @@
 //! What the other crates of this project need, and no one else: it may change with any version.
 
+use crate::called::Called;
 use crate::fixed_step::Branch;
 use crate::momentum::Steps;
 use crate::{Node, Scalar, StepError, Stepping};
@@ -18,7 +19,7 @@ pub fn step_alone<const N: usize, T: Scalar, S: Stepping<N, T>>(
     last: SVector<T, N>,
 ) -> Result<(Node<N, T>, SVector<T, N>), StepError> {
     let explained = |failure: StepError| failure.explained(system, node, h, &last);
-    let solved = Steps::new(h, last).searched(system, node, Branch::Nearest).map_err(explained)?;
+    let solved = Steps::new(h, last).searched(&Called(*system), node, Branch::Nearest).map_err(explained)?;
     let mut next = *node;
     next.advance(h, &(solved.v * h), &solved.increment);
     next.check_finite(node.t).map_err(explained)?;

@@ -14,7 +14,7 @@ use super::sample::{Sample, samples};
 use super::slots::lost_velocity;
 use super::{Checked, Place};
 use crate::linear::Matrix;
-use crate::{FixedStep, Interval, State, Stepping};
+use crate::{FixedStep, Interval, State};
 use nalgebra::SVector;
 
 /// Steps that are taken.
@@ -83,7 +83,7 @@ pub(super) struct Between<const N: usize> {
 }
 
 impl<const N: usize> Between<N> {
-    pub(super) fn new<S: Stepping<N>>(system: &S, before: &State<N>, after: &State<N>) -> Self {
+    pub(super) fn new<S: Checked<N>>(system: &S, before: &State<N>, after: &State<N>) -> Self {
         let interval = Interval { t0: before.t, q0: before.q, t1: after.t, q1: after.q };
         let h = after.t - before.t;
         let v = (after.q - before.q) / h;

@@ -43,6 +43,12 @@ impl<const N: usize, T: Scalar> Run<N, T> {
         Self { node, last, predictors, bounds, fallback, phase: None, switches }
     }
 
+    /// Whether the next step is the common one, from guesses of the highest order.
+    #[inline(always)]
+    pub(super) fn is_common(&self) -> bool {
+        self.phase.is_none() && self.predictors.are_highest()
+    }
+
     /// Whether a step can follow: what a file says may be anything.
     fn check(&self) -> Result<(), StepError> {
         let Self { node, last, predictors, bounds, phase, .. } = self;

@@ -61,18 +61,31 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         self.v.is_finite() && self.h.is_finite() && self.remainder.iter().all(|entry| entry.is_finite())
     }
 
-    /// Takes a step that was predicted.
+    /// Whether both guesses are of the highest order.
     #[inline(always)]
+    pub(super) fn are_highest(&self) -> bool {
+        self.v.is_highest() && self.h.is_highest()
+    }
+
+    /// Takes a step that was predicted from guesses of the highest order.
+    #[inline(always)]
+    pub(super) fn push_common(&mut self, step: &Predicted<N, T>) {
+        self.v.push_highest(step.root.v);
+        self.h.push_highest(SVector::repeat(step.root.h));
+        self.remainder = step.remainder;
+    }
+
+    /// Takes a step that was predicted.
     pub(super) fn push(&mut self, step: &Predicted<N, T>) {
-        self.v.push(&step.root.v);
-        self.h.push(&SVector::repeat(step.root.h));
+        self.v.push(step.root.v);
+        self.h.push(SVector::repeat(step.root.h));
         self.remainder = step.remainder;
     }
 
     /// Takes a step that was searched.
     pub(super) fn restart(&mut self, root: &Root<N, T>) {
-        self.v.restart(&root.v);
-        self.h.restart(&SVector::repeat(root.h));
+        self.v.restart(root.v);
+        self.h.restart(SVector::repeat(root.h));
         self.remainder = SVector::zeros();
     }
 

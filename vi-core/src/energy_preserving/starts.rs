@@ -5,6 +5,7 @@
 
 use super::newton::Elimination;
 use super::{EnergyPreserving, Last, Run};
+use crate::called::Called;
 use crate::{Node, Scalar, State, StepError, Stepping};
 use nalgebra::SVector;
 
@@ -82,7 +83,7 @@ where
 
     /// The integrator at the end of the step `(v, h)` from the place of `start`.
     fn after(system: S, start: Node<N, T>, h: T, v: SVector<T, N>) -> Result<Self, StepError> {
-        match first_interval(&system, start, h, v) {
+        match first_interval(&Called(system), start, h, v) {
             Ok(run) => Ok(Self { system, run, failure: None }),
             Err(failure) => Err(failure.explained(&system, &start, h, &v)),
         }

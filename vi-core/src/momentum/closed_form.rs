@@ -9,7 +9,6 @@
 //!
 //! two products that wait for nothing, instead of an evaluation, a solution and another evaluation one after the other.
 
-use super::steps::Inverse;
 use crate::linear::Matrix;
 use crate::{Node, Real, Scalar, Stepping};
 use nalgebra::{SMatrix, SVector};
@@ -41,7 +40,7 @@ impl<const N: usize, T: Real> Affine<N, T> {
 
 impl<const N: usize, T: Scalar> ClosedForm<N, T> {
     /// That of a system with a step h, by the inverse of its A.
-    pub(crate) fn of<S: Stepping<N, T>>(system: &S, h: T, inverse: &Inverse<S, N, T>) -> Self {
+    pub(crate) fn of<S: Stepping<N, T>>(system: &S, h: T, inverse: &<S::Jacobian as Matrix<N, T>>::Inverse) -> Self {
         let answer = |q: SVector<T, N>, p: SVector<T, N>| {
             let node = Node { q, p, ..Node::zeros() };
             let v = -S::Jacobian::apply(inverse, &system.momentum_residual(&node, h, &SVector::zeros()).residual);

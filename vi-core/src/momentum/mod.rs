@@ -15,4 +15,4 @@ pub(crate) mod newton;
 pub(crate) mod steps;
 
 pub(crate) use newton::{FLOOR, Failure, Solution, is_at_floor, residual, roundings, solve, velocity, worse, worst};
-pub(crate) use steps::{Steps, Trial, Way};
+pub(crate) use steps::{Steps, Way};

@@ -29,32 +29,37 @@ use nalgebra::SVector;
 /// Corrections that may follow a guess.
 const CORRECTIONS: u32 = 3;
 
-/// The inverse of a constant A.
-pub(crate) type Inverse<S, const N: usize, T> = <<S as Stepping<N, T>>::Jacobian as Matrix<N, T>>::Inverse;
-
 /// How a step is corrected. It depends on the system, its parameters and h alone.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Way<S: Stepping<N, T>, const N: usize, T: Real> {
+pub(crate) enum Way<J: Matrix<N, T>, const N: usize, T: Real> {
     /// The whole step is one matrix; A is constant.
-    ClosedForm(ClosedForm<N, T>, Inverse<S, N, T>),
+    ClosedForm(ClosedForm<N, T>, J::Inverse),
     /// By the inverse of A, which is constant.
-    Inverse(Inverse<S, N, T>),
+    Inverse(J::Inverse),
     /// By A where the guess is.
     Newton,
 }
 
-impl<S: Stepping<N, T>, const N: usize, T: Scalar> Way<S, N, T> {
+impl<J: Matrix<N, T>, const N: usize, T: Scalar> Way<J, N, T> {
     /// That of steps of length h.
-    pub(crate) fn of(system: &S, h: T) -> Self {
+    pub(crate) fn of<S: Stepping<N, T, Jacobian = J>>(system: &S, h: T) -> Self {
         if !S::CONSTANT_JACOBIAN {
             return Self::Newton;
         }
-        let anywhere = Node::zeros();
-        let inverse = system.momentum_equation(&anywhere, h, &SVector::zeros()).jacobian.inverse();
+        let inverse = system.momentum_equation(&Node::zeros(), h, &SVector::zeros()).jacobian.inverse();
         if S::CLOSED_FORM {
             Self::ClosedForm(ClosedForm::of(system, h, &inverse), inverse)
         } else {
             Self::Inverse(inverse)
+        }
+    }
+
+    /// What solves `A x = residual`.
+    #[inline(always)]
+    fn correction(&self, jacobian: &J, residual: &SVector<T, N>) -> SVector<T, N> {
+        match self {
+            Self::ClosedForm(_, inverse) | Self::Inverse(inverse) => J::apply(inverse, residual),
+            Self::Newton => jacobian.solve(residual),
         }
     }
 }
@@ -93,13 +98,6 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
     pub(crate) fn roundings(&self) -> f64 {
         newton::worst(&self.residual, &self.scale)
     }
-}
-
-/// A velocity to start from, after so many corrections.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Trial<const N: usize, T> {
-    v: SVector<T, N>,
-    iterations: u32,
 }
 
 /// A momentum step that was found.
@@ -163,93 +161,64 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         self.predictor.is_finite() && vectors.into_iter().flat_map(|u| u.iter()).all(|entry| entry.is_finite())
     }
 
-    /// The common step from `node`: by one matrix, or by one correction of a guess of the highest order. Else what was found on
-    /// the way there.
+    /// Whether the step is the common one: by one matrix, or from a guess of the highest order.
     #[inline(always)]
-    pub(crate) fn common<S: Stepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-        way: &Way<S, N, T>,
-    ) -> Result<Solved<N, T>, Trial<N, T>> {
-        match way {
-            Way::ClosedForm(form, _) => self.by_matrix(system, node, form),
-            _ if self.predictor.is_highest() => self.corrected_often(system, node, way, self.guess()).ok_or(self.guess()),
-            _ => Err(self.guess()),
-        }
+    pub(crate) fn is_common<S: Stepping<N, T>>(&self) -> bool {
+        S::CLOSED_FORM || self.predictor.is_highest()
     }
 
-    /// The step from `node` by corrections of a trial; `None` where they do not solve it.
+    /// The step from `node`: by one matrix, or by corrections of the guess. `None` where these do not solve it.
     #[inline(always)]
-    pub(crate) fn corrected_often<S: Stepping<N, T>>(
+    pub(crate) fn predicted<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
-        way: &Way<S, N, T>,
-        mut trial: Trial<N, T>,
+        way: &Way<S::Jacobian, N, T>,
     ) -> Option<Solved<N, T>> {
-        while trial.iterations < CORRECTIONS {
-            match self.corrected(system, node, way, &trial) {
-                Ok(solved) => return Some(solved),
-                Err(corrected) => trial = corrected,
+        let mut v = self.predictor.guess();
+        if S::CLOSED_FORM
+            && let Way::ClosedForm(form, _) = way
+        {
+            let solved = self.by_matrix(system, node, form);
+            if solved.is_some() {
+                return solved;
             }
+        }
+        for iterations in 1..=CORRECTIONS {
+            let equation = system.momentum_equation(node, self.h, &v);
+            // So that the compiler sees which way it is.
+            let way = if S::CONSTANT_JACOBIAN { way } else { &Way::Newton };
+            v -= way.correction(&equation.jacobian, &(equation.residual + self.remainder));
+            let MomentumResidual { residual, increment } = system.momentum_residual(node, self.h, &v);
+            let mut measured = Measured { residual, scale: scale(node, &increment) };
+            if !measured.is_at_floor(&self.remainder) {
+                // Where momenta vanish, the velocities that they are sums of need not.
+                measured.scale += equation.jacobian.magnitude(&v);
+                if !measured.is_at_floor(&self.remainder) {
+                    continue;
+                }
+            }
+            let remainder = residual + self.remainder;
+            return Some(Solved { v, increment, iterations, measured, remainder, predicted: true });
         }
         None
     }
 
-    /// The velocity that the last steps give.
-    #[inline(always)]
-    pub(crate) fn guess(&self) -> Trial<N, T> {
-        Trial { v: self.predictor.guess(), iterations: 0 }
-    }
-
-    /// The step by one matrix, where that solves it to rounding; else its velocity.
+    /// The step by one matrix, where that solves it to rounding.
     #[inline(always)]
     fn by_matrix<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         form: &ClosedForm<N, T>,
-    ) -> Result<Solved<N, T>, Trial<N, T>> {
+    ) -> Option<Solved<N, T>> {
         let (v, increment) = form.step(node);
         let at = system.momentum_residual(node, self.h, &v);
         let measured = Measured { residual: at.residual, scale: scale(node, &increment) };
         let lost = Measured { residual: increment - at.increment, ..measured };
         let remainder = SVector::zeros();
-        if measured.is_at_floor(&remainder) && lost.is_at_floor(&remainder) {
-            Ok(Solved { v, increment, iterations: 0, measured, remainder, predicted: true })
-        } else {
-            Err(Trial { v, iterations: 0 })
-        }
-    }
-
-    /// The step from `node` after a correction of a trial, where its residual is at the floor then; else the trial corrected.
-    #[inline(always)]
-    fn corrected<S: Stepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-        way: &Way<S, N, T>,
-        trial: &Trial<N, T>,
-    ) -> Result<Solved<N, T>, Trial<N, T>> {
-        let equation = system.momentum_equation(node, self.h, &trial.v);
-        let sought = equation.residual + self.remainder;
-        let correction = match way {
-            Way::ClosedForm(_, inverse) | Way::Inverse(inverse) => S::Jacobian::apply(inverse, &sought),
-            Way::Newton => equation.jacobian.solve(&sought),
-        };
-        let (v, iterations) = (trial.v - correction, trial.iterations + 1);
-        let MomentumResidual { residual, increment } = system.momentum_residual(node, self.h, &v);
-        let mut measured = Measured { residual, scale: scale(node, &increment) };
-        if !measured.is_at_floor(&self.remainder) {
-            // Where momenta vanish, the velocities that they are sums of need not.
-            measured.scale += equation.jacobian.magnitude(&v);
-            if !measured.is_at_floor(&self.remainder) {
-                return Err(Trial { v, iterations });
-            }
-        }
-        let remainder = residual + self.remainder;
-        Ok(Solved { v, increment, iterations, measured, remainder, predicted: true })
+        let solved = measured.is_at_floor(&remainder) && lost.is_at_floor(&remainder);
+        solved.then_some(Solved { v, increment, iterations: 0, measured, remainder, predicted: true })
     }
 
     /// The step from `node` by Newton's iteration, or by continuation.
@@ -277,9 +246,9 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     #[inline(always)]
     pub(crate) fn push_common<S: Stepping<N, T>>(&mut self, solved: &Solved<N, T>) {
         if S::CLOSED_FORM {
-            self.predictor.replace(&solved.v);
+            self.predictor.replace(solved.v);
         } else {
-            self.predictor.push_highest(&solved.v);
+            self.predictor.push_highest(solved.v);
         }
         self.keep(solved);
     }
@@ -287,9 +256,9 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     /// Takes any step.
     pub(crate) fn push(&mut self, solved: &Solved<N, T>) {
         if solved.predicted {
-            self.predictor.push(&solved.v);
+            self.predictor.push(solved.v);
         } else {
-            self.predictor.restart(&solved.v);
+            self.predictor.restart(solved.v);
         }
         self.keep(solved);
     }

@@ -89,14 +89,9 @@ fn operations(source: &Source, name: &str) -> usize {
 }
 
 /// A call that is not inlined spills the run's state out of registers, and keeps a loop over trajectories from becoming vector
-/// instructions: short functions are inlined whatever the compiler thinks of it. Long ones
-/// stand in several places of a stepper, and would be compiled in each, even if it is only the copying from and to pieces.
+/// instructions: functions are inlined whatever the compiler thinks of it, but for those that are in pieces.
 fn attribute(source: &Source, name: &str) -> TokenStream {
-    match operations(source, name) {
-        0..=INLINED => quote!(#[inline(always)]),
-        count if count <= source.limit => quote!(#[inline]),
-        _ => quote!(#[inline(never)]),
-    }
+    if operations(source, name) <= source.limit { quote!(#[inline(always)]) } else { quote!(#[inline(never)]) }
 }
 
 /// A function of `Stepping`: of the node, the step and the velocity.
