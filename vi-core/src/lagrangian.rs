@@ -106,6 +106,8 @@ pub trait Stepping<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
     /// The residuals of both, and what momentum and energy gain over the step.
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T>;
+    /// What both residuals are sums of: in terms of this, evaluating them loses a rounding at least.
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
     /// What the rounding of both residuals is measured in.
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
 }
@@ -341,6 +343,11 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     #[inline(always)]
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
         S::extended_residual(self, node, h, v)
+    }
+
+    #[inline(always)]
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        S::magnitudes(self, node, h, v)
     }
 
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {

@@ -7,7 +7,7 @@
 //! ```text
 //! correct    v = v0 − A⁻¹ r(v0)
 //! measure    r(v) and p1 − p0, by one evaluation at v
-//! accept     where each row has |r_i| ≤ ε (|p0_i| + |p1_i − p0_i| + Σ_j |A_ij| |v_j|)
+//! accept     where each row is at most ε times the sum of the absolute values of its terms
 //! ```
 //!
 //! What is left of a row is carried to the next step.
@@ -17,7 +17,7 @@ use crate::lane::Lane;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
 use vi_core::linear::Matrix;
-use vi_core::{Batch, MomentumResidual, Node, Real, Stepping};
+use vi_core::{Batch, MomentumResidual, Node, Stepping};
 
 /// What does not change during a run.
 #[derive(Clone, Debug)]
@@ -68,12 +68,11 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
         let v = v - equation.jacobian.solve(&(equation.residual + self.remainder));
         let MomentumResidual { residual, increment } = self.system.momentum_residual(&self.node, self.h, &v);
         let remainder = residual + self.remainder;
-        let mut scale = equation.jacobian.magnitude(&v);
+        let scale = self.system.magnitudes(&self.node, self.h, &v).residual;
         let mut accepted = true;
         for k in 0..N {
-            scale[k] += self.node.p[k].abs() + increment[k].abs();
             // A scale that overflows proves nothing.
-            let rounding = (scale[k] * Lane::real(f64::EPSILON)).get();
+            let rounding = (scale[k] * Lane::new(f64::EPSILON)).get();
             accepted &= remainder[k].get().abs() <= rounding && rounding < f64::MAX * f64::EPSILON;
         }
         Step { v, increment, remainder, accepted }

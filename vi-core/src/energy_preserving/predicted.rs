@@ -4,7 +4,8 @@
 //! over them (`predictor`), each followed by a measurement:
 //!
 //! ```text
-//! accept     where |r_i| ≤ ε (|p0_i| + |p1_i − p0_i| + Σ_j |A_ij| |v_j|)  and  |c| ≤ ε (|E0| + |E1 − E0| + Σ_i |v_i p0_i|)
+//! accept     where |r_i| ≤ ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ ε (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
+//!            or ε times the sum of the absolute values of the terms of each row
 //! ```
 //!
 //! `None` where three Newton steps do not come there, the length leaves its range or D changes its sign. What is left of the
@@ -13,10 +14,9 @@
 
 use super::newton::{Elimination, Root, Trial};
 use super::{Last, RATIO};
-use crate::linear::Matrix;
 use crate::momentum::{roundings, worse, worst};
 use crate::predictor::Predictor;
-use crate::{ExtendedResidual, Increment, Node, Scalar, Stepping};
+use crate::{ExtendedResidual, Increment, Node, Rounding, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Newton steps that may follow a guess.
@@ -107,7 +107,7 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
             let step = elimination.step(&equations, &trial);
             trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
             let at = system.extended_residual(node, trial.h, &trial.v);
-            let Some((remainder, residual)) = self.measured(node, &equations.momentum.jacobian, &trial.v, &at) else {
+            let Some((remainder, residual)) = self.measured(system, node, &trial, &at) else {
                 continue;
             };
             let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
@@ -123,31 +123,33 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
     /// What is left of the momentum rows with what was carried to them, and the largest residual in roundings, where every row is
     /// at the floor.
     #[inline(always)]
-    fn measured(
+    fn measured<S: Stepping<N, T>>(
         &self,
+        system: &S,
         node: &Node<N, T>,
-        jacobian: &impl Matrix<N, T>,
-        v: &SVector<T, N>,
+        Trial { v, h }: &Trial<N, T>,
         at: &ExtendedResidual<N, T>,
     ) -> Option<(SVector<T, N>, f64)> {
         let remainder = at.residual + self.remainder;
         let energy_residual = at.energy_residual - v.dot(&self.remainder);
-        let mut scale = node.p.zip_map(&at.increment.momentum, |p, increment| p.abs() + increment.abs());
+        let is_at_floor = |scale: &Rounding<N, T>| {
+            let row = |residual: T, scale: T| residual.abs() <= scale * T::real(T::EPSILON);
+            (0..N)
+                .fold(row(energy_residual, scale.energy_residual), |all, i| all & row(remainder[i], scale.residual[i]))
+        };
         let own = node.energy.abs() + at.increment.energy.abs();
-        let energy_scale = node.p.iter().zip(v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs());
-        let at_floor = |residual: T, scale: T| residual.abs() <= scale * T::real(T::EPSILON);
-        let rows_at_floor = |scale: &SVector<T, N>| (0..N).fold(true, |all, i| all & at_floor(remainder[i], scale[i]));
-        if !at_floor(energy_residual, energy_scale) {
-            return None;
-        }
-        if !rows_at_floor(&scale) {
-            // Where momenta vanish, the velocities that they are sums of need not.
-            scale += jacobian.magnitude(v);
-            if !rows_at_floor(&scale) {
+        let mut scale = Rounding {
+            residual: node.p.zip_map(&at.increment.momentum, |p, increment| p.abs() + increment.abs()),
+            energy_residual: node.p.iter().zip(v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs()),
+        };
+        if !is_at_floor(&scale) {
+            // Where momenta or the energy vanish, what they are sums of need not.
+            scale = system.magnitudes(node, *h, v);
+            if !is_at_floor(&scale) {
                 return None;
             }
         }
-        let residual = worse(worst(&at.residual, &scale), roundings(at.energy_residual, energy_scale));
-        Some((remainder, residual))
+        let rows = worst(&at.residual, &scale.residual);
+        Some((remainder, worse(rows, roundings(at.energy_residual, scale.energy_residual))))
     }
 }

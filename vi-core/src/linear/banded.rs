@@ -78,15 +78,6 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
         inverse.substitute(*rhs)
     }
 
-    #[inline]
-    fn magnitude(&self, x: &SVector<T, N>) -> SVector<T, N> {
-        let w = Self::WIDTH;
-        SVector::from_fn(|i, _| {
-            let columns = i.saturating_sub(w)..N.min(i + w + 1);
-            columns.fold(T::zero(), |sum, j| sum + (self.rows[i][j + w - i] * x[j]).abs())
-        })
-    }
-
     fn dense(&self) -> SMatrix<T, N, N> {
         SMatrix::from_fn(|i, j| {
             let place = (j + Self::WIDTH).checked_sub(i);

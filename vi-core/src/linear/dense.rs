@@ -45,18 +45,6 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     fn dense(&self) -> Self {
         *self
     }
-
-    #[inline(always)]
-    fn magnitude(&self, x: &SVector<T, N>) -> SVector<T, N> {
-        let mut sums = *x;
-        for row in 0..N {
-            sums[row] = (self[(row, 0)] * x[0]).abs();
-            for column in 1..N {
-                sums[row] += (self[(row, column)] * x[column]).abs();
-            }
-        }
-        sums
-    }
 }
 
 /// Numerators and determinant of Cramer's rule for two unknowns.

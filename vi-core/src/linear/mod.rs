@@ -47,11 +47,6 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N>;
     /// A with its zeros.
     fn dense(&self) -> SMatrix<T, N, N>;
-    /// The sums `Σ_j |A_ij| |x_j|`.
-    #[inline]
-    fn magnitude(&self, x: &SVector<T, N>) -> SVector<T, N> {
-        self.dense().map(T::abs) * x.map(T::abs)
-    }
 }
 
 /// The X with `matrix · X = rhs`; `None` where it is not finite. Where elimination without pivoting loses a matrix that is

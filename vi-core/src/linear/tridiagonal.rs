@@ -227,16 +227,6 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
         x
     }
 
-    #[inline]
-    fn magnitude(&self, x: &SVector<T, N>) -> SVector<T, N> {
-        let mut sums = x.zip_map(&SVector::from(self.diagonal), |x, a| (a * x).abs());
-        for i in 1..N {
-            sums[i - 1] += (self.upper[i - 1] * x[i]).abs();
-            sums[i] += (self.lower[i] * x[i - 1]).abs();
-        }
-        sums
-    }
-
     fn dense(&self) -> SMatrix<T, N, N> {
         SMatrix::from_fn(|i, j| {
             if i == j {

@@ -7,19 +7,20 @@
 //! guess      v0 extrapolated over the last steps (`predictor`)
 //! correct    v = v0 − A⁻¹ r(v0)                A = ∂r/∂v at v0; where A is constant, its inverse is computed once per run
 //! measure    r(v) and p1 − p0, by one evaluation at v
-//! accept     where each row has |r_i| ≤ ε (|p0_i| + |p1_i − p0_i| + Σ_j |A_ij| |v_j|)
-//! else       one more correction by the same A, measured again; then Newton's iteration to the rounding floor (`newton`)
+//! accept     where each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms
+//! else       two more corrections, each measured; then Newton's iteration to the rounding floor (`newton`)
 //! ```
 //!
 //! The next step needs v, not what r(v) is: that is compared while the next step is under way.
 //!
-//! What an accepted step leaves of its equation is below a rounding, yet it may have a sign, and would add up. So it is carried to
-//! the next step, which solves `r(v) + remainder = 0`: over many steps remainders cancel, as in a compensated sum.
+//! What an accepted step leaves of its equation is a few roundings, yet it may have a sign, and would add up. So it is carried to
+//! the next step, which solves `r(v) + remainder = 0`, to half of those roundings: over many steps remainders cancel, as in a
+//! compensated sum.
 //!
 //! AFTER A STEP the residual was measured at the velocity that was taken.
 
 use super::closed_form::ClosedForm;
-use super::{Solution, continuation, newton};
+use super::{FLOOR, Solution, continuation, newton};
 use crate::fixed_step::Branch;
 use crate::linear::Matrix;
 use crate::predictor::Predictor;
@@ -84,12 +85,14 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
         Self { residual: SVector::zeros(), scale: SVector::zeros() }
     }
 
-    /// Whether each row, with what is carried to it, is at most one rounding.
+    /// Whether each row is at most [`FLOOR`] roundings, and with what is carried to it half as many.
     #[inline(always)]
     fn is_at_floor(&self, carried: &SVector<T, N>) -> bool {
         let mut all = true;
         for i in 0..N {
-            all &= (self.residual[i] + carried[i]).abs() <= self.scale[i] * T::real(T::EPSILON);
+            let bound = self.scale[i] * T::real(FLOOR * T::EPSILON);
+            let sum = self.residual[i] + carried[i];
+            all &= self.residual[i].abs() <= bound && (sum + sum).abs() <= bound;
         }
         all
     }
@@ -192,8 +195,8 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
             let MomentumResidual { residual, increment } = system.momentum_residual(node, self.h, &v);
             let mut measured = Measured { residual, scale: scale(node, &increment) };
             if !measured.is_at_floor(&self.remainder) {
-                // Where momenta vanish, the velocities that they are sums of need not.
-                measured.scale += equation.jacobian.magnitude(&v);
+                // Where momenta vanish, what they are sums of need not.
+                measured.scale = system.magnitudes(node, self.h, &v).residual;
                 if !measured.is_at_floor(&self.remainder) {
                     continue;
                 }

@@ -251,6 +251,9 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
             increment: self.spoil_increment(right.increment, h, v),
         }
     }
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        self.system.magnitudes(node, h, v)
+    }
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
         self.unless(Fault::Rounding, self.system.rounding(node, h, v), |right| Rounding {
             residual: right.residual * T::real(1e-3),

@@ -329,6 +329,22 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Steppi
         }
     }
 
+    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        let (t, q) = node.midpoint(h, v);
+        let fields = self.0.fields(t, &q, v);
+        let half = T::real(0.5);
+        Rounding {
+            residual: v.map(Real::abs)
+                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * half).abs()
+                + node.p.map(Real::abs),
+            energy_residual: v.dot(v) * half
+                + fields.potential_magnitude
+                + (h * half).abs() * (fields.potential_t.abs() + magnitude(v, &fields.gradient))
+                + magnitude(v, &node.p)
+                + node.energy.abs(),
+        }
+    }
+
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
         Rounding::of(self, node, h, v)
     }

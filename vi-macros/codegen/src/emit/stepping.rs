@@ -19,7 +19,8 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let constant = source.findings.constant_jacobian();
     let (form, equation) = momentum_equation(source);
     let functions = [equation, momentum_residual(source), extended_system(source), extended_residual(source)];
-    let functions = functions.into_iter().flatten();
+    let functions = functions.into_iter().chain([magnitudes(source)]);
+    let functions = functions.flatten();
     let closed = source.findings.closed_form().then(|| {
         quote!(
             const CLOSED_FORM: bool = true;
@@ -182,5 +183,15 @@ fn extended_residual(source: &Source) -> Option<TokenStream> {
                 increment: ::vi_core::Increment { momentum: #momentum, energy: #(#energy)* },
             }
         })
+    })
+}
+
+fn magnitudes(source: &Source) -> Option<TokenStream> {
+    let dimension = source.dimension();
+    let formula = "Sums of the absolute values of the terms of `residual` and `energy_residual`.";
+    method(source, "magnitudes", formula, &quote!(::vi_core::Rounding<#dimension, T>), |body| {
+        let [residual, energy_residual] = &body.results[..] else { return None };
+        let residual = vector_of(residual);
+        Some(quote!(::vi_core::Rounding { residual: #residual, energy_residual: #(#energy_residual)* }))
     })
 }

@@ -4,6 +4,7 @@
 //! of the rule; the arguments of a point are evaluated once per function.
 
 use super::lower::{Known, Lowering};
+use super::magnitude::magnitude;
 use super::verify;
 use super::{Function, Program};
 use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
@@ -85,6 +86,10 @@ impl<'a> Assembly<'a> {
 
     pub(super) fn open_all(&mut self, exprs: &[Expr]) -> Vec<Expr> {
         exprs.iter().map(|expr| self.open(*expr)).collect()
+    }
+
+    fn magnitudes(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+        exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
     }
 
     pub(super) fn function(
@@ -175,6 +180,7 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(energy_residual.clone());
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
+    let magnitudes = [assembly.magnitudes(&residual), assembly.magnitudes(&energy_residual)];
     let measured = [residual.clone(), momentum_increment.clone()];
     let both_measured = [residual, energy_residual, momentum_increment, energy_increment];
     Ok(vec![
@@ -182,5 +188,6 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function("momentum_residual", &measured)?,
         assembly.function("extended_system", &extended)?,
         assembly.function("extended_residual", &both_measured)?,
+        assembly.function("magnitudes", &magnitudes)?,
     ])
 }

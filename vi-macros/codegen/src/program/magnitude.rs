@@ -1,0 +1,76 @@
+//! What a row is a sum of.
+//!
+//! In: a residual r. Out: Σ |coefficient|·|term|, where a sum inside a term counts term by term too, down to [`DEPTH`] levels. A residual
+//! below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out.
+
+use crate::symbol::Symbol;
+use num_traits::{Signed, Zero};
+use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
+
+/// Levels of sums inside sums that count term by term.
+const DEPTH: u32 = 4;
+
+/// The sum of the absolute values of the terms of an expression.
+pub(super) fn magnitude(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+    term_by_term(pool, expr, DEPTH)
+}
+
+fn term_by_term(pool: &mut Pool<Symbol>, expr: Expr, depth: u32) -> Expr {
+    match pool.node(expr).clone() {
+        Node::Sum(sum) if depth > 0 => terms(pool, &sum, depth - 1),
+        Node::Product(product) => factors(pool, &product, depth),
+        _ => absolute(pool, expr),
+    }
+}
+
+fn terms(pool: &mut Pool<Symbol>, sum: &Sum, depth: u32) -> Expr {
+    let mut found = vec![pool.number(sum.constant.abs())];
+    for (expr, coefficient) in &sum.terms {
+        if is_low(pool, *expr) {
+            continue;
+        }
+        let absolute = term_by_term(pool, *expr, depth);
+        found.push(pool.scale(absolute, &coefficient.abs()));
+    }
+    pool.sum(&found)
+}
+
+/// The product of the magnitudes of its factors.
+fn factors(pool: &mut Pool<Symbol>, product: &Product, depth: u32) -> Expr {
+    let (mut sums, mut others) = (Vec::new(), Vec::new());
+    for (base, exponent) in &product.factors {
+        let is_power_of_sum =
+            matches!(pool.node(*base), Node::Sum(_)) && exponent.is_integer() && exponent.is_positive();
+        if is_power_of_sum {
+            let magnitude = term_by_term(pool, *base, depth);
+            sums.push(pool.power(magnitude, exponent));
+        } else {
+            others.push(pool.power(*base, exponent));
+        }
+    }
+    let others = pool.product(&others);
+    sums.push(absolute(pool, others));
+    pool.product(&sums)
+}
+
+/// A low part, or a product with one.
+fn is_low(pool: &Pool<Symbol>, expr: Expr) -> bool {
+    let low = |expr: Expr| matches!(pool.node(expr), Node::Symbol(Symbol::Low(_)));
+    match pool.node(expr) {
+        Node::Product(product) => product.factors.iter().any(|(base, _)| low(*base)),
+        _ => low(expr),
+    }
+}
+
+/// |expr|; what is never negative stays.
+fn absolute(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+    let never_negative = match pool.node(expr) {
+        Node::Number(number) => !number.is_negative(),
+        Node::Product(product) => product.factors.iter().all(|(_, exponent)| {
+            (exponent / Rational::from_integer(2.into())).is_integer() || *exponent.denom() == 2.into()
+        }),
+        Node::Sum(sum) => sum.terms.is_empty() && sum.constant.is_zero(),
+        _ => false,
+    };
+    if never_negative { expr } else { pool.call(Function::Abs, &[expr]) }
+}
