@@ -173,7 +173,7 @@ fn wrong_input_is_one_line_and_status_2() {
         ),
         (
             &["run", "double-well", "--steps", "1", "--q", "1,2"],
-            "double-well needs 1 coordinates (--q), for q; given 2",
+            "double-well has the coordinates q: give as many coordinates (--q), not 2",
         ),
         (&["run", "double-well", "--steps", "1", "-o", "x.txt"], "the output `x.txt` must end in .csv or .npy"),
         (
@@ -199,7 +199,7 @@ fn wrong_input_is_one_line_and_status_2() {
 
 #[test]
 fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 9] = [
         // Steps that change nothing.
         (
             &["run", "pendulum", "--h", "1e-300", "--until", "1"],
@@ -208,23 +208,29 @@ fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
         ),
         (
             &["run", "pendulum", "--h", "1e-20", "--until", "1"],
-            "a step of h = 1e-20 does not change t = 1 in double precision, where numbers are 2.22e-16 apart; give a larger \
+            "a step of h = 1e-20 is lost at t = 1 in double precision, where numbers are 2.22e-16 apart; give a larger \
              --h, or times nearer to zero",
         ),
         (
             &["run", "pendulum", "--until", "1e30"],
-            "a step of h = 0.01 does not change t = 1e30 in double precision, where numbers are 141000000000000 apart; give \
+            "a step of h = 0.01 is lost at t = 1e30 in double precision, where numbers are 141000000000000 apart; give \
              a larger --h, or times nearer to zero",
         ),
         (
             &["run", "pendulum", "--method", "energy", "--t", "1e17", "--steps", "1"],
-            "a step of h = 0.01 does not change t = 1e17 in double precision, where numbers are 16 apart; give a larger --h, \
+            "a step of h = 0.01 is lost at t = 1e17 in double precision, where numbers are 16 apart; give a larger --h, \
              or times nearer to zero",
+        ),
+        (
+            // Every fourth step would round to no step.
+            &["run", "pendulum", "--t", "1e10", "--h", "1.5e-6", "--steps", "10"],
+            "a step of h = 1.5e-6 is lost at t = 10000000000 in double precision, where numbers are 1.91e-6 apart; give a \
+             larger --h, or times nearer to zero",
         ),
         (
             &["run", "kepler", "--h", "1e-100", "--steps", "3"],
             "the first step of h = 1e-100 changes neither q = [0.4, 0.0] nor p = [0.0, 2.0] in double precision, although \
-             v = [0.0, 2.0]; give a larger --h",
+             v = [0.0, 2.0]; give a larger --h, or a start and parameters where the mass matrix is not singular",
         ),
         // Gigabytes that nobody asked for: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers of 8 bytes.
         (

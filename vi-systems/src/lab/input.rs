@@ -4,17 +4,17 @@
 
 use core::fmt;
 use serde::Deserializer;
-use serde::de::{self, Visitor};
+use serde::de::{self, Unexpected, Visitor};
 
 /// A number of steps or rows: `1000`, or `1e6` where that is whole.
 pub(crate) fn count(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let digits = text.parse().ok();
-    digits.or_else(|| text.parse().ok().and_then(whole)).ok_or_else(|| NOT_A_COUNT.to_owned())
+    digits.or_else(|| text.parse().ok().and_then(whole)).ok_or_else(|| format!("write {COUNT}"))
 }
 
-/// What a number of steps may be.
-const NOT_A_COUNT: &str = "write a whole number that is not negative, such as 1000 or 1e6";
+/// What a number of steps is.
+const COUNT: &str = "a whole number that is not negative, such as 1000 or 1e6";
 
 /// A number with a decimal point or an exponent as a count; what rounds to zero is none.
 fn whole(value: f64) -> Option<u64> {
@@ -42,15 +42,15 @@ impl Visitor<'_> for Count {
     type Value = u64;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(NOT_A_COUNT)
+        f.write_str(COUNT)
     }
 
     fn visit_i64<E: de::Error>(self, value: i64) -> Result<u64, E> {
-        u64::try_from(value).map_err(|_| E::custom(format_args!("`{value}` is no count: {NOT_A_COUNT}")))
+        u64::try_from(value).map_err(|_| E::invalid_value(Unexpected::Signed(value), &self))
     }
 
     fn visit_f64<E: de::Error>(self, value: f64) -> Result<u64, E> {
-        whole(value).ok_or_else(|| E::custom(format_args!("`{value}` is no count: {NOT_A_COUNT}")))
+        whole(value).ok_or_else(|| E::invalid_value(Unexpected::Float(value), &self))
     }
 }
 

@@ -20,8 +20,8 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Length of the bar of a run.
-    pub(crate) const FINENESS: u64 = 1000;
+    /// Length of the bar of a run: so fine that the slowest run moves it, which the time left is reckoned from.
+    pub(crate) const FINENESS: u64 = 1_000_000_000_000_000;
 
     /// A bar of the given length.
     pub(crate) fn new(length: u64) -> Self {
@@ -47,14 +47,14 @@ impl Progress {
         }
     }
 
-    /// Moves the bar of a run, of length [`Self::FINENESS`], to the part between 0 and 1 that is done. Where the rest takes more
-    /// than a day at this pace, says so once, on standard error whatever it is.
+    /// Moves the bar of a run, of length [`Self::FINENESS`], to the part between 0 and 1 that is done. Where the rest takes
+    /// more than a day at this pace, says so once, on standard error whatever it is.
     pub(crate) fn reach(&mut self, part: f64) {
         self.calls += 1;
         if !self.calls.is_multiple_of(SHORT_PATIENCE) {
             return;
         }
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // up to 1000
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // up to 1e15
         self.bar.set_position((part * Self::FINENESS as f64) as u64);
         if self.show() {
             let days = self.started.elapsed().as_secs_f64() * (1.0 - part) / part / 86_400.0;

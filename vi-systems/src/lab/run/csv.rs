@@ -1,8 +1,7 @@
-//! Rows as CSV: comment lines that say what made the file and what its columns are, the names of the columns, one line per
-//! node.
+//! Rows as CSV: comment lines that say what made the file, the names of the columns, one line per node.
 //!
-//! Numbers are the shortest that read back to the same bits; an entry that has no value is empty. AFTER A BLOCK IS WRITTEN
-//! the file consists of whole lines, whatever ends the run.
+//! Numbers are the shortest that read back to the same bits; an entry that has no value is empty. AFTER A BLOCK IS
+//! WRITTEN the file consists of whole lines, whatever ends the run.
 
 use super::super::failure::Failure;
 use super::super::machine::{VERSION, command_line};

@@ -1,8 +1,8 @@
 //! How large the output of a run will be.
 //!
-//! In: a [`Request`]. Out: an [`Extent`], or [`Failure::Input`] where the run would write more than a gigabyte and nobody
-//! allowed it. AFTER THIS the output of fixed steps is as large as foreseen. Steps that find their own length may become
-//! many more: [`Extent::check`] ends such a run.
+//! In: a [`Request`]. Out: an [`Extent`], or [`Failure::Input`] where the run would write more than a gigabyte and
+//! nobody allowed it. AFTER THIS the output of fixed steps is as large as foreseen. Steps that find their own length may
+//! become many more: [`Extent::check`] ends such a run.
 
 use super::super::failure::Failure;
 use super::super::numbers::{about, short};

@@ -1,8 +1,8 @@
 //! `vi-lab run`: one system simulated, its nodes written as CSV or NPY.
 //!
-//! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`, where H is
-//! the energy at the node and E the discrete energy of the interval that ends there. AFTER A RUN THAT ENDS EARLY, by a step
-//! that fails or a signal, the output holds every row up to there, and the last node whatever `--every` says.
+//! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`, where
+//! H is the energy at the node and E the discrete energy of the interval that ends there. AFTER A RUN THAT ENDS EARLY, by
+//! a step that fails or a signal, the output holds every row up to there, and the last node whatever `--every` says.
 //!
 //! | module | part of a run |
 //! |---|---|
@@ -42,17 +42,18 @@ const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interva
 /// Arguments of `vi-lab run`.
 #[derive(Clone, Debug, Default, Args)]
 #[command(after_help = "\
-Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the discrete energy \
-of the interval that ends at the node, which the method `energy` preserves; with fixed steps both swing by a term of order h², and \
-they differ by h²D/8 to leading order. A run of fixed steps has no interval before its first row: E is empty there (NaN in .npy); H is \
-empty where no velocity belongs to the momenta. h is the length of the step that led to the node.
+Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the \
+discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
+term of order h². H and E differ by h²D/8 to leading order, D the step density. A run of fixed steps has no interval \
+before its first row: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
+length of the step that led to the node.
 
-Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial state is the \
-middle of the first interval, and that node lies half a step later. The node reached last is always written.
+Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial \
+state is the middle of the first interval, and that node lies half a step later. The node reached last is always written.
 
-Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted (SIGINT, SIGTERM); \
-141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there are whole; only a second signal \
-ends the command at once.")]
+Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
+(SIGINT, SIGTERM); 141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there \
+are whole; only a second signal ends the command at once.")]
 pub(crate) struct Arguments {
     /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml
     #[arg(value_name = "SYSTEM|SCENE.toml")]

@@ -1,8 +1,8 @@
 //! Rows as NPY, the array format of `NumPy`: float64, one row per node, row by row; beside it `FILE.npy.json`, which
 //! says what made the file and what the columns are. An entry that has no value is NaN.
 //!
-//! Source: the format's version 1.0. AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in the
-//! file, whatever ends the run.
+//! Source: the format's version 1.0. AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
+//! the file, whatever ends the run.
 
 use super::super::failure::Failure;
 use super::super::machine::{VERSION, command_line};
@@ -31,12 +31,12 @@ impl Npy {
     /// An NPY file, and the JSON file beside it.
     pub(super) fn create(path: &Path, request: &Request) -> Result<Self, Failure> {
         let file = File::create(path).map_err(|error| Failure::file(path, error))?;
-        let mut beside = path.as_os_str().to_owned();
-        beside.push(".json");
-        fs::write(&beside, format!("{:#}\n", description(request))).map_err(|error| Failure::file(&beside, error))?;
         let mut npy =
             Self { path: path.to_owned(), file, columns: request.columns().len(), rows: 0, block: Vec::new() };
         npy.flush()?;
+        let mut beside = path.as_os_str().to_owned();
+        beside.push(".json");
+        fs::write(&beside, format!("{:#}\n", description(request))).map_err(|error| Failure::file(&beside, error))?;
         Ok(npy)
     }
 

@@ -202,9 +202,8 @@ fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
     for (what, values) in [("coordinates (--q)", &plan.q), ("velocities (--v)", &plan.v)] {
         if values.len() != coordinates.len() {
             return Err(Failure::Input(format!(
-                "{} needs {} {what}, for {}; given {}",
+                "{} has the coordinates {}: give as many {what}, not {}",
                 catalogue::kebab(system.name()),
-                coordinates.len(),
                 coordinates.join(", "),
                 values.len()
             )));
@@ -280,7 +279,10 @@ mod tests {
                 "`one` in `--set m=one` is not a number; write a number such as 0.5 or 1e-3",
             ),
             (with(|a| a.set = vec!["m=inf".into()]), "the parameter `m` must be finite, not inf"),
-            (with(|a| a.q = Some(vec![1.0, 2.0])), "double-well needs 1 coordinates (--q), for q; given 2"),
+            (
+                with(|a| a.q = Some(vec![1.0, 2.0])),
+                "double-well has the coordinates q: give as many coordinates (--q), not 2",
+            ),
             (with(|a| a.v = Some(vec![f64::NAN])), "the velocities (--v) must be finite, not NaN"),
             (with(|a| a.h = Some(0.0)), "the step (--h) must not be zero"),
             (with(|a| a.steps = None), "give the length of the run, --steps N or --until T"),

@@ -1,7 +1,8 @@
 //! Whether a step is large enough, and small enough, to be one in double precision.
 //!
-//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. AFTER BOTH CHECKS h² is a normal number, t + h is not t at
-//! the start, and for fixed steps not at the end either, and the first step changes the state, or the system is at rest.
+//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. AFTER BOTH CHECKS h² is a normal number, a
+//! step changes t at the start, and for fixed steps at the end too, and the first step changes the state, or the system
+//! is at rest.
 
 use super::super::failure::Failure;
 use super::super::numbers::{about, short};
@@ -29,25 +30,23 @@ fn square(h: f64) -> Result<(), Failure> {
     )))
 }
 
-/// A step from t must lead to another time, and a step to t must come from another.
+/// A step shorter than the distance of numbers near t would change t by too much, or not at all.
 fn time(t: f64, h: f64) -> Result<(), Failure> {
-    #[allow(clippy::float_cmp)] // exactly
-    let is_lost = t + h == t || t - h == t;
-    if !is_lost {
+    let spacing = t.abs().next_up() - t.abs();
+    if h.abs() >= spacing {
         return Ok(());
     }
-    let spacing = t.abs().next_up() - t.abs();
     Err(Failure::Input(format!(
-        "a step of h = {} does not change t = {} in double precision, where numbers are {} apart; give a larger --h, or \
-         times nearer to zero",
+        "a step of h = {} is lost at t = {} in double precision, where numbers are {} apart; give a larger --h, or times \
+         nearer to zero",
         short(h),
         short(t),
         about(spacing)
     )))
 }
 
-/// Checks the step against the state, by a trial: it must change q or p by more than their rounding, unless the system is at
-/// rest.
+/// Checks the step against the state, by a trial: it must change q or p by more than their rounding, unless the system
+/// is at rest.
 pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), Failure> {
     // A run that does not start, or ends with its first step, says so itself.
     let Ok(mut trial) = system.begin(plan) else { return Ok(()) };
@@ -63,7 +62,7 @@ pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), 
     let Plan { h, v, .. } = plan;
     Err(Failure::Input(format!(
         "the first step of h = {} changes neither q = {:?} nor p = {:?} in double precision, although v = {v:?}; give a \
-         larger --h",
+         larger --h, or a start and parameters where the mass matrix is not singular",
         short(*h),
         before.q,
         before.p

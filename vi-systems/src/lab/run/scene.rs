@@ -110,8 +110,11 @@ mod tests {
     #[test]
     fn mistakes_name_their_line() {
         for (text, expected) in [
-            ("system = \"kepler\"\nsteps = -1\n", "line 2: `-1` is no count: write a whole number"),
-            ("system = \"kepler\"\nevery = 1.5\n", "line 2: `1.5` is no count: write a whole number"),
+            ("system = \"kepler\"\nsteps = -1\n", "line 2: invalid value: integer `-1`, expected a whole number"),
+            (
+                "system = \"kepler\"\nevery = 1.5\n",
+                "line 2: invalid value: floating point `1.5`, expected a whole number",
+            ),
             ("system = \"kepler\"\nq = [0.4 0.0]\n", "; entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`"),
             ("system = kepler\n", "line 1: string values must be quoted"),
             ("system = \"kepler\"\nsteps = 1\nsteps = 2\n", "line 3: duplicate key"),
