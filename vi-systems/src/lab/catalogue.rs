@@ -138,6 +138,7 @@ pub(crate) fn find(name: &str) -> Result<Entry, Failure> {
         .max_by(|(one, _), (other, _)| one.total_cmp(other));
     let hint = match near {
         Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
+        None if name.contains(['/', '\\', '.']) => "the name of a scene file ends in .toml".to_owned(),
         None => "`vi-lab list` names them all".to_owned(),
     };
     Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
@@ -203,6 +204,10 @@ mod tests {
             message("double-wel").as_deref(),
             Some("there is no system `double-wel`; did you mean `double-well`?")
         );
+        assert_eq!(
+            message("folder/xyz.yml").as_deref(),
+            Some("there is no system `folder/xyz.yml`; the name of a scene file ends in .toml")
+        );
         assert_eq!(message("xyz").as_deref(), Some("there is no system `xyz`; `vi-lab list` names them all"));
     }
 
@@ -221,11 +226,11 @@ mod tests {
                     v: entry.v.clone(),
                 };
                 let mut run = entry.system.begin(&plan).unwrap_or_else(|error| panic!("{name}: {error}"));
-                let first = run.row().t;
+                let first = run.t();
                 for _ in 0..10 {
                     run.advance().unwrap_or_else(|error| panic!("{name}, {method:?}: {error}"));
                 }
-                assert!(run.row().t > first, "{name}");
+                assert!(run.t() > first, "{name}");
             }
             for (parameter, value) in entry.system.parameters() {
                 assert!(entry.system.set(parameter, value + 1.0), "{name}: {parameter}");

@@ -1,9 +1,16 @@
 //! Why the command did not do what was asked, in one line, and the exit status that goes with it.
 
+use super::numbers::short;
+use super::run::Signal;
+use super::simulation::{Method, Plan};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use core::fmt;
 use std::io;
 use std::path::Path;
 use vi_core::StepError;
+
+/// The exit status where nobody reads standard output any more: that of a command which SIGPIPE ends.
+const UNREAD: u8 = 141;
 
 /// A failure of the command.
 #[derive(Debug)]
@@ -16,6 +23,22 @@ pub(crate) enum Failure {
         error: StepError,
         /// The last good state and how many steps led to it.
         before: String,
+        /// The integrator, where the command line can choose another.
+        method: Option<Method>,
+    },
+    /// A run cannot go on, though no step failed: exit status 1.
+    Ended {
+        /// Why, and what to do.
+        why: String,
+        /// The last state and how many steps led to it.
+        before: String,
+    },
+    /// A signal ended a run: exit status 130 or 143.
+    Interrupted {
+        /// Which signal.
+        signal: Signal,
+        /// How far the run came.
+        reached: String,
     },
     /// Systems have mistakes: exit status 1.
     System {
@@ -31,6 +54,10 @@ pub(crate) enum Failure {
         /// What the system said.
         error: io::Error,
     },
+    /// The reader of standard output went away, as `head` does: exit status 141.
+    Unread,
+    /// One failure after the other; the exit status is that of the first.
+    Both(Box<[Failure; 2]>),
 }
 
 impl Failure {
@@ -39,11 +66,29 @@ impl Failure {
         Self::File { name: name.as_ref().display().to_string(), error }
     }
 
-    /// A step that failed where no state came before it; an input with which no integrator can start is wrong input.
-    pub(crate) fn start(error: StepError) -> Self {
+    /// A failure to write to standard output.
+    pub(crate) fn standard_output(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::Unread,
+            _ => Self::file("standard output", error),
+        }
+    }
+
+    /// One failure after the other.
+    pub(crate) fn both(first: Self, second: Self) -> Self {
+        Self::Both(Box::new([first, second]))
+    }
+
+    /// A run that does not start from the initial state; an input with which no integrator can start is wrong input.
+    pub(crate) fn start(error: StepError, plan: &Plan) -> Self {
+        let Plan { method, t, q, v, .. } = plan;
         match error {
             StepError::InvalidInput { .. } => Self::Input(error.to_string()),
-            _ => Self::Step { error, before: "the first state".to_owned() },
+            _ => Self::Step {
+                error,
+                before: format!("t = {}, q = {q:?}, v = {v:?}, the initial state", short(*t)),
+                method: Some(*method),
+            },
         }
     }
 
@@ -52,20 +97,55 @@ impl Failure {
         let text = error.to_string();
         let first: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
         let line = first.join(" ");
-        Self::Input(line.strip_prefix("error: ").unwrap_or(&line).to_owned())
+        let line = line.strip_prefix("error: ").unwrap_or(&line);
+        Self::Input(suggestion(error).map_or_else(|| line.to_owned(), |suggestion| format!("{line}; {suggestion}")))
     }
 
     /// The exit status of the command.
     pub(crate) fn exit_status(&self) -> u8 {
         match self {
             Self::Input(_) => 2,
-            Self::Step { .. } | Self::System { .. } | Self::File { .. } => 1,
+            Self::Step { .. } | Self::Ended { .. } | Self::System { .. } | Self::File { .. } => 1,
+            Self::Interrupted { signal, .. } => signal.exit_status(),
+            Self::Unread => UNREAD,
+            Self::Both(failures) => failures[0].exit_status(),
         }
     }
+}
 
-    /// Whether the reader of standard output went away, as `head` does: then there is nothing left to do.
-    pub(crate) fn is_closed_pipe(&self) -> bool {
-        matches!(self, Self::File { error, .. } if error.kind() == io::ErrorKind::BrokenPipe)
+/// What to write instead of an option or a command that does not exist.
+fn suggestion(error: &clap::Error) -> Option<String> {
+    let [argument, command, usage] =
+        [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::Usage].map(|kind| error.get(kind));
+    if let Some(near) = argument.or(command) {
+        let near = match near {
+            ContextValue::Strings(names) => names.join(" or "),
+            name => name.to_string(),
+        };
+        return Some(format!("did you mean `{near}`?"));
+    }
+    let of_a_run = usage.is_some_and(|usage| usage.to_string().contains("vi-lab run"));
+    let advice = match error.kind() {
+        ErrorKind::UnknownArgument if of_a_run => {
+            "--set NAME=VALUE sets a parameter, `vi-lab run --help` lists the options"
+        }
+        ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand => "`vi-lab help` shows what there is",
+        _ => return None,
+    };
+    Some(advice.to_owned())
+}
+
+/// What the command line can do about a step that failed.
+fn advice(error: &StepError, method: Method) -> Option<&'static str> {
+    match (error, method) {
+        (StepError::NoForwardStep { .. } | StepError::StepRatio { .. } | StepError::DegenerateStep { .. }, _) => {
+            Some("take fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this place")
+        }
+        (StepError::NotConverged { .. }, Method::Fixed) => Some("take shorter steps with --h"),
+        (StepError::NotConverged { .. }, Method::Energy) => {
+            Some("take shorter steps with --h, or fixed ones with --method fixed")
+        }
+        _ => None,
     }
 }
 
@@ -73,9 +153,19 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Input(message) => f.write_str(message),
-            Self::Step { error, before } => write!(f, "{error}\nlast good state: {before}"),
+            Self::Step { error, before, method } => {
+                write!(f, "{error}\nlast good state: {before}")?;
+                let advice = method.and_then(|method| advice(error, method));
+                advice.map_or(Ok(()), |advice| write!(f, "\nwhat to do: {advice}"))
+            }
+            Self::Ended { why, before } => write!(f, "{why}\nlast good state: {before}"),
+            Self::Interrupted { signal, reached } => {
+                write!(f, "interrupted by {} after {reached}; the output up to there is whole", signal.name)
+            }
             Self::System { wrong, .. } => f.write_str(wrong),
             Self::File { name, error } => write!(f, "{name}: {error}"),
+            Self::Unread => f.write_str("nobody reads standard output"),
+            Self::Both(failures) => write!(f, "{}\n{}", failures[0], failures[1]),
         }
     }
 }

@@ -44,10 +44,19 @@ impl Machine {
     }
 }
 
-/// The command line, the program by its name alone.
+/// The command line on one line, the program by its name alone; an argument with blanks stands in quotes.
 pub(crate) fn command_line() -> String {
-    let arguments = env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    let arguments = env::args_os().skip(1).map(|argument| quoted(&argument.to_string_lossy()));
     core::iter::once("vi-lab".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// An argument as one word of one line.
+fn quoted(argument: &str) -> String {
+    let needs_quotes = argument.is_empty() || argument.contains(|letter: char| letter.is_whitespace());
+    let visible =
+        |letter: char| if letter.is_control() { letter.escape_default().collect() } else { letter.to_string() };
+    let argument: String = argument.chars().map(visible).collect();
+    if needs_quotes { format!("'{argument}'") } else { argument }
 }
 
 /// The processor's name, where the system tells it.
@@ -55,4 +64,15 @@ fn processor() -> Option<String> {
     let description = fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = description.lines().find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_argument_is_one_word_of_one_line() {
+        let shown = ["kepler", "a b.csv", "", "x\ny"].map(quoted);
+        assert_eq!(shown, ["kepler", "'a b.csv'", "''", "'x\\ny'"]);
+    }
 }

@@ -1,7 +1,8 @@
 //! The command `vi-lab`: runs, and the paper's study as a page.
 //!
 //! In: the command line. Out: files, text on standard output, and an exit status: 0, 1 where a step or a file failed,
-//! 2 where the input is wrong. Progress and errors go to standard error.
+//! 2 where the input is wrong, 130 or 143 where a signal ended a run, 141 where nobody reads standard output any more.
+//! Progress and errors go to standard error.
 //!
 //! | module | what it makes |
 //! |---|---|
@@ -13,13 +14,15 @@
 //! | [`work_precision`] | `vi-lab work-precision`: error against time, for every method |
 //! | [`expand`], [`explain`] | what a system becomes, stage by stage; its mathematics |
 //! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
-//! | [`numbers`], [`progress`], [`machine`], [`failure`] | numbers in prose, bars, versions, errors |
+//! | [`input`], [`numbers`] | numbers as users write them, and as pages and messages do |
+//! | [`progress`], [`machine`], [`failure`] | bars, versions, errors |
 
 mod catalogue;
 mod chart;
 mod expand;
 mod explain;
 mod failure;
+mod input;
 mod machine;
 mod numbers;
 mod paper;
@@ -54,7 +57,7 @@ enum Action {
         #[arg(long, value_name = "DIR", default_value = "paper")]
         out: PathBuf,
         /// Length of the long runs
-        #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = clap::value_parser!(u32).range(1000..))]
+        #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = paper::steps)]
         steps: u32,
     },
     /// Simulate one system, and write its states
@@ -76,15 +79,14 @@ pub(crate) fn main() -> ExitCode {
     let outcome = match Command::try_parse() {
         Ok(Command { action }) => act(action),
         Err(error) if !error.use_stderr() => {
-            // Help and version were asked for; where nobody reads them, nothing is lost.
-            let _ = error.print();
-            return ExitCode::SUCCESS;
+            // Help or the version was asked for.
+            error.print().map_err(Failure::standard_output)
         }
         Err(error) => Err(Failure::usage(&error)),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) if failure.is_closed_pipe() => ExitCode::SUCCESS,
+        Err(failure @ Failure::Unread) => ExitCode::from(failure.exit_status()),
         Err(Failure::System { shown, wrong }) => {
             // What is right is shown first; where nobody reads it, the mistakes are still told.
             let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
@@ -116,5 +118,5 @@ fn act(action: Action) -> Result<(), Failure> {
 
 /// Writes a text and a line end to standard output.
 fn print(text: &str) -> Result<(), Failure> {
-    writeln!(io::stdout(), "{text}").map_err(|error| Failure::file("standard output", error))
+    writeln!(io::stdout(), "{text}").map_err(Failure::standard_output)
 }

@@ -1,4 +1,4 @@
-//! Numbers as a page writes them, and the few statistics that it needs.
+//! Numbers as pages and messages write them, and the few statistics that they need.
 
 use super::chart::superscript;
 
@@ -16,6 +16,17 @@ pub(crate) fn scientific(value: f64) -> String {
         },
         None => text,
     }
+}
+
+/// A number in all its digits, with an exponent where it would have many zeros: `0.01`, `1e-300`.
+pub(crate) fn short(value: f64) -> String {
+    let is_plain = value == 0.0 || !value.is_finite() || (1e-5..1e15).contains(&value.abs());
+    if is_plain { value.to_string() } else { format!("{value:e}") }
+}
+
+/// A number in three digits at most: `1.5e-154`, `84`.
+pub(crate) fn about(value: f64) -> String {
+    format!("{value:.2e}").parse().map_or_else(|_| value.to_string(), short)
 }
 
 /// The middle one of some numbers; none of none.
@@ -61,6 +72,13 @@ mod tests {
         ] {
             assert_eq!(scientific(value), expected);
         }
+    }
+
+    #[test]
+    fn messages_have_no_rows_of_zeros() {
+        let numbers = [0.0, 0.01, 1.0, -2.5, 1e-300, 1e300, 123_456_789.0, f64::INFINITY];
+        assert_eq!(numbers.map(short), ["0", "0.01", "1", "-2.5", "1e-300", "1e300", "123456789", "inf"]);
+        assert_eq!([84.04, 0.0, 1.234_5e-154, 99_999.0].map(about), ["84", "0", "1.23e-154", "100000"]);
     }
 
     #[test]

@@ -1,10 +1,14 @@
 //! Progress of what takes longer than a second, on standard error if it is a terminal.
 
+use super::numbers::about;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
 /// Steps between two looks at the clock.
 const PATIENCE: u64 = 4096;
+/// The same for runs of any system, whose steps may be slow.
+const SHORT_PATIENCE: u64 = 256;
 
 /// A bar that appears after the first second.
 #[derive(Debug)]
@@ -16,6 +20,9 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
+    /// Length of the bar of a run: so fine that the slowest run moves it, which the time left is reckoned from.
+    pub(crate) const FINENESS: u64 = 1_000_000_000_000_000;
+
     /// A bar of the given length.
     pub(crate) fn new(length: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
@@ -40,12 +47,24 @@ impl Progress {
         }
     }
 
-    /// Moves the bar to a position.
-    pub(crate) fn reach(&mut self, position: u64) {
+    /// Moves the bar of a run, of length [`Self::FINENESS`], to the part between 0 and 1 that is done. Where the rest takes
+    /// more than a day at this pace, says so once, on standard error whatever it is.
+    pub(crate) fn reach(&mut self, part: f64) {
         self.calls += 1;
-        if self.calls.is_multiple_of(PATIENCE) {
-            self.bar.set_position(position);
-            self.show();
+        if !self.calls.is_multiple_of(SHORT_PATIENCE) {
+            return;
+        }
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // up to 1e15
+        self.bar.set_position((part * Self::FINENESS as f64) as u64);
+        if self.show() {
+            let days = self.started.elapsed().as_secs_f64() * (1.0 - part) / part / 86_400.0;
+            if days > 1.0 {
+                // Standard error may be closed; the run goes on.
+                let say = || {
+                    writeln!(io::stderr(), "this run takes {} days more at the pace of its first second", about(days))
+                };
+                let _ = self.bar.suspend(say);
+            }
         }
     }
 
@@ -55,11 +74,14 @@ impl Progress {
         self.show();
     }
 
-    fn show(&mut self) {
-        if !self.visible && self.started.elapsed() > Duration::from_secs(1) {
+    /// Shows the bar after the first second; whether it appears only now.
+    fn show(&mut self) -> bool {
+        let appears = !self.visible && self.started.elapsed() > Duration::from_secs(1);
+        if appears {
             self.visible = true;
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
+        appears
     }
 }
 

@@ -57,7 +57,7 @@ impl Plan {
     }
 }
 
-/// A node: time, coordinates, momenta, discrete energy, and the length of the step that led to it.
+/// A node, its energies, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     /// Time.
@@ -66,15 +66,39 @@ pub(crate) struct Row {
     pub(crate) q: Vec<f64>,
     /// Momenta.
     pub(crate) p: Vec<f64>,
-    /// Discrete energy; before the first fixed step the energy of the initial state.
-    pub(crate) energy: f64,
+    /// H, the energy at the node; none where no velocity belongs to the momenta.
+    pub(crate) energy: Option<f64>,
+    /// E, the discrete energy of the interval that ends at the node; none before the first fixed step.
+    pub(crate) discrete_energy: Option<f64>,
     /// Length of the step; in the first row the length asked for.
     pub(crate) h: f64,
 }
 
+impl Row {
+    /// The names of the columns, for these coordinates.
+    pub(crate) fn columns(coordinates: &[&str]) -> Vec<String> {
+        let q = coordinates.iter().map(|&name| name.to_owned());
+        let p = coordinates.iter().map(|name| format!("p_{name}"));
+        let last = ["H", "E", "h"].map(str::to_owned);
+        ["t".to_owned()].into_iter().chain(q).chain(p).chain(last).collect()
+    }
+
+    /// The entries in the order of the columns.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+        let numbers = core::iter::once(&self.t).chain(&self.q).chain(&self.p).copied().map(Some);
+        numbers.chain([self.energy, self.discrete_energy, Some(self.h)])
+    }
+}
+
 /// A run that has been started.
 pub(crate) trait Simulation {
-    /// The node reached last.
+    /// Time of the node reached last.
+    fn t(&self) -> f64;
+    /// Coordinates of the node reached last.
+    fn q(&self) -> Vec<f64>;
+    /// Length of the last step; before the first one the length asked for.
+    fn h(&self) -> f64;
+    /// The node reached last, with its energies.
     fn row(&self) -> Row;
     /// Takes one step.
     fn advance(&mut self) -> Result<(), StepError>;
@@ -93,9 +117,8 @@ where
     let (t, q, v) = initial;
     Ok(match plan.method {
         Method::Fixed => {
-            let energy = system.energy(t, &q, &v);
             let state = State::at(&system, t, q, v);
-            Box::new(Fixed { initial: energy, integrator: FixedStep::new(system, state, plan.h)? })
+            Box::new(Fixed { integrator: FixedStep::new(system, state, plan.h)? })
         }
         Method::Energy => {
             let integrator = match plan.start {
@@ -121,11 +144,7 @@ fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVector
     }
 }
 
-struct Fixed<S, const N: usize>
-where
-    S: Stepping<N>,
-{
-    initial: f64,
+struct Fixed<S: Stepping<N>, const N: usize> {
     integrator: FixedStep<S, N>,
 }
 
@@ -134,9 +153,21 @@ struct Energy<S, const N: usize> {
 }
 
 impl<S: Stepping<N>, const N: usize> Simulation for Fixed<S, N> {
+    fn t(&self) -> f64 {
+        self.integrator.state().t
+    }
+
+    fn q(&self) -> Vec<f64> {
+        self.integrator.state().q.as_slice().to_vec()
+    }
+
+    fn h(&self) -> f64 {
+        self.integrator.h()
+    }
+
     fn row(&self) -> Row {
-        let energy = self.integrator.discrete_energy().unwrap_or(self.initial);
-        row(&self.integrator.state(), energy, self.integrator.h())
+        let Self { integrator } = self;
+        row(integrator.system(), &integrator.state(), integrator.discrete_energy(), integrator.h())
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
@@ -145,8 +176,21 @@ impl<S: Stepping<N>, const N: usize> Simulation for Fixed<S, N> {
 }
 
 impl<S: Stepping<N>, const N: usize> Simulation for Energy<S, N> {
+    fn t(&self) -> f64 {
+        self.integrator.state().t
+    }
+
+    fn q(&self) -> Vec<f64> {
+        self.integrator.state().q.as_slice().to_vec()
+    }
+
+    fn h(&self) -> f64 {
+        self.integrator.h()
+    }
+
     fn row(&self) -> Row {
-        row(&self.integrator.state(), self.integrator.energy(), self.integrator.h())
+        let Self { integrator } = self;
+        row(integrator.system(), &integrator.state(), Some(integrator.energy()), integrator.h())
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
@@ -154,6 +198,7 @@ impl<S: Stepping<N>, const N: usize> Simulation for Energy<S, N> {
     }
 }
 
-fn row<const N: usize>(state: &State<N>, energy: f64, h: f64) -> Row {
-    Row { t: state.t, q: state.q.as_slice().to_vec(), p: state.p.as_slice().to_vec(), energy, h }
+fn row<S: Stepping<N>, const N: usize>(system: &S, state: &State<N>, discrete_energy: Option<f64>, h: f64) -> Row {
+    let (q, p) = (state.q.as_slice().to_vec(), state.p.as_slice().to_vec());
+    Row { t: state.t, q, p, energy: state.energy(system).ok(), discrete_energy, h }
 }

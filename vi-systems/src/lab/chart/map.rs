@@ -69,23 +69,25 @@ impl Map {
         self.cells.len() / self.columns.max(1)
     }
 
-    /// A path per class: one rectangle per run of neighbours.
+    /// A path per class: one rectangle per run of neighbours. Neighbours share their edges to the last digit, so that no
+    /// ground shows between them.
     fn rectangles(&self, classes: &BTreeSet<Class>) -> String {
         let area = self.chart.fixed_area();
         #[allow(clippy::cast_precision_loss)] // some hundred cells
-        let (width, height) = (area.0 / self.columns as f64, area.1 / self.rows() as f64);
+        let part = |index: usize, count: usize| index as f64 / count as f64;
+        let x = |column: usize| MARGINS.0 + area.0 * part(column, self.columns);
+        let y = |row: usize| MARGINS.2 + area.1 * (1.0 - part(row, self.rows()));
         let mut group = String::from("<g shape-rendering=\"crispEdges\">");
         // Writing to a string cannot fail.
         for class in classes {
             let _ = write!(group, "<path fill=\"{}\" d=\"", class.colour);
             for (row, cells) in self.cells.chunks(self.columns.max(1)).enumerate() {
+                let (bottom, top) = (y(row), y(row + 1));
                 let mut column = 0;
                 for run in cells.chunk_by(PartialEq::eq) {
+                    let (left, right) = (x(column), x(column + run.len()));
                     if run.first() == Some(class) {
-                        #[allow(clippy::cast_precision_loss)]
-                        let (left, length, above) = (column as f64, run.len() as f64, row as f64 + 1.0);
-                        let (x, y) = (MARGINS.0 + left * width, MARGINS.2 + area.1 - above * height);
-                        let _ = write!(group, "M{x:.2} {y:.2}h{0:.2}v{height:.2}h-{0:.2}z", length * width);
+                        let _ = write!(group, "M{left:.2} {top:.2}H{right:.2}V{bottom:.2}H{left:.2}z");
                     }
                     column += run.len();
                 }
@@ -146,13 +148,43 @@ mod tests {
         let svg = map(vec![ONE, TWO, ONE, ONE]).figure().svg;
         // The area of 596 by 330 pixels in four parts; the lower row has two classes, the upper one is one rectangle.
         assert!(
-            svg.contains("<path fill=\"#111111\" d=\"M88.00 209.00h298.00v165.00h-298.00zM88.00 44.00h596.00"),
+            svg.contains("<path fill=\"#111111\" d=\"M88.00 209.00H386.00V374.00H88.00zM88.00 44.00H684.00V209.00H"),
             "{svg}"
         );
-        assert!(svg.contains("<path fill=\"#222222\" d=\"M386.00 209.00h298.00v165.00h-298.00z\"/>"), "{svg}");
+        assert!(svg.contains("<path fill=\"#222222\" d=\"M386.00 209.00H684.00V374.00H386.00z\"/>"), "{svg}");
         let (cells, axis) = (svg.find("<g shape-rendering"), svg.find("<line "));
         assert!(cells.is_some() && cells < axis, "the axes are drawn over the cells");
         assert!(svg.contains(">one</text>") && svg.contains(">theory</text>"));
+    }
+
+    #[test]
+    fn no_ground_shows_between_cells() {
+        // Neither 7 columns nor 9 rows divide the area of 596 by 330 pixels into hundredths of a pixel.
+        let cells: Vec<Class> = (0..63).map(|cell| if cell % 3 == 0 { ONE } else { TWO }).collect();
+        let Figure { svg, .. } = Map { columns: 7, ..map(cells) }.figure();
+        let cells =
+            svg.split("<g shape-rendering").nth(1).and_then(|rest| rest.split("</g>").next()).expect("the cells");
+        let rectangles: Vec<[f64; 4]> = cells
+            .split('M')
+            .skip(1)
+            .map(|path| {
+                let text = path.split('z').next().unwrap_or_default();
+                let numbers: Vec<f64> = text.split(['H', 'V', ' ']).filter_map(|number| number.parse().ok()).collect();
+                [numbers[0], numbers[1], numbers[2], numbers[3]]
+            })
+            .collect();
+        let area: f64 = rectangles.iter().map(|[left, top, right, bottom]| (right - left) * (bottom - top)).sum();
+        assert!((area - 596.0 * 330.0).abs() < 1e-6, "the cells cover {area} square pixels");
+        let meets = |value: f64, edge: usize| rectangles.iter().any(|other| other[edge].to_bits() == value.to_bits());
+        for [left, top, right, bottom] in &rectangles {
+            assert!(meets(*left, 2) || left.to_bits() == 88_f64.to_bits(), "nothing ends at the left edge {left}");
+            assert!(
+                meets(*right, 0) || right.to_bits() == 684_f64.to_bits(),
+                "nothing begins at the right edge {right}"
+            );
+            assert!(meets(*top, 3) || top.to_bits() == 44_f64.to_bits(), "nothing ends at the upper edge {top}");
+            assert!(meets(*bottom, 1) || bottom.to_bits() == 374_f64.to_bits(), "nothing begins at the edge {bottom}");
+        }
     }
 
     #[test]

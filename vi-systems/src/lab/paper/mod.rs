@@ -14,6 +14,7 @@ mod law;
 pub(super) mod raw;
 
 use super::failure::Failure;
+use super::input::count;
 use super::machine::Machine;
 use super::progress::Progress;
 use book::Book;
@@ -22,6 +23,14 @@ use vi_core::StepError;
 
 /// Steps of the long runs.
 pub(crate) const STEPS: u32 = 1_000_000;
+/// Fewer show nothing.
+const SHORTEST: u32 = 1000;
+
+/// The number of steps that a user writes.
+pub(crate) fn steps(text: &str) -> Result<u32, String> {
+    let steps = u32::try_from(count(text)?).ok().filter(|steps| *steps >= SHORTEST);
+    steps.ok_or_else(|| format!("the study needs {SHORTEST} to {} steps", u32::MAX))
+}
 
 /// How large the study is.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +62,7 @@ pub(crate) fn write(out: &Path, study: Study) -> Result<String, Failure> {
 /// A step that failed where the study needs one.
 fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
     let before = what.to_owned();
-    move |error| Failure::Step { error, before: before.clone() }
+    move |error| Failure::Step { error, before: before.clone(), method: None }
 }
 
 fn introduction(book: &mut Book, study: Study) {

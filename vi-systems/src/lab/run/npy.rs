@@ -1,16 +1,16 @@
 //! Rows as NPY, the array format of `NumPy`: float64, one row per node, row by row; beside it `FILE.npy.json`, which
-//! says what made the file and what the columns are.
+//! says what made the file and what the columns are. An entry that has no value is NaN.
 //!
-//! Source: the format's version 1.0. The head has a fixed room, and gets the number of rows at the end, so that rows are
-//! written as they come; until then it says 0.
+//! Source: the format's version 1.0. AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
+//! the file, whatever ends the run.
 
 use super::super::failure::Failure;
 use super::super::machine::{VERSION, command_line};
 use super::super::simulation::Row;
-use super::{Request, Sink};
+use super::{BLOCK, ENERGIES, Request, Sink};
 use serde_json::json;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Bytes before the numbers: magic, version, length of the head, head; a multiple of 64.
@@ -19,60 +19,74 @@ const ROOM: usize = 128;
 /// An NPY file.
 pub(super) struct Npy {
     path: PathBuf,
-    writer: BufWriter<File>,
-    rows: u64,
+    file: File,
     columns: usize,
+    /// Rows in the file.
+    rows: u64,
+    /// Whole rows that are to be written.
+    block: Vec<u8>,
 }
 
 impl Npy {
     /// An NPY file, and the JSON file beside it.
     pub(super) fn create(path: &Path, request: &Request) -> Result<Self, Failure> {
-        let plan = &request.plan;
-        let columns = request.columns();
-        let parameters: serde_json::Map<String, serde_json::Value> =
-            request.system.parameters().into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
-        let description = json!({
-            "version": VERSION, "command": command_line(), "system": request.system.name(), "parameters": parameters,
-            "method": plan.method_name(), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "columns": columns,
-        });
-        let beside = PathBuf::from(format!("{}.json", path.display()));
-        fs::write(&beside, format!("{description:#}\n")).map_err(|error| Failure::file(&beside, error))?;
         let file = File::create(path).map_err(|error| Failure::file(path, error))?;
-        let mut npy = Self { path: path.to_owned(), writer: BufWriter::new(file), rows: 0, columns: columns.len() };
-        let begun = npy.put_head();
-        npy.checked(begun)?;
+        let mut npy =
+            Self { path: path.to_owned(), file, columns: request.columns().len(), rows: 0, block: Vec::new() };
+        npy.flush()?;
+        let mut beside = path.as_os_str().to_owned();
+        beside.push(".json");
+        fs::write(&beside, format!("{:#}\n", description(request))).map_err(|error| Failure::file(&beside, error))?;
         Ok(npy)
     }
 
-    fn put_head(&mut self) -> io::Result<()> {
-        self.writer.write_all(&head(self.rows, self.columns))
+    /// Writes the block, and then the number of rows into the head.
+    fn flush(&mut self) -> Result<(), Failure> {
+        let width = wide(8 * self.columns);
+        let (end, rows) = (wide(ROOM) + self.rows * width, self.rows + wide(self.block.len()) / width);
+        let written = put(&mut self.file, end, &self.block);
+        if let Err(error) = written.and_then(|()| put(&mut self.file, 0, &head(rows, self.columns))) {
+            // The head counts the rows up to here; half a row after them is cut off, or does no harm.
+            let _ = self.file.set_len(end);
+            return Err(Failure::file(&self.path, error));
+        }
+        self.rows = rows;
+        self.block.clear();
+        Ok(())
     }
+}
 
-    fn checked(&self, outcome: io::Result<()>) -> Result<(), Failure> {
-        outcome.map_err(|error| Failure::file(&self.path, error))
-    }
+/// A number of bytes of the memory as one of a file.
+fn wide(bytes: usize) -> u64 {
+    u64::try_from(bytes).unwrap_or(u64::MAX)
+}
 
-    /// Puts the number of rows into the head.
-    fn complete(&mut self) -> io::Result<()> {
-        self.writer.seek(SeekFrom::Start(0))?;
-        self.put_head()?;
-        self.writer.flush()
-    }
+/// Writes bytes at a place of a file.
+fn put(file: &mut File, place: u64, bytes: &[u8]) -> io::Result<()> {
+    file.seek(SeekFrom::Start(place))?;
+    file.write_all(bytes)
+}
+
+/// What made the file, and what is in it.
+fn description(request: &Request) -> serde_json::Value {
+    let Request { system, plan, every, .. } = request;
+    let parameters: serde_json::Map<String, serde_json::Value> =
+        system.parameters().into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
+    json!({
+        "version": VERSION, "command": command_line(), "system": system.name(), "parameters": parameters,
+        "method": plan.method_name(), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "every": every,
+        "columns": request.columns(), "energies": ENERGIES,
+    })
 }
 
 impl Sink for Npy {
     fn write(&mut self, row: &Row) -> Result<(), Failure> {
-        let Row { t, q, p, energy, h } = row;
-        let values = core::iter::once(t).chain(q).chain(p).chain([energy, h]);
-        let bytes: Vec<u8> = values.flat_map(|value| value.to_le_bytes()).collect();
-        self.rows += 1;
-        let written = self.writer.write_all(&bytes);
-        self.checked(written)
+        self.block.extend(row.entries().flat_map(|entry| entry.unwrap_or(f64::NAN).to_le_bytes()));
+        if self.block.len() < BLOCK { Ok(()) } else { self.flush() }
     }
 
     fn finish(&mut self) -> Result<(), Failure> {
-        let completed = self.complete();
-        self.checked(completed)
+        self.flush()
     }
 }
 

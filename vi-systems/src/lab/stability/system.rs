@@ -6,7 +6,7 @@
 use super::super::catalogue::{Entry, System, kebab};
 use super::super::chart::{Class, Look, Series, boundary, middles};
 use super::super::failure::Failure;
-use super::super::simulation::{Method, Plan, Start};
+use super::super::simulation::{Method, Plan, Simulation, Start};
 use super::atlas::{Atlas, Grid};
 use super::ending::{Course, Ending, Limit};
 use super::quantity::{Quantity, Span};
@@ -119,12 +119,14 @@ pub(super) fn energy(
 fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f64, f64)> {
     let (system, plan) = varied(entry, axes, place, Method::Energy);
     let mut run = system.begin(&plan).ok()?;
-    let mut before = run.row();
+    let node = |run: &dyn Simulation| Some((run.t(), *run.q().first()?));
+    let mut before = node(run.as_ref())?;
     for _ in 0..STEPS {
-        let now = run.row();
+        let now = node(run.as_ref())?;
         if run.advance().is_err() {
-            let (q0, q1) = (before.q.first()?, now.q.first()?);
-            return (now.t > before.t).then(|| ((q0 + q1) / 2.0, (q1 - q0) / (now.t - before.t)));
+            let (t0, q0) = before;
+            let (t1, q1) = now;
+            return (t1 > t0).then(|| (f64::midpoint(q0, q1), (q1 - q0) / (t1 - t0)));
         }
         before = now;
     }
@@ -159,8 +161,7 @@ fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> 
         Ok(mut run) => {
             Course::of(limit, || {
                 run.advance()?;
-                let row = run.row();
-                Ok((row.t, size(&row.q)))
+                Ok((run.t(), size(&run.q())))
             })
             .ending
         }
