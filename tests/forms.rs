@@ -199,10 +199,6 @@ impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
         self.0.extended_residual(node, h, v)
     }
 
-    fn magnitudes(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
-        self.0.magnitudes(node, h, v)
-    }
-
     fn rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
         self.0.rounding(node, h, v)
     }

@@ -50,11 +50,6 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Called<S> {
         S::extended_residual(self, node, h, v)
     }
 
-    #[inline(never)]
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
-        S::magnitudes(self, node, h, v)
-    }
-
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
         S::rounding(self, node, h, v)
     }

@@ -170,7 +170,7 @@ where
                 *substep = Steps::new(substep.h, v);
             }
             let h = substep.h;
-            let solved = match substep.predicted(system, &node, way) {
+            let solved = match substep.corrected(system, &node, way, substep.guess()) {
                 Some(solved) => solved,
                 None => substep
                     .searched(called, &node, Branch::Nearest)

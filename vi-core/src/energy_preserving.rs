@@ -38,8 +38,9 @@ use crate::called::Called;
 use crate::condition::Condition;
 use crate::state::Method;
 use crate::{Increment, Node, Real, Scalar, State, Step, StepError, Stepping};
+use core::hint::black_box;
 use nalgebra::SVector;
-use newton::{Failure, Root};
+use newton::{Failure, Root, Trial};
 use predicted::{Predicted, Predictors};
 
 /// A step may be longer or shorter than the last one by this factor at most.
@@ -99,7 +100,7 @@ where
             return Err(failure);
         }
         if self.run.is_common()
-            && let Some(predicted) = self.predicted()
+            && let Some(predicted) = self.predicted(self.run.predictors.guess_highest())
         {
             let (node, last, step) = self.reached(&predicted);
             if node.is_finite() {
@@ -108,17 +109,16 @@ where
                 return Ok(step);
             }
         }
-        // The rare path gets copies, so that a loop over steps may keep the run in registers.
-        let (run, outcome) = uncommon(self.system, self.run);
+        let (run, outcome) = uncommon(black_box(self.system), black_box(self.run));
         self.run = run;
         outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
 
-    /// The next step, where it has not to be searched.
+    /// The next step from a trial, where it has not to be searched.
     #[inline(always)]
-    fn predicted(&self) -> Option<Predicted<N, T>> {
+    fn predicted(&self, trial: Trial<N, T>) -> Option<Predicted<N, T>> {
         let Self { system, run, .. } = self;
-        let predicted = run.predictors.step(system, &run.node, &run.last)?;
+        let predicted = run.predictors.step(system, &run.node, &run.last, trial)?;
         let h = predicted.root.h;
         let allowed = run.bounds.as_ref().is_none_or(|bounds| bounds.admit(h)) && !self.runs_away(h);
         allowed.then_some(predicted)
@@ -132,6 +132,7 @@ where
     }
 
     /// The state reached last.
+    #[inline]
     pub fn state(&self) -> State<N, T> {
         self.run.node.state()
     }
@@ -184,7 +185,7 @@ where
             return self.advance_in_phase(phase);
         }
         if !self.run.is_common()
-            && let Some(predicted) = self.predicted()
+            && let Some(predicted) = self.predicted(self.run.predictors.guess())
         {
             let (node, last, step) = self.reached(&predicted);
             node.check_finite(self.run.node.t)?;

@@ -18,6 +18,7 @@
 use crate::called::Called;
 use crate::momentum::{Steps, Way};
 use crate::{Node, Real, Scalar, State, StepError, Stepping, checkpoint};
+use core::hint::black_box;
 use nalgebra::SVector;
 
 /// The variational integrator with a given step; see the [module](self).
@@ -137,11 +138,11 @@ where
         let Self { system, way, run, is_searched, .. } = self;
         if run.steps.is_common::<S>()
             && !*is_searched
-            && let Some(solved) = run.steps.predicted(system, &run.node, way)
+            && let Some(solved) = run.steps.common(system, &run.node, way)
         {
             let (h, displacement) = (run.steps.h, solved.v * run.steps.h);
             if run.node.stays_finite(h, &displacement, &solved.increment) {
-                run.steps.push_common::<S>(&solved);
+                run.steps.push_common(&solved);
                 run.node.advance(h, &displacement, &solved.increment);
                 run.iterations = solved.iterations;
                 return Ok(run.node.state());
@@ -150,8 +151,7 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        // The rare path gets copies, so that a loop over steps may keep the run in registers.
-        let (run, outcome) = uncommon(self.system, self.way, self.run);
+        let (run, outcome) = uncommon(black_box(self.system), black_box(self.way), black_box(self.run));
         match outcome {
             Ok(()) => self.run = run,
             Err(failure) => (self.failure, self.is_searched) = (Some(failure), true),
@@ -160,6 +160,7 @@ where
     }
 
     /// The state reached last.
+    #[inline]
     pub fn state(&self) -> State<N, T> {
         self.run.node.state()
     }
@@ -215,9 +216,12 @@ impl<const N: usize, T: Scalar> Run<N, T> {
     /// Takes a step that is not the common one.
     fn take<S: Stepping<N, T>>(&mut self, system: &S, way: &Way<S::Jacobian, N, T>) -> Result<(), StepError> {
         let (t, h) = (self.node.t, self.steps.h);
-        let is_tried = self.steps.is_common::<S>() || self.branch != Branch::Nearest;
-        let predicted = if is_tried { None } else { self.steps.predicted(system, &self.node, way) };
-        let solved = match predicted {
+        // A common step that was not at the floor has been corrected as often as it is worth.
+        let is_corrected = self.steps.is_common::<S>() && !S::CLOSED_FORM;
+        let is_searched = is_corrected || self.branch != Branch::Nearest;
+        let corrected =
+            if is_searched { None } else { self.steps.corrected(system, &self.node, way, self.steps.guess()) };
+        let solved = match corrected {
             Some(solved) => solved,
             None => self.steps.searched(system, &self.node, self.branch)?,
         };

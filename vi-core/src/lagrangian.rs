@@ -106,8 +106,6 @@ pub trait Stepping<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
     /// The residuals of both, and what momentum and energy gain over the step.
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T>;
-    /// What both residuals are sums of: in terms of this, evaluating them loses a rounding at least.
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
     /// What the rounding of both residuals is measured in.
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
 }
@@ -152,6 +150,8 @@ pub struct ExtendedSystem<const N: usize, T = f64, J = SMatrix<T, N, N>> {
 pub struct MomentumResidual<const N: usize, T = f64> {
     /// `r = −D2 L_d − f_d⁻ − p0`.
     pub residual: SVector<T, N>,
+    /// Sums of the absolute values of the terms of r, sums inside them term by term: r is known to an ulp of this at best.
+    pub magnitude: SVector<T, N>,
     /// `p1 − p0`; see [`Increment::momentum`].
     pub increment: SVector<T, N>,
 }
@@ -161,8 +161,12 @@ pub struct MomentumResidual<const N: usize, T = f64> {
 pub struct ExtendedResidual<const N: usize, T = f64> {
     /// `r = −D2 L_d − f_d⁻ − p0`.
     pub residual: SVector<T, N>,
+    /// Sums of the absolute values of the terms of r, as in [`MomentumResidual`].
+    pub magnitude: SVector<T, N>,
     /// `c = e − v·r`, `e = D1 L_d + g_d⁻ − E0`.
     pub energy_residual: T,
+    /// The same sum for c.
+    pub energy_magnitude: T,
     /// `p1 − p0` and `E1 − E0`.
     pub increment: Increment<N, T>,
 }
@@ -343,11 +347,6 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for &S {
     #[inline(always)]
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
         S::extended_residual(self, node, h, v)
-    }
-
-    #[inline(always)]
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
-        S::magnitudes(self, node, h, v)
     }
 
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {

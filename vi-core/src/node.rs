@@ -61,6 +61,7 @@ impl<const N: usize, T: Real> Node<N, T> {
     }
 
     /// Time, coordinates and momenta, low parts left out.
+    #[inline]
     pub fn state(&self) -> State<N, T> {
         State { t: self.t, q: self.q, p: self.p }
     }

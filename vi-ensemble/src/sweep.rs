@@ -66,13 +66,12 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     fn step(&self, v: &SVector<Lane<FUSED>, N>) -> Step<N, FUSED> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
         let v = v - equation.jacobian.solve(&(equation.residual + self.remainder));
-        let MomentumResidual { residual, increment } = self.system.momentum_residual(&self.node, self.h, &v);
+        let MomentumResidual { residual, magnitude, increment } = self.system.momentum_residual(&self.node, self.h, &v);
         let remainder = residual + self.remainder;
-        let scale = self.system.magnitudes(&self.node, self.h, &v).residual;
         let mut accepted = true;
         for k in 0..N {
             // A scale that overflows proves nothing.
-            let rounding = (scale[k] * Lane::new(f64::EPSILON)).get();
+            let rounding = (magnitude[k] * Lane::new(f64::EPSILON)).get();
             accepted &= remainder[k].get().abs() <= rounding && rounding < f64::MAX * f64::EPSILON;
         }
         Step { v, increment, remainder, accepted }

@@ -61,13 +61,13 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         self.v.is_finite() && self.h.is_finite() && self.remainder.iter().all(|entry| entry.is_finite())
     }
 
-    /// Whether both guesses are of the highest order.
+    /// Whether both guesses are of the highest degree.
     #[inline(always)]
     pub(super) fn are_highest(&self) -> bool {
         self.v.is_highest() && self.h.is_highest()
     }
 
-    /// Takes a step that was predicted from guesses of the highest order.
+    /// Takes a step that was predicted from guesses of the highest degree.
     #[inline(always)]
     pub(super) fn push_common(&mut self, step: &Predicted<N, T>) {
         self.v.push_highest(step.root.v);
@@ -89,16 +89,26 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         self.remainder = SVector::zeros();
     }
 
-    /// The step from `node` after the interval `last`.
+    /// The unknowns that the last steps give.
+    pub(super) fn guess(&self) -> Trial<N, T> {
+        Trial { v: self.v.guess(), h: self.h.guess()[0] }
+    }
+
+    /// The same at the highest degree.
+    #[inline(always)]
+    pub(super) fn guess_highest(&self) -> Trial<N, T> {
+        Trial { v: self.v.guess_highest(), h: self.h.guess_highest()[0] }
+    }
+
+    /// The step from `node` after the interval `last`, from a trial.
     #[inline(always)]
     pub(super) fn step<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         last: &Last<N, T>,
+        mut trial: Trial<N, T>,
     ) -> Option<Predicted<N, T>> {
-        let [h]: [T; 1] = self.h.guess().into();
-        let mut trial = Trial { v: self.v.guess(), h };
         for iterations in 1..=ATTEMPTS {
             let mut equations = system.extended_system(node, trial.h, &trial.v);
             equations.momentum.residual += self.remainder;
@@ -107,7 +117,7 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
             let step = elimination.step(&equations, &trial);
             trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
             let at = system.extended_residual(node, trial.h, &trial.v);
-            let Some((remainder, residual)) = self.measured(system, node, &trial, &at) else {
+            let Some((remainder, residual)) = self.measured(node, &trial.v, &at) else {
                 continue;
             };
             let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
@@ -123,11 +133,10 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
     /// What is left of the momentum rows with what was carried to them, and the largest residual in roundings, where every row is
     /// at the floor.
     #[inline(always)]
-    fn measured<S: Stepping<N, T>>(
+    fn measured(
         &self,
-        system: &S,
         node: &Node<N, T>,
-        Trial { v, h }: &Trial<N, T>,
+        v: &SVector<T, N>,
         at: &ExtendedResidual<N, T>,
     ) -> Option<(SVector<T, N>, f64)> {
         let remainder = at.residual + self.remainder;
@@ -144,7 +153,7 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         };
         if !is_at_floor(&scale) {
             // Where momenta or the energy vanish, what they are sums of need not.
-            scale = system.magnitudes(node, *h, v);
+            scale = Rounding { residual: at.magnitude, energy_residual: at.energy_magnitude };
             if !is_at_floor(&scale) {
                 return None;
             }

@@ -1,6 +1,7 @@
 //! A step whose equations are linear, as one matrix.
 //!
-//! In: an autonomous system whose L is quadratic and whose f is linear, and h. Out: the velocity of a step and what it adds to p,
+//! In: an autonomous system of up to [`LARGEST`] coordinates whose L is quadratic and whose f is linear, and h. Out: the velocity of a
+//! step and what it adds to p,
 //!
 //! ```text
 //! v       = Q q + P p + c        the columns of Q, P, R, S are the answers of the equations to unit vectors, c and d those to zero
@@ -11,36 +12,54 @@
 
 use crate::linear::Matrix;
 use crate::{Node, Real, Scalar, Stepping};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
-/// The matrix of a linear step.
+/// Coordinates that a system with a closed form has at most.
+const LARGEST: usize = 3;
+
+/// The matrix of a linear step. Room for the largest one: a matrix of N × N would be large where it is not used.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ClosedForm<const N: usize, T> {
-    velocity: Affine<N, T>,
-    increment: Affine<N, T>,
+pub(crate) struct ClosedForm<T> {
+    velocity: Affine<T>,
+    increment: Affine<T>,
 }
 
-/// The velocity of a step, and what it adds to p.
-type Answer<const N: usize, T> = [SVector<T, N>; 2];
-
-/// `Q q + P p + c`.
+/// `Q q + P p + c`, row by row.
 #[derive(Clone, Copy, Debug)]
-struct Affine<const N: usize, T> {
-    by_q: SMatrix<T, N, N>,
-    by_p: SMatrix<T, N, N>,
-    constant: SVector<T, N>,
+struct Affine<T> {
+    by_q: [[T; LARGEST]; LARGEST],
+    by_p: [[T; LARGEST]; LARGEST],
+    constant: [T; LARGEST],
 }
 
-impl<const N: usize, T: Real> Affine<N, T> {
+impl<T: Real> Affine<T> {
+    fn zeros() -> Self {
+        let zeros = [T::zero(); LARGEST];
+        Self { by_q: [zeros; LARGEST], by_p: [zeros; LARGEST], constant: zeros }
+    }
+
     #[inline(always)]
-    fn at(&self, node: &Node<N, T>) -> SVector<T, N> {
-        (self.by_q * node.q + self.constant) + self.by_p * node.p
+    fn at<const N: usize>(&self, node: &Node<N, T>) -> SVector<T, N> {
+        let mut sums = node.q;
+        for i in 0..N {
+            let (mut by_q, mut by_p) = (self.constant[i], T::zero());
+            for j in 0..N {
+                by_q += self.by_q[i][j] * node.q[j];
+                by_p += self.by_p[i][j] * node.p[j];
+            }
+            sums[i] = by_q + by_p;
+        }
+        sums
     }
 }
 
-impl<const N: usize, T: Scalar> ClosedForm<N, T> {
+impl<T: Scalar> ClosedForm<T> {
     /// That of a system with a step h, by the inverse of its A.
-    pub(crate) fn of<S: Stepping<N, T>>(system: &S, h: T, inverse: &<S::Jacobian as Matrix<N, T>>::Inverse) -> Self {
+    pub(crate) fn of<const N: usize, S: Stepping<N, T>>(
+        system: &S,
+        h: T,
+        inverse: &<S::Jacobian as Matrix<N, T>>::Inverse,
+    ) -> Self {
         let answer = |q: SVector<T, N>, p: SVector<T, N>| {
             let node = Node { q, p, ..Node::zeros() };
             let v = -S::Jacobian::apply(inverse, &system.momentum_residual(&node, h, &SVector::zeros()).residual);
@@ -50,19 +69,25 @@ impl<const N: usize, T: Scalar> ClosedForm<N, T> {
         let constant = answer(zeros, zeros);
         // So large that the constant is below the rounding of the rest, and a power of two.
         let large = T::real(f64::from(1_u32 << 30)) * T::real(f64::from(1_u32 << 30));
-        let unit = |j: usize| SVector::from_fn(|i, _| if i == j { large } else { T::zero() });
-        let affine = |part: usize| {
-            let column = |answer: Answer<N, T>| (answer[part] - constant[part]) * large.recip();
-            let by_q: [SVector<T, N>; N] = core::array::from_fn(|j| column(answer(unit(j), zeros)));
-            let by_p: [SVector<T, N>; N] = core::array::from_fn(|j| column(answer(zeros, unit(j))));
-            Affine { by_q: SMatrix::from_columns(&by_q), by_p: SMatrix::from_columns(&by_p), constant: constant[part] }
-        };
-        Self { velocity: affine(0), increment: affine(1) }
+        let mut form = [Affine::zeros(); 2];
+        for j in 0..N {
+            let unit = SVector::from_fn(|i, _| if i == j { large } else { T::zero() });
+            let (by_q, by_p) = (answer(unit, zeros), answer(zeros, unit));
+            for (part, affine) in form.iter_mut().enumerate() {
+                for i in 0..N {
+                    affine.constant[i] = constant[part][i];
+                    affine.by_q[i][j] = (by_q[part][i] - constant[part][i]) * large.recip();
+                    affine.by_p[i][j] = (by_p[part][i] - constant[part][i]) * large.recip();
+                }
+            }
+        }
+        let [velocity, increment] = form;
+        Self { velocity, increment }
     }
 
     /// The velocity of the step from this node, and what it adds to p.
     #[inline(always)]
-    pub(crate) fn step(&self, node: &Node<N, T>) -> (SVector<T, N>, SVector<T, N>) {
+    pub(crate) fn step<const N: usize>(&self, node: &Node<N, T>) -> (SVector<T, N>, SVector<T, N>) {
         (self.velocity.at(node), self.increment.at(node))
     }
 }

@@ -34,7 +34,7 @@ const CORRECTIONS: u32 = 3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Way<J: Matrix<N, T>, const N: usize, T: Real> {
     /// The whole step is one matrix; A is constant.
-    ClosedForm(ClosedForm<N, T>, J::Inverse),
+    ClosedForm(ClosedForm<T>, J::Inverse),
     /// By the inverse of A, which is constant.
     Inverse(J::Inverse),
     /// By A where the guess is.
@@ -88,13 +88,15 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
     /// Whether each row is at most [`FLOOR`] roundings, and with what is carried to it half as many.
     #[inline(always)]
     fn is_at_floor(&self, carried: &SVector<T, N>) -> bool {
-        let mut all = true;
+        // A mask: a loop over booleans does not become vector instructions.
+        let mut above = 0_u64;
         for i in 0..N {
             let bound = self.scale[i] * T::real(FLOOR * T::EPSILON);
             let sum = self.residual[i] + carried[i];
-            all &= self.residual[i].abs() <= bound && (sum + sum).abs() <= bound;
+            let is_below = self.residual[i].abs() <= bound && (sum + sum).abs() <= bound;
+            above |= if is_below { 0 } else { u64::MAX };
         }
-        all
+        above == 0
     }
 
     /// The largest residual in roundings.
@@ -170,41 +172,71 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         S::CLOSED_FORM || self.predictor.is_highest()
     }
 
-    /// The step from `node`: by one matrix, or by corrections of the guess. `None` where these do not solve it.
+    /// The common step from `node`: by one matrix, or by corrections of a guess of the highest order. `None` where these do not solve
+    /// it.
     #[inline(always)]
-    pub(crate) fn predicted<S: Stepping<N, T>>(
+    pub(crate) fn common<S: Stepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
         way: &Way<S::Jacobian, N, T>,
     ) -> Option<Solved<N, T>> {
-        let mut v = self.predictor.guess();
-        if S::CLOSED_FORM
-            && let Way::ClosedForm(form, _) = way
-        {
-            let solved = self.by_matrix(system, node, form);
+        match way {
+            Way::ClosedForm(form, _) if S::CLOSED_FORM => self.by_matrix(system, node, form),
+            _ => self.corrected(system, node, way, self.predictor.guess_highest()),
+        }
+    }
+
+    /// The velocity that the last steps give.
+    pub(crate) fn guess(&self) -> SVector<T, N> {
+        self.predictor.guess()
+    }
+
+    /// The step from `node` by corrections of v; `None` where three do not solve it.
+    #[inline(always)]
+    pub(crate) fn corrected<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        way: &Way<S::Jacobian, N, T>,
+        mut v: SVector<T, N>,
+    ) -> Option<Solved<N, T>> {
+        // So that the compiler sees which way it is.
+        let way = if S::CONSTANT_JACOBIAN { way } else { &Way::Newton };
+        for iterations in 1..=CORRECTIONS {
+            let solved = self.corrected_once(system, node, way, &mut v, iterations);
             if solved.is_some() {
                 return solved;
             }
         }
-        for iterations in 1..=CORRECTIONS {
-            let equation = system.momentum_equation(node, self.h, &v);
-            // So that the compiler sees which way it is.
-            let way = if S::CONSTANT_JACOBIAN { way } else { &Way::Newton };
-            v -= way.correction(&equation.jacobian, &(equation.residual + self.remainder));
-            let MomentumResidual { residual, increment } = system.momentum_residual(node, self.h, &v);
-            let mut measured = Measured { residual, scale: scale(node, &increment) };
-            if !measured.is_at_floor(&self.remainder) {
-                // Where momenta vanish, what they are sums of need not.
-                measured.scale = system.magnitudes(node, self.h, &v).residual;
-                if !measured.is_at_floor(&self.remainder) {
-                    continue;
-                }
-            }
-            let remainder = residual + self.remainder;
-            return Some(Solved { v, increment, iterations, measured, remainder, predicted: true });
-        }
         None
+    }
+
+    /// The step from `node` after a correction of v, where its residual is at the floor then.
+    #[inline(always)]
+    fn corrected_once<S: Stepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+        way: &Way<S::Jacobian, N, T>,
+        v: &mut SVector<T, N>,
+        iterations: u32,
+    ) -> Option<Solved<N, T>> {
+        let equation = system.momentum_equation(node, self.h, v);
+        *v -= way.correction(&equation.jacobian, &(equation.residual + self.remainder));
+        let MomentumResidual { residual, magnitude, increment } = system.momentum_residual(node, self.h, v);
+        // Long functions have computed the magnitudes; short ones are inlined, and compute them where they are needed: where momenta
+        // vanish, and what they are sums of does not.
+        let scale = if S::INLINED { scale(node, &increment) } else { magnitude };
+        let mut measured = Measured { residual, scale };
+        if !measured.is_at_floor(&self.remainder) {
+            measured.scale = magnitude;
+            if !(S::INLINED && measured.is_at_floor(&self.remainder)) {
+                return None;
+            }
+        }
+        let remainder = residual + self.remainder;
+        Some(Solved { v: *v, increment, iterations, measured, remainder, predicted: true })
     }
 
     /// The step by one matrix, where that solves it to rounding.
@@ -213,7 +245,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         &self,
         system: &S,
         node: &Node<N, T>,
-        form: &ClosedForm<N, T>,
+        form: &ClosedForm<T>,
     ) -> Option<Solved<N, T>> {
         let (v, increment) = form.step(node);
         let at = system.momentum_residual(node, self.h, &v);
@@ -240,19 +272,15 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
             Branch::Nearest => continuation::nearest(system, node, h, start, start)?,
             Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
         };
-        let MomentumResidual { residual, increment } = system.momentum_residual(node, h, &v);
+        let MomentumResidual { residual, increment, .. } = system.momentum_residual(node, h, &v);
         let measured = Measured { residual, scale: system.rounding(node, h, &v).residual };
         Ok(Solved { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
     }
 
     /// Takes a common step.
     #[inline(always)]
-    pub(crate) fn push_common<S: Stepping<N, T>>(&mut self, solved: &Solved<N, T>) {
-        if S::CLOSED_FORM {
-            self.predictor.replace(solved.v);
-        } else {
-            self.predictor.push_highest(solved.v);
-        }
+    pub(crate) fn push_common(&mut self, solved: &Solved<N, T>) {
+        self.predictor.push_highest(solved.v);
         self.keep(solved);
     }
 

@@ -239,6 +239,7 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
         let increment = Increment { momentum: right.increment, energy: T::zero() };
         MomentumResidual {
             residual: self.spoil_residual(right.residual, node, h, v),
+            magnitude: right.magnitude,
             increment: self.spoil_increment(increment, h, v).momentum,
         }
     }
@@ -247,12 +248,11 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
         let spoilt = self.unless(Fault::EnergyResidual, right.energy_residual, |residual| residual + node.energy);
         ExtendedResidual {
             residual: self.spoil_residual(right.residual, node, h, v),
+            magnitude: right.magnitude,
             energy_residual: spoilt,
+            energy_magnitude: right.energy_magnitude,
             increment: self.spoil_increment(right.increment, h, v),
         }
-    }
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
-        self.system.magnitudes(node, h, v)
     }
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
         self.unless(Fault::Rounding, self.system.rounding(node, h, v), |right| Rounding {

@@ -312,7 +312,8 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Steppi
 
     fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
         let both = self.extended_residual(node, h, v);
-        MomentumResidual { residual: both.residual, increment: both.increment.momentum }
+        let ExtendedResidual { residual, magnitude, increment, .. } = both;
+        MomentumResidual { residual, magnitude, increment: increment.momentum }
     }
 
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
@@ -321,27 +322,19 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Steppi
         let fields = self.0.fields(t, &q, v);
         ExtendedResidual {
             residual: system.momentum.residual,
+            magnitude: v.map(Real::abs)
+                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * T::real(0.5)).abs()
+                + node.p.map(Real::abs),
             energy_residual: system.energy_residual,
+            energy_magnitude: v.dot(v) * T::real(0.5)
+                + fields.potential_magnitude
+                + (h * T::real(0.5)).abs() * (fields.potential_t.abs() + magnitude(v, &fields.gradient))
+                + magnitude(v, &node.p)
+                + node.energy.abs(),
             increment: Increment {
                 momentum: (fields.force - fields.gradient) * h,
                 energy: h * (fields.potential_t + fields.force.dot(v)),
             },
-        }
-    }
-
-    fn magnitudes(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
-        let (t, q) = node.midpoint(h, v);
-        let fields = self.0.fields(t, &q, v);
-        let half = T::real(0.5);
-        Rounding {
-            residual: v.map(Real::abs)
-                + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * half).abs()
-                + node.p.map(Real::abs),
-            energy_residual: v.dot(v) * half
-                + fields.potential_magnitude
-                + (h * half).abs() * (fields.potential_t.abs() + magnitude(v, &fields.gradient))
-                + magnitude(v, &node.p)
-                + node.energy.abs(),
         }
     }
 

@@ -145,11 +145,13 @@ fn dependence(function: &Function, rows: &[Vec<OperationId>]) -> Dependence {
     inputs(function, rows).into_iter().map(of).max().unwrap_or(Dependence::Parameters)
 }
 
-/// Whether all results of a function are linear in what changes from step to step, but for a constant.
+/// Whether residual and increment of a momentum row are linear in what changes from step to step, but for a constant.
 fn affine(function: &Function) -> bool {
     // The degree of each operation; `None` where it is no polynomial, or one of degree 2 or more.
     let mut degrees: Table<OperationId, Option<u8>> = Table::default();
-    for id in function.operations.needed(&function.results) {
+    let [residual, _, increment] = &function.results[..] else { return false };
+    let rows = [residual.clone(), increment.clone()];
+    for id in function.operations.needed(&rows) {
         let degree = |id: &OperationId| degrees.get(*id).copied().flatten();
         let found = match function.operations.get(id) {
             Operation::Constant(_) | Operation::Input(Symbol::Parameter(_) | Symbol::Step) => Some(0),
@@ -162,7 +164,7 @@ fn affine(function: &Function) -> bool {
         };
         degrees.insert(id, found.filter(|degree| *degree <= 1));
     }
-    function.results.iter().flatten().all(|id| degrees.get(*id).copied().flatten().is_some())
+    rows.iter().flatten().all(|id| degrees.get(*id).copied().flatten().is_some())
 }
 
 fn symmetric(rows: &[Vec<OperationId>]) -> bool {

@@ -3,8 +3,10 @@
 //! In: a function and its [`Families`]. Out: statements in which a family is an array,
 //!
 //! ```text
-//! let s4: [T; 63] = ::core::array::from_fn(|i| q_mid[i + 1] - q_mid[i]);
-//! let s5: [T; 63] = ::core::array::from_fn(|i| (s1 + s2 * s4[i]) * s4[i]);
+//! let mut s4 = [real(0.0); 63];
+//! for i in 0..63 { s4[i] = q_mid[i + 1] - q_mid[i]; }
+//! let mut s5 = [real(0.0); 63];
+//! for i in 0..63 { s5[i] = (s1 + s2 * s4[i]) * s4[i]; }
 //! ```
 //!
 //! or stands in the formula of the one that reads it. First what all have in common, then the arrays, then what is no family:
@@ -185,7 +187,10 @@ impl Lines<'_, '_> {
             for (family, part) in [(family, own), (partner, other)] {
                 self.arrays.insert(family, Array { name: name.clone(), part: Some(part) });
             }
-            return quote!(let #name: [(T, T); #length] = ::core::array::from_fn(|#counter| #receiver.sin_cos()););
+            return quote! {
+                let mut #name = [(real(0.0), real(0.0)); #length];
+                for #counter in 0..#length { #name[#counter] = #receiver.sin_cos(); }
+            };
         }
         let symbol = loops.function.operations.name(members[0]).and_then(Symbol::component);
         let formula = self.formula(family, 0);
@@ -195,7 +200,11 @@ impl Lines<'_, '_> {
         let names = &mut *self.writing.names;
         let name = if let Some((vector, _)) = symbol { names.vector(&vector) } else { names.next_shared() };
         let (tokens, length) = (formula.tokens(), Literal::usize_unsuffixed(members.len()));
-        let line = quote!(let #name: [T; #length] = ::core::array::from_fn(|#counter| #tokens););
+        // Not `from_fn`, which calls a long closure for each entry.
+        let line = quote! {
+            let mut #name = [real(0.0); #length];
+            for #counter in 0..#length { #name[#counter] = #tokens; }
+        };
         self.arrays.insert(family, Array { name, part: None });
         line
     }

@@ -19,8 +19,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let constant = source.findings.constant_jacobian();
     let (form, equation) = momentum_equation(source);
     let functions = [equation, momentum_residual(source), extended_system(source), extended_residual(source)];
-    let functions = functions.into_iter().chain([magnitudes(source)]);
-    let functions = functions.flatten();
+    let functions = functions.into_iter().flatten();
     let closed = source.findings.closed_form().then(|| {
         quote!(
             const CLOSED_FORM: bool = true;
@@ -138,12 +137,14 @@ fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
 fn momentum_residual(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let of = &source.system.equations;
-    let formula = format!("The residual, and\n\n{}", source.formulas("p1 − p0", &of.momentum_increment));
+    let formula = format!("The residual, its magnitude, and\n\n{}", source.formulas("p1 − p0", &of.momentum_increment));
     let output = quote!(::vi_core::MomentumResidual<#dimension, T>);
     method(source, "momentum_residual", &formula, &output, |body| {
-        let [residual, increment] = &body.results[..] else { return None };
-        let (residual, increment) = (vector_of(residual), vector_of(increment));
-        Some(quote!(::vi_core::MomentumResidual { residual: #residual, increment: #increment }))
+        let [residual, magnitude, increment] = &body.results[..] else { return None };
+        let [residual, magnitude, increment] = [residual, magnitude, increment].map(|entries| vector_of(entries));
+        Some(quote! {
+            ::vi_core::MomentumResidual { residual: #residual, magnitude: #magnitude, increment: #increment }
+        })
     })
 }
 
@@ -171,27 +172,22 @@ fn extended_system(source: &Source) -> Option<TokenStream> {
 fn extended_residual(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let of = &source.system.equations;
-    let formula = format!("Both residuals, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
+    let formula =
+        format!("Both residuals, their magnitudes, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
     let output = quote!(::vi_core::ExtendedResidual<#dimension, T>);
     method(source, "extended_residual", &formula, &output, |body| {
-        let [residual, energy_residual, momentum, energy] = &body.results[..] else { return None };
-        let (residual, momentum) = (vector_of(residual), vector_of(momentum));
+        let [residual, magnitude, energy_residual, energy_magnitude, momentum, energy] = &body.results[..] else {
+            return None;
+        };
+        let [residual, magnitude, momentum] = [residual, magnitude, momentum].map(|entries| vector_of(entries));
         Some(quote! {
             ::vi_core::ExtendedResidual {
                 residual: #residual,
+                magnitude: #magnitude,
                 energy_residual: #(#energy_residual)*,
+                energy_magnitude: #(#energy_magnitude)*,
                 increment: ::vi_core::Increment { momentum: #momentum, energy: #(#energy)* },
             }
         })
-    })
-}
-
-fn magnitudes(source: &Source) -> Option<TokenStream> {
-    let dimension = source.dimension();
-    let formula = "Sums of the absolute values of the terms of `residual` and `energy_residual`.";
-    method(source, "magnitudes", formula, &quote!(::vi_core::Rounding<#dimension, T>), |body| {
-        let [residual, energy_residual] = &body.results[..] else { return None };
-        let residual = vector_of(residual);
-        Some(quote!(::vi_core::Rounding { residual: #residual, energy_residual: #(#energy_residual)* }))
     })
 }

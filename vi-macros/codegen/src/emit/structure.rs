@@ -179,7 +179,6 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn momentum_residual(#from) -> ::vi_core::MomentumResidual<#n, T> #none
             fn extended_system(#from) -> ::vi_core::ExtendedSystem<#n, T> #none
             fn extended_residual(#from) -> ::vi_core::ExtendedResidual<#n, T> #none
-            fn magnitudes(#from) -> ::vi_core::Rounding<#n, T> #none
             fn rounding(#from) -> ::vi_core::Rounding<#n, T> #none
         }
     }

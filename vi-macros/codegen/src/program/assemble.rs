@@ -180,14 +180,13 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     extended.push(energy_residual.clone());
     extended.push(assembly.open_all(&of.energy_dv));
     extended.push(assembly.open_all(&[of.energy_dh]));
-    let magnitudes = [assembly.magnitudes(&residual), assembly.magnitudes(&energy_residual)];
-    let measured = [residual.clone(), momentum_increment.clone()];
-    let both_measured = [residual, energy_residual, momentum_increment, energy_increment];
+    let (size, energy_size) = (assembly.magnitudes(&residual), assembly.magnitudes(&energy_residual));
+    let measured = [residual.clone(), size.clone(), momentum_increment.clone()];
+    let both_measured = [residual, size, energy_residual, energy_size, momentum_increment, energy_increment];
     Ok(vec![
         assembly.function("momentum_equation", &equation)?,
         assembly.function("momentum_residual", &measured)?,
         assembly.function("extended_system", &extended)?,
         assembly.function("extended_residual", &both_measured)?,
-        assembly.function("magnitudes", &magnitudes)?,
     ])
 }

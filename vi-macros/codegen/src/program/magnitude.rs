@@ -4,7 +4,7 @@
 //! below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out.
 
 use crate::symbol::Symbol;
-use num_traits::{Signed, Zero};
+use num_traits::{One, Signed, Zero};
 use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
 
 /// Levels of sums inside sums that count term by term.
@@ -35,7 +35,7 @@ fn terms(pool: &mut Pool<Symbol>, sum: &Sum, depth: u32) -> Expr {
     pool.sum(&found)
 }
 
-/// The product of the magnitudes of its factors.
+/// The product of the magnitudes of its factors: of a sum s to the power n `n |s|^(n−1)` times that of s, by which it changes.
 fn factors(pool: &mut Pool<Symbol>, product: &Product, depth: u32) -> Expr {
     let (mut sums, mut others) = (Vec::new(), Vec::new());
     for (base, exponent) in &product.factors {
@@ -43,7 +43,8 @@ fn factors(pool: &mut Pool<Symbol>, product: &Product, depth: u32) -> Expr {
             matches!(pool.node(*base), Node::Sum(_)) && exponent.is_integer() && exponent.is_positive();
         if is_power_of_sum {
             let magnitude = term_by_term(pool, *base, depth);
-            sums.push(pool.power(magnitude, exponent));
+            sums.push(pool.scale(magnitude, exponent));
+            others.push(pool.power(*base, &(exponent - Rational::one())));
         } else {
             others.push(pool.power(*base, exponent));
         }

@@ -124,10 +124,6 @@ impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
         self.counted().extended_residual(node, h, v)
     }
 
-    fn magnitudes(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
-        self.system.magnitudes(node, h, v)
-    }
-
     fn rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
         self.system.rounding(node, h, v)
     }
