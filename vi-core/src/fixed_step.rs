@@ -151,7 +151,8 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        let (run, outcome) = uncommon(black_box(self.system), black_box(self.way), black_box(self.run));
+        let (run, outcome) = uncommon(self.system, self.way, self.run.apart());
+        let run = run.apart();
         match outcome {
             Ok(()) => self.run = run,
             Err(failure) => (self.failure, self.is_searched) = (Some(failure), true),
@@ -213,6 +214,16 @@ where
 }
 
 impl<const N: usize, T: Scalar> Run<N, T> {
+    /// The same run, in memory of its own.
+    ///
+    /// The rare path is lent copies of a run and gives one back, so that a loop over steps may keep its own in registers. But copies
+    /// of many numbers at once tie a run to memory, where it is loaded two numbers at a time that were stored one by one, and each step waits for
+    /// that. So each number is copied for itself. Measured: the double well takes 33 ns without this and 23 with it, the oscillator 22 and 9.
+    fn apart(self) -> Self {
+        let Self { node, steps, iterations, branch } = self;
+        Self { node: node.map(black_box), steps: steps.map(black_box), iterations, branch }
+    }
+
     /// Takes a step that is not the common one.
     fn take<S: Stepping<N, T>>(&mut self, system: &S, way: &Way<S::Jacobian, N, T>) -> Result<(), StepError> {
         let (t, h) = (self.node.t, self.steps.h);

@@ -49,6 +49,11 @@ impl<const M: usize, T: Real> Predictor<M, T> {
         Self { last: [guess; HIGHEST + 1], degree: 0 }
     }
 
+    /// The same, every number passed through `convert`.
+    pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
+        Self { last: self.last.map(|u| u.map(convert)), degree: self.degree }
+    }
+
     /// The unknowns of the last step.
     #[inline(always)]
     pub(crate) fn newest(&self) -> SVector<T, M> {

@@ -13,7 +13,7 @@
 use crate::dispatch::Instructions;
 use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
-use crate::sweep::{Extrapolate, Fixed, Reached, Sweep};
+use crate::sweep::{Extrapolate, Fixed, Sweep, Verdict};
 use nalgebra::SVector;
 use vi_core::support::step_alone;
 use vi_core::{Batch, FixedStep, Node, State, StepError};
@@ -31,11 +31,13 @@ pub(crate) struct Block<S: Batch<N>, const N: usize> {
     fixed: Fixed<[S::Rows<HALF>; 2]>,
     steps: u64,
     instructions: Instructions,
-    /// The last nodes.
-    nodes: Box<Nodes<N>>,
-    /// The velocities of the last steps, the newest first.
+    /// The last nodes, and room for the next ones.
+    nodes: [Box<Nodes<N>>; 2],
+    /// The velocities of the last steps, the newest first, and room for the next ones.
     velocities: Vec<Box<Rows<N>>>,
-    reached: Box<Reached<N>>,
+    /// What the next velocities take of the last ones.
+    weights: Vec<f64>,
+    verdict: Box<Verdict>,
     /// How many trajectories have not ended.
     running: usize,
     ended: Vec<Option<Ended<N>>>,
@@ -52,29 +54,23 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             t: Row::filled(0.0),
             h,
         };
-        let reached = Reached {
-            nodes: Nodes::zeros(),
-            velocity: Rows::zeros(),
-            remainders: [Rows::zeros(), Rows::zeros()],
-            refused: Row::filled(0),
-            running: Row::filled(0),
-        };
         let depth = if N == 1 { DEPTH_OF_ONE } else { DEPTH };
         let mut block = Self {
             fixed,
             steps: 0,
             instructions,
-            nodes: Box::new(Nodes::zeros()),
-            velocities: vec![Box::new(Rows::zeros()); depth],
-            reached: Box::new(reached),
+            nodes: [Box::new(Nodes::zeros()), Box::new(Nodes::zeros())],
+            velocities: vec![Box::new(Rows::zeros()); depth + 1],
+            weights: Vec::new(),
+            verdict: Box::new(Verdict { refused: Row::filled(0), running: Row::filled(0) }),
             running: count,
             ended: vec![None; count],
         };
         for (number, (system, state)) in all.iter().enumerate() {
             let lane = LaneIndex::of(number);
             block.fixed.t.set(lane, state.t);
-            block.reached.running.set(lane, if number < count { u64::MAX } else { 0 });
-            block.nodes.set(lane, &Node::new(*state, 0.0));
+            block.verdict.running.set(lane, if number < count { u64::MAX } else { 0 });
+            block.nodes[0].set(lane, &Node::new(*state, 0.0));
             match FixedStep::new(system, *state, h) {
                 Ok(start) => block.velocities[0].set(lane, &start.v()),
                 Err(error) => block.end(number, *state, error),
@@ -89,7 +85,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             *ended = Some(Ended { state, steps: self.steps, error });
             self.running -= 1;
         }
-        self.reached.running.set(LaneIndex::of(number), 0);
+        self.verdict.running.set(LaneIndex::of(number), 0);
     }
 
     /// How many trajectories there are, ended or not.
@@ -110,7 +106,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     /// The last node of a trajectory.
     fn node(&self, number: usize) -> Node<N> {
         let lane = LaneIndex::of(number);
-        self.nodes.get(lane, self.fixed.t.get(lane) + self.elapsed())
+        self.nodes[0].get(lane, self.fixed.t.get(lane) + self.elapsed())
     }
 
     /// Time since the start.
@@ -131,21 +127,20 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     fn step(&mut self) {
         let (instructions, elapsed) = (self.instructions, self.elapsed());
-        let Self { fixed, nodes, velocities, reached, .. } = self;
-        // One velocity is known before the first step.
-        let known = usize::try_from(self.steps).unwrap_or(usize::MAX).saturating_add(1).min(velocities.len());
-        let guess = &mut reached.velocity;
-        instructions.run(Extrapolate { weights: &weights(known), velocities: &velocities[..known], guess });
-        let refused = instructions.run(Sweep::<S, N, false> { fixed, elapsed, before: nodes, reached })
-            && instructions.run(Sweep::<S, N, true> { fixed, elapsed, before: nodes, reached });
+        let Self { fixed, nodes: [before, after], velocities, weights, verdict, .. } = self;
+        let Some((velocity, known)) = velocities.split_last_mut() else { return };
+        // One velocity is known before the first step, and one more after each.
+        if weights.len() < known.len() {
+            *weights = alternating_binomials(weights.len() + 1);
+        }
+        instructions.run(Extrapolate { weights, velocities: known, guess: velocity });
+        let refused = instructions.run(Sweep::<S, N, false> { fixed, elapsed, before, after, velocity, verdict })
+            && instructions.run(Sweep::<S, N, true> { fixed, elapsed, before, after, velocity, verdict });
         if refused {
             self.take_alone();
         }
-        let Self { nodes, velocities, reached, .. } = self;
-        core::mem::swap(&mut **nodes, &mut reached.nodes);
-        velocities.rotate_right(1);
-        core::mem::swap(&mut *velocities[0], &mut reached.velocity);
-        reached.remainders.swap(0, 1);
+        self.nodes.swap(0, 1);
+        self.velocities.rotate_right(1);
         self.steps += 1;
     }
 
@@ -154,16 +149,15 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     fn take_alone(&mut self) {
         for number in 0..WIDTH {
             let lane = LaneIndex::of(number);
-            if self.reached.refused.get(lane) & self.reached.running.get(lane) == 0 {
+            if self.verdict.refused.get(lane) & self.verdict.running.get(lane) == 0 {
                 continue;
             }
             let (system, node) = (S::pick::<f64, HALF>(&self.fixed.systems[lane.half], lane.index), self.node(number));
-            let last = self.velocities[0].get(lane);
+            let last: SVector<f64, N> = self.velocities[0].get(lane);
             match step_alone(&system, &node, self.fixed.h, last) {
                 Ok((next, v)) => {
-                    self.reached.nodes.set(lane, &next);
-                    self.reached.velocity.set(lane, &v);
-                    self.reached.remainders[1].set(lane, &SVector::<f64, N>::zeros());
+                    self.nodes[1].set(lane, &next);
+                    self.nodes[1].remainder.set(lane, &SVector::<f64, N>::zeros());
                     self.leap(lane, v, v - last);
                 }
                 Err(error) => self.end(number, node.state(), error),
@@ -173,8 +167,10 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 
     /// Makes the velocities of a trajectory a line that ends in v: what was before a leap says nothing of what comes after it.
     fn leap(&mut self, lane: LaneIndex, v: SVector<f64, N>, change: SVector<f64, N>) {
+        let Some((newest, known)) = self.velocities.split_last_mut() else { return };
+        newest.set(lane, &v);
         let mut before = v;
-        for velocities in &mut self.velocities {
+        for velocities in known {
             before -= change;
             velocities.set(lane, &before);
         }
@@ -182,7 +178,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
 }
 
 /// The weights of so many velocities, the newest first: their binomial coefficients with alternating signs.
-fn weights(count: usize) -> Vec<f64> {
+fn alternating_binomials(count: usize) -> Vec<f64> {
     let mut weights = Vec::with_capacity(count);
     let mut binomial = 1.0;
     for (taken, left) in (1_u32..).zip((1..=u32::try_from(count).unwrap_or(u32::MAX)).rev()) {
@@ -194,12 +190,12 @@ fn weights(count: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::weights;
+    use super::alternating_binomials;
 
     #[test]
     fn a_polynomial_is_extrapolated() {
         for count in 1..=11_u32 {
-            let weights = weights(count as usize);
+            let weights = alternating_binomials(count as usize);
             assert_eq!(weights.len(), count as usize);
             let power = |t: f64| t.powi(i32::try_from(count).unwrap_or(0) - 1);
             let guess: f64 = weights.iter().zip(1..).map(|(weight, j)| weight * power(-f64::from(j))).sum();

@@ -13,6 +13,9 @@ pub(crate) const WIDTH: usize = 2 * HALF;
 /// Trajectories in half of a block.
 pub(crate) const HALF: usize = 32;
 
+/// Numbers that are summed at a time: two of the widest vectors.
+const CHUNK: usize = 16;
+
 /// One number of each trajectory of a block.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
@@ -82,29 +85,39 @@ impl<const N: usize> Rows<N> {
         }
     }
 
-    /// Adds `factor` times other rows to these.
+    /// Sets these to `Σ weight · other`.
     #[inline(always)]
-    pub(crate) fn add<const FUSED: bool>(&mut self, factor: f64, other: &Self) {
-        for (row, other) in self.0.iter_mut().zip(&other.0) {
-            for (sum, entry) in row.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
-                *sum = (Lane::<FUSED>::new(*sum) + Lane::new(factor) * Lane::new(*entry)).get();
+    pub(crate) fn set_sum<const FUSED: bool>(&mut self, weights: &[f64], others: &[Box<Self>]) {
+        for (k, row) in self.0.iter_mut().enumerate() {
+            for (place, sums) in row.0.as_flattened_mut().chunks_exact_mut(CHUNK).enumerate() {
+                // In registers, until the sums are whole.
+                let mut whole = [0.0; CHUNK];
+                for (weight, other) in weights.iter().zip(others) {
+                    let entries = &other.0[k].0.as_flattened()[place * CHUNK..(place + 1) * CHUNK];
+                    for (sum, entry) in whole.iter_mut().zip(entries) {
+                        *sum = (Lane::<FUSED>::new(*sum) + Lane::new(*weight) * Lane::new(*entry)).get();
+                    }
+                }
+                sums.copy_from_slice(&whole);
             }
         }
     }
 }
 
-/// Coordinates and momenta of a block with their low parts.
+/// Coordinates and momenta of a block with their low parts, and what the last step left of its equations.
 #[derive(Clone, Debug)]
 pub(crate) struct Nodes<const N: usize> {
     q: Rows<N>,
     q_low: Rows<N>,
     p: Rows<N>,
     p_low: Rows<N>,
+    pub(crate) remainder: Rows<N>,
 }
 
 impl<const N: usize> Nodes<N> {
     pub(crate) fn zeros() -> Self {
-        Self { q: Rows::zeros(), q_low: Rows::zeros(), p: Rows::zeros(), p_low: Rows::zeros() }
+        let zeros = Rows::zeros;
+        Self { q: zeros(), q_low: zeros(), p: zeros(), p_low: zeros(), remainder: zeros() }
     }
 
     /// The node of one trajectory, at the time t. Its energy has no meaning.

@@ -29,15 +29,9 @@ pub(crate) struct Fixed<B> {
     pub(crate) h: f64,
 }
 
-/// What a sweep leads to.
+/// Which trajectories a sweep refuses.
 #[derive(Clone, Debug)]
-pub(crate) struct Reached<const N: usize> {
-    /// The nodes after the step.
-    pub(crate) nodes: Nodes<N>,
-    /// The velocities to start from; then those of the step.
-    pub(crate) velocity: Rows<N>,
-    /// What the last step left of the momentum rows, and what this one leaves.
-    pub(crate) remainders: [Rows<N>; 2],
+pub(crate) struct Verdict {
     /// All bits one where a trajectory was refused, none elsewhere.
     pub(crate) refused: Row<u64>,
     /// All bits one where there is a trajectory that has not ended.
@@ -76,15 +70,38 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
         }
         Step { v, increment, remainder, accepted }
     }
+
+    /// Writes the step to its lane; all bits one where the trajectory is running and was refused.
+    #[inline(always)]
+    fn take<const AGAIN: bool>(
+        &self,
+        step: &Step<N, FUSED>,
+        lane: LaneIndex,
+        after: &mut Nodes<N>,
+        velocity: &mut Rows<N>,
+        verdict: &mut Verdict,
+    ) -> u64 {
+        let kept = AGAIN && verdict.refused.get(lane) == 0;
+        let mut node = self.node;
+        node.advance(self.h, &(step.v * self.h), &step.increment);
+        after.set_unless(kept, lane, &node);
+        after.remainder.set_unless(kept, lane, &step.remainder);
+        velocity.set_unless(kept, lane, &step.v);
+        let refused = if step.accepted || kept { 0 } else { u64::MAX };
+        verdict.refused.set(lane, refused);
+        refused & verdict.running.get(lane)
+    }
 }
 
-/// The step of every trajectory from the velocities that stand in `reached`; or, `AGAIN`, of those that were refused from where they
-/// came, while the others stay as they are. Whether a running trajectory was refused.
+/// The step of every trajectory from the velocities given, which become those of the step; or, `AGAIN`, of those that were refused
+/// from where they came, while the others stay as they are. Whether a running trajectory was refused.
 pub(crate) struct Sweep<'a, S: Batch<N>, const N: usize, const AGAIN: bool> {
     pub(crate) fixed: &'a Fixed<[S::Rows<HALF>; 2]>,
     pub(crate) elapsed: f64,
     pub(crate) before: &'a Nodes<N>,
-    pub(crate) reached: &'a mut Reached<N>,
+    pub(crate) after: &'a mut Nodes<N>,
+    pub(crate) velocity: &'a mut Rows<N>,
+    pub(crate) verdict: &'a mut Verdict,
 }
 
 impl<S: Batch<N>, const N: usize, const AGAIN: bool> Loop for Sweep<'_, S, N, AGAIN> {
@@ -92,9 +109,9 @@ impl<S: Batch<N>, const N: usize, const AGAIN: bool> Loop for Sweep<'_, S, N, AG
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
-        let Self { fixed, elapsed, before, reached } = self;
+        let Self { fixed, elapsed, before, after, velocity, verdict } = self;
         // Arguments do not overlap, so far as the compiler knows; what stands in a struct of references may.
-        sweep::<S, N, FUSED, AGAIN>(fixed, elapsed, before, reached)
+        sweep::<S, N, FUSED, AGAIN>(fixed, elapsed, before, after, velocity, verdict)
     }
 }
 
@@ -105,16 +122,19 @@ fn sweep<S: Batch<N>, const N: usize, const FUSED: bool, const AGAIN: bool>(
     fixed: &Fixed<[S::Rows<HALF>; 2]>,
     elapsed: f64,
     before: &Nodes<N>,
-    reached: &mut Reached<N>,
+    after: &mut Nodes<N>,
+    velocity: &mut Rows<N>,
+    verdict: &mut Verdict,
 ) -> bool {
     let mut any = 0;
     for index in 0..HALF {
-        let (first, second) = (LaneIndex { half: 0, index }, LaneIndex { half: 1, index });
-        let a = trajectory::<S, N, FUSED>(fixed, elapsed, before, reached, first);
-        let b = trajectory::<S, N, FUSED>(fixed, elapsed, before, reached, second);
-        let (step_a, step_b) = (a.step(&reached.velocity.get(first)), b.step(&reached.velocity.get(second)));
-        any |= reached.take::<FUSED, AGAIN>(first, &a.node, a.h, &step_a);
-        any |= reached.take::<FUSED, AGAIN>(second, &b.node, b.h, &step_b);
+        let (a, b) = (LaneIndex { half: 0, index }, LaneIndex { half: 1, index });
+        let first = trajectory::<S, N, FUSED>(fixed, elapsed, before, a);
+        let second = trajectory::<S, N, FUSED>(fixed, elapsed, before, b);
+        let step_of_first = first.step(&velocity.get(a));
+        let step_of_second = second.step(&velocity.get(b));
+        any |= first.take::<AGAIN>(&step_of_first, a, after, velocity, verdict);
+        any |= second.take::<AGAIN>(&step_of_second, b, after, velocity, verdict);
     }
     any != 0
 }
@@ -125,36 +145,13 @@ fn trajectory<S: Batch<N>, const N: usize, const FUSED: bool>(
     fixed: &Fixed<[S::Rows<HALF>; 2]>,
     elapsed: f64,
     before: &Nodes<N>,
-    reached: &Reached<N>,
     lane: LaneIndex,
 ) -> Trajectory<N, FUSED, S::In<Lane<FUSED>>> {
     Trajectory {
         system: S::pick::<Lane<FUSED>, HALF>(&fixed.systems[lane.half], lane.index),
         node: before.get(lane, fixed.t.get(lane) + elapsed),
         h: Lane::new(fixed.h),
-        remainder: reached.remainders[0].get(lane),
-    }
-}
-
-impl<const N: usize> Reached<N> {
-    /// Takes the step of one trajectory; all bits one where it is running and was refused.
-    #[inline(always)]
-    fn take<const FUSED: bool, const AGAIN: bool>(
-        &mut self,
-        lane: LaneIndex,
-        start: &Node<N, Lane<FUSED>>,
-        h: Lane<FUSED>,
-        step: &Step<N, FUSED>,
-    ) -> u64 {
-        let kept = AGAIN && self.refused.get(lane) == 0;
-        let mut node = *start;
-        node.advance(h, &(step.v * h), &step.increment);
-        self.nodes.set_unless(kept, lane, &node);
-        self.velocity.set_unless(kept, lane, &step.v);
-        self.remainders[1].set_unless(kept, lane, &step.remainder);
-        let refused = if step.accepted || kept { 0 } else { u64::MAX };
-        self.refused.set(lane, refused);
-        refused & self.running.get(lane)
+        remainder: before.remainder.get(lane),
     }
 }
 
@@ -170,9 +167,6 @@ impl<const N: usize> Loop for Extrapolate<'_, N> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
-        *self.guess = Rows::zeros();
-        for (weight, velocity) in self.weights.iter().zip(self.velocities) {
-            self.guess.add::<FUSED>(*weight, velocity);
-        }
+        self.guess.set_sum::<FUSED>(self.weights, self.velocities);
     }
 }

@@ -144,6 +144,18 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         Self { h, predictor, remainder: SVector::zeros(), measured, begun: false }
     }
 
+    /// The same, every number passed through `convert`.
+    pub(crate) fn map(self, convert: impl Fn(T) -> T + Copy) -> Self {
+        let Measured { residual, scale } = self.measured;
+        Self {
+            h: convert(self.h),
+            predictor: self.predictor.map(convert),
+            remainder: self.remainder.map(convert),
+            measured: Measured { residual: residual.map(convert), scale: scale.map(convert) },
+            begun: self.begun,
+        }
+    }
+
     /// Whether there was no step yet.
     pub(crate) fn is_new(&self) -> bool {
         !self.begun
