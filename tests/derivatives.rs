@@ -140,7 +140,7 @@ fn check_slots<const N: usize>(
 
 /// The equations of a step against the slots, their Jacobians against dual numbers.
 fn check_step<const N: usize>(
-    system: &impl Stepping<N>,
+    system: &(impl Stepping<N> + DiscreteLagrangian<N>),
     dual: &impl Stepping<N, D>,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     check: &mut Comparison,
@@ -219,7 +219,7 @@ macro_rules! derivatives {
             let mut draw = Sequence::new(7);
             for _ in 0..DRAWS {
                 let mut $s = systems::$system::default();
-                for name in <systems::$system as Parameters>::PARAMETERS {
+                for name in <systems::$system as Lagrangian<_>>::PARAMETERS {
                     *$s.parameter_mut(name).expect("a name of the list") = draw.within(0.6, 1.9);
                 }
                 let (dual, second) = (systems::$system::<D>::from_f64(&$s), systems::$system::<DD>::from_f64(&$s));

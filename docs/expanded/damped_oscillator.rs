@@ -41,10 +41,19 @@ impl<T: ::vi_core::Real> DampedOscillator<T> {
             c: T::real(system.c),
         }
     }
+
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(dead_code)]
+    fn convert<U: ::vi_core::Real>(&self) -> DampedOscillator<U> {
+        DampedOscillator {
+            m: U::real(self.m.to_f64()),
+            k: U::real(self.k.to_f64()),
+            c: U::real(self.c.to_f64()),
+        }
+    }
 }
 
 impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DampedOscillator<T> {
-    const PARAMETERS: &'static [&'static str] = &["m", "k", "c"];
     fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
         match name {
             "m" => Some(&mut self.m),
@@ -62,6 +71,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
     const AUTONOMOUS: bool = true;
     const FORCED: bool = true;
     const CYCLIC: [bool; 1] = [false];
+    const PARAMETERS: &'static [&'static str] = &["m", "k", "c"];
+    fn parameter(&self, index: usize) -> T {
+        [self.m, self.k, self.c][index]
+    }
 
     /// `L = m*dot(x)^2/2 - k*x^2/2`
     ///
@@ -322,9 +335,8 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillato
 impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
     type Jacobian = ::vi_core::SMatrix<T, 1, 1>;
     const CONSTANT_JACOBIAN: bool = true;
-    const SMOOTH: bool = true;
     const CLOSED_FORM: bool = true;
-    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
+    const INLINED: bool = true;
 
     /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
     ///
@@ -352,6 +364,42 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
             jacobian: ::vi_core::SMatrix::from_row_slice(
                 &[self.m + (s1 + self.k * h * real(0.25)) * h],
             ),
+        }
+    }
+
+    /// The residual, its magnitude, and
+    ///
+    /// `p1 − p0_x = h*f_x + h*L_x`
+    ///
+    /// 32 operations.
+    #[inline(always)]
+    fn momentum_residual(
+        &self,
+        node: &::vi_core::Node<1, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::MomentumResidual<1, T> {
+        let [x0]: [T; 1] = node.q.into();
+        let [x0_low]: [T; 1] = node.q_low.into();
+        let [p0_x]: [T; 1] = node.p.into();
+        let [p0_x_low]: [T; 1] = node.p_low.into();
+        let [x_dot]: [T; 1] = (*v).into();
+        let real = T::real;
+        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+        let s1 = self.m * x_dot;
+        ::vi_core::MomentumResidual {
+            residual: ::vi_core::SVector::from([
+                s1 - p0_x
+                    + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
+                        - p0_x_low),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                p0_x.abs() + s1.abs() + (self.c * h * x_dot).abs() * real(0.5)
+                    + (self.k * h * x_mid).abs() * real(0.5),
+            ]),
+            increment: ::vi_core::SVector::from([
+                -((self.k * x_mid + self.c * x_dot) * h),
+            ]),
         }
     }
 
@@ -396,155 +444,65 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
         }
     }
 
-    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
-    ///
-    /// 43 operations.
-    #[cold]
-    fn magnitudes(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::Magnitudes<1, T> {
-        let energy0 = node.energy;
-        let [x0]: [T; 1] = node.q.into();
-        let [x0_low]: [T; 1] = node.q_low.into();
-        let [p0_x]: [T; 1] = node.p.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let real = T::real;
-        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
-        let s1 = self.k * h;
-        let s2 = self.k * x_mid;
-        let s3 = energy0.abs() + (x_dot * p0_x).abs()
-            + (self.m * (x_dot * x_dot)).abs() * real(0.5)
-            + (self.k * (x_mid * x_mid)).abs() * real(0.5);
-        ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from([
-                p0_x.abs() + (self.m * x_dot).abs()
-                    + (self.c * h * x_dot).abs() * real(0.5) + (s2 * h).abs(),
-            ]),
-            energy_residual: s3 + (s1 * x_dot * x_mid).abs() * real(0.5)
-                + (x_mid * (s1 * real(0.5) * x_dot - s2)).abs(),
-        }
-    }
-
-    /// `p1 − p0_x = h*f_x + h*L_x`
+    /// Both residuals, their magnitudes, and
     ///
     /// `E1 − E0 = h*f_x*v_x`
     ///
-    /// 13 operations.
+    /// 65 operations.
     #[inline(always)]
-    fn increment(
+    fn extended_residual(
         &self,
         node: &::vi_core::Node<1, T>,
         h: T,
         v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::Increment<1, T> {
-        let [x0]: [T; 1] = node.q.into();
-        let [x0_low]: [T; 1] = node.q_low.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let real = T::real;
-        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                -((self.k * x_mid + self.c * x_dot) * h),
-            ]),
-            energy: -(self.c * h * (x_dot * x_dot)),
-        }
-    }
-
-    /// `p1 − p0_x = h*f_x + h*L_x`
-    ///
-    /// to first order at `v + dv`.
-    ///
-    /// 24 operations.
-    #[inline(always)]
-    fn momentum_step(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        place: &::vi_core::SVector<T, 1>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::MomentumEquation<1, T, Self::Jacobian>,
-        ) -> ::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::SVector<T, 1> {
-        let [p0_x]: [T; 1] = node.p.into();
-        let [p0_x_low]: [T; 1] = node.p_low.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let [x_mid]: [T; 1] = (*place).into();
-        let real = T::real;
-        let s1 = self.c * real(0.5);
-        let s2 = self.k * h;
-        let momentum = ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                self.m * x_dot - p0_x
-                    + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[self.m + (s1 + s2 * real(0.25)) * h],
-            ),
-        };
-        let change: [T; 1] = solve(&momentum).into();
-        ::vi_core::SVector::from([
-            -((self.k * x_mid + self.c * x_dot) * h)
-                + (-self.c - s2 * real(0.5)) * h * change[0],
-        ])
-    }
-
-    /// `p1 − p0_x = h*f_x + h*L_x`
-    ///
-    /// `E1 − E0 = h*f_x*v_x`
-    ///
-    /// at `(v + dv, h + dh)`.
-    ///
-    /// 37 operations.
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        place: &::vi_core::SVector<T, 1>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::ExtendedSystem<1, T, Self::Jacobian>,
-        ) -> (::vi_core::SVector<T, 1>, T),
-    ) -> ::vi_core::Increment<1, T> {
+    ) -> ::vi_core::ExtendedResidual<1, T> {
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
+        let [x0]: [T; 1] = node.q.into();
+        let [x0_low]: [T; 1] = node.q_low.into();
         let [p0_x]: [T; 1] = node.p.into();
         let [p0_x_low]: [T; 1] = node.p_low.into();
         let [x_dot]: [T; 1] = (*v).into();
-        let [x_mid]: [T; 1] = (*place).into();
         let real = T::real;
-        let s1 = self.k * h * real(0.25);
-        let s2 = self.m * x_dot;
-        let s3 = self.k * x_mid;
-        let s4 = s3 * real(0.5) + self.c * x_dot * real(0.5);
-        let s5 = s1 * x_dot;
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        s2 - p0_x + (s4 * h - p0_x_low),
-                    ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[self.m + (self.c * real(0.5) + s1) * h],
-                    ),
-                },
-                residual_dh: ::vi_core::SVector::from([s4 + s5]),
-                energy_residual: self.k * (x_mid * x_mid) * real(0.5) - energy0
-                    + (p0_x - s2 * real(0.5)) * x_dot
-                    + ((p0_x_low - s3 * (h * real(0.5))) * x_dot - energy0_low),
-                energy_dv: ::vi_core::SVector::from([s4 - s5]),
-                energy_dh: -(self.k * (x_dot * x_dot) * real(0.25)),
+        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+        let s1 = self.m * x_dot;
+        let s2 = self.c * h;
+        let s3 = x_dot * x_dot;
+        let s4 = self.k * (x_mid * x_mid);
+        let s5 = self.k * h;
+        let s6 = energy0.abs() + (x_dot * p0_x).abs() + (self.m * s3).abs() * real(0.5)
+            + s4.abs() * real(0.5);
+        ::vi_core::ExtendedResidual {
+            residual: ::vi_core::SVector::from([
+                s1 - p0_x
+                    + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
+                        - p0_x_low),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                p0_x.abs() + s1.abs() + (s2 * x_dot).abs() * real(0.5)
+                    + (s5 * x_mid).abs() * real(0.5),
+            ]),
+            energy_residual: s4 * real(0.5) - energy0 + (p0_x - s1 * real(0.5)) * x_dot
+                + ((p0_x_low - s5 * real(0.5) * x_mid) * x_dot - energy0_low),
+            energy_magnitude: s6 + (s5 * x_dot * x_mid).abs() * real(0.5),
+            increment: ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from([
+                    -((self.k * x_mid + self.c * x_dot) * h),
+                ]),
+                energy: -(s2 * s3),
             },
-        );
-        self.increment(
-            node,
-            h + change_h,
-            &(::vi_core::SVector::<T, 1>::from(*v) + change),
-        )
+        }
+    }
+
+    /// What the rounding of both residuals is measured in, by running error analysis.
+    #[cold]
+    fn rounding(
+        &self,
+        node: &::vi_core::Node<1, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 1>,
+    ) -> ::vi_core::Rounding<1, T> {
+        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
     }
 }
 

@@ -58,10 +58,21 @@ impl<T: ::vi_core::Real> DoublePendulum<T> {
             g: T::real(system.g),
         }
     }
+
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(dead_code)]
+    fn convert<U: ::vi_core::Real>(&self) -> DoublePendulum<U> {
+        DoublePendulum {
+            m1: U::real(self.m1.to_f64()),
+            m2: U::real(self.m2.to_f64()),
+            l1: U::real(self.l1.to_f64()),
+            l2: U::real(self.l2.to_f64()),
+            g: U::real(self.g.to_f64()),
+        }
+    }
 }
 
 impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DoublePendulum<T> {
-    const PARAMETERS: &'static [&'static str] = &["m1", "m2", "l1", "l2", "g"];
     fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
         match name {
             "m1" => Some(&mut self.m1),
@@ -81,6 +92,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
     const AUTONOMOUS: bool = true;
     const FORCED: bool = false;
     const CYCLIC: [bool; 2] = [false, false];
+    const PARAMETERS: &'static [&'static str] = &["m1", "m2", "l1", "l2", "g"];
+    fn parameter(&self, index: usize) -> T {
+        [self.m1, self.m2, self.l1, self.l2, self.g][index]
+    }
 
     /// `L = l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)`
     ///
@@ -456,8 +471,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<
 impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
-    const SMOOTH: bool = true;
-    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
+    const INLINED: bool = true;
 
     /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
     ///
@@ -514,6 +528,60 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         }
     }
 
+    /// The residual, its magnitude, and
+    ///
+    /// `p1 − p0_θ1 = h*L_θ1`
+    ///
+    /// `p1 − p0_θ2 = h*L_θ2`
+    ///
+    /// 81 operations.
+    #[inline(always)]
+    fn momentum_residual(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::MomentumResidual<2, T> {
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = self.m1 + self.m2;
+        let s3 = self.m2 * (self.l2 * self.l2) * θ2_dot;
+        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s6 = cos4 * cos5 + sin4 * sin5;
+        let s7 = self.l1 * self.l1;
+        let s8 = self.m2 * self.l1 * self.l2;
+        let s9 = s8 * θ2_dot * s6;
+        let s10 = s8 * θ1_dot;
+        let s11 = s10 * s6;
+        let s12 = s10 * θ2_dot * (sin4 * cos5 - cos4 * sin5);
+        let s13 = self.l1 * self.g;
+        let s14 = s12 + s13 * s2 * sin4;
+        let s15 = self.m2 * self.l2 * self.g * sin5;
+        let s16 = s12 - s15;
+        let s17 = self.m1.abs() + self.m2.abs();
+        let s18 = s12.abs();
+        let s19 = h.abs() * real(0.5);
+        ::vi_core::MomentumResidual {
+            residual: ::vi_core::SVector::from([
+                s7 * s2 * θ1_dot + s9 - p0_θ1 - (p0_θ1_low - s1 * s14),
+                s3 + s11 - p0_θ2 - (p0_θ2_low + s1 * s16),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                p0_θ1.abs() + s17 * (s7 * θ1_dot).abs() + s9.abs()
+                    + s19 * (s18 + s17 * (s13 * sin4).abs()),
+                p0_θ2.abs() + s3.abs() + s11.abs() + s19 * (s18 + s15.abs()),
+            ]),
+            increment: ::vi_core::SVector::from([-(h * s14), h * s16]),
+        }
+    }
+
     /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
     ///
     /// 136 operations.
@@ -562,17 +630,17 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
         let s27 = (p0_θ2 - s5 * real(0.5)) * θ2_dot - (energy0 + s16 + s18)
             + (p0_θ1 - s19 * real(0.5) - s20) * θ1_dot;
         let s28 = s14 + s16;
-        let s29 = s14 + s18;
-        let s30 = h * h * real(0.25);
-        let s31 = s11 * s10;
-        let s32 = s11 * real(0.5) * (θ1_dot + θ2_dot) * s21;
-        let s33 = s14 * (h * real(0.25));
+        let s29 = h * h * real(0.25);
+        let s30 = s11 * s10;
+        let s31 = s11 * real(0.5) * (θ1_dot + θ2_dot) * s21;
+        let s32 = s14 * (h * real(0.25));
+        let s33 = s14 + s18;
         let s34 = s23 * real(0.5) + s11 * s7 * s21 * real(0.5);
         let s35 = s11 * real(0.25);
         let s36 = (s35 * θ1_dot * s7 * s10 - θ1_dot * s28 * real(0.25)) * h;
         let s37 = s11 * s6;
         let s38 = s25 * real(0.5) - s37 * s21 * real(0.5);
-        let s39 = (s35 * s6 * θ2_dot * s10 - θ2_dot * s29 * real(0.25)) * h;
+        let s39 = (s35 * s6 * θ2_dot * s10 - θ2_dot * s33 * real(0.25)) * h;
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
@@ -581,10 +649,10 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
                     &[
-                        s2 * s4 + s30 * s28,
-                        s31 + (s32 - s33) * h,
-                        s31 - (s32 + s33) * h,
-                        s3 + s30 * s29,
+                        s2 * s4 + s29 * s28,
+                        s30 + (s31 - s32) * h,
+                        s30 - (s31 + s32) * h,
+                        s3 + s29 * s33,
                     ],
                 ),
             },
@@ -594,300 +662,94 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
                     + s1 * (θ2_dot * s26 - θ1_dot * s24)),
             energy_dv: ::vi_core::SVector::from([s34 + s36, s38 + s39]),
             energy_dh: s37 * s7 * s10 * real(0.5) - s6 * s28 * real(0.25)
-                - s7 * s29 * real(0.25),
+                - s7 * s33 * real(0.25),
         }
     }
 
-    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
-    ///
-    /// 148 operations.
-    #[cold]
-    fn magnitudes(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Magnitudes<2, T> {
-        let energy0 = node.energy;
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = θ2_dot * θ2_dot;
-        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s6 = cos4 * cos5 + sin4 * sin5;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g;
-        let s12 = s11 * (self.m1 + self.m2);
-        let s13 = self.m2 * self.l2 * self.g;
-        let s14 = s13 * cos5;
-        let s15 = s7 * θ2_dot;
-        let s16 = sin4 * cos5 - cos4 * sin5;
-        let s17 = s9 * s16;
-        let s18 = s12 * sin4;
-        let s19 = s13 * sin5;
-        let s20 = self.m1.abs() + self.m2.abs();
-        let s21 = self.l1 * self.l1;
-        let s22 = s17.abs();
-        let s23 = s22 + s18.abs();
-        let s24 = s15 * s16;
-        let s25 = s10 + s12 * cos4;
-        let s26 = s10 * s1;
-        let s27 = h.abs() * real(0.5);
-        let s28 = p0_θ1.abs() + s20 * (s21 * θ1_dot).abs() + (s15 * s6).abs()
-            + s27 * s23 + (θ1_mid * (s24 - s1 * s25)).abs();
-        let s29 = s22 + s19.abs();
-        let s30 = s8 * s16;
-        let s31 = s10 + s14;
-        let s32 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * s6).abs() + s27 * s29
-            + (θ1_mid * (s30 + s26)).abs();
-        let s33 = θ1_dot * θ1_dot;
-        let s34 = s7 * real(0.5);
-        let s35 = (θ1_mid
-            * (s17 + s18 + (s34 * θ1_dot * s3 * s6 - θ1_dot * s25 * real(0.5)) * h))
-            .abs();
-        let s36 = (θ2_mid
-            * (s17 - s19 - (s34 * s33 * θ2_dot * s6 - θ2_dot * s31 * real(0.5)) * h))
-            .abs();
-        let s37 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
-            + s21 * s20 * s33 * real(0.5);
-        let s38 = s37 + (s2 * s3).abs() * real(0.5) + s10.abs()
-            + s20 * (s11 * cos4).abs() + s14.abs();
-        let s39 = s38 + s23 * (h * θ1_dot).abs() * real(0.5)
-            + s29 * (h * θ2_dot).abs() * real(0.5) + s35;
-        ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from([
-                s28 + (θ2_mid * (s24 - s26)).abs(),
-                s32 + (θ2_mid * (s30 + s1 * s31)).abs(),
-            ]),
-            energy_residual: s39 + s36,
-        }
-    }
-
-    /// `p1 − p0_θ1 = h*L_θ1`
-    ///
-    /// `p1 − p0_θ2 = h*L_θ2`
+    /// Both residuals, their magnitudes, and
     ///
     /// `E1 − E0 = 0`
     ///
-    /// 31 operations.
+    /// 140 operations.
     #[inline(always)]
-    fn increment(
+    fn extended_residual(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Increment<2, T> {
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = self.m2 * self.l1 * self.l2 * θ1_dot * θ2_dot
-            * (sin2 * cos3 - cos2 * sin3);
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                -(h * (s4 + self.l1 * self.g * (self.m1 + self.m2) * sin2)),
-                h * (s4 - self.m2 * self.l2 * self.g * sin3),
-            ]),
-            energy: real(0.0),
-        }
-    }
-
-    /// `p1 − p0_θ1 = h*L_θ1`
-    ///
-    /// `p1 − p0_θ2 = h*L_θ2`
-    ///
-    /// to first order at `v + dv`.
-    ///
-    /// 86 operations.
-    #[inline(always)]
-    fn momentum_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
-        ) -> ::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = self.l1 * self.l1;
-        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s6 = cos4 * cos5 + sin4 * sin5;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g * s1;
-        let s12 = self.m2 * self.l2 * self.g;
-        let s13 = s7 * θ2_dot;
-        let s14 = sin4 * cos5 - cos4 * sin5;
-        let s15 = s9 * s14;
-        let s16 = s15 + s11 * sin4;
-        let s17 = s15 - s12 * sin5;
-        let s18 = h * real(0.5);
-        let s19 = s10 + s11 * cos4;
-        let s20 = s10 + s12 * cos5;
-        let s21 = h * h * real(0.25);
-        let s22 = s7 * s6;
-        let s23 = s7 * real(0.5) * (θ1_dot + θ2_dot) * s14;
-        let s24 = s10 * (h * real(0.25));
-        let s25 = s13 * s14;
-        let s26 = s8 * s14;
-        let s27 = s10 * s18;
-        let momentum = ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                s3 * s1 * θ1_dot + s13 * s6 - p0_θ1 - (p0_θ1_low - s18 * s16),
-                s2 * θ2_dot + s8 * s6 - p0_θ2 - (p0_θ2_low + s18 * s17),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[
-                    s1 * s3 + s21 * s19,
-                    s22 + (s23 - s24) * h,
-                    s22 - (s23 + s24) * h,
-                    s2 + s21 * s20,
-                ],
-            ),
-        };
-        let change: [T; 2] = solve(&momentum).into();
-        ::vi_core::SVector::from([
-            -(h * s16)
-                + ((-s25 - s18 * s19) * h * change[0] + (s27 - s26) * h * change[1]),
-            h * s17 + ((s25 + s27) * h * change[0] + (s26 - s18 * s20) * h * change[1]),
-        ])
-    }
-
-    /// `p1 − p0_θ1 = h*L_θ1`
-    ///
-    /// `p1 − p0_θ2 = h*L_θ2`
-    ///
-    /// `E1 − E0 = 0`
-    ///
-    /// to first order at `(v + dv, h + dh)`.
-    ///
-    /// 161 operations.
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
-        ) -> (::vi_core::SVector<T, 2>, T),
-    ) -> ::vi_core::Increment<2, T> {
+    ) -> ::vi_core::ExtendedResidual<2, T> {
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
+        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
         let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
         let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
         let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
         let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = self.l1 * self.l1;
-        let s4 = s2 * θ2_dot;
-        let s5 = θ1_dot * θ1_dot;
-        let s6 = θ2_dot * θ2_dot;
-        let [(sin7, cos7), (sin8, cos8)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s9 = cos7 * cos8 + sin7 * sin8;
-        let s10 = self.m2 * self.l1 * self.l2;
-        let s11 = s10 * θ1_dot;
-        let s12 = s11 * θ2_dot;
-        let s13 = s12 * s9;
-        let s14 = self.l1 * self.g * s1;
+        let s1 = h * real(0.5);
+        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+        let s2 = self.m1 + self.m2;
+        let s3 = self.m2 * (self.l2 * self.l2);
+        let s4 = s3 * θ2_dot;
+        let s5 = self.l1 * self.l1;
+        let [(sin6, cos6), (sin7, cos7)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+        let s8 = cos6 * cos7 + sin6 * sin7;
+        let s9 = self.m2 * self.l1 * self.l2;
+        let s10 = s9 * θ1_dot;
+        let s11 = s10 * θ2_dot;
+        let s12 = self.l1 * self.g;
+        let s13 = s12 * s2;
+        let s14 = self.m2 * self.l2 * self.g;
         let s15 = s14 * cos7;
-        let s16 = self.m2 * self.l2 * self.g;
-        let s17 = s16 * cos8;
-        let s18 = s3 * s1 * θ1_dot;
-        let s19 = s10 * θ2_dot;
-        let s20 = s19 * s9;
-        let s21 = sin7 * cos8 - cos7 * sin8;
-        let s22 = s12 * s21;
-        let s23 = s14 * sin7;
-        let s24 = s22 + s23;
-        let s25 = s16 * sin8;
-        let s26 = s22 - s25;
-        let s27 = h * real(0.5);
-        let s28 = (p0_θ2 - s4 * real(0.5)) * θ2_dot - (energy0 + s15 + s17)
-            + (p0_θ1 - s18 * real(0.5) - s20) * θ1_dot;
-        let s29 = s13 + s15;
-        let s30 = s13 + s17;
-        let s31 = h * h * real(0.25);
-        let s32 = s10 * s9;
-        let s33 = s10 * real(0.5);
-        let s34 = s33 * (θ1_dot + θ2_dot) * s21;
-        let s35 = s13 * (h * real(0.25));
-        let s36 = s23 * real(0.5) + s10 * s6 * s21 * real(0.5);
-        let s37 = θ1_dot * s29;
-        let s38 = s10 * real(0.25);
-        let s39 = (s38 * θ1_dot * s6 * s9 - s37 * real(0.25)) * h;
-        let s40 = s10 * s5;
-        let s41 = s25 * real(0.5) - s40 * s21 * real(0.5);
-        let s42 = θ2_dot * s30;
-        let s43 = (s38 * s5 * θ2_dot * s9 - s42 * real(0.25)) * h;
-        let s44 = s19 * s21;
-        let s45 = s11 * s21;
-        let s46 = s13 * s27;
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        s18 + s20 - p0_θ1 - (p0_θ1_low - s27 * s24),
-                        s4 + s11 * s9 - p0_θ2 - (p0_θ2_low + s27 * s26),
-                    ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[
-                            s1 * s3 + s31 * s29,
-                            s32 + (s34 - s35) * h,
-                            s32 - (s34 + s35) * h,
-                            s2 + s31 * s30,
-                        ],
-                    ),
-                },
-                residual_dh: ::vi_core::SVector::from([s36 - s39, s41 - s43]),
-                energy_residual: s28
-                    + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                        + s27 * (θ2_dot * s26 - θ1_dot * s24)),
-                energy_dv: ::vi_core::SVector::from([s36 + s39, s41 + s43]),
-                energy_dh: s40 * s6 * s9 * real(0.5) - s5 * s29 * real(0.25)
-                    - s6 * s30 * real(0.25),
-            },
-        );
-        let change: [T; 2] = change.into();
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                -(h * s24)
-                    + ((-s44 - s27 * s29) * h * change[0] + (s46 - s45) * h * change[1]
-                        + ((s33 * θ1_dot * s6 * s9 - s37 * real(0.5)) * h - s24)
-                            * change_h),
-                h * s26
-                    + ((s44 + s46) * h * change[0] + (s45 - s27 * s30) * h * change[1]
-                        + (s26 + (s33 * s5 * θ2_dot * s9 - s42 * real(0.5)) * h)
-                            * change_h),
+        let s16 = s5 * s2 * θ1_dot;
+        let s17 = s9 * θ2_dot * s8;
+        let s18 = s10 * s8;
+        let s19 = s11 * (sin6 * cos7 - cos6 * sin7);
+        let s20 = s19 + s13 * sin6;
+        let s21 = s14 * sin7;
+        let s22 = s19 - s21;
+        let s23 = (p0_θ2 - s4 * real(0.5)) * θ2_dot - (energy0 + s13 * cos6 + s15)
+            + (p0_θ1 - s16 * real(0.5) - s17) * θ1_dot;
+        let s24 = self.m1.abs() + self.m2.abs();
+        let s25 = s19.abs();
+        let s26 = s25 + s24 * (s12 * sin6).abs();
+        let s27 = h.abs() * real(0.5);
+        let s28 = s25 + s21.abs();
+        let s29 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
+            + s5 * s24 * (θ1_dot * θ1_dot) * real(0.5);
+        let s30 = s29 + (s3 * (θ2_dot * θ2_dot)).abs() * real(0.5) + (s11 * s8).abs()
+            + s24 * (s12 * cos6).abs();
+        ::vi_core::ExtendedResidual {
+            residual: ::vi_core::SVector::from([
+                s16 + s17 - p0_θ1 - (p0_θ1_low - s1 * s20),
+                s4 + s18 - p0_θ2 - (p0_θ2_low + s1 * s22),
             ]),
-            energy: real(0.0),
+            magnitude: ::vi_core::SVector::from([
+                p0_θ1.abs() + s24 * (s5 * θ1_dot).abs() + s17.abs() + s27 * s26,
+                p0_θ2.abs() + s4.abs() + s18.abs() + s27 * s28,
+            ]),
+            energy_residual: s23
+                + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
+                    + s1 * (θ2_dot * s22 - θ1_dot * s20)),
+            energy_magnitude: s30 + s15.abs() + s26 * (h * θ1_dot).abs() * real(0.5)
+                + s28 * (h * θ2_dot).abs() * real(0.5),
+            increment: ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from([-(h * s20), h * s22]),
+                energy: real(0.0),
+            },
         }
+    }
+
+    /// What the rounding of both residuals is measured in, by running error analysis.
+    #[cold]
+    fn rounding(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Rounding<2, T> {
+        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
     }
 }
 

@@ -31,10 +31,17 @@ impl<T: ::vi_core::Real> Kepler<T> {
     pub fn from_f64(system: &Kepler<f64>) -> Self {
         Self { mu: T::real(system.mu) }
     }
+
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(dead_code)]
+    fn convert<U: ::vi_core::Real>(&self) -> Kepler<U> {
+        Kepler {
+            mu: U::real(self.mu.to_f64()),
+        }
+    }
 }
 
 impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Kepler<T> {
-    const PARAMETERS: &'static [&'static str] = &["mu"];
     fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
         match name {
             "mu" => Some(&mut self.mu),
@@ -50,6 +57,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
     const AUTONOMOUS: bool = true;
     const FORCED: bool = false;
     const CYCLIC: [bool; 2] = [false, false];
+    const PARAMETERS: &'static [&'static str] = &["mu"];
+    fn parameter(&self, index: usize) -> T {
+        [self.mu][index]
+    }
 
     /// `L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)`
     ///
@@ -360,8 +371,7 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
 impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
-    const SMOOTH: bool = true;
-    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
+    const INLINED: bool = true;
 
     /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
     ///
@@ -409,6 +419,49 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
                     real(1.0) - s12 * (s3 * s10 * real(3.0) - s8),
                 ],
             ),
+        }
+    }
+
+    /// The residual, its magnitude, and
+    ///
+    /// `p1 − p0_x = h*L_x`
+    ///
+    /// `p1 − p0_y = h*L_y`
+    ///
+    /// 44 operations.
+    #[inline(always)]
+    fn momentum_residual(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::MomentumResidual<2, T> {
+        let [x0, y0]: [T; 2] = node.q.into();
+        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+        let [x_dot, y_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let x_mid = x0 + (s1 * x_dot + x0_low);
+        let y_mid = y0 + (s1 * y_dot + y0_low);
+        let s2 = x_mid * x_mid + y_mid * y_mid;
+        let s3 = s2.recip();
+        let s4 = s3 * s3 * s2.sqrt();
+        let s5 = self.mu * h;
+        let s6 = s5 * x_mid * s4;
+        let s7 = s5 * y_mid * s4;
+        let s8 = s5 * real(0.5);
+        ::vi_core::MomentumResidual {
+            residual: ::vi_core::SVector::from([
+                x_dot - p0_x + (s8 * x_mid * s4 - p0_x_low),
+                y_dot - p0_y + (s8 * y_mid * s4 - p0_y_low),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                x_dot.abs() + p0_x.abs() + s6.abs() * real(0.5),
+                y_dot.abs() + p0_y.abs() + s7.abs() * real(0.5),
+            ]),
+            increment: ::vi_core::SVector::from([-s6, -s7]),
         }
     }
 
@@ -477,82 +530,24 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         }
     }
 
-    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
-    ///
-    /// 118 operations.
-    #[cold]
-    fn magnitudes(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Magnitudes<2, T> {
-        let energy0 = node.energy;
-        let [x0, y0]: [T; 2] = node.q.into();
-        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let x_mid = x0 + (s1 * x_dot + x0_low);
-        let y_mid = y0 + (s1 * y_dot + y0_low);
-        let s2 = x_mid * x_mid;
-        let s3 = y_mid * y_mid;
-        let s4 = s2 + s3;
-        let s5 = s4.recip();
-        let s6 = s4.sqrt();
-        let s7 = s5 * s5;
-        let s8 = s7 * s6;
-        let s9 = self.mu * x_mid * s8;
-        let s10 = self.mu * y_mid * s8;
-        let s11 = self.mu * h;
-        let s12 = s7 * s5 * s6;
-        let s13 = s8 * real(0.5);
-        let s14 = s2 * s12 * real(1.5);
-        let s15 = x_dot.abs() + p0_x.abs() + (s9 * h).abs() * real(0.5)
-            + (x_mid * (s11 * (s13 - s14))).abs();
-        let s16 = s3 * s12 * real(1.5);
-        let s17 = y_dot.abs() + p0_y.abs() + (s10 * h).abs() * real(0.5)
-            + (s11 * s2 * y_mid * s12).abs() * real(1.5);
-        let s18 = self.mu * real(1.5);
-        let s19 = x_mid
-            * (s9
-                + (s18 * y_dot * x_mid * y_mid * s12 + self.mu * (s14 - s13) * x_dot)
-                    * h);
-        let s20 = y_mid
-            * (s10
-                + (s18 * x_dot * x_mid * y_mid * s12 + self.mu * (s16 - s13) * y_dot)
-                    * h);
-        let s21 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
-            + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
-        let s22 = s21 + (self.mu * (s5 * s6)).abs()
-            + (s11 * x_dot * x_mid * s8).abs() * real(0.5)
-            + (s11 * y_dot * y_mid * s8).abs() * real(0.5);
-        ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from([
-                s15 + (s11 * x_mid * s3 * s12).abs() * real(1.5),
-                s17 + (y_mid * (s11 * (s13 - s16))).abs(),
-            ]),
-            energy_residual: s22 + s19.abs() + s20.abs(),
-        }
-    }
-
-    /// `p1 − p0_x = h*L_x`
-    ///
-    /// `p1 − p0_y = h*L_y`
+    /// Both residuals, their magnitudes, and
     ///
     /// `E1 − E0 = 0`
     ///
-    /// 21 operations.
+    /// 96 operations.
     #[inline(always)]
-    fn increment(
+    fn extended_residual(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Increment<2, T> {
+    ) -> ::vi_core::ExtendedResidual<2, T> {
+        let energy0 = node.energy;
+        let energy0_low = node.energy_low;
         let [x0, y0]: [T; 2] = node.q.into();
         let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+        let [p0_x, p0_y]: [T; 2] = node.p.into();
+        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
         let [x_dot, y_dot]: [T; 2] = (*v).into();
         let real = T::real;
         let s1 = h * real(0.5);
@@ -560,147 +555,47 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
         let y_mid = y0 + (s1 * y_dot + y0_low);
         let s2 = x_mid * x_mid + y_mid * y_mid;
         let s3 = s2.recip();
-        let s4 = s3 * s3 * s2.sqrt();
-        let s5 = self.mu * h;
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([-(s5 * x_mid * s4), -(s5 * y_mid * s4)]),
-            energy: real(0.0),
+        let s4 = s2.sqrt();
+        let s5 = self.mu * (s3 * s4);
+        let s6 = s3 * s3 * s4;
+        let s7 = self.mu * h;
+        let s8 = s7 * x_mid * s6;
+        let s9 = s7 * y_mid * s6;
+        let s10 = s7 * real(0.5);
+        let s11 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+            - self.mu * real(0.5) * h * (x_dot * x_mid * s6 + y_dot * y_mid * s6);
+        let s12 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
+            + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
+        ::vi_core::ExtendedResidual {
+            residual: ::vi_core::SVector::from([
+                x_dot - p0_x + (s10 * x_mid * s6 - p0_x_low),
+                y_dot - p0_y + (s10 * y_mid * s6 - p0_y_low),
+            ]),
+            magnitude: ::vi_core::SVector::from([
+                x_dot.abs() + p0_x.abs() + s8.abs() * real(0.5),
+                y_dot.abs() + p0_y.abs() + s9.abs() * real(0.5),
+            ]),
+            energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s5)
+                + (p0_x - x_dot * real(0.5)) * x_dot + s11,
+            energy_magnitude: s12 + s5.abs()
+                + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
+                + (s7 * y_dot * y_mid * s6).abs() * real(0.5),
+            increment: ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from([-s8, -s9]),
+                energy: real(0.0),
+            },
         }
     }
 
-    /// `p1 − p0_x = h*L_x`
-    ///
-    /// `p1 − p0_y = h*L_y`
-    ///
-    /// to first order at `v + dv`.
-    ///
-    /// 52 operations.
-    #[inline(always)]
-    fn momentum_step(
+    /// What the rounding of both residuals is measured in, by running error analysis.
+    #[cold]
+    fn rounding(
         &self,
         node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
-        ) -> ::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let [x_mid, y_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        let s1 = x_mid * x_mid;
-        let s2 = y_mid * y_mid;
-        let s3 = s1 + s2;
-        let s4 = s3.recip();
-        let s5 = s4 * s4;
-        let s6 = s3.sqrt();
-        let s7 = s5 * s6;
-        let s8 = self.mu * h;
-        let s9 = s8 * real(0.5);
-        let s10 = s5 * s4 * s6;
-        let s11 = s1 * s10 * real(3.0) - s7;
-        let s12 = self.mu * (h * h);
-        let s13 = s12 * real(0.25);
-        let s14 = -(s12 * real(0.75) * x_mid * y_mid * s10);
-        let s15 = s2 * s10 * real(3.0) - s7;
-        let s16 = s12 * real(0.5);
-        let s17 = s12 * real(1.5) * x_mid * y_mid * s10;
-        let momentum = ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s9 * x_mid * s7 - p0_x_low),
-                y_dot - p0_y + (s9 * y_mid * s7 - p0_y_low),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[real(1.0) - s13 * s11, s14, s14, real(1.0) - s13 * s15],
-            ),
-        };
-        let change: [T; 2] = solve(&momentum).into();
-        ::vi_core::SVector::from([
-            -(s8 * x_mid * s7) + (s16 * s11 * change[0] + s17 * change[1]),
-            -(s8 * y_mid * s7) + (s17 * change[0] + s16 * s15 * change[1]),
-        ])
-    }
-
-    /// `p1 − p0_x = h*L_x`
-    ///
-    /// `p1 − p0_y = h*L_y`
-    ///
-    /// `E1 − E0 = 0`
-    ///
-    /// at `(v + dv, h + dh)`.
-    ///
-    /// 101 operations.
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
-        ) -> (::vi_core::SVector<T, 2>, T),
-    ) -> ::vi_core::Increment<2, T> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let [x_mid, y_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        let s1 = x_mid * x_mid;
-        let s2 = y_mid * y_mid;
-        let s3 = s1 + s2;
-        let s4 = s3.recip();
-        let s5 = s3.sqrt();
-        let s6 = s4 * s4;
-        let s7 = s6 * s5;
-        let s8 = self.mu * x_mid * s7;
-        let s9 = self.mu * y_mid * s7;
-        let s10 = h * real(0.5);
-        let s11 = (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + self.mu * (s4 * s5))
-            + (p0_x - x_dot * real(0.5)) * x_dot;
-        let s12 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - self.mu * real(0.5) * h * (x_dot * x_mid * s7 + y_dot * y_mid * s7);
-        let s13 = s6 * s4 * s5;
-        let s14 = s1 * s13 * real(3.0) - s7;
-        let s15 = self.mu * (h * h);
-        let s16 = s15 * real(0.25);
-        let s17 = -(s15 * real(0.75) * x_mid * y_mid * s13);
-        let s18 = s2 * s13 * real(3.0) - s7;
-        let s19 = s8 * real(0.5);
-        let s20 = self.mu * real(0.75);
-        let s21 = self.mu * real(0.25);
-        let s22 = s21 * x_dot * s14;
-        let s23 = (s20 * y_dot * x_mid * y_mid * s13 + s22) * h;
-        let s24 = s9 * real(0.5);
-        let s25 = (s20 * x_dot * x_mid * y_mid * s13 + s21 * y_dot * s18) * h;
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([
-                        x_dot - p0_x + (s8 * s10 - p0_x_low),
-                        y_dot - p0_y + (s9 * s10 - p0_y_low),
-                    ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[real(1.0) - s16 * s14, s17, s17, real(1.0) - s16 * s18],
-                    ),
-                },
-                residual_dh: ::vi_core::SVector::from([s19 - s23, s24 - s25]),
-                energy_residual: s11 + s12,
-                energy_dv: ::vi_core::SVector::from([s19 + s23, s24 + s25]),
-                energy_dh: self.mu * (y_dot * y_dot) * s18 * real(0.25)
-                    + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s13 + s22) * x_dot,
-            },
-        );
-        self.increment(
-            node,
-            h + change_h,
-            &(::vi_core::SVector::<T, 2>::from(*v) + change),
-        )
+    ) -> ::vi_core::Rounding<2, T> {
+        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
     }
 }
 

@@ -30,10 +30,18 @@ impl<T: ::vi_core::Real> Chain<T> {
             k: T::real(system.k),
         }
     }
+
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(dead_code)]
+    fn convert<U: ::vi_core::Real>(&self) -> Chain<U> {
+        Chain {
+            m: U::real(self.m.to_f64()),
+            k: U::real(self.k.to_f64()),
+        }
+    }
 }
 
 impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Chain<T> {
-    const PARAMETERS: &'static [&'static str] = &["m", "k"];
     fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
         match name {
             "m" => Some(&mut self.m),
@@ -63,6 +71,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<10, T> for Chain<T> {
     const CYCLIC: [bool; 10] = [
         false, false, false, false, false, false, false, false, false, false,
     ];
+    const PARAMETERS: &'static [&'static str] = &["m", "k"];
+    fn parameter(&self, index: usize) -> T {
+        [self.m, self.k][index]
+    }
 
     /// `L = m*(dot(q[0])^2 + dot(q[1])^2 + dot(q[2])^2 + dot(q[3])^2 + dot(q[4])^2 + dot(q[5])^2 + dot(q[6])^2 + dot(q[7])^2 + dot(q[8])^2 + dot(q[9])^2)/2 - k*((q[1] - q[0])^4 + (q[2] - q[1])^4 + (q[3] - q[2])^4 + (q[4] - q[3])^4 + (q[5] - q[4])^4 + (q[6] - q[5])^4 + (q[7] - q[6])^4 + (q[8] - q[7])^4 + (q[9] - q[8])^4)/4 + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]) + cos(q[2]) + cos(q[3]) + cos(q[4]) + cos(q[5]) …`
     ///
@@ -379,29 +391,60 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<10, T> for Chain<T> {
         let (sin1, cos1) = t.sin_cos();
         let s2 = sin1 * real(0.3333333333333333) + real(1.0);
         let s3 = self.k * real(3.0);
-        let s4: [(T, T); 10] = ::core::array::from_fn(|i| q[i].sin_cos());
-        let s5: [T; 9] = ::core::array::from_fn(|i| self.k * s4[i].1);
-        let s6: [T; 9] = ::core::array::from_fn(|i| {
-            (q[i + 1] - q[i]) * (q[i + 1] - q[i])
-        });
-        let s7: [T; 9] = ::core::array::from_fn(|i| s6[i] * (q[i + 1] - q[i]));
-        let s8: [T; 10] = ::core::array::from_fn(|i| s2 * s4[i].0);
-        let s9: [T; 9] = ::core::array::from_fn(|i| self.k * s6[i]);
-        let s10: [T; 10] = ::core::array::from_fn(|i| s2 * s4[i].1);
-        let s11: [T; 9] = ::core::array::from_fn(|i| s9[i] * v[i + 1] * real(3.0));
-        let s12: [T; 10] = ::core::array::from_fn(|i| v[i] * s4[i].0);
-        let s13: [T; 9] = ::core::array::from_fn(|i| {
-            cos1 * s4[i + 1].0 * real(0.3333333333333333)
-        });
-        let s14: [T; 9] = ::core::array::from_fn(|i| s9[i] * v[i] * real(3.0));
-        let s15: [T; 8] = ::core::array::from_fn(|i| {
-            a[i + 1] * (s5[i + 1] - self.k * (s7[i] - s7[i + 1]) - s8[i + 1])
-        });
-        let s16: [T; 8] = ::core::array::from_fn(|i| {
-            v[i + 1]
+        let mut s4 = [(real(0.0), real(0.0)); 10];
+        for i in 0..10 {
+            s4[i] = q[i].sin_cos();
+        }
+        let mut s5 = [real(0.0); 9];
+        for i in 0..9 {
+            s5[i] = self.k * s4[i].1;
+        }
+        let mut s6 = [real(0.0); 9];
+        for i in 0..9 {
+            s6[i] = (q[i + 1] - q[i]) * (q[i + 1] - q[i]);
+        }
+        let mut s7 = [real(0.0); 9];
+        for i in 0..9 {
+            s7[i] = s6[i] * (q[i + 1] - q[i]);
+        }
+        let mut s8 = [real(0.0); 10];
+        for i in 0..10 {
+            s8[i] = s2 * s4[i].0;
+        }
+        let mut s9 = [real(0.0); 9];
+        for i in 0..9 {
+            s9[i] = self.k * s6[i];
+        }
+        let mut s10 = [real(0.0); 10];
+        for i in 0..10 {
+            s10[i] = s2 * s4[i].1;
+        }
+        let mut s11 = [real(0.0); 9];
+        for i in 0..9 {
+            s11[i] = s9[i] * v[i + 1] * real(3.0);
+        }
+        let mut s12 = [real(0.0); 10];
+        for i in 0..10 {
+            s12[i] = v[i] * s4[i].0;
+        }
+        let mut s13 = [real(0.0); 9];
+        for i in 0..9 {
+            s13[i] = cos1 * s4[i + 1].0 * real(0.3333333333333333);
+        }
+        let mut s14 = [real(0.0); 9];
+        for i in 0..9 {
+            s14[i] = s9[i] * v[i] * real(3.0);
+        }
+        let mut s15 = [real(0.0); 8];
+        for i in 0..8 {
+            s15[i] = a[i + 1] * (s5[i + 1] - self.k * (s7[i] - s7[i + 1]) - s8[i + 1]);
+        }
+        let mut s16 = [real(0.0); 8];
+        for i in 0..8 {
+            s16[i] = v[i + 1]
                 * (s14[i] - v[i + 1] * (s3 * (s6[i] + s6[i + 1]) + s10[i + 1])
-                    + s11[i + 1] - s13[i])
-        });
+                    + s11[i + 1] - s13[i]);
+        }
         let s17 = (0..8)
             .fold((s5[0] + self.k * s7[0] - s8[0]) * a[0], |sum, i| sum + s15[i])
             - a[9] * (self.k * s7[8] + s8[9])
@@ -1234,8 +1277,6 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<10, T> for Chain<T> {
 impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
     const CONSTANT_JACOBIAN: bool = false;
-    const SMOOTH: bool = true;
-    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
 
     /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
     ///
@@ -1258,7 +1299,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
     /// `residual_q[9] = L_v_q[9] - h*L_q[9]/2 - p0_q[9]_low - p0_q[9]`
     ///
     /// 294 operations.
-    #[inline]
+    #[inline(always)]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<10, T>,
@@ -1336,24 +1377,24 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
         let s39 = s10 * s10;
         let s40 = s39 * s10;
         let s41 = self.k * h * real(0.5);
-        let s42 = self.k * s23;
-        let s43 = self.k * real(3.0);
-        let s44 = self.k * s39;
-        let s45 = h * h;
-        let s46 = self.k * s45;
-        let s47 = s46 * real(0.25);
-        let s48 = s45 * real(0.25);
-        let s49 = s45 * real(0.75);
-        let s50 = -(s42 * s49);
-        let s51 = s46 * real(0.75);
-        let s52 = -(s51 * s25);
-        let s53 = -(s51 * s27);
-        let s54 = -(s51 * s29);
-        let s55 = -(s51 * s31);
-        let s56 = -(s51 * s33);
-        let s57 = -(s51 * s35);
-        let s58 = -(s51 * s37);
-        let s59 = -(s44 * s49);
+        let s42 = h * h;
+        let s43 = self.k * s42;
+        let s44 = self.k * s23;
+        let s45 = s43 * real(0.25);
+        let s46 = s42 * real(0.25);
+        let s47 = s42 * real(0.75);
+        let s48 = -(s44 * s47);
+        let s49 = self.k * real(3.0);
+        let s50 = s43 * real(0.75);
+        let s51 = -(s50 * s25);
+        let s52 = -(s50 * s27);
+        let s53 = -(s50 * s29);
+        let s54 = -(s50 * s31);
+        let s55 = -(s50 * s33);
+        let s56 = -(s50 * s35);
+        let s57 = -(s50 * s37);
+        let s58 = self.k * s39;
+        let s59 = -(s58 * s47);
         ::vi_core::MomentumEquation {
             residual: ::vi_core::SVector::from([
                 self.m * q_0_dot - p0_q_0
@@ -1386,21 +1427,175 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                     - (p0_q_9_low - s1 * (self.k * s40 + s15 * sin22)),
             ]),
             jacobian: ::vi_core::linear::Tridiagonal {
-                lower: [T::real(0.0), s50, s52, s53, s54, s55, s56, s57, s58, s59],
+                lower: [T::real(0.0), s48, s51, s52, s53, s54, s55, s56, s57, s59],
                 diagonal: [
-                    self.m + (s47 * sin12 + s48 * (s42 * real(3.0) + s15 * cos12)),
-                    self.m + (s47 * sin13 + s48 * (s43 * (s23 + s25) + s15 * cos13)),
-                    self.m + (s47 * sin14 + s48 * (s43 * (s25 + s27) + s15 * cos14)),
-                    self.m + (s47 * sin16 + s48 * (s43 * (s27 + s29) + s15 * cos16)),
-                    self.m + (s47 * sin17 + s48 * (s43 * (s29 + s31) + s15 * cos17)),
-                    self.m + (s47 * sin18 + s48 * (s43 * (s31 + s33) + s15 * cos18)),
-                    self.m + (s47 * sin19 + s48 * (s43 * (s33 + s35) + s15 * cos19)),
-                    self.m + (s47 * sin20 + s48 * (s43 * (s35 + s37) + s15 * cos20)),
-                    self.m + (s47 * sin21 + s48 * (s43 * (s37 + s39) + s15 * cos21)),
-                    self.m + s48 * (s44 * real(3.0) + s15 * cos22),
+                    self.m + (s45 * sin12 + s46 * (s44 * real(3.0) + s15 * cos12)),
+                    self.m + (s45 * sin13 + s46 * (s49 * (s23 + s25) + s15 * cos13)),
+                    self.m + (s45 * sin14 + s46 * (s49 * (s25 + s27) + s15 * cos14)),
+                    self.m + (s45 * sin16 + s46 * (s49 * (s27 + s29) + s15 * cos16)),
+                    self.m + (s45 * sin17 + s46 * (s49 * (s29 + s31) + s15 * cos17)),
+                    self.m + (s45 * sin18 + s46 * (s49 * (s31 + s33) + s15 * cos18)),
+                    self.m + (s45 * sin19 + s46 * (s49 * (s33 + s35) + s15 * cos19)),
+                    self.m + (s45 * sin20 + s46 * (s49 * (s35 + s37) + s15 * cos20)),
+                    self.m + (s45 * sin21 + s46 * (s49 * (s37 + s39) + s15 * cos21)),
+                    self.m + s46 * (s58 * real(3.0) + s15 * cos22),
                 ],
-                upper: [s50, s52, s53, s54, s55, s56, s57, s58, s59, T::real(0.0)],
+                upper: [s48, s51, s52, s53, s54, s55, s56, s57, s59, T::real(0.0)],
             },
+        }
+    }
+
+    /// The residual, its magnitude, and
+    ///
+    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+    ///
+    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+    ///
+    /// `p1 − p0_q[2] = h*f_q[2] + h*L_q[2]`
+    ///
+    /// `p1 − p0_q[3] = h*f_q[3] + h*L_q[3]`
+    ///
+    /// `p1 − p0_q[4] = h*f_q[4] + h*L_q[4]`
+    ///
+    /// `p1 − p0_q[5] = h*f_q[5] + h*L_q[5]`
+    ///
+    /// `p1 − p0_q[6] = h*f_q[6] + h*L_q[6]`
+    ///
+    /// `p1 − p0_q[7] = h*f_q[7] + h*L_q[7]`
+    ///
+    /// `p1 − p0_q[8] = h*f_q[8] + h*L_q[8]`
+    ///
+    /// `p1 − p0_q[9] = h*L_q[9]`
+    ///
+    /// 393 operations.
+    #[inline(never)]
+    fn momentum_residual(
+        &self,
+        node: &::vi_core::Node<10, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 10>,
+    ) -> ::vi_core::MomentumResidual<10, T> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let q0 = &node.q.data.0[0];
+        let q0_low = &node.q_low.data.0[0];
+        let p0 = &node.p.data.0[0];
+        let p0_low = &node.p_low.data.0[0];
+        let v = &(*v).data.0[0];
+        let real = T::real;
+        let s1 = h * real(0.5);
+        let t_mid = t0 + (s1 + t0_low);
+        let s2 = t_mid.sin();
+        let s3 = s2 * real(0.3333333333333333) + real(1.0);
+        let s4 = self.k * h;
+        let s5 = s4 * real(0.5);
+        let s6 = s2.abs() * real(0.3333333333333333) + real(1.0);
+        let s7 = h.abs() * real(0.5);
+        let s8 = self.k.abs();
+        let mut q_mid = [real(0.0); 10];
+        for i in 0..10 {
+            q_mid[i] = q0[i] + (s1 * v[i] + q0_low[i]);
+        }
+        let mut s9 = [(real(0.0), real(0.0)); 10];
+        for i in 0..10 {
+            s9[i] = q_mid[i].sin_cos();
+        }
+        let mut s10 = [real(0.0); 9];
+        for i in 0..9 {
+            s10[i] = (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i]);
+        }
+        let mut s11 = [real(0.0); 9];
+        for i in 0..9 {
+            s11[i] = s10[i] * (q_mid[i + 1] - q_mid[i]);
+        }
+        let mut s12 = [real(0.0); 10];
+        for i in 0..10 {
+            s12[i] = s3 * s9[i].0;
+        }
+        let mut s13 = [real(0.0); 8];
+        for i in 0..8 {
+            s13[i] = self.k * (s11[i] - s11[i + 1]) + s12[i + 1];
+        }
+        let mut s14 = [real(0.0); 9];
+        for i in 0..9 {
+            s14[i] = s4 * s9[i].1;
+        }
+        let mut s15 = [real(0.0); 10];
+        for i in 0..10 {
+            s15[i] = self.m * v[i] - p0[i];
+        }
+        let mut s16 = [real(0.0); 9];
+        for i in 0..9 {
+            s16[i] = s5 * s9[i].1;
+        }
+        let mut s17 = [real(0.0); 8];
+        for i in 0..8 {
+            s17[i] = s15[i + 1] - (p0_low[i + 1] - s1 * s13[i] + s16[i + 1]);
+        }
+        let mut s18 = [real(0.0); 8];
+        for i in 0..8 {
+            s18[i] = s14[i + 1] - h * s13[i];
+        }
+        let mut s19 = [real(0.0); 10];
+        for i in 0..10 {
+            s19[i] = q_mid[i].abs();
+        }
+        let mut s20 = [real(0.0); 10];
+        for i in 0..10 {
+            s20[i] = s6 * s9[i].0.abs();
+        }
+        let mut s21 = [real(0.0); 9];
+        for i in 0..9 {
+            s21[i] = s14[i].abs() * real(0.5);
+        }
+        let mut s22 = [real(0.0); 10];
+        for i in 0..10 {
+            s22[i] = p0[i].abs() + (self.m * v[i]).abs();
+        }
+        let mut s23 = [real(0.0); 8];
+        for i in 0..8 {
+            s23[i] = s19[i + 1] + s19[i + 2];
+        }
+        let mut s24 = [real(0.0); 8];
+        for i in 0..8 {
+            s24[i] = s10[i + 1] * s23[i] * real(3.0);
+        }
+        let s25 = self.k * s11[0] - s12[0];
+        let s26 = self.k * s11[8] + s12[9];
+        let s27 = s19[1] + s19[0];
+        ::vi_core::MomentumResidual {
+            residual: ::vi_core::SVector::from({
+                let mut entries = [T::real(0.0); 10];
+                entries[0] = s15[0] - (p0_low[0] + s1 * s25 + s16[0]);
+                for i in 0..8 {
+                    entries[i + 1] = s17[i];
+                }
+                entries[9] = s15[9] - (p0_low[9] - s1 * s26);
+                entries
+            }),
+            magnitude: ::vi_core::SVector::from([
+                s22[0] + s7 * (s27 * (self.k * s10[0]).abs() * real(3.0) + s20[0])
+                    + s21[0],
+                s22[1] + s7 * (s8 * (s10[0] * s27 * real(3.0) + s24[0]) + s20[1])
+                    + s21[1],
+                s22[2] + s7 * (s8 * (s24[0] + s24[1]) + s20[2]) + s21[2],
+                s22[3] + s7 * (s8 * (s24[1] + s24[2]) + s20[3]) + s21[3],
+                s22[4] + s7 * (s8 * (s24[2] + s24[3]) + s20[4]) + s21[4],
+                s22[5] + s7 * (s8 * (s24[3] + s24[4]) + s20[5]) + s21[5],
+                s22[6] + s7 * (s8 * (s24[4] + s24[5]) + s20[6]) + s21[6],
+                s22[7] + s7 * (s8 * (s24[5] + s24[6]) + s20[7]) + s21[7],
+                s22[8] + s7 * (s8 * (s24[6] + s24[7]) + s20[8]) + s21[8],
+                s22[9] + s7 * (s23[7] * (self.k * s10[8]).abs() * real(3.0) + s20[9]),
+            ]),
+            increment: ::vi_core::SVector::from({
+                let mut entries = [T::real(0.0); 10];
+                entries[0] = h * s25 + s14[0];
+                for i in 0..8 {
+                    entries[i + 1] = s18[i];
+                }
+                entries[9] = -(h * s26);
+                entries
+            }),
         }
     }
 
@@ -1428,64 +1623,136 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
         let t_mid = t0 + (s1 + t0_low);
         let (sin2, cos2) = t_mid.sin_cos();
         let s3 = sin2 * real(0.3333333333333333) + real(1.0);
-        let s4 = self.k * real(3.0);
-        let s5 = h * h;
-        let s6 = self.k * s5;
-        let s7 = s6 * real(0.25);
-        let s8 = s5 * real(0.25);
-        let s9 = s5 * real(0.75);
-        let s10 = s6 * real(0.75);
+        let s4 = h * h;
+        let s5 = self.k * s4;
+        let s6 = s5 * real(0.25);
+        let s7 = s4 * real(0.25);
+        let s8 = s4 * real(0.75);
+        let s9 = self.k * real(3.0);
+        let s10 = s5 * real(0.75);
         let s11 = self.k * real(0.75);
         let s12 = self.k * real(0.25);
         let s13 = self.k * real(1.5);
         let s14 = s13 * v[2];
         let s15 = s13 * v[4];
         let s16 = s13 * v[6];
-        let q_mid: [T; 10] = ::core::array::from_fn(|i| q0[i] + (s1 * v[i] + q0_low[i]));
-        let s17: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
-        let s18: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
-        let s19: [T; 9] = ::core::array::from_fn(|i| {
-            (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
-        });
-        let s20: [T; 9] = ::core::array::from_fn(|i| s19[i] * s19[i]);
-        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
-        let s22: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
-        let s23: [T; 9] = ::core::array::from_fn(|i| s19[i] * (q_mid[i + 1] - q_mid[i]));
-        let s24: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].0);
-        let s25: [T; 8] = ::core::array::from_fn(|i| self.k * (s23[i] - s23[i + 1]));
-        let s26: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
-        let s27: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * s1);
-        let s28: [T; 8] = ::core::array::from_fn(|i| {
-            s26[i + 1] - (p0_low[i + 1] - s1 * (s25[i] + s24[i + 1]) + s27[i + 1])
-        });
-        let s29: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s25[i] + s24[i + 1]));
-        let s30: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].1);
-        let s31: [T; 8] = ::core::array::from_fn(|i| {
-            s4 * (s19[i] + s19[i + 1]) + s30[i + 1]
-        });
-        let s32: [T; 9] = ::core::array::from_fn(|i| s7 * s22[i].0);
-        let s33: [T; 8] = ::core::array::from_fn(|i| {
-            self.m + (s32[i + 1] + s8 * s31[i])
-        });
-        let s34: [T; 10] = ::core::array::from_fn(|i| s24[i] * real(0.5));
-        let s35: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * real(0.5));
-        let s36: [T; 10] = ::core::array::from_fn(|i| {
-            cos2 * s22[i].0 * real(0.08333333333333333)
-        });
-        let s37: [T; 9] = ::core::array::from_fn(|i| s11 * v[i + 1] * s19[i]);
-        let s38: [T; 9] = ::core::array::from_fn(|i| s36[i] + s12 * v[i] * s22[i].0);
-        let s39: [T; 8] = ::core::array::from_fn(|i| {
-            s25[i] * real(0.5) + s34[i + 1] - s35[i + 1]
-        });
-        let s40: [T; 9] = ::core::array::from_fn(|i| s11 * v[i] * s19[i]);
-        let s41: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s31[i] * real(0.25));
-        let s42: [T; 8] = ::core::array::from_fn(|i| {
-            s39[i] + (s38[i + 1] - s40[i] + s41[i] - s37[i + 1]) * h
-        });
-        let s43: [T; 8] = ::core::array::from_fn(|i| {
-            s39[i] + (s40[i] - s41[i] + s37[i + 1] - s36[i + 1]) * h
-        });
-        let s44: [T; 10] = ::core::array::from_fn(|i| v[i] * s22[i].0);
+        let mut q_mid = [real(0.0); 10];
+        for i in 0..10 {
+            q_mid[i] = q0[i] + (s1 * v[i] + q0_low[i]);
+        }
+        let mut s17 = [real(0.0); 10];
+        for i in 0..10 {
+            s17[i] = v[i] * p0_low[i];
+        }
+        let mut s18 = [real(0.0); 10];
+        for i in 0..10 {
+            s18[i] = v[i] * p0[i];
+        }
+        let mut s19 = [real(0.0); 9];
+        for i in 0..9 {
+            s19[i] = (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i]);
+        }
+        let mut s20 = [real(0.0); 9];
+        for i in 0..9 {
+            s20[i] = s19[i] * s19[i];
+        }
+        let mut s21 = [real(0.0); 10];
+        for i in 0..10 {
+            s21[i] = v[i] * v[i];
+        }
+        let mut s22 = [(real(0.0), real(0.0)); 10];
+        for i in 0..10 {
+            s22[i] = q_mid[i].sin_cos();
+        }
+        let mut s23 = [real(0.0); 9];
+        for i in 0..9 {
+            s23[i] = s19[i] * (q_mid[i + 1] - q_mid[i]);
+        }
+        let mut s24 = [real(0.0); 10];
+        for i in 0..10 {
+            s24[i] = s3 * s22[i].0;
+        }
+        let mut s25 = [real(0.0); 8];
+        for i in 0..8 {
+            s25[i] = self.k * (s23[i] - s23[i + 1]);
+        }
+        let mut s26 = [real(0.0); 10];
+        for i in 0..10 {
+            s26[i] = self.m * v[i] - p0[i];
+        }
+        let mut s27 = [real(0.0); 9];
+        for i in 0..9 {
+            s27[i] = self.k * s22[i].1 * s1;
+        }
+        let mut s28 = [real(0.0); 8];
+        for i in 0..8 {
+            s28[i] = s26[i + 1]
+                - (p0_low[i + 1] - s1 * (s25[i] + s24[i + 1]) + s27[i + 1]);
+        }
+        let mut s29 = [real(0.0); 8];
+        for i in 0..8 {
+            s29[i] = v[i + 1] * (s25[i] + s24[i + 1]);
+        }
+        let mut s30 = [real(0.0); 10];
+        for i in 0..10 {
+            s30[i] = s3 * s22[i].1;
+        }
+        let mut s31 = [real(0.0); 9];
+        for i in 0..9 {
+            s31[i] = s6 * s22[i].0;
+        }
+        let mut s32 = [real(0.0); 8];
+        for i in 0..8 {
+            s32[i] = s9 * (s19[i] + s19[i + 1]) + s30[i + 1];
+        }
+        let mut s33 = [real(0.0); 8];
+        for i in 0..8 {
+            s33[i] = self.m + (s31[i + 1] + s7 * s32[i]);
+        }
+        let mut s34 = [real(0.0); 10];
+        for i in 0..10 {
+            s34[i] = s24[i] * real(0.5);
+        }
+        let mut s35 = [real(0.0); 9];
+        for i in 0..9 {
+            s35[i] = self.k * s22[i].1 * real(0.5);
+        }
+        let mut s36 = [real(0.0); 10];
+        for i in 0..10 {
+            s36[i] = cos2 * s22[i].0 * real(0.08333333333333333);
+        }
+        let mut s37 = [real(0.0); 9];
+        for i in 0..9 {
+            s37[i] = s11 * v[i + 1] * s19[i];
+        }
+        let mut s38 = [real(0.0); 9];
+        for i in 0..9 {
+            s38[i] = s36[i] + s12 * v[i] * s22[i].0;
+        }
+        let mut s39 = [real(0.0); 8];
+        for i in 0..8 {
+            s39[i] = s25[i] * real(0.5) + s34[i + 1] - s35[i + 1];
+        }
+        let mut s40 = [real(0.0); 9];
+        for i in 0..9 {
+            s40[i] = s11 * v[i] * s19[i];
+        }
+        let mut s41 = [real(0.0); 8];
+        for i in 0..8 {
+            s41[i] = v[i + 1] * s32[i] * real(0.25);
+        }
+        let mut s42 = [real(0.0); 8];
+        for i in 0..8 {
+            s42[i] = s39[i] + (s38[i + 1] - s40[i] - s37[i + 1] + s41[i]) * h;
+        }
+        let mut s43 = [real(0.0); 8];
+        for i in 0..8 {
+            s43[i] = s39[i] + (s40[i] + s37[i + 1] - s41[i] - s36[i + 1]) * h;
+        }
+        let mut s44 = [real(0.0); 10];
+        for i in 0..10 {
+            s44[i] = v[i] * s22[i].0;
+        }
         let s45 = (1..10).fold(s22[0].1, |sum, i| sum + s22[i].1);
         let s46 = self.k * s23[0];
         let s47 = s46 - s24[0];
@@ -1497,27 +1764,27 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
             - s3 * s45;
         let s51 = self.k * s19[0];
         let s52 = s51 * real(3.0) + s30[0];
-        let s53 = self.k * s19[8];
-        let s54 = s53 * real(3.0) + s30[9];
-        let s55 = -(s51 * s9);
-        let s56 = -(s10 * s19[1]);
-        let s57 = -(s10 * s19[2]);
-        let s58 = -(s10 * s19[3]);
-        let s59 = -(s10 * s19[4]);
-        let s60 = -(s10 * s19[5]);
-        let s61 = -(s10 * s19[6]);
-        let s62 = -(s10 * s19[7]);
-        let s63 = -(s53 * s9);
+        let s53 = -(s51 * s8);
+        let s54 = -(s10 * s19[1]);
+        let s55 = -(s10 * s19[2]);
+        let s56 = -(s10 * s19[3]);
+        let s57 = -(s10 * s19[4]);
+        let s58 = -(s10 * s19[5]);
+        let s59 = -(s10 * s19[6]);
+        let s60 = -(s10 * s19[7]);
+        let s61 = self.k * s19[8];
+        let s62 = -(s61 * s8);
+        let s63 = s61 * real(3.0) + s30[9];
         let s64 = s34[0] - s46 * real(0.5) - s35[0];
         let s65 = v[0] * s52 * real(0.25);
         let s66 = s48 * real(0.5) + s34[9];
-        let s67 = v[9] * s54 * real(0.25);
-        let s68 = -(s21[0] * s52) - s21[2] * s31[1] - s21[4] * s31[3] - s21[6] * s31[5]
-            - s21[9] * s54 - sin2 * s45 * real(0.3333333333333333);
+        let s67 = v[9] * s63 * real(0.25);
+        let s68 = -(s21[0] * s52) - s21[2] * s32[1] - s21[4] * s32[3] - s21[6] * s32[5]
+            - s21[9] * s63 - sin2 * s45 * real(0.3333333333333333);
         let s69 = s68 * real(0.25) + (s13 * v[9] * s19[8] - s41[7]) * v[8]
-            + (s16 * s19[6] - s41[6] + s13 * v[8] * s19[7]) * v[7];
-        let s70 = s69 + (s15 * s19[4] - s41[4] + s16 * s19[5]) * v[5]
-            + (s14 * s19[2] - s41[2] + s15 * s19[3]) * v[3];
+            + (s16 * s19[6] + s13 * v[8] * s19[7] - s41[6]) * v[7];
+        let s70 = s69 + (s15 * s19[4] + s16 * s19[5] - s41[4]) * v[5]
+            + (s14 * s19[2] + s15 * s19[3] - s41[2]) * v[3];
         ::vi_core::ExtendedSystem {
             momentum: ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from({
@@ -1530,22 +1797,22 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                     entries
                 }),
                 jacobian: ::vi_core::linear::Tridiagonal {
-                    lower: [T::real(0.0), s55, s56, s57, s58, s59, s60, s61, s62, s63],
+                    lower: [T::real(0.0), s53, s54, s55, s56, s57, s58, s59, s60, s62],
                     diagonal: {
                         let mut entries = [T::real(0.0); 10];
-                        entries[0] = self.m + (s32[0] + s8 * s52);
+                        entries[0] = self.m + (s31[0] + s7 * s52);
                         for i in 0..8 {
                             entries[i + 1] = s33[i];
                         }
-                        entries[9] = self.m + s8 * s54;
+                        entries[9] = self.m + s7 * s63;
                         entries
                     },
-                    upper: [s55, s56, s57, s58, s59, s60, s61, s62, s63, T::real(0.0)],
+                    upper: [s53, s54, s55, s56, s57, s58, s59, s60, s62, T::real(0.0)],
                 },
             },
             residual_dh: ::vi_core::SVector::from({
                 let mut entries = [T::real(0.0); 10];
-                entries[0] = s64 + (s38[0] + s65 - s37[0]) * h;
+                entries[0] = s64 + (s38[0] - s37[0] + s65) * h;
                 for i in 0..8 {
                     entries[i + 1] = s42[i];
                 }
@@ -1569,639 +1836,235 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
                 entries[9] = s66 + (s40[8] - s67 - s36[9]) * h;
                 entries
             }),
-            energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
+            energy_dh: s70 + (s13 * v[0] * s19[0] + s14 * s19[1] - s41[0]) * v[1]
                 - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
                     * real(0.16666666666666666),
         }
     }
 
-    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
-    ///
-    /// 846 operations.
-    #[cold]
-    fn magnitudes(
-        &self,
-        node: &::vi_core::Node<10, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 10>,
-    ) -> ::vi_core::Magnitudes<10, T> {
-        let t0 = node.t;
-        let t0_low = node.t_low;
-        let energy0 = node.energy;
-        let q0 = &node.q.data.0[0];
-        let q0_low = &node.q_low.data.0[0];
-        let p0 = &node.p.data.0[0];
-        let v = &(*v).data.0[0];
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let t_mid = t0 + (s1 + t0_low);
-        let (sin2, cos2) = t_mid.sin_cos();
-        let s3 = sin2 * real(0.3333333333333333) + real(1.0);
-        let s4 = self.k * real(4.0);
-        let s5 = self.k * h;
-        let s6 = h * t_mid * cos2;
-        let s7 = s5 * real(0.5);
-        let s8 = h.abs() * real(0.5);
-        let s9 = self.k * real(3.0);
-        let s10 = self.k * real(1.5);
-        let q_mid: [T; 10] = ::core::array::from_fn(|i| q0[i] + (s1 * v[i] + q0_low[i]));
-        let s11: [T; 9] = ::core::array::from_fn(|i| {
-            (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
-        });
-        let s12: [T; 9] = ::core::array::from_fn(|i| s11[i] * s11[i]);
-        let s13: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
-        let s14: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
-        let s15: [T; 9] = ::core::array::from_fn(|i| s11[i] * (q_mid[i + 1] - q_mid[i]));
-        let s16: [T; 10] = ::core::array::from_fn(|i| s3 * s14[i].0);
-        let s17: [T; 10] = ::core::array::from_fn(|i| s16[i].abs());
-        let s18: [T; 10] = ::core::array::from_fn(|i| s3 * s14[i].1);
-        let s19: [T; 9] = ::core::array::from_fn(|i| s7 * s14[i].0);
-        let s20: [T; 9] = ::core::array::from_fn(|i| (s5 * s14[i].1).abs() * real(0.5));
-        let s21: [T; 10] = ::core::array::from_fn(|i| {
-            (s6 * s14[i].0).abs() * real(0.16666666666666666)
-        });
-        let s22: [T; 9] = ::core::array::from_fn(|i| {
-            (s5 * q_mid[i + 1] * s11[i]).abs() * real(1.5)
-        });
-        let s23: [T; 10] = ::core::array::from_fn(|i| {
-            p0[i].abs() + (self.m * v[i]).abs()
-        });
-        let s24: [T; 8] = ::core::array::from_fn(|i| {
-            (s4 * (s15[i] - s15[i + 1])).abs() * real(0.25) + s17[i + 1]
-        });
-        let s25: [T; 8] = ::core::array::from_fn(|i| {
-            s9 * (s11[i] + s11[i + 1]) + s18[i + 1]
-        });
-        let s26: [T; 9] = ::core::array::from_fn(|i| {
-            (s5 * q_mid[i] * s11[i]).abs() * real(1.5)
-        });
-        let s27: [T; 8] = ::core::array::from_fn(|i| {
-            s23[i + 1] + s8 * s24[i] + s20[i + 1] + s21[i + 1] + s26[i]
-                + (q_mid[i + 1] * (-(s1 * s25[i]) - s19[i + 1])).abs()
-        });
-        let s28: [T; 8] = ::core::array::from_fn(|i| s27[i] + s22[i + 1]);
-        let s29: [T; 10] = ::core::array::from_fn(|i| (v[i] * p0[i]).abs());
-        let s30: [T; 10] = ::core::array::from_fn(|i| s14[i].1.abs());
-        let s31: [T; 10] = ::core::array::from_fn(|i| (h * v[i]).abs());
-        let s32: [T; 10] = ::core::array::from_fn(|i| v[i] * s14[i].0);
-        let s33: [T; 10] = ::core::array::from_fn(|i| {
-            cos2 * s14[i].0 * real(0.16666666666666666)
-        });
-        let s34: [T; 9] = ::core::array::from_fn(|i| s10 * v[i + 1] * s11[i]);
-        let s35: [T; 9] = ::core::array::from_fn(|i| s10 * v[i] * s11[i]);
-        let s36: [T; 8] = ::core::array::from_fn(|i| {
-            q_mid[i + 1]
-                * (self.k * (s15[i] - s15[i + 1]) + s16[i + 1]
-                    + (s35[i] - v[i + 1] * s25[i] * real(0.5) + s34[i + 1] - s33[i + 1])
-                        * h)
-        });
-        let s37: [T; 8] = ::core::array::from_fn(|i| s36[i].abs());
-        let s38: [T; 8] = ::core::array::from_fn(|i| s24[i] * s31[i + 1] * real(0.5));
-        let s39 = (1..10).fold(s14[0].1, |sum, i| sum + s14[i].1);
-        let s40 = self.k * s15[0];
-        let s41 = s40.abs() + s17[0];
-        let s42 = self.k * s11[0] * real(3.0) + s18[0];
-        let s43 = q_mid[8] - q_mid[9];
-        let s44 = (self.k * (s43 * s43 * s43)).abs() + s17[9];
-        let s45 = self.k * s11[8] * real(3.0) + s18[9];
-        let s46 = t_mid
-            * (s39 * cos2 * real(0.3333333333333333)
-                + (sin2 * s39 * real(0.16666666666666666)
-                    + (1..10).fold(s32[0], |sum, i| sum + s32[i]) * cos2
-                        * real(0.16666666666666666)) * h);
-        let s47 = (0..10).fold(energy0.abs(), |sum, i| sum + s29[i])
-            + self.k.abs() * (1..9).fold(s12[0], |sum, i| sum + s12[i]) * real(0.25)
-            + self.m.abs() * (1..10).fold(s13[0], |sum, i| sum + s13[i]) * real(0.5);
-        let s48 = (0..8).fold(s47 + s41 * s31[0] * real(0.5), |sum, i| sum + s38[i])
-            + s44 * s31[9] * real(0.5) + s46.abs()
-            + (q_mid[0]
-                * (s40 - s16[0] + (s33[0] + v[0] * s42 * real(0.5) - s34[0]) * h))
-                .abs();
-        let s49 = (0..8).fold(s48, |sum, i| sum + s37[i])
-            + (q_mid[9]
-                * (self.k * s15[8] + s16[9]
-                    + (s35[8] - v[9] * s45 * real(0.5) - s33[9]) * h))
-                .abs();
-        ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from({
-                let mut entries = [T::real(0.0); 10];
-                entries[0] = s23[0] + s8 * s41 + s20[0] + s21[0]
-                    + (q_mid[0] * (-(s1 * s42) - s19[0])).abs() + s22[0];
-                for i in 0..8 {
-                    entries[i + 1] = s28[i];
-                }
-                entries[9] = s23[9] + s8 * s44 + s21[9] + s26[8]
-                    + (h * q_mid[9] * s45).abs() * real(0.5);
-                entries
-            }),
-            energy_residual: s49
-                + (sin2.abs() * real(0.3333333333333333)
-                    + (h * cos2).abs() * real(0.16666666666666666) + real(1.0))
-                    * (1..10).fold(s30[0], |sum, i| sum + s30[i]),
-        }
-    }
-
-    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
-    ///
-    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
-    ///
-    /// `p1 − p0_q[2] = h*f_q[2] + h*L_q[2]`
-    ///
-    /// `p1 − p0_q[3] = h*f_q[3] + h*L_q[3]`
-    ///
-    /// `p1 − p0_q[4] = h*f_q[4] + h*L_q[4]`
-    ///
-    /// `p1 − p0_q[5] = h*f_q[5] + h*L_q[5]`
-    ///
-    /// `p1 − p0_q[6] = h*f_q[6] + h*L_q[6]`
-    ///
-    /// `p1 − p0_q[7] = h*f_q[7] + h*L_q[7]`
-    ///
-    /// `p1 − p0_q[8] = h*f_q[8] + h*L_q[8]`
-    ///
-    /// `p1 − p0_q[9] = h*L_q[9]`
+    /// Both residuals, their magnitudes, and
     ///
     /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
     ///
-    /// 191 operations.
-    #[inline(always)]
-    fn increment(
-        &self,
-        node: &::vi_core::Node<10, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 10>,
-    ) -> ::vi_core::Increment<10, T> {
-        let t0 = node.t;
-        let t0_low = node.t_low;
-        let [q_0_0, q_1_0, q_2_0, q_3_0, q_4_0, q_5_0, q_6_0, q_7_0, q_8_0, q_9_0,
-        ]: [T; 10] = node.q.into();
-        let [q_0_0_low, q_1_0_low, q_2_0_low, q_3_0_low, q_4_0_low, q_5_0_low, q_6_0_low,
-        q_7_0_low, q_8_0_low, q_9_0_low]: [T; 10] = node.q_low.into();
-        let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot,
-        q_8_dot, q_9_dot]: [T; 10] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let t_mid = t0 + (s1 + t0_low);
-        let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
-        let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
-        let q_2_mid = q_2_0 + (s1 * q_2_dot + q_2_0_low);
-        let q_3_mid = q_3_0 + (s1 * q_3_dot + q_3_0_low);
-        let q_4_mid = q_4_0 + (s1 * q_4_dot + q_4_0_low);
-        let q_5_mid = q_5_0 + (s1 * q_5_dot + q_5_0_low);
-        let q_6_mid = q_6_0 + (s1 * q_6_dot + q_6_0_low);
-        let q_7_mid = q_7_0 + (s1 * q_7_dot + q_7_0_low);
-        let q_8_mid = q_8_0 + (s1 * q_8_dot + q_8_0_low);
-        let q_9_mid = q_9_0 + (s1 * q_9_dot + q_9_0_low);
-        let s2 = q_1_mid - q_0_mid;
-        let s3 = q_2_mid - q_1_mid;
-        let s4 = q_3_mid - q_2_mid;
-        let s5 = q_4_mid - q_3_mid;
-        let s6 = q_5_mid - q_4_mid;
-        let s7 = q_6_mid - q_5_mid;
-        let s8 = q_7_mid - q_6_mid;
-        let s9 = q_8_mid - q_7_mid;
-        let s10 = q_9_mid - q_8_mid;
-        let [(sin11, cos11), (sin12, cos12), (sin13, cos13), (sin14, cos14)] = T::sin_cos_each([
-            t_mid,
-            q_0_mid,
-            q_1_mid,
-            q_2_mid,
-        ]);
-        let s15 = sin11 * real(0.3333333333333333) + real(1.0);
-        let [(sin16, cos16), (sin17, cos17), (sin18, cos18), (sin19, cos19)] = T::sin_cos_each([
-            q_3_mid,
-            q_4_mid,
-            q_5_mid,
-            q_6_mid,
-        ]);
-        let [(sin20, cos20), (sin21, cos21), (sin22, cos22)] = T::sin_cos_each([
-            q_7_mid,
-            q_8_mid,
-            q_9_mid,
-        ]);
-        let s23 = s2 * s2 * s2;
-        let s24 = s3 * s3 * s3;
-        let s25 = s4 * s4 * s4;
-        let s26 = s5 * s5 * s5;
-        let s27 = s6 * s6 * s6;
-        let s28 = s7 * s7 * s7;
-        let s29 = s8 * s8 * s8;
-        let s30 = s9 * s9 * s9;
-        let s31 = s10 * s10 * s10;
-        let s32 = self.k * h;
-        let s33 = (cos12 + cos13 + cos14 + cos16 + cos17 + cos18 + cos19 + cos20 + cos21
-            + cos22) * cos11 * real(0.3333333333333333);
-        let s34 = self.k * q_0_dot * cos12 + self.k * q_1_dot * cos13
-            + self.k * q_2_dot * cos14 + self.k * q_3_dot * cos16;
-        let s35 = s34 + self.k * q_4_dot * cos17 + self.k * q_5_dot * cos18
-            + self.k * q_6_dot * cos19 + self.k * q_7_dot * cos20;
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                h * (self.k * s23 - s15 * sin12) + s32 * cos12,
-                s32 * cos13 - h * (self.k * (s23 - s24) + s15 * sin13),
-                s32 * cos14 - h * (self.k * (s24 - s25) + s15 * sin14),
-                s32 * cos16 - h * (self.k * (s25 - s26) + s15 * sin16),
-                s32 * cos17 - h * (self.k * (s26 - s27) + s15 * sin17),
-                s32 * cos18 - h * (self.k * (s27 - s28) + s15 * sin18),
-                s32 * cos19 - h * (self.k * (s28 - s29) + s15 * sin19),
-                s32 * cos20 - h * (self.k * (s29 - s30) + s15 * sin20),
-                s32 * cos21 - h * (self.k * (s30 - s31) + s15 * sin21),
-                -(h * (self.k * s31 + s15 * sin22)),
-            ]),
-            energy: (s35 + self.k * q_8_dot * cos21 - s33) * h,
-        }
-    }
-
-    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
-    ///
-    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
-    ///
-    /// `p1 − p0_q[2] = h*f_q[2] + h*L_q[2]`
-    ///
-    /// `p1 − p0_q[3] = h*f_q[3] + h*L_q[3]`
-    ///
-    /// `p1 − p0_q[4] = h*f_q[4] + h*L_q[4]`
-    ///
-    /// `p1 − p0_q[5] = h*f_q[5] + h*L_q[5]`
-    ///
-    /// `p1 − p0_q[6] = h*f_q[6] + h*L_q[6]`
-    ///
-    /// `p1 − p0_q[7] = h*f_q[7] + h*L_q[7]`
-    ///
-    /// `p1 − p0_q[8] = h*f_q[8] + h*L_q[8]`
-    ///
-    /// `p1 − p0_q[9] = h*L_q[9]`
-    ///
-    /// to first order at `v + dv`.
-    ///
-    /// 294 operations.
-    #[inline]
-    fn momentum_step(
-        &self,
-        node: &::vi_core::Node<10, T>,
-        place: &::vi_core::SVector<T, 10>,
-        h: T,
-        v: &::vi_core::SVector<T, 10>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::MomentumEquation<10, T, Self::Jacobian>,
-        ) -> ::vi_core::SVector<T, 10>,
-    ) -> ::vi_core::SVector<T, 10> {
-        let t0 = node.t;
-        let t0_low = node.t_low;
-        let [p0_q_0, p0_q_1, p0_q_2, p0_q_3, p0_q_4, p0_q_5, p0_q_6, p0_q_7, p0_q_8,
-        p0_q_9]: [T; 10] = node.p.into();
-        let [p0_q_0_low, p0_q_1_low, p0_q_2_low, p0_q_3_low, p0_q_4_low, p0_q_5_low,
-        p0_q_6_low, p0_q_7_low, p0_q_8_low, p0_q_9_low]: [T; 10] = node.p_low.into();
-        let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot,
-        q_8_dot, q_9_dot]: [T; 10] = (*v).into();
-        let [q_0_mid, q_1_mid, q_2_mid, q_3_mid, q_4_mid, q_5_mid, q_6_mid, q_7_mid,
-        q_8_mid, q_9_mid]: [T; 10] = (*place).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let t_mid = t0 + (s1 + t0_low);
-        let s2 = self.m * real(2.0);
-        let s3 = q_1_mid - q_0_mid;
-        let s4 = q_2_mid - q_1_mid;
-        let s5 = q_3_mid - q_2_mid;
-        let s6 = q_4_mid - q_3_mid;
-        let s7 = q_5_mid - q_4_mid;
-        let s8 = q_6_mid - q_5_mid;
-        let s9 = q_7_mid - q_6_mid;
-        let s10 = q_8_mid - q_7_mid;
-        let s11 = q_9_mid - q_8_mid;
-        let [(sin12, _), (sin13, cos13), (sin14, cos14), (sin15, cos15)] = T::sin_cos_each([
-            t_mid,
-            q_0_mid,
-            q_1_mid,
-            q_2_mid,
-        ]);
-        let s16 = sin12 * real(0.3333333333333333) + real(1.0);
-        let [(sin17, cos17), (sin18, cos18), (sin19, cos19), (sin20, cos20)] = T::sin_cos_each([
-            q_3_mid,
-            q_4_mid,
-            q_5_mid,
-            q_6_mid,
-        ]);
-        let [(sin21, cos21), (sin22, cos22), (sin23, cos23)] = T::sin_cos_each([
-            q_7_mid,
-            q_8_mid,
-            q_9_mid,
-        ]);
-        let s24 = s3 * s3;
-        let s25 = s24 * s3;
-        let s26 = self.k * s25 - s16 * sin13;
-        let s27 = s4 * s4;
-        let s28 = s27 * s4;
-        let s29 = self.k * (s25 - s28) + s16 * sin14;
-        let s30 = s5 * s5;
-        let s31 = s30 * s5;
-        let s32 = self.k * (s28 - s31) + s16 * sin15;
-        let s33 = s6 * s6;
-        let s34 = s33 * s6;
-        let s35 = self.k * (s31 - s34) + s16 * sin17;
-        let s36 = s7 * s7;
-        let s37 = s36 * s7;
-        let s38 = self.k * (s34 - s37) + s16 * sin18;
-        let s39 = s8 * s8;
-        let s40 = s39 * s8;
-        let s41 = self.k * (s37 - s40) + s16 * sin19;
-        let s42 = s9 * s9;
-        let s43 = s42 * s9;
-        let s44 = self.k * (s40 - s43) + s16 * sin20;
-        let s45 = s10 * s10;
-        let s46 = s45 * s10;
-        let s47 = self.k * (s43 - s46) + s16 * sin21;
-        let s48 = s11 * s11;
-        let s49 = s48 * s11;
-        let s50 = self.k * (s46 - s49) + s16 * sin22;
-        let s51 = self.k * s49 + s16 * sin23;
-        let s52 = self.k * h;
-        let s53 = s52 * real(0.5);
-        let s54 = self.k * s24;
-        let s55 = self.k * real(3.0);
-        let s56 = self.k * s48;
-        let s57 = h * h;
-        let s58 = self.k * s57;
-        let s59 = s58 * real(0.25);
-        let s60 = s57 * real(0.25);
-        let s61 = s57 * real(0.75);
-        let s62 = -(s54 * s61);
-        let s63 = s58 * real(0.75);
-        let s64 = -(s63 * s27);
-        let s65 = -(s63 * s30);
-        let s66 = -(s63 * s33);
-        let s67 = -(s63 * s36);
-        let s68 = -(s63 * s39);
-        let s69 = -(s63 * s42);
-        let s70 = -(s63 * s45);
-        let s71 = -(s56 * s61);
-        let momentum = ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                self.m * q_0_dot - p0_q_0 - (p0_q_0_low + s1 * s26 + s53 * cos13),
-                self.m * q_1_dot - p0_q_1 - (p0_q_1_low - s1 * s29 + s53 * cos14),
-                self.m * q_2_dot - p0_q_2 - (p0_q_2_low - s1 * s32 + s53 * cos15),
-                self.m * q_3_dot - p0_q_3 - (p0_q_3_low - s1 * s35 + s53 * cos17),
-                self.m * q_4_dot - p0_q_4 - (p0_q_4_low - s1 * s38 + s53 * cos18),
-                self.m * q_5_dot - p0_q_5 - (p0_q_5_low - s1 * s41 + s53 * cos19),
-                self.m * q_6_dot - p0_q_6 - (p0_q_6_low - s1 * s44 + s53 * cos20),
-                self.m * q_7_dot - p0_q_7 - (p0_q_7_low - s1 * s47 + s53 * cos21),
-                self.m * q_8_dot - p0_q_8 - (p0_q_8_low - s1 * s50 + s53 * cos22),
-                self.m * q_9_dot - p0_q_9 - (p0_q_9_low - s1 * s51),
-            ]),
-            jacobian: ::vi_core::linear::Tridiagonal {
-                lower: [T::real(0.0), s62, s64, s65, s66, s67, s68, s69, s70, s71],
-                diagonal: [
-                    self.m + (s59 * sin13 + s60 * (s54 * real(3.0) + s16 * cos13)),
-                    self.m + (s59 * sin14 + s60 * (s55 * (s24 + s27) + s16 * cos14)),
-                    self.m + (s59 * sin15 + s60 * (s55 * (s27 + s30) + s16 * cos15)),
-                    self.m + (s59 * sin17 + s60 * (s55 * (s30 + s33) + s16 * cos17)),
-                    self.m + (s59 * sin18 + s60 * (s55 * (s33 + s36) + s16 * cos18)),
-                    self.m + (s59 * sin19 + s60 * (s55 * (s36 + s39) + s16 * cos19)),
-                    self.m + (s59 * sin20 + s60 * (s55 * (s39 + s42) + s16 * cos20)),
-                    self.m + (s59 * sin21 + s60 * (s55 * (s42 + s45) + s16 * cos21)),
-                    self.m + (s59 * sin22 + s60 * (s55 * (s45 + s48) + s16 * cos22)),
-                    self.m + s60 * (s56 * real(3.0) + s16 * cos23),
-                ],
-                upper: [s62, s64, s65, s66, s67, s68, s69, s70, s71, T::real(0.0)],
-            },
-        };
-        let change: [T; 10] = solve(&momentum).into();
-        ::vi_core::SVector::from([
-            h * s26 + s52 * cos13 + (s2 * change[0] + real(2.0) * momentum.residual[0]),
-            s52 * cos14 - h * s29 + (s2 * change[1] + real(2.0) * momentum.residual[1]),
-            s52 * cos15 - h * s32 + (s2 * change[2] + real(2.0) * momentum.residual[2]),
-            s52 * cos17 - h * s35 + (s2 * change[3] + real(2.0) * momentum.residual[3]),
-            s52 * cos18 - h * s38 + (s2 * change[4] + real(2.0) * momentum.residual[4]),
-            s52 * cos19 - h * s41 + (s2 * change[5] + real(2.0) * momentum.residual[5]),
-            s52 * cos20 - h * s44 + (s2 * change[6] + real(2.0) * momentum.residual[6]),
-            s52 * cos21 - h * s47 + (s2 * change[7] + real(2.0) * momentum.residual[7]),
-            s52 * cos22 - h * s50 + (s2 * change[8] + real(2.0) * momentum.residual[8]),
-            -(h * s51) + (s2 * change[9] + real(2.0) * momentum.residual[9]),
-        ])
-    }
-
-    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
-    ///
-    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
-    ///
-    /// `p1 − p0_q[2] = h*f_q[2] + h*L_q[2]`
-    ///
-    /// `p1 − p0_q[3] = h*f_q[3] + h*L_q[3]`
-    ///
-    /// `p1 − p0_q[4] = h*f_q[4] + h*L_q[4]`
-    ///
-    /// `p1 − p0_q[5] = h*f_q[5] + h*L_q[5]`
-    ///
-    /// `p1 − p0_q[6] = h*f_q[6] + h*L_q[6]`
-    ///
-    /// `p1 − p0_q[7] = h*f_q[7] + h*L_q[7]`
-    ///
-    /// `p1 − p0_q[8] = h*f_q[8] + h*L_q[8]`
-    ///
-    /// `p1 − p0_q[9] = h*L_q[9]`
-    ///
-    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
-    ///
-    /// at `(v + dv, h + dh)`.
-    ///
-    /// 702 operations.
+    /// 704 operations.
     #[inline(never)]
-    fn extended_step(
+    fn extended_residual(
         &self,
         node: &::vi_core::Node<10, T>,
-        place: &::vi_core::SVector<T, 10>,
         h: T,
         v: &::vi_core::SVector<T, 10>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::ExtendedSystem<10, T, Self::Jacobian>,
-        ) -> (::vi_core::SVector<T, 10>, T),
-    ) -> ::vi_core::Increment<10, T> {
+    ) -> ::vi_core::ExtendedResidual<10, T> {
         let t0 = node.t;
         let t0_low = node.t_low;
         let energy0 = node.energy;
         let energy0_low = node.energy_low;
+        let q0 = &node.q.data.0[0];
+        let q0_low = &node.q_low.data.0[0];
         let p0 = &node.p.data.0[0];
         let p0_low = &node.p_low.data.0[0];
         let v = &(*v).data.0[0];
-        let q_mid = &(*place).data.0[0];
         let real = T::real;
         let s1 = h * real(0.5);
         let t_mid = t0 + (s1 + t0_low);
         let (sin2, cos2) = t_mid.sin_cos();
         let s3 = sin2 * real(0.3333333333333333) + real(1.0);
-        let s4 = self.k * real(3.0);
-        let s5 = h * h;
-        let s6 = self.k * s5;
-        let s7 = s6 * real(0.25);
-        let s8 = s5 * real(0.25);
-        let s9 = s5 * real(0.75);
-        let s10 = s6 * real(0.75);
-        let s11 = self.k * real(0.75);
-        let s12 = self.k * real(0.25);
-        let s13 = self.k * real(1.5);
-        let s14 = s13 * v[2];
-        let s15 = s13 * v[4];
-        let s16 = s13 * v[6];
-        let s17: [T; 10] = ::core::array::from_fn(|i| v[i] * p0_low[i]);
-        let s18: [T; 10] = ::core::array::from_fn(|i| v[i] * p0[i]);
-        let s19: [T; 9] = ::core::array::from_fn(|i| {
-            (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i])
-        });
-        let s20: [T; 9] = ::core::array::from_fn(|i| s19[i] * s19[i]);
-        let s21: [T; 10] = ::core::array::from_fn(|i| v[i] * v[i]);
-        let s22: [(T, T); 10] = ::core::array::from_fn(|i| q_mid[i].sin_cos());
-        let s23: [T; 9] = ::core::array::from_fn(|i| s19[i] * (q_mid[i + 1] - q_mid[i]));
-        let s24: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].0);
-        let s25: [T; 8] = ::core::array::from_fn(|i| self.k * (s23[i] - s23[i + 1]));
-        let s26: [T; 10] = ::core::array::from_fn(|i| self.m * v[i] - p0[i]);
-        let s27: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * s1);
-        let s28: [T; 8] = ::core::array::from_fn(|i| {
-            s26[i + 1] - (p0_low[i + 1] - s1 * (s25[i] + s24[i + 1]) + s27[i + 1])
-        });
-        let s29: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * (s25[i] + s24[i + 1]));
-        let s30: [T; 10] = ::core::array::from_fn(|i| s3 * s22[i].1);
-        let s31: [T; 8] = ::core::array::from_fn(|i| {
-            s4 * (s19[i] + s19[i + 1]) + s30[i + 1]
-        });
-        let s32: [T; 9] = ::core::array::from_fn(|i| s7 * s22[i].0);
-        let s33: [T; 8] = ::core::array::from_fn(|i| {
-            self.m + (s32[i + 1] + s8 * s31[i])
-        });
-        let s34: [T; 10] = ::core::array::from_fn(|i| s24[i] * real(0.5));
-        let s35: [T; 9] = ::core::array::from_fn(|i| self.k * s22[i].1 * real(0.5));
-        let s36: [T; 10] = ::core::array::from_fn(|i| {
-            cos2 * s22[i].0 * real(0.08333333333333333)
-        });
-        let s37: [T; 9] = ::core::array::from_fn(|i| s11 * v[i + 1] * s19[i]);
-        let s38: [T; 9] = ::core::array::from_fn(|i| s36[i] + s12 * v[i] * s22[i].0);
-        let s39: [T; 8] = ::core::array::from_fn(|i| {
-            s25[i] * real(0.5) + s34[i + 1] - s35[i + 1]
-        });
-        let s40: [T; 9] = ::core::array::from_fn(|i| s11 * v[i] * s19[i]);
-        let s41: [T; 8] = ::core::array::from_fn(|i| v[i + 1] * s31[i] * real(0.25));
-        let s42: [T; 8] = ::core::array::from_fn(|i| {
-            s39[i] + (s38[i + 1] - s40[i] + s41[i] - s37[i + 1]) * h
-        });
-        let s43: [T; 8] = ::core::array::from_fn(|i| {
-            s39[i] + (s40[i] - s41[i] + s37[i + 1] - s36[i + 1]) * h
-        });
-        let s44: [T; 10] = ::core::array::from_fn(|i| v[i] * s22[i].0);
-        let s45 = (1..10).fold(s22[0].1, |sum, i| sum + s22[i].1);
-        let s46 = self.k * s23[0];
-        let s47 = s46 - s24[0];
-        let s48 = self.k * s23[8];
-        let s49 = s48 + s24[9];
-        let s50 = (1..10).fold(s18[0], |sum, i| sum + s18[i])
-            + self.k * (1..9).fold(s20[0], |sum, i| sum + s20[i]) * real(0.25) - energy0
-            - self.m * (1..10).fold(s21[0], |sum, i| sum + s21[i]) * real(0.5)
-            - s3 * s45;
-        let s51 = self.k * s19[0];
-        let s52 = s51 * real(3.0) + s30[0];
-        let s53 = self.k * s19[8];
-        let s54 = s53 * real(3.0) + s30[9];
-        let s55 = -(s51 * s9);
-        let s56 = -(s10 * s19[1]);
-        let s57 = -(s10 * s19[2]);
-        let s58 = -(s10 * s19[3]);
-        let s59 = -(s10 * s19[4]);
-        let s60 = -(s10 * s19[5]);
-        let s61 = -(s10 * s19[6]);
-        let s62 = -(s10 * s19[7]);
-        let s63 = -(s53 * s9);
-        let s64 = s34[0] - s46 * real(0.5) - s35[0];
-        let s65 = v[0] * s52 * real(0.25);
-        let s66 = s48 * real(0.5) + s34[9];
-        let s67 = v[9] * s54 * real(0.25);
-        let s68 = -(s21[0] * s52) - s21[2] * s31[1] - s21[4] * s31[3] - s21[6] * s31[5]
-            - s21[9] * s54 - sin2 * s45 * real(0.3333333333333333);
-        let s69 = s68 * real(0.25) + (s13 * v[9] * s19[8] - s41[7]) * v[8]
-            + (s16 * s19[6] - s41[6] + s13 * v[8] * s19[7]) * v[7];
-        let s70 = s69 + (s15 * s19[4] - s41[4] + s16 * s19[5]) * v[5]
-            + (s14 * s19[2] - s41[2] + s15 * s19[3]) * v[3];
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from({
-                        let mut entries = [T::real(0.0); 10];
-                        entries[0] = s26[0] - (p0_low[0] + s1 * s47 + s27[0]);
-                        for i in 0..8 {
-                            entries[i + 1] = s28[i];
-                        }
-                        entries[9] = s26[9] - (p0_low[9] - s1 * s49);
-                        entries
-                    }),
-                    jacobian: ::vi_core::linear::Tridiagonal {
-                        lower: [
-                            T::real(0.0),
-                            s55,
-                            s56,
-                            s57,
-                            s58,
-                            s59,
-                            s60,
-                            s61,
-                            s62,
-                            s63,
-                        ],
-                        diagonal: {
-                            let mut entries = [T::real(0.0); 10];
-                            entries[0] = self.m + (s32[0] + s8 * s52);
-                            for i in 0..8 {
-                                entries[i + 1] = s33[i];
-                            }
-                            entries[9] = self.m + s8 * s54;
-                            entries
-                        },
-                        upper: [
-                            s55,
-                            s56,
-                            s57,
-                            s58,
-                            s59,
-                            s60,
-                            s61,
-                            s62,
-                            s63,
-                            T::real(0.0),
-                        ],
-                    },
-                },
-                residual_dh: ::vi_core::SVector::from({
+        let s4 = self.k * h;
+        let s5 = s4 * real(0.5);
+        let s6 = sin2.abs() * real(0.3333333333333333);
+        let s7 = s6 + real(1.0);
+        let s8 = h.abs() * real(0.5);
+        let s9 = self.k.abs();
+        let mut q_mid = [real(0.0); 10];
+        for i in 0..10 {
+            q_mid[i] = q0[i] + (s1 * v[i] + q0_low[i]);
+        }
+        let mut s10 = [real(0.0); 10];
+        for i in 0..10 {
+            s10[i] = v[i] * p0_low[i];
+        }
+        let mut s11 = [real(0.0); 10];
+        for i in 0..10 {
+            s11[i] = v[i] * p0[i];
+        }
+        let mut s12 = [real(0.0); 9];
+        for i in 0..9 {
+            s12[i] = (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i]);
+        }
+        let mut s13 = [real(0.0); 9];
+        for i in 0..9 {
+            s13[i] = s12[i] * s12[i];
+        }
+        let mut s14 = [real(0.0); 10];
+        for i in 0..10 {
+            s14[i] = v[i] * v[i];
+        }
+        let mut s15 = [(real(0.0), real(0.0)); 10];
+        for i in 0..10 {
+            s15[i] = q_mid[i].sin_cos();
+        }
+        let mut s16 = [real(0.0); 9];
+        for i in 0..9 {
+            s16[i] = s12[i] * (q_mid[i + 1] - q_mid[i]);
+        }
+        let mut s17 = [real(0.0); 10];
+        for i in 0..10 {
+            s17[i] = s3 * s15[i].0;
+        }
+        let mut s18 = [real(0.0); 8];
+        for i in 0..8 {
+            s18[i] = self.k * (s16[i] - s16[i + 1]) + s17[i + 1];
+        }
+        let mut s19 = [real(0.0); 9];
+        for i in 0..9 {
+            s19[i] = s4 * s15[i].1;
+        }
+        let mut s20 = [real(0.0); 10];
+        for i in 0..10 {
+            s20[i] = self.m * v[i] - p0[i];
+        }
+        let mut s21 = [real(0.0); 9];
+        for i in 0..9 {
+            s21[i] = s5 * s15[i].1;
+        }
+        let mut s22 = [real(0.0); 8];
+        for i in 0..8 {
+            s22[i] = s20[i + 1] - (p0_low[i + 1] - s1 * s18[i] + s21[i + 1]);
+        }
+        let mut s23 = [real(0.0); 8];
+        for i in 0..8 {
+            s23[i] = v[i + 1] * s18[i];
+        }
+        let mut s24 = [real(0.0); 8];
+        for i in 0..8 {
+            s24[i] = s19[i + 1] - h * s18[i];
+        }
+        let mut s25 = [real(0.0); 9];
+        for i in 0..9 {
+            s25[i] = self.k * v[i] * s15[i].1;
+        }
+        let mut s26 = [real(0.0); 10];
+        for i in 0..10 {
+            s26[i] = q_mid[i].abs();
+        }
+        let mut s27 = [real(0.0); 10];
+        for i in 0..10 {
+            s27[i] = s7 * s15[i].0.abs();
+        }
+        let mut s28 = [real(0.0); 9];
+        for i in 0..9 {
+            s28[i] = s19[i].abs() * real(0.5);
+        }
+        let mut s29 = [real(0.0); 10];
+        for i in 0..10 {
+            s29[i] = p0[i].abs() + (self.m * v[i]).abs();
+        }
+        let mut s30 = [real(0.0); 8];
+        for i in 0..8 {
+            s30[i] = s26[i + 1] + s26[i + 2];
+        }
+        let mut s31 = [real(0.0); 8];
+        for i in 0..8 {
+            s31[i] = s12[i + 1] * s30[i] * real(3.0);
+        }
+        let mut s32 = [real(0.0); 10];
+        for i in 0..10 {
+            s32[i] = s11[i].abs();
+        }
+        let mut s33 = [real(0.0); 8];
+        for i in 0..8 {
+            s33[i] = s30[i]
+                * ((q_mid[i + 1] - q_mid[i + 2]) * (q_mid[i + 1] - q_mid[i + 2])
+                    * (q_mid[i + 1] - q_mid[i + 2]))
+                    .abs() * real(4.0);
+        }
+        let mut s34 = [real(0.0); 10];
+        for i in 0..10 {
+            s34[i] = s15[i].1.abs();
+        }
+        let mut s35 = [real(0.0); 10];
+        for i in 0..10 {
+            s35[i] = (h * v[i]).abs();
+        }
+        let s36 = (1..10).fold(s14[0], |sum, i| sum + s14[i]);
+        let s37 = (1..10).fold(s15[0].1, |sum, i| sum + s15[i].1);
+        let s38 = self.k * s16[0] - s17[0];
+        let s39 = self.k * s16[8] + s17[9];
+        let s40 = (1..10).fold(s11[0], |sum, i| sum + s11[i])
+            + self.k * (1..9).fold(s13[0], |sum, i| sum + s13[i]) * real(0.25) - energy0
+            - self.m * s36 * real(0.5) - s3 * s37;
+        let s41 = s37 * cos2 * real(0.3333333333333333);
+        let s42 = s26[1] + s26[0];
+        let s43 = s42 * (self.k * s12[0]).abs() * real(3.0) + s27[0];
+        let s44 = s9 * (s12[0] * s42 * real(3.0) + s31[0]) + s27[1];
+        let s45 = s9 * (s31[0] + s31[1]) + s27[2];
+        let s46 = s9 * (s31[1] + s31[2]) + s27[3];
+        let s47 = s9 * (s31[2] + s31[3]) + s27[4];
+        let s48 = s9 * (s31[3] + s31[4]) + s27[5];
+        let s49 = s9 * (s31[4] + s31[5]) + s27[6];
+        let s50 = s9 * (s31[5] + s31[6]) + s27[7];
+        let s51 = s9 * (s31[6] + s31[7]) + s27[8];
+        let s52 = s30[7] * (self.k * s12[8]).abs() * real(3.0) + s27[9];
+        let s53 = (0..10).fold(energy0.abs(), |sum, i| sum + s32[i])
+            + s9 * (0..8).fold(s42 * s16[0].abs() * real(4.0), |sum, i| sum + s33[i])
+                * real(0.25) + self.m.abs() * s36 * real(0.5) + s43 * s35[0] * real(0.5);
+        let s54 = s53 + s44 * s35[1] * real(0.5) + s45 * s35[2] * real(0.5)
+            + s46 * s35[3] * real(0.5) + s47 * s35[4] * real(0.5);
+        let s55 = s54 + s48 * s35[5] * real(0.5) + s49 * s35[6] * real(0.5)
+            + s50 * s35[7] * real(0.5) + s51 * s35[8] * real(0.5);
+        ::vi_core::ExtendedResidual {
+            residual: ::vi_core::SVector::from({
+                let mut entries = [T::real(0.0); 10];
+                entries[0] = s20[0] - (p0_low[0] + s1 * s38 + s21[0]);
+                for i in 0..8 {
+                    entries[i + 1] = s22[i];
+                }
+                entries[9] = s20[9] - (p0_low[9] - s1 * s39);
+                entries
+            }),
+            magnitude: ::vi_core::SVector::from([
+                s29[0] + s8 * s43 + s28[0],
+                s29[1] + s8 * s44 + s28[1],
+                s29[2] + s8 * s45 + s28[2],
+                s29[3] + s8 * s46 + s28[3],
+                s29[4] + s8 * s47 + s28[4],
+                s29[5] + s8 * s48 + s28[5],
+                s29[6] + s8 * s49 + s28[6],
+                s29[7] + s8 * s50 + s28[7],
+                s29[8] + s8 * s51 + s28[8],
+                s29[9] + s8 * s52,
+            ]),
+            energy_residual: s40
+                + ((1..10).fold(s10[0], |sum, i| sum + s10[i]) - energy0_low
+                    + s1
+                        * ((0..8).fold(s41 + v[0] * s38, |sum, i| sum - s23[i])
+                            - v[9] * s39)),
+            energy_magnitude: s55 + s52 * s35[9] * real(0.5)
+                + (s6 + (h * cos2).abs() * real(0.16666666666666666) + real(1.0))
+                    * (1..10).fold(s34[0], |sum, i| sum + s34[i]),
+            increment: ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from({
                     let mut entries = [T::real(0.0); 10];
-                    entries[0] = s64 + (s38[0] + s65 - s37[0]) * h;
+                    entries[0] = h * s38 + s19[0];
                     for i in 0..8 {
-                        entries[i + 1] = s42[i];
+                        entries[i + 1] = s24[i];
                     }
-                    entries[9] = s66 + (s36[9] - s40[8] + s67) * h;
+                    entries[9] = -(h * s39);
                     entries
                 }),
-                energy_residual: s50
-                    + ((1..10).fold(s17[0], |sum, i| sum + s17[i]) - energy0_low
-                        + s1
-                            * ((0..8)
-                                .fold(
-                                    s45 * cos2 * real(0.3333333333333333) + v[0] * s47,
-                                    |sum, i| sum - s29[i],
-                                ) - v[9] * s49)),
-                energy_dv: ::vi_core::SVector::from({
-                    let mut entries = [T::real(0.0); 10];
-                    entries[0] = s64 + (s37[0] - s65 - s36[0]) * h;
-                    for i in 0..8 {
-                        entries[i + 1] = s43[i];
-                    }
-                    entries[9] = s66 + (s40[8] - s67 - s36[9]) * h;
-                    entries
-                }),
-                energy_dh: s70 + (s13 * v[0] * s19[0] - s41[0] + s14 * s19[1]) * v[1]
-                    - (1..10).fold(s44[0], |sum, i| sum + s44[i]) * cos2
-                        * real(0.16666666666666666),
+                energy: ((1..9).fold(s25[0], |sum, i| sum + s25[i]) - s41) * h,
             },
-        );
-        self.increment(
-            node,
-            h + change_h,
-            &(::vi_core::SVector::<T, 10>::from(*v) + change),
-        )
+        }
+    }
+
+    /// What the rounding of both residuals is measured in, by running error analysis.
+    #[cold]
+    fn rounding(
+        &self,
+        node: &::vi_core::Node<10, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 10>,
+    ) -> ::vi_core::Rounding<10, T> {
+        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
     }
 }
 

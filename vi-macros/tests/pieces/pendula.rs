@@ -33,10 +33,19 @@ impl<T: ::vi_core::Real> Pendula<T> {
             b: T::real(system.b),
         }
     }
+
+    /// The same system in another kind of number, every parameter rounded to it.
+    #[allow(dead_code)]
+    fn convert<U: ::vi_core::Real>(&self) -> Pendula<U> {
+        Pendula {
+            m: U::real(self.m.to_f64()),
+            k: U::real(self.k.to_f64()),
+            b: U::real(self.b.to_f64()),
+        }
+    }
 }
 
 impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Pendula<T> {
-    const PARAMETERS: &'static [&'static str] = &["m", "k", "b"];
     fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
         match name {
             "m" => Some(&mut self.m),
@@ -54,6 +63,10 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
     const AUTONOMOUS: bool = false;
     const FORCED: bool = true;
     const CYCLIC: [bool; 2] = [false, false];
+    const PARAMETERS: &'static [&'static str] = &["m", "k", "b"];
+    fn parameter(&self, index: usize) -> T {
+        [self.m, self.k, self.b][index]
+    }
 
     /// `L = dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - k*(q[0] - q[1])^2/2 + m*(dot(q[0])^2 + dot(q[1])^2) + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]))`
     ///
@@ -631,15 +644,14 @@ impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
 impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
     type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
     const CONSTANT_JACOBIAN: bool = false;
-    const SMOOTH: bool = true;
-    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
+    const INLINED: bool = true;
 
     /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
     ///
     /// `residual_q[1] = L_v_q[1] - h*f_q[1]/2 - h*L_q[1]/2 - p0_q[1]_low - p0_q[1]`
     ///
     /// 85 operations.
-    #[inline(always)]
+    #[inline(never)]
     fn momentum_equation(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -771,10 +783,184 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         }
     }
 
+    /// The residual, its magnitude, and
+    ///
+    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+    ///
+    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+    ///
+    /// 106 operations.
+    #[inline(never)]
+    fn momentum_residual(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::MomentumResidual<2, T> {
+        let t0 = node.t;
+        let t0_low = node.t_low;
+        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
+        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+        let real = T::real;
+        /// Part 1 of `momentum_residual`: 26 operations.
+        #[inline(never)]
+        fn momentum_residual_part_1<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 13],
+            values: &mut [T; 23],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let t0 = inputs[0];
+            let q_0_0 = inputs[1];
+            let q_1_0 = inputs[2];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let t0_low = inputs[8];
+            let q_0_0_low = inputs[9];
+            let q_1_0_low = inputs[10];
+            let s1 = h * real(0.5);
+            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = system.m * q_0_dot;
+            let [(sin3, cos3), (sin4, cos4), (sin5, _)] = T::sin_cos_each([
+                q_0_mid,
+                q_1_mid,
+                t_mid,
+            ]);
+            let s6 = cos3 * cos4 + sin3 * sin4;
+            let s7 = q_1_dot * s6;
+            let s8 = system.b * h;
+            let s9 = s8 * real(0.5);
+            let s10 = q_0_dot * q_1_dot * (sin3 * cos4 - cos3 * sin4);
+            values[6] = s1;
+            values[7] = q_0_mid;
+            values[8] = q_1_mid;
+            values[9] = s8;
+            values[10] = s2;
+            values[11] = sin3;
+            values[12] = sin4;
+            values[13] = s6;
+            values[14] = sin5;
+            values[16] = s7;
+            values[17] = s10;
+            values[19] = s9;
+        }
+        /// Part 2 of `momentum_residual`: 49 operations.
+        #[inline(never)]
+        fn momentum_residual_part_2<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 13],
+            values: &mut [T; 23],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let s1 = values[6];
+            let q_0_mid = values[7];
+            let q_1_mid = values[8];
+            let p0_q_0_low = inputs[11];
+            let p0_q_0 = inputs[6];
+            let s8 = values[9];
+            let s2 = values[10];
+            let sin3 = values[11];
+            let sin5 = values[14];
+            let s7 = values[16];
+            let s10 = values[17];
+            let s9 = values[19];
+            let s11 = s10 * real(0.25) + system.k * (q_0_mid - q_1_mid);
+            let s12 = sin5 * real(0.3333333333333333) + real(1.0);
+            let s13 = s11 + s12 * sin3;
+            let s14 = s2 * real(2.0) + s7 * real(0.25) - p0_q_0
+                + (s9 * q_0_dot - p0_q_0_low + s1 * s13);
+            let s15 = s8 * q_0_dot;
+            let s16 = h.abs() * real(0.5);
+            let s17 = s10.abs() * real(0.25)
+                + system.k.abs() * (q_0_mid.abs() + q_1_mid.abs());
+            let s18 = sin5.abs() * real(0.3333333333333333) + real(1.0);
+            let s19 = p0_q_0.abs() + s15.abs() * real(0.5) + s2.abs() * real(2.0)
+                + s7.abs() * real(0.25) + s16 * (s17 + s18 * sin3.abs());
+            let s20 = -(h * s13) - s15;
+            values[15] = s12;
+            values[18] = s11;
+            values[0] = s14;
+            values[4] = s20;
+            values[20] = s18;
+            values[21] = s17;
+            values[22] = s16;
+            values[2] = s19;
+        }
+        /// Part 3 of `momentum_residual`: 31 operations.
+        #[inline(never)]
+        fn momentum_residual_part_3<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 13],
+            values: &mut [T; 23],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s1 = values[6];
+            let p0_q_1_low = inputs[12];
+            let p0_q_1 = inputs[7];
+            let s8 = values[9];
+            let sin4 = values[12];
+            let s6 = values[13];
+            let s12 = values[15];
+            let s11 = values[18];
+            let s9 = values[19];
+            let s18 = values[20];
+            let s17 = values[21];
+            let s16 = values[22];
+            let s21 = system.m * q_1_dot;
+            let s22 = q_0_dot * s6;
+            let s23 = s11 - s12 * sin4;
+            let s24 = s21 * real(2.0) + s22 * real(0.25) - p0_q_1
+                + (s9 * q_1_dot - p0_q_1_low - s1 * s23);
+            let s25 = s8 * q_1_dot;
+            let s26 = p0_q_1.abs() + s25.abs() * real(0.5) + s21.abs() * real(2.0)
+                + s22.abs() * real(0.25) + s16 * (s17 + s18 * sin4.abs());
+            let s27 = h * s23 - s25;
+            values[1] = s24;
+            values[5] = s27;
+            values[3] = s26;
+        }
+        let system = self;
+        let inputs = [
+            t0,
+            q_0_0,
+            q_1_0,
+            h,
+            q_0_dot,
+            q_1_dot,
+            p0_q_0,
+            p0_q_1,
+            t0_low,
+            q_0_0_low,
+            q_1_0_low,
+            p0_q_0_low,
+            p0_q_1_low,
+        ];
+        let mut values = [T::real(0.0); 23];
+        momentum_residual_part_1(system, &inputs, &mut values);
+        momentum_residual_part_2(system, &inputs, &mut values);
+        momentum_residual_part_3(system, &inputs, &mut values);
+        ::vi_core::MomentumResidual {
+            residual: ::vi_core::SVector::from([values[0], values[1]]),
+            magnitude: ::vi_core::SVector::from([values[2], values[3]]),
+            increment: ::vi_core::SVector::from([values[4], values[5]]),
+        }
+    }
+
     /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
     ///
     /// 170 operations.
-    #[inline(always)]
+    #[inline(never)]
     fn extended_system(
         &self,
         node: &::vi_core::Node<2, T>,
@@ -882,9 +1068,9 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[0] = s17;
             values[37] = s21;
             values[38] = s22;
-            values[40] = s18;
-            values[41] = s19;
-            values[42] = s20;
+            values[39] = s18;
+            values[40] = s19;
+            values[41] = s20;
             values[2] = s23;
         }
         /// Part 3 of `extended_system`: 29 operations.
@@ -907,7 +1093,7 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s8 = values[32];
             let s21 = values[37];
             let s22 = values[38];
-            let s20 = values[42];
+            let s20 = values[41];
             let s24 = s6 * real(0.25);
             let s25 = (q_0_dot + q_1_dot) * s10 * real(0.125);
             let s26 = s20 * s21;
@@ -922,9 +1108,9 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s35 = s30 + s20 * (s32 + s33 - s34);
             let s36 = s30 + s20 * (s34 - s33 - s32);
             values[21] = s29;
-            values[43] = s24;
-            values[44] = s25;
-            values[45] = s26;
+            values[42] = s24;
+            values[43] = s25;
+            values[44] = s26;
             values[4] = s27;
             values[46] = s28;
             values[47] = s31;
@@ -961,12 +1147,12 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s13 = values[29];
             let s16 = values[30];
             let s21 = values[37];
-            let s18 = values[40];
-            let s19 = values[41];
-            let s20 = values[42];
-            let s24 = values[43];
-            let s25 = values[44];
-            let s26 = values[45];
+            let s18 = values[39];
+            let s19 = values[40];
+            let s20 = values[41];
+            let s24 = values[42];
+            let s25 = values[43];
+            let s26 = values[44];
             let s37 = system.b * q_1_dot;
             let s38 = s14 * sin3;
             let s39 = s13 - s38;
@@ -988,8 +1174,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             values[1] = s41;
             values[35] = s46;
             values[36] = s40;
-            values[39] = s43;
             values[3] = s42;
+            values[45] = s43;
             values[5] = s44;
         }
         /// Part 5 of `extended_system`: 38 operations.
@@ -1015,8 +1201,8 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let s46 = values[35];
             let s40 = values[36];
             let s21 = values[37];
-            let s43 = values[39];
-            let s20 = values[42];
+            let s20 = values[41];
+            let s43 = values[45];
             let s28 = values[46];
             let s31 = values[47];
             let s33 = values[48];
@@ -1076,30 +1262,34 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
         }
     }
 
-    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
+    /// Both residuals, their magnitudes, and
     ///
-    /// 196 operations.
-    #[cold]
-    fn magnitudes(
+    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
+    ///
+    /// 179 operations.
+    #[inline(never)]
+    fn extended_residual(
         &self,
         node: &::vi_core::Node<2, T>,
         h: T,
         v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Magnitudes<2, T> {
+    ) -> ::vi_core::ExtendedResidual<2, T> {
         let t0 = node.t;
         let t0_low = node.t_low;
         let energy0 = node.energy;
+        let energy0_low = node.energy_low;
         let [q_0_0, q_1_0]: [T; 2] = node.q.into();
         let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
         let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
+        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
         let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
         let real = T::real;
-        /// Part 1 of `magnitudes`: 33 operations.
+        /// Part 1 of `extended_residual`: 25 operations.
         #[inline(never)]
-        fn magnitudes_part_1<T: ::vi_core::Real>(
+        fn extended_residual_part_1<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 12],
-            values: &mut [T; 39],
+            inputs: &[T; 15],
+            values: &mut [T; 46],
         ) {
             let real = T::real;
             let h = inputs[3];
@@ -1111,227 +1301,224 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             let t0_low = inputs[9];
             let q_0_0_low = inputs[10];
             let q_1_0_low = inputs[11];
-            let p0_q_0 = inputs[6];
             let s1 = h * real(0.5);
             let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
             let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
             let t_mid = t0 + (s1 + t0_low);
-            let s2 = system.b * h;
-            let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+            let s2 = q_0_dot * q_0_dot;
+            let s3 = system.m * q_0_dot;
+            let s4 = q_1_dot * q_1_dot;
+            let s5 = s2 + s4;
+            let [(sin6, cos6), (sin7, cos7), (sin8, cos8)] = T::sin_cos_each([
                 q_0_mid,
                 q_1_mid,
                 t_mid,
             ]);
-            let s6 = cos3 + cos4;
-            let s7 = cos3 * cos4 + sin3 * sin4;
-            let s8 = p0_q_0.abs() + (s2 * q_0_dot).abs() * real(0.5)
-                + (system.m * q_0_dot).abs() * real(2.0)
-                + (q_1_dot * s7).abs() * real(0.25);
-            values[3] = s1;
-            values[4] = t_mid;
-            values[5] = q_0_mid;
-            values[6] = q_1_mid;
-            values[7] = s2;
-            values[9] = cos3;
-            values[10] = cos4;
-            values[11] = sin3;
-            values[12] = sin4;
-            values[13] = s7;
-            values[15] = sin5;
-            values[17] = s6;
-            values[18] = cos5;
-            values[28] = s8;
-        }
-        /// Part 2 of `magnitudes`: 44 operations.
-        #[inline(never)]
-        fn magnitudes_part_2<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 12],
-            values: &mut [T; 39],
-        ) {
-            let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
-            let t_mid = values[4];
-            let q_0_mid = values[5];
-            let q_1_mid = values[6];
-            let cos3 = values[9];
-            let cos4 = values[10];
-            let sin3 = values[11];
-            let sin4 = values[12];
-            let sin5 = values[15];
-            let s6 = values[17];
-            let cos5 = values[18];
-            let s9 = h.abs() * real(0.5);
-            let s10 = q_0_dot * q_1_dot;
-            let s11 = sin3 * cos4 - cos3 * sin4;
-            let s12 = s10 * s11;
-            let s13 = q_0_mid - q_1_mid;
-            let s14 = system.k * s13;
-            let s15 = s12 * real(0.25) + s14;
-            let s16 = s12.abs() * real(0.25) + s14.abs();
-            let s17 = sin5 * real(0.3333333333333333) + real(1.0);
-            let s18 = s17 * sin3;
-            let s19 = s16 + s18.abs();
-            let s20 = h * t_mid;
-            let s21 = s6 * cos5 * real(0.3333333333333333)
-                + (sin5 * s6 * real(0.16666666666666666)
-                    + (q_0_dot * sin3 + q_1_dot * sin4) * cos5
-                        * real(0.16666666666666666)) * h;
-            let s22 = (sin5.abs() * real(0.3333333333333333)
-                + (h * cos5).abs() * real(0.16666666666666666) + real(1.0))
-                * (cos3.abs() + cos4.abs());
-            values[8] = s13;
-            values[14] = s10;
-            values[16] = s17;
-            values[19] = s11;
-            values[20] = s18;
-            values[22] = s16;
-            values[23] = s19;
-            values[24] = s20;
+            let s9 = cos6 + cos7;
+            let s10 = cos6 * cos7 + sin6 * sin7;
+            let s11 = q_1_dot * s10;
+            let s12 = s11 * real(0.25);
+            values[9] = s1;
+            values[10] = q_0_mid;
+            values[11] = q_1_mid;
+            values[13] = s3;
+            values[16] = cos6;
+            values[17] = cos7;
+            values[18] = sin6;
+            values[19] = sin7;
+            values[20] = s10;
+            values[22] = s2;
+            values[23] = s4;
+            values[24] = s5;
+            values[25] = sin8;
             values[27] = s9;
-            values[33] = s21;
-            values[34] = s15;
-            values[36] = s22;
+            values[28] = cos8;
+            values[29] = s11;
+            values[36] = s12;
         }
-        /// Part 3 of `magnitudes`: 50 operations.
+        /// Part 2 of `extended_residual`: 31 operations.
         #[inline(never)]
-        fn magnitudes_part_3<T: ::vi_core::Real>(
+        fn extended_residual_part_2<T: ::vi_core::Real>(
             system: &Pendula<T>,
-            inputs: &[T; 12],
-            values: &mut [T; 39],
+            inputs: &[T; 15],
+            values: &mut [T; 46],
         ) {
             let real = T::real;
+            let h = inputs[3];
             let q_0_dot = inputs[4];
             let q_1_dot = inputs[5];
-            let s1 = values[3];
-            let q_0_mid = values[5];
-            let q_1_mid = values[6];
+            let s1 = values[9];
+            let q_0_mid = values[10];
+            let q_1_mid = values[11];
+            let p0_q_0_low = inputs[12];
             let p0_q_0 = inputs[6];
+            let s3 = values[13];
+            let cos6 = values[16];
+            let cos7 = values[17];
+            let sin6 = values[18];
+            let sin7 = values[19];
+            let s2 = values[22];
+            let s4 = values[23];
+            let sin8 = values[25];
+            let s9 = values[27];
+            let cos8 = values[28];
+            let s12 = values[36];
+            let s13 = system.b * h;
+            let s14 = s13 * real(0.5);
+            let s15 = q_0_dot * q_1_dot;
+            let s16 = s15 * (sin6 * cos7 - cos6 * sin7);
+            let s17 = q_0_mid - q_1_mid;
+            let s18 = system.k * s17;
+            let s19 = s16 * real(0.25) + s18;
+            let s20 = s9 * cos8 * real(0.3333333333333333);
+            let s21 = -((s20 + system.b * s2 + system.b * s4) * h);
+            let s22 = sin8 * real(0.3333333333333333) + real(1.0);
+            let s23 = s19 + s22 * sin6;
+            let s24 = s3 * real(2.0) + s12 - p0_q_0
+                + (s14 * q_0_dot - p0_q_0_low + s1 * s23);
+            values[12] = s13;
+            values[15] = s17;
+            values[21] = s15;
+            values[26] = s22;
+            values[31] = s16;
+            values[32] = s18;
+            values[33] = s19;
+            values[34] = s23;
+            values[37] = s14;
+            values[0] = s24;
+            values[38] = s20;
+            values[8] = s21;
+        }
+        /// Part 3 of `extended_residual`: 32 operations.
+        #[inline(never)]
+        fn extended_residual_part_3<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 46],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_0_mid = values[10];
+            let q_1_mid = values[11];
+            let p0_q_0 = inputs[6];
+            let s13 = values[12];
+            let s3 = values[13];
+            let sin6 = values[18];
+            let sin8 = values[25];
+            let s11 = values[29];
+            let s16 = values[31];
+            let s23 = values[34];
+            let s25 = s13 * q_0_dot;
+            let s26 = h.abs() * real(0.5);
+            let s27 = q_0_mid.abs() + q_1_mid.abs();
+            let s28 = s16.abs() * real(0.25) + system.k.abs() * s27;
+            let s29 = sin8.abs() * real(0.3333333333333333);
+            let s30 = s29 + real(1.0);
+            let s31 = s28 + s30 * sin6.abs();
+            let s32 = p0_q_0.abs() + s25.abs() * real(0.5) + s3.abs() * real(2.0)
+                + s11.abs() * real(0.25) + s26 * s31;
+            let s33 = -(h * s23) - s25;
+            values[6] = s33;
+            values[39] = s27;
+            values[40] = s29;
+            values[41] = s30;
+            values[42] = s28;
+            values[43] = s31;
+            values[44] = s26;
+            values[2] = s32;
+        }
+        /// Part 4 of `extended_residual`: 50 operations.
+        #[inline(never)]
+        fn extended_residual_part_4<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 46],
+        ) {
+            let real = T::real;
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let s1 = values[9];
+            let p0_q_0_low = inputs[12];
+            let p0_q_0 = inputs[6];
+            let p0_q_1_low = inputs[13];
             let p0_q_1 = inputs[7];
+            let energy0_low = inputs[14];
             let energy0 = inputs[8];
-            let s13 = values[8];
-            let cos3 = values[9];
-            let sin3 = values[11];
-            let s7 = values[13];
-            let s10 = values[14];
-            let s17 = values[16];
-            let cos5 = values[18];
-            let s11 = values[19];
-            let s18 = values[20];
-            let s19 = values[23];
-            let s20 = values[24];
+            let s17 = values[15];
+            let sin7 = values[19];
+            let s10 = values[20];
+            let s15 = values[21];
+            let s5 = values[24];
+            let s22 = values[26];
             let s9 = values[27];
-            let s8 = values[28];
-            let s15 = values[34];
-            let s23 = q_1_dot * s11 * real(0.25);
-            let s24 = s10 * s7;
-            let s25 = system.k + s24 * real(0.25);
-            let s26 = s25 + s17 * cos3;
-            let s27 = (q_0_mid
-                * (s15 + s18
-                    + s1
-                        * (q_1_dot * s25 - q_0_dot * s26
-                            - sin3 * cos5 * real(0.3333333333333333))))
-                .abs();
-            let s28 = s8 + s9 * s19
-                + (s20 * sin3 * cos5).abs() * real(0.16666666666666666)
-                + (q_0_mid * (s23 - s1 * s26)).abs();
-            let s29 = s1 * s25;
-            let s30 = s28 + (q_1_mid * (s23 - s29)).abs();
-            let s31 = energy0.abs() + (q_0_dot * p0_q_0).abs() + (q_1_dot * p0_q_1).abs()
-                + s24.abs() * real(0.25) + (system.k * (s13 * s13)).abs() * real(0.5);
-            values[25] = s25;
-            values[26] = s29;
-            values[0] = s30;
-            values[35] = s27;
-            values[37] = s31;
-        }
-        /// Part 4 of `magnitudes`: 42 operations.
-        #[inline(never)]
-        fn magnitudes_part_4<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 12],
-            values: &mut [T; 39],
-        ) {
-            let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
-            let q_0_mid = values[5];
-            let p0_q_1 = inputs[7];
-            let s2 = values[7];
-            let cos4 = values[10];
-            let sin4 = values[12];
-            let s7 = values[13];
-            let s17 = values[16];
-            let cos5 = values[18];
-            let s11 = values[19];
-            let s16 = values[22];
-            let s19 = values[23];
-            let s20 = values[24];
-            let s25 = values[25];
-            let s29 = values[26];
-            let s9 = values[27];
-            let s31 = values[37];
-            let s32 = s31 + system.m.abs() * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
-                + s19 * (h * q_0_dot).abs() * real(0.5);
-            let s33 = p0_q_1.abs() + (s2 * q_1_dot).abs() * real(0.5)
-                + (system.m * q_1_dot).abs() * real(2.0)
-                + (q_0_dot * s7).abs() * real(0.25);
-            let s34 = s17 * sin4;
-            let s35 = s16 + s34.abs();
-            let s36 = q_0_dot * s11 * real(0.25);
-            let s37 = s33 + s9 * s35
-                + (s20 * sin4 * cos5).abs() * real(0.16666666666666666)
-                + (q_0_mid * (s36 + s29)).abs();
-            let s38 = s25 + s17 * cos4;
-            values[21] = s34;
-            values[29] = s35;
-            values[30] = s36;
-            values[31] = s38;
-            values[32] = s37;
-            values[38] = s32;
-        }
-        /// Part 5 of `magnitudes`: 27 operations.
-        #[inline(never)]
-        fn magnitudes_part_5<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 12],
-            values: &mut [T; 39],
-        ) {
-            let real = T::real;
-            let h = inputs[3];
-            let q_0_dot = inputs[4];
-            let q_1_dot = inputs[5];
-            let s1 = values[3];
-            let t_mid = values[4];
-            let q_1_mid = values[6];
-            let sin4 = values[12];
-            let cos5 = values[18];
-            let s34 = values[21];
-            let s25 = values[25];
-            let s35 = values[29];
-            let s36 = values[30];
-            let s38 = values[31];
-            let s37 = values[32];
-            let s21 = values[33];
-            let s15 = values[34];
-            let s27 = values[35];
-            let s22 = values[36];
-            let s32 = values[38];
-            let s39 = (q_1_mid
-                * (s15 - s34
-                    + s1
-                        * (sin4 * cos5 * real(0.3333333333333333) - q_0_dot * s25
-                            + q_1_dot * s38)))
-                .abs();
-            let s40 = s32 + s35 * (h * q_1_dot).abs() * real(0.5) + (t_mid * s21).abs()
-                + s27 + s39 + s22;
-            let s41 = s37 + (q_1_mid * (s36 + s1 * s38)).abs();
+            let s18 = values[32];
+            let s19 = values[33];
+            let s23 = values[34];
+            let s12 = values[36];
+            let s14 = values[37];
+            let s20 = values[38];
+            let s27 = values[39];
+            let s34 = system.m * q_1_dot;
+            let s35 = q_0_dot * s10;
+            let s36 = q_1_dot * p0_q_1;
+            let s37 = s36 + system.k * (s17 * s17) * real(0.5) - energy0 - system.m * s5
+                - s22 * s9 + (p0_q_0 - s12) * q_0_dot;
+            let s38 = energy0.abs() + (q_0_dot * p0_q_0).abs() + s36.abs()
+                + (s15 * s10).abs() * real(0.25) + s27 * s18.abs();
+            let s39 = s19 - s22 * sin7;
+            let s40 = s37
+                + (q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
+                    + s1 * (s20 - q_0_dot * s23 + q_1_dot * s39));
+            let s41 = s34 * real(2.0) + s35 * real(0.25) - p0_q_1
+                + (s14 * q_1_dot - p0_q_1_low - s1 * s39);
+            values[14] = s34;
+            values[30] = s35;
+            values[35] = s39;
             values[1] = s41;
-            values[2] = s40;
+            values[4] = s40;
+            values[45] = s38;
+        }
+        /// Part 5 of `extended_residual`: 41 operations.
+        #[inline(never)]
+        fn extended_residual_part_5<T: ::vi_core::Real>(
+            system: &Pendula<T>,
+            inputs: &[T; 15],
+            values: &mut [T; 46],
+        ) {
+            let real = T::real;
+            let h = inputs[3];
+            let q_0_dot = inputs[4];
+            let q_1_dot = inputs[5];
+            let p0_q_1 = inputs[7];
+            let s13 = values[12];
+            let s34 = values[14];
+            let cos6 = values[16];
+            let cos7 = values[17];
+            let sin7 = values[19];
+            let s5 = values[24];
+            let cos8 = values[28];
+            let s35 = values[30];
+            let s39 = values[35];
+            let s29 = values[40];
+            let s30 = values[41];
+            let s28 = values[42];
+            let s31 = values[43];
+            let s26 = values[44];
+            let s38 = values[45];
+            let s42 = s13 * q_1_dot;
+            let s43 = s28 + s30 * sin7.abs();
+            let s44 = s38 + system.m.abs() * s5 + s31 * (h * q_0_dot).abs() * real(0.5)
+                + s43 * (h * q_1_dot).abs() * real(0.5);
+            let s45 = s44
+                + (s29 + (h * cos8).abs() * real(0.16666666666666666) + real(1.0))
+                    * (cos6.abs() + cos7.abs());
+            let s46 = p0_q_1.abs() + s42.abs() * real(0.5) + s34.abs() * real(2.0)
+                + s35.abs() * real(0.25) + s26 * s43;
+            let s47 = h * s39 - s42;
+            values[7] = s47;
+            values[3] = s46;
+            values[5] = s45;
         }
         let system = self;
         let inputs = [
@@ -1347,657 +1534,37 @@ impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
             t0_low,
             q_0_0_low,
             q_1_0_low,
-        ];
-        let mut values = [T::real(0.0); 39];
-        magnitudes_part_1(system, &inputs, &mut values);
-        magnitudes_part_2(system, &inputs, &mut values);
-        magnitudes_part_3(system, &inputs, &mut values);
-        magnitudes_part_4(system, &inputs, &mut values);
-        magnitudes_part_5(system, &inputs, &mut values);
-        ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from([values[0], values[1]]),
-            energy_residual: values[2],
-        }
-    }
-
-    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
-    ///
-    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
-    ///
-    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
-    ///
-    /// 49 operations.
-    #[inline(always)]
-    fn increment(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Increment<2, T> {
-        let t0 = node.t;
-        let t0_low = node.t_low;
-        let [q_0_0, q_1_0]: [T; 2] = node.q.into();
-        let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
-        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let t_mid = t0 + (s1 + t0_low);
-        let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
-        let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
-        let s2 = self.b * h;
-        let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
-            t_mid,
-            q_0_mid,
-            q_1_mid,
-        ]);
-        let s6 = sin3 * real(0.3333333333333333) + real(1.0);
-        let s7 = q_0_dot * q_1_dot * (sin4 * cos5 - cos4 * sin5) * real(0.25)
-            + self.k * (q_0_mid - q_1_mid);
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                -(h * (s7 + s6 * sin4)) - s2 * q_0_dot,
-                h * (s7 - s6 * sin5) - s2 * q_1_dot,
-            ]),
-            energy: -(((cos4 + cos5) * cos3 * real(0.3333333333333333)
-                + self.b * (q_0_dot * q_0_dot) + self.b * (q_1_dot * q_1_dot)) * h),
-        }
-    }
-
-    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
-    ///
-    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
-    ///
-    /// to first order at `v + dv`.
-    ///
-    /// 104 operations.
-    #[inline(always)]
-    fn momentum_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
-        ) -> ::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let t0 = node.t;
-        let t0_low = node.t_low;
-        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
-        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
-        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
-        let [q_0_mid, q_1_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        /// Part 1 of `momentum_step`: 37 operations.
-        #[inline(never)]
-        fn momentum_step_part_1<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 11],
-            values: &mut [T; 30],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let t0 = inputs[0];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let t0_low = inputs[6];
-            let p0_q_0_low = inputs[7];
-            let p0_q_0 = inputs[4];
-            let q_0_mid = inputs[9];
-            let q_1_mid = inputs[10];
-            let s1 = h * real(0.5);
-            let t_mid = t0 + (s1 + t0_low);
-            let [(sin2, cos2), (sin3, cos3), (sin4, _)] = T::sin_cos_each([
-                q_0_mid,
-                q_1_mid,
-                t_mid,
-            ]);
-            let s5 = cos2 * cos3 + sin2 * sin3;
-            let s6 = system.b * h;
-            let s7 = s6 * real(0.5);
-            let s8 = q_0_dot * q_1_dot;
-            let s9 = sin2 * cos3 - cos2 * sin3;
-            let s10 = s8 * s9 * real(0.25) + system.k * (q_0_mid - q_1_mid);
-            let s11 = sin4 * real(0.3333333333333333) + real(1.0);
-            let s12 = s10 + s11 * sin2;
-            let s13 = system.m * q_0_dot * real(2.0) + q_1_dot * s5 * real(0.25) - p0_q_0
-                + (s7 * q_0_dot - p0_q_0_low + s1 * s12);
-            values[12] = s1;
-            values[13] = s6;
-            values[14] = cos2;
-            values[15] = cos3;
-            values[16] = sin3;
-            values[17] = s5;
-            values[18] = s8;
-            values[19] = s11;
-            values[20] = s9;
-            values[21] = s10;
-            values[22] = s12;
-            values[24] = s7;
-            values[0] = s13;
-        }
-        /// Part 2 of `momentum_step`: 50 operations.
-        #[inline(never)]
-        fn momentum_step_part_2<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 11],
-            values: &mut [T; 30],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let s1 = values[12];
-            let p0_q_1_low = inputs[8];
-            let p0_q_1 = inputs[5];
-            let s6 = values[13];
-            let cos2 = values[14];
-            let sin3 = values[16];
-            let s5 = values[17];
-            let s8 = values[18];
-            let s11 = values[19];
-            let s9 = values[20];
-            let s10 = values[21];
-            let s12 = values[22];
-            let s7 = values[24];
-            let s14 = system.m * real(2.0);
-            let s15 = system.b * real(0.5);
-            let s16 = h * real(0.25);
-            let s17 = system.k + s8 * s5 * real(0.25);
-            let s18 = s17 + s11 * cos2;
-            let s19 = s14 + (s15 + s16 * s18) * h;
-            let s20 = s5 * real(0.25);
-            let s21 = (q_0_dot + q_1_dot) * s9 * real(0.125);
-            let s22 = s16 * s17;
-            let s23 = s20 - (s21 + s22) * h;
-            let s24 = -(h * s12) - s6 * q_0_dot;
-            let s25 = q_1_dot * s9 * real(0.25);
-            let s26 = (-(system.b + s25) - s1 * s18) * h;
-            let s27 = s1 * s17;
-            let s28 = (s25 + s27) * h;
-            let s29 = s10 - s11 * sin3;
-            let s30 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
-                + (s7 * q_1_dot - p0_q_1_low - s1 * s29);
-            let s31 = s20 + (s21 - s22) * h;
-            values[23] = s29;
-            values[1] = s30;
-            values[25] = s17;
-            values[26] = s14;
-            values[27] = s15;
-            values[28] = s16;
-            values[2] = s19;
-            values[3] = s31;
-            values[4] = s23;
-            values[6] = s24;
-            values[8] = s26;
-            values[29] = s27;
-            values[10] = s28;
-        }
-        /// Part 3 of `momentum_step`: 17 operations.
-        #[inline(never)]
-        fn momentum_step_part_3<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 11],
-            values: &mut [T; 30],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let s1 = values[12];
-            let s6 = values[13];
-            let cos3 = values[15];
-            let s11 = values[19];
-            let s9 = values[20];
-            let s29 = values[23];
-            let s17 = values[25];
-            let s14 = values[26];
-            let s15 = values[27];
-            let s16 = values[28];
-            let s27 = values[29];
-            let s32 = s17 + s11 * cos3;
-            let s33 = s14 + (s15 + s16 * s32) * h;
-            let s34 = h * s29 - s6 * q_1_dot;
-            let s35 = q_0_dot * s9 * real(0.25);
-            let s36 = (s27 - s35) * h;
-            let s37 = (s35 - system.b - s1 * s32) * h;
-            values[5] = s33;
-            values[7] = s34;
-            values[9] = s36;
-            values[11] = s37;
-        }
-        let system = self;
-        let inputs = [
-            t0,
-            h,
-            q_0_dot,
-            q_1_dot,
-            p0_q_0,
-            p0_q_1,
-            t0_low,
-            p0_q_0_low,
-            p0_q_1_low,
-            q_0_mid,
-            q_1_mid,
-        ];
-        let mut values = [T::real(0.0); 30];
-        momentum_step_part_1(system, &inputs, &mut values);
-        momentum_step_part_2(system, &inputs, &mut values);
-        momentum_step_part_3(system, &inputs, &mut values);
-        let momentum = ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([values[0], values[1]]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[values[2], values[3], values[4], values[5]],
-            ),
-        };
-        let change: [T; 2] = solve(&momentum).into();
-        ::vi_core::SVector::from([
-            values[6] + (values[8] * change[0] + values[9] * change[1]),
-            values[7] + (values[10] * change[0] + values[11] * change[1]),
-        ])
-    }
-
-    /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
-    ///
-    /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
-    ///
-    /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
-    ///
-    /// to first order at `(v + dv, h + dh)`.
-    ///
-    /// 224 operations.
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
-        ) -> (::vi_core::SVector<T, 2>, T),
-    ) -> ::vi_core::Increment<2, T> {
-        let t0 = node.t;
-        let t0_low = node.t_low;
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [p0_q_0, p0_q_1]: [T; 2] = node.p.into();
-        let [p0_q_0_low, p0_q_1_low]: [T; 2] = node.p_low.into();
-        let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
-        let [q_0_mid, q_1_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        /// Part 1 of `extended_step`: 26 operations.
-        #[inline(never)]
-        fn extended_step_part_1<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 68],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let t0 = inputs[0];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let t0_low = inputs[7];
-            let q_0_mid = inputs[11];
-            let q_1_mid = inputs[12];
-            let s1 = h * real(0.5);
-            let t_mid = t0 + (s1 + t0_low);
-            let [(sin2, cos2), (sin3, cos3), (sin4, cos4)] = T::sin_cos_each([
-                q_0_mid,
-                q_1_mid,
-                t_mid,
-            ]);
-            let s5 = cos2 * cos3 + sin2 * sin3;
-            let s6 = q_1_dot * s5 * real(0.25);
-            let s7 = system.b * q_0_dot;
-            let s8 = q_0_dot * q_1_dot;
-            let s9 = sin2 * cos3 - cos2 * sin3;
-            let s10 = q_0_mid - q_1_mid;
-            let s11 = system.k * s10;
-            let s12 = s8 * s9 * real(0.25) + s11;
-            let s13 = sin4 * real(0.3333333333333333) + real(1.0);
-            values[24] = s1;
-            values[25] = s10;
-            values[26] = cos2;
-            values[27] = cos3;
-            values[28] = sin2;
-            values[29] = sin3;
-            values[30] = s5;
-            values[31] = s8;
-            values[34] = sin4;
-            values[35] = s13;
-            values[37] = cos4;
-            values[38] = s9;
-            values[39] = s11;
-            values[41] = s12;
-            values[45] = s7;
-            values[47] = s6;
-        }
-        /// Part 2 of `extended_step`: 27 operations.
-        #[inline(never)]
-        fn extended_step_part_2<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 68],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let s1 = values[24];
-            let p0_q_0_low = inputs[8];
-            let p0_q_0 = inputs[4];
-            let cos2 = values[26];
-            let sin2 = values[28];
-            let s5 = values[30];
-            let s8 = values[31];
-            let s13 = values[35];
-            let s9 = values[38];
-            let s12 = values[41];
-            let s7 = values[45];
-            let s6 = values[47];
-            let s14 = s13 * sin2;
-            let s15 = s12 + s14;
-            let s16 = system.m * q_0_dot * real(2.0) + s6 - p0_q_0
-                + (s7 * s1 - p0_q_0_low + s1 * s15);
-            let s17 = system.m * real(2.0);
-            let s18 = system.b * real(0.5);
-            let s19 = h * real(0.25);
-            let s20 = system.k + s8 * s5 * real(0.25);
-            let s21 = s20 + s13 * cos2;
-            let s22 = s17 + (s18 + s19 * s21) * h;
-            let s23 = s5 * real(0.25);
-            let s24 = (q_0_dot + q_1_dot) * s9 * real(0.125);
-            values[40] = s14;
-            values[42] = s15;
-            values[0] = s16;
-            values[49] = s20;
-            values[50] = s21;
-            values[52] = s17;
-            values[53] = s18;
-            values[54] = s19;
-            values[2] = s22;
-            values[55] = s23;
-            values[56] = s24;
-        }
-        /// Part 3 of `extended_step`: 29 operations.
-        #[inline(never)]
-        fn extended_step_part_3<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 68],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let sin2 = values[28];
-            let cos4 = values[37];
-            let s9 = values[38];
-            let s11 = values[39];
-            let s14 = values[40];
-            let s15 = values[42];
-            let s7 = values[45];
-            let s20 = values[49];
-            let s21 = values[50];
-            let s19 = values[54];
-            let s23 = values[55];
-            let s24 = values[56];
-            let s25 = s19 * s20;
-            let s26 = s23 - (s24 + s25) * h;
-            let s27 = s11 * real(0.5);
-            let s28 = q_1_dot * q_1_dot;
-            let s29 = s27 + s14 * real(0.5) + s7 * real(0.5) + s28 * s9 * real(0.125);
-            let s30 = sin2 * cos4;
-            let s31 = s30 * real(0.3333333333333333);
-            let s32 = q_0_dot * s21;
-            let s33 = q_1_dot * s20;
-            let s34 = s29 + s19 * (s31 + s32 - s33);
-            let s35 = s33 - s32 - s31;
-            let s36 = s29 + s19 * s35;
-            let s37 = -(h * s15) - s7 * h;
-            values[33] = s28;
-            values[57] = s25;
-            values[4] = s26;
-            values[58] = s27;
-            values[59] = s30;
-            values[60] = s32;
-            values[61] = s33;
-            values[6] = s34;
-            values[64] = s35;
-            values[9] = s36;
-            values[12] = s37;
-        }
-        /// Part 4 of `extended_step`: 47 operations.
-        #[inline(never)]
-        fn extended_step_part_4<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 68],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let s1 = values[24];
-            let p0_q_1_low = inputs[9];
-            let p0_q_1 = inputs[5];
-            let cos3 = values[27];
-            let sin3 = values[29];
-            let s5 = values[30];
-            let s13 = values[35];
-            let cos4 = values[37];
-            let s9 = values[38];
-            let s12 = values[41];
-            let s7 = values[45];
-            let s20 = values[49];
-            let s21 = values[50];
-            let s23 = values[55];
-            let s24 = values[56];
-            let s25 = values[57];
-            let s30 = values[59];
-            let s38 = q_1_dot * s9 * real(0.25);
-            let s39 = system.b + s38;
-            let s40 = (-s39 - s1 * s21) * h;
-            let s41 = s1 * s20;
-            let s42 = (s38 + s41) * h;
-            let s43 = h * real(0.16666666666666666);
-            let s44 = (s30 * s43 - s7 * real(2.0)) * h;
-            let s45 = q_0_dot * s9 * real(0.25);
-            let s46 = (s41 - s45) * h;
-            let s47 = s45 - system.b;
-            let s48 = s20 + s13 * cos3;
-            let s49 = (s47 - s1 * s48) * h;
-            let s50 = sin3 * cos4;
-            let s51 = system.b * q_1_dot;
-            let s52 = (s50 * s43 - s51 * real(2.0)) * h;
-            let s53 = s13 * sin3;
-            let s54 = s12 - s53;
-            let s55 = system.m * q_1_dot * real(2.0) + q_0_dot * s5 * real(0.25) - p0_q_1
-                + (s51 * s1 - p0_q_1_low - s1 * s54);
-            let s56 = s23 + (s24 - s25) * h;
-            values[43] = s53;
-            values[44] = s54;
-            values[46] = s51;
-            values[1] = s55;
-            values[51] = s48;
-            values[3] = s56;
-            values[62] = s50;
-            values[66] = s39;
-            values[15] = s40;
-            values[16] = s46;
-            values[18] = s42;
-            values[67] = s47;
-            values[19] = s49;
-            values[21] = s44;
-            values[22] = s52;
-        }
-        /// Part 5 of `extended_step`: 50 operations.
-        #[inline(never)]
-        fn extended_step_part_5<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 68],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let s1 = values[24];
-            let p0_q_1 = inputs[5];
-            let energy0 = inputs[6];
-            let s10 = values[25];
-            let cos2 = values[26];
-            let cos3 = values[27];
-            let s28 = values[33];
-            let sin4 = values[34];
-            let s13 = values[35];
-            let s9 = values[38];
-            let s11 = values[39];
-            let s14 = values[40];
-            let s53 = values[43];
-            let s54 = values[44];
-            let s51 = values[46];
-            let s20 = values[49];
-            let s48 = values[51];
-            let s17 = values[52];
-            let s18 = values[53];
-            let s19 = values[54];
-            let s27 = values[58];
-            let s50 = values[62];
-            let s35 = values[64];
-            let s39 = values[66];
-            let s47 = values[67];
-            let s57 = s17 + (s18 + s19 * s48) * h;
-            let s58 = q_0_dot * q_0_dot;
-            let s59 = s53 * real(0.5) + s51 * real(0.5) - s27 - s58 * s9 * real(0.125);
-            let s60 = s50 * real(0.3333333333333333);
-            let s61 = q_0_dot * s20;
-            let s62 = q_1_dot * s48;
-            let s63 = s59 + s19 * (s60 - s61 + s62);
-            let s64 = s61 - s62 - s60;
-            let s65 = s59 + s19 * s64;
-            let s66 = h * s54 - s51 * h;
-            let s67 = -(s39 * q_0_dot) - (s11 + s14) + s1 * s35;
-            let s68 = s11 - s53 + s47 * q_1_dot + s1 * s64;
-            let s69 = cos2 + cos3;
-            let s70 = q_1_dot * p0_q_1 + system.k * (s10 * s10) * real(0.5) - energy0
-                - system.m * (s58 + s28) - s13 * s69;
-            let s71 = sin4 * s69;
-            values[32] = s58;
-            values[36] = s69;
-            values[48] = s70;
-            values[5] = s57;
-            values[63] = s62;
-            values[7] = s63;
-            values[10] = s65;
-            values[65] = s71;
-            values[13] = s66;
-            values[17] = s67;
-            values[20] = s68;
-        }
-        /// Part 6 of `extended_step`: 45 operations.
-        #[inline(never)]
-        fn extended_step_part_6<T: ::vi_core::Real>(
-            system: &Pendula<T>,
-            inputs: &[T; 13],
-            values: &mut [T; 68],
-        ) {
-            let real = T::real;
-            let h = inputs[1];
-            let q_0_dot = inputs[2];
-            let q_1_dot = inputs[3];
-            let s1 = values[24];
-            let p0_q_0_low = inputs[8];
-            let p0_q_0 = inputs[4];
-            let p0_q_1_low = inputs[9];
-            let energy0_low = inputs[10];
-            let sin2 = values[28];
-            let sin3 = values[29];
-            let s58 = values[32];
-            let s28 = values[33];
-            let s69 = values[36];
-            let cos4 = values[37];
-            let s15 = values[42];
-            let s54 = values[44];
-            let s6 = values[47];
-            let s70 = values[48];
-            let s30 = values[59];
-            let s32 = values[60];
-            let s33 = values[61];
-            let s50 = values[62];
-            let s62 = values[63];
-            let s71 = values[65];
-            let s72 = (-(s62 * real(0.25)) - s50 * real(0.16666666666666666)) * q_1_dot
-                - s71 * real(0.08333333333333333)
-                + (s33 * real(0.5) - s32 * real(0.25) - s30 * real(0.16666666666666666))
-                    * q_0_dot;
-            let s73 = s69 * cos4 * real(0.3333333333333333);
-            let s74 = s70 + (p0_q_0 - s6) * q_0_dot
-                + (q_0_dot * p0_q_0_low + q_1_dot * p0_q_1_low - energy0_low
-                    + s1 * (s73 - q_0_dot * s15 + q_1_dot * s54));
-            let s75 = s73 + system.b * s58 + system.b * s28;
-            let s76 = -(s75 * h);
-            let s77 = (s71 * real(0.16666666666666666)
-                + (q_0_dot * sin2 + q_1_dot * sin3) * cos4 * real(0.16666666666666666))
-                * h - s75;
-            values[8] = s74;
-            values[11] = s72;
-            values[14] = s76;
-            values[23] = s77;
-        }
-        let system = self;
-        let inputs = [
-            t0,
-            h,
-            q_0_dot,
-            q_1_dot,
-            p0_q_0,
-            p0_q_1,
-            energy0,
-            t0_low,
             p0_q_0_low,
             p0_q_1_low,
             energy0_low,
-            q_0_mid,
-            q_1_mid,
         ];
-        let mut values = [T::real(0.0); 68];
-        extended_step_part_1(system, &inputs, &mut values);
-        extended_step_part_2(system, &inputs, &mut values);
-        extended_step_part_3(system, &inputs, &mut values);
-        extended_step_part_4(system, &inputs, &mut values);
-        extended_step_part_5(system, &inputs, &mut values);
-        extended_step_part_6(system, &inputs, &mut values);
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
-                    residual: ::vi_core::SVector::from([values[0], values[1]]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
-                        &[values[2], values[3], values[4], values[5]],
-                    ),
-                },
-                residual_dh: ::vi_core::SVector::from([values[6], values[7]]),
-                energy_residual: values[8],
-                energy_dv: ::vi_core::SVector::from([values[9], values[10]]),
-                energy_dh: values[11],
+        let mut values = [T::real(0.0); 46];
+        extended_residual_part_1(system, &inputs, &mut values);
+        extended_residual_part_2(system, &inputs, &mut values);
+        extended_residual_part_3(system, &inputs, &mut values);
+        extended_residual_part_4(system, &inputs, &mut values);
+        extended_residual_part_5(system, &inputs, &mut values);
+        ::vi_core::ExtendedResidual {
+            residual: ::vi_core::SVector::from([values[0], values[1]]),
+            magnitude: ::vi_core::SVector::from([values[2], values[3]]),
+            energy_residual: values[4],
+            energy_magnitude: values[5],
+            increment: ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from([values[6], values[7]]),
+                energy: values[8],
             },
-        );
-        let change: [T; 2] = change.into();
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                values[12]
-                    + (values[15] * change[0] + values[16] * change[1]
-                        + values[17] * change_h),
-                values[13]
-                    + (values[18] * change[0] + values[19] * change[1]
-                        + values[20] * change_h),
-            ]),
-            energy: values[14]
-                + (values[21] * change[0] + values[22] * change[1]
-                    + values[23] * change_h),
         }
+    }
+
+    /// What the rounding of both residuals is measured in, by running error analysis.
+    #[cold]
+    fn rounding(
+        &self,
+        node: &::vi_core::Node<2, T>,
+        h: T,
+        v: &::vi_core::SVector<T, 2>,
+    ) -> ::vi_core::Rounding<2, T> {
+        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
     }
 }
 
