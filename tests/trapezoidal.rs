@@ -86,8 +86,8 @@ fn it_is_verlet_for_a_separable_lagrangian() {
         worst = worst.max((state.q - SVector::from(q)).amax()).max((state.p - SVector::from(p)).amax());
     }
     println!("200 steps off by {worst:e}, at most {spent} iterations");
-    // Measured: 1.8e-15; A depends on parameters only, and no step iterates.
-    assert!(worst <= 4e-15 && spent == 0, "{worst:e}, {spent}");
+    // Measured: 1.9e-15; A depends on parameters only, and each step is one correction.
+    assert!(worst <= 4e-15 && spent == 1, "{worst:e}, {spent}");
 }
 
 /// Errors against an accurate motion fall by 4 with every halving of the step.

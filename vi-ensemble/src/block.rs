@@ -182,7 +182,7 @@ fn alternating_binomials(count: usize) -> Vec<f64> {
     let mut weights = Vec::with_capacity(count);
     let mut binomial = 1.0;
     for (taken, left) in (1_u32..).zip((1..=u32::try_from(count).unwrap_or(u32::MAX)).rev()) {
-        binomial *= f64::from(left) / f64::from(taken);
+        binomial = binomial * f64::from(left) / f64::from(taken);
         weights.push(if taken % 2 == 1 { binomial } else { -binomial });
     }
     weights

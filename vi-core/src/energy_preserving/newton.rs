@@ -14,6 +14,7 @@
 
 use crate::linear::{self, Matrix};
 use crate::momentum;
+use crate::predictor::length_squared;
 use crate::{ExtendedSystem, Node, Scalar, Stepping};
 use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
@@ -21,6 +22,8 @@ use nalgebra::{SMatrix, SVector};
 const ITERATIONS: u32 = 20;
 /// Roundings of its terms below which S counts as zero.
 const VANISHING: f64 = 64.0;
+/// Part of v and h that a short Newton step is at most.
+const SHORT: f64 = 1e-6;
 
 /// A velocity and a step length to try.
 #[derive(Clone, Copy, Debug)]
@@ -141,6 +144,16 @@ pub(super) struct Step<const N: usize, T> {
     pub(super) v: SVector<T, N>,
     /// δh.
     pub(super) h: T,
+}
+
+impl<const N: usize, T: Scalar> Step<N, T> {
+    /// Whether it changes the trial that it leads to by less than a millionth.
+    #[inline(always)]
+    pub(super) fn is_short(&self, trial: &Trial<N, T>) -> bool {
+        let part = T::real(SHORT);
+        let (step, whole) = (length_squared(&self.v), length_squared(&trial.v));
+        self.h.abs() <= trial.h.abs() * part && step <= whole * (part * part)
+    }
 }
 
 /// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of

@@ -4,23 +4,27 @@
 //! over them (`predictor`), each followed by a measurement:
 //!
 //! ```text
-//! accept     where |r_i| ≤ ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ ε (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
-//!            or ε times the sum of the absolute values of the terms of each row
+//! accept     where |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ (ε/2) (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
+//!            or the same parts of the sum of the absolute values of the terms of each row
 //! ```
 //!
 //! `None` where three Newton steps do not come there, the length leaves its range or D changes its sign. What is left of the
-//! momentum rows is carried to the next step, as in `momentum::steps`.
+//! momentum rows is carried to the next step, as in `momentum::steps`: without that, the angular momentum of Kepler's problem is off
+//! by 8e-14 after a million steps, with it by 3e-15. Nothing is carried in the energy row, from which h follows: one rounding of it
+//! is `4 ε E/(h² D)` of h.
 //! AFTER A STEP both residuals were measured at the (v, h) that was taken.
 
 use super::newton::{Elimination, Root, Trial};
 use super::{Last, RATIO};
-use crate::momentum::{roundings, worse, worst};
+use crate::momentum::{FLOOR, roundings, worse, worst};
 use crate::predictor::Predictor;
 use crate::{ExtendedResidual, Increment, Node, Rounding, Scalar, Stepping};
 use nalgebra::SVector;
 
 /// Newton steps that may follow a guess.
 const ATTEMPTS: u32 = 3;
+/// Roundings that may be left of the energy row.
+const ENERGY_FLOOR: f64 = 0.5;
 
 /// The predictors of v and h.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,10 +116,13 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         for iterations in 1..=ATTEMPTS {
             let mut equations = system.extended_system(node, trial.h, &trial.v);
             equations.momentum.residual += self.remainder;
-            equations.energy_residual -= trial.v.dot(&self.remainder);
             let elimination = Elimination::of(&equations);
             let step = elimination.step(&equations, &trial);
             trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
+            // D is that of the trial before, which has to be next to the root for it.
+            if !step.is_short(&trial) {
+                continue;
+            }
             let at = system.extended_residual(node, trial.h, &trial.v);
             let Some((remainder, residual)) = self.measured(node, &trial.v, &at) else {
                 continue;
@@ -140,11 +147,16 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         at: &ExtendedResidual<N, T>,
     ) -> Option<(SVector<T, N>, f64)> {
         let remainder = at.residual + self.remainder;
-        let energy_residual = at.energy_residual - v.dot(&self.remainder);
         let is_at_floor = |scale: &Rounding<N, T>| {
-            let row = |residual: T, scale: T| residual.abs() <= scale * T::real(T::EPSILON);
-            (0..N)
-                .fold(row(energy_residual, scale.energy_residual), |all, i| all & row(remainder[i], scale.residual[i]))
+            let rounding = scale.energy_residual * T::real(T::EPSILON);
+            // A scale that overflows proves nothing.
+            let mut all = at.energy_residual.abs() <= rounding * T::real(ENERGY_FLOOR) && rounding.is_finite();
+            for i in 0..N {
+                let rounding = scale.residual[i] * T::real(T::EPSILON);
+                all &= at.residual[i].abs() <= rounding * T::real(FLOOR);
+                all &= remainder[i].abs() <= rounding && rounding.is_finite();
+            }
+            all
         };
         let own = node.energy.abs() + at.increment.energy.abs();
         let mut scale = Rounding {

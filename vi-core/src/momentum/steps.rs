@@ -93,7 +93,8 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
         for i in 0..N {
             let bound = self.scale[i] * T::real(FLOOR * T::EPSILON);
             let sum = self.residual[i] + carried[i];
-            let is_below = self.residual[i].abs() <= bound && (sum + sum).abs() <= bound;
+            // A scale that overflows proves nothing.
+            let is_below = self.residual[i].abs() <= bound && (sum + sum).abs() <= bound && bound.is_finite();
             above |= if is_below { 0 } else { u64::MAX };
         }
         above == 0
