@@ -14,9 +14,9 @@
 //! [`Branch`]. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 use crate::closed_form::ClosedForm;
+use crate::continuation;
 use crate::stride::{Inverse, Stride};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
-use crate::continuation;
 use core::hint::black_box;
 use nalgebra::SVector;
 
