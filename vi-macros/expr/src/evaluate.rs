@@ -59,7 +59,7 @@ fn float(number: &Rational) -> f64 {
 }
 
 /// Integer powers by multiplication, square roots by `sqrt`, the others by `powf`.
-fn raise(base: f64, exponent: &Rational) -> f64 {
+pub(crate) fn raise(base: f64, exponent: &Rational) -> f64 {
     match (exponent.numer().to_i32(), exponent.denom().to_u32()) {
         (Some(power), Some(1)) => base.powi(power),
         (Some(power), Some(2)) => base.sqrt().powi(power),

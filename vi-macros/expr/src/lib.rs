@@ -33,7 +33,7 @@
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand` | new expressions from old |
-//! | `evaluate`, `render` | values and text |
+//! | `evaluate`, `rounding`, `render` | values, values with their errors, text |
 //!
 //! No pass recurses: children are older than parents, so each is a loop in the order of creation.
 
@@ -48,6 +48,7 @@ mod number;
 mod pool;
 mod product;
 mod render;
+mod rounding;
 mod substitute;
 mod sum;
 mod table;
@@ -60,4 +61,5 @@ pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};
 pub use pool::Pool;
 pub use render::MAX_CHARACTERS;
+pub use rounding::Rounded;
 pub use table::{Index, Table};
