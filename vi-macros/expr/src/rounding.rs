@@ -9,6 +9,7 @@ use std::hash::Hash;
 
 use num_traits::{Signed, ToPrimitive, Zero};
 
+use crate::effort::EVALUATED;
 use crate::evaluate::raise;
 use crate::{Expr, Function, Node, Pool, Rational, Table};
 
@@ -85,7 +86,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     #[must_use]
     pub fn evaluate_rounded(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<Rounded> {
         let mut known = Table::default();
-        for expr in self.reachable(exprs) {
+        for expr in self.visited(exprs, 2 * EVALUATED) {
             let value = self.rounded_node(expr, &known, values);
             known.insert(expr, value);
         }
