@@ -11,9 +11,9 @@
 //! ∂(p1 − p0 + 2 r)/∂v                another way to the derivative of p1 − p0 where r becomes zero
 //! ```
 
-use super::fields::changes;
+use super::fields::{Arguments, Changes, Variables, changes};
 use super::{Fields, Point, Slots, bounded};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::{Expr, Pool, Rational, TooLarge};
 
@@ -80,20 +80,21 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
         (residual.iter().chain([&energy]), momentum_increment.iter().chain([&energy_increment]));
     let carried = if dimension <= CARRIED_COORDINATES { dimension + 1 } else { 0 };
     let rows = equations.chain(increments.take(carried)).chain(&kicks);
-    let rows = rows.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
+    let rows = rows.map(|row| Row::new(pool, fields, *row, points.len())).collect::<Vec<_>>();
+    let arguments = Arguments::of(pool, &points);
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut increment_slopes = vec![Vec::with_capacity(dimension + 1); carried];
     let mut kick_slopes = vec![Vec::with_capacity(dimension); kicked];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, (&rows, [dimension, carried]), &Symbol::StepVelocity(j))?;
+        let column = by_unknown(pool, fields, &arguments, (&rows, [dimension, carried]), &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
         increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
         kick_slopes.iter_mut().zip(column.kicks).for_each(|(row, entry)| row.push(entry));
     }
     let rows = &rows[..rows.len() - kicked];
-    let column = by_unknown(pool, fields, &points, (rows, [dimension, carried]), &Symbol::Step)?;
+    let column = by_unknown(pool, fields, &arguments, (rows, [dimension, carried]), &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
     increment_slopes.iter_mut().zip(column.increments).for_each(|(row, entry)| row.push(entry));
 
@@ -210,23 +211,46 @@ struct Column {
     kicks: Vec<Expr>,
 }
 
+/// An equation, and what it knows: most of those of a long chain do not know most unknowns.
+struct Row {
+    expr: Expr,
+    symbols: BTreeSet<Symbol>,
+    /// Of the arguments of each point.
+    read: Vec<Variables>,
+}
+
+impl Row {
+    fn new(pool: &Pool<Symbol>, fields: &Fields, expr: Expr, points: usize) -> Self {
+        let symbols = pool.symbols(expr);
+        let read = fields.read(&symbols, points);
+        Self { expr, symbols, read }
+    }
+
+    /// Whether it changes with an unknown, by which the arguments change so.
+    fn varies(&self, unknown: &Symbol, changes: &Changes) -> bool {
+        let reads = |(changes, read): (&Vec<(Variable, Expr)>, &Variables)| {
+            changes.iter().any(|(variable, _)| read.contains(variable))
+        };
+        self.symbols.contains(unknown) || changes.iter().zip(&self.read).any(reads)
+    }
+}
+
 fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
-    points: &[Point],
-    (rows, [dimension, carried]): (&[(Expr, BTreeSet<Symbol>)], [usize; 2]),
+    arguments: &[Arguments],
+    (rows, [dimension, carried]): (&[Row], [usize; 2]),
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
     bounded(pool)?;
     let direct = |pool: &mut Pool<Symbol>, symbol: &Symbol| {
         if symbol == unknown { pool.one() } else { pool.zero() }
     };
-    let changes = changes(pool, points, &direct);
+    let changes = changes(pool, arguments, &direct);
     let mut column = Vec::with_capacity(rows.len());
-    for (row, symbols) in rows {
-        // Most rows of a long chain do not know most unknowns.
-        let varies = symbols.iter().any(|symbol| symbol == unknown || fields.moves(symbol, &changes));
-        let slope = if varies { fields.derivative(pool, *row, &direct, &changes) } else { pool.zero() };
+    for row in rows {
+        let varies = row.varies(unknown, &changes);
+        let slope = if varies { fields.derivative(pool, row.expr, &direct, &changes) } else { pool.zero() };
         column.push(pool.expand(slope)?);
     }
     let mut energy = column.split_off(dimension);
