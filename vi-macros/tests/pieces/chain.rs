@@ -508,7 +508,7 @@ impl<T: ::vi_core::Real> ::vi_core::Lagrangian<10, T> for Chain<T> {
             ("cos(q[8])", cos30),
             ("cos(q[9])", cos31),
             (
-                "m*(dot(q[0])^2 + dot(q[1])^2 + dot(q[2])^2 + dot(q[3])^2 + dot(q[4])^2 + dot(q[5])^2 + dot(q[6])^2 + dot(q[7])^2 + dot(q[8])^2 + dot(q[9])^2)/2 - k*((q[1] - q[0])^4 + (q[2] - q[1])^4 + (q[3] - q[2])^4 + (q[4] - q[3])^4 + (q[5] - q[4])^4 + (q[6] - q[5])^4 + (q[7] - q[6])^4 + (q[8] - q[7])^4 + (q[9] - q[8])^4)/4 + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]) + cos(q[2]) + cos(q[3]) + cos(q[4]) + cos(q[5]) + cos(q[6]) + cos(q[7]) + cos(q[8]) + cos(q[9]))",
+                "m*(dot(q[0])^2 + dot(q[1])^2 + dot(q[2])^2 + dot(q[3])^2 + dot(q[4])^2 + dot(q[5])^2 + dot(q[6])^2 + dot(q[7])^2 + dot(q[8])^2 + dot(q[9])^2)/2 - k*((q[1] - q[0])^4 + (q[2] - q[1])^4 + (q[3] - q[2])^4 + (q[4] - q[3])^4 + (q[5] - q[4])^4 + (q[6] - q[5])^4 + (q[7] - q[6])^4 + (q[8] - q[7])^4 + (q[9] - q[8])^4)/4 + (sin(t)/3 + 1)*(cos(q[0]) + cos(q[1]) + cos(q[2]) + cos(q[3]) + cos(q[4]) + cos(q[5]) …",
                 s33 - self.k * (s19 + s14 * s14 + s16 * s16 + s18 * s18) * real(0.25),
             ),
             ("k*cos(q[0])", self.k * cos22),
