@@ -9,9 +9,14 @@
 /// * The mass matrix depends on the state
 /// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step
 /// * `A` is dense, not symmetric; solved in closed form
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::fmt::Debug,
+    ::core::cmp::PartialEq
+)]
 #[allow(non_snake_case)]
-pub struct DoublePendulum<T = f64> {
+pub struct DoublePendulum<T = ::core::primitive::f64> {
     /// Upper mass.
     ///
     /// Parameter `m1`, 1 by default.
@@ -34,898 +39,977 @@ pub struct DoublePendulum<T = f64> {
     pub g: T,
 }
 
-impl ::core::default::Default for DoublePendulum<f64> {
-    fn default() -> Self {
-        Self {
-            m1: 1.0,
-            m2: 1.0,
-            l1: 1.0,
-            l2: 1.0,
-            g: 9.81,
-        }
-    }
-}
+/// Every name that is bound below is one of a function first: a binding may shadow that, and no constant from around.
+#[allow(
+    clippy::all,
+    clippy::pedantic,
+    non_snake_case,
+    unused_imports,
+    unused_parens,
+    unused_variables
+)]
+const _: () = {
+    use ::core::convert::{identity as system, identity as name, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as θ1_dot};
+    use ::core::convert::{identity as θ2_dot, identity as θ1, identity as θ2};
+    use ::core::convert::{identity as real, identity as s1, identity as sin2};
+    use ::core::convert::{identity as cos2, identity as sin3, identity as cos3};
+    use ::core::convert::{identity as s4, identity as s5, identity as s2};
+    use ::core::convert::{identity as time, identity as s6, identity as mass};
+    use ::core::convert::{
+        identity as applied, identity as θ1_ddot, identity as θ2_ddot,
+    };
 
-impl<T: ::vi_core::Real> DoublePendulum<T> {
-    /// The same system in another kind of number, every parameter rounded to it.
-    #[allow(unused_variables)]
-    pub fn from_f64(system: &DoublePendulum<f64>) -> Self {
-        Self {
-            m1: T::real(system.m1),
-            m2: T::real(system.m2),
-            l1: T::real(system.l1),
-            l2: T::real(system.l2),
-            g: T::real(system.g),
-        }
-    }
-}
+    use ::core::convert::{identity as sin1, identity as cos1, identity as s3};
+    use ::core::convert::{identity as s7, identity as s8, identity as s9};
+    use ::core::convert::{identity as s10, identity as s11, identity as s12};
+    use ::core::convert::{identity as s13, identity as s14, identity as s15};
+    use ::core::convert::{identity as values, identity as value, identity as text};
+    use ::core::convert::{identity as interval, identity as h, identity as θ1_0};
+    use ::core::convert::{identity as θ2_0, identity as θ1_1, identity as θ2_1};
+    use ::core::convert::{identity as θ1_mid, identity as θ2_mid, identity as sin4};
+    use ::core::convert::{identity as cos4, identity as sin5, identity as cos5};
+    use ::core::convert::{
+        identity as node, identity as θ1_0_low, identity as θ2_0_low,
+    };
 
-impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DoublePendulum<T> {
-    const PARAMETERS: &'static [&'static str] = &["m1", "m2", "l1", "l2", "g"];
-    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
-        match name {
-            "m1" => Some(&mut self.m1),
-            "m2" => Some(&mut self.m2),
-            "l1" => Some(&mut self.l1),
-            "l2" => Some(&mut self.l2),
-            "g" => Some(&mut self.g),
-            _ => None,
-        }
-    }
-}
+    use ::core::convert::{
+        identity as p0_θ1, identity as p0_θ2, identity as p0_θ1_low,
+    };
 
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
-    const NAME: &'static str = "DoublePendulum";
-    const COORDINATES: [&'static str; 2] = ["θ1", "θ2"];
-    const AUTONOMOUS: bool = true;
-    const FORCED: bool = false;
-    const CYCLIC: [bool; 2] = [false, false];
+    use ::core::convert::{identity as p0_θ2_low, identity as sin6, identity as cos6};
+    use ::core::convert::{identity as s16, identity as s17, identity as s18};
+    use ::core::convert::{identity as s19, identity as energy0, identity as energy0_low};
+    use ::core::convert::{identity as sin8, identity as cos8, identity as sin9};
+    use ::core::convert::{identity as cos9, identity as s20, identity as s21};
+    use ::core::convert::{identity as s22, identity as s23, identity as s24};
+    use ::core::convert::{identity as s25, identity as s26, identity as s27};
+    use ::core::convert::{identity as s28, identity as s29, identity as s30};
+    use ::core::convert::{identity as s31, identity as s32, identity as s33};
+    use ::core::convert::{identity as s34, identity as s35, identity as s36};
+    use ::core::convert::{identity as s37, identity as s38, identity as s39};
+    use ::core::convert::{identity as place, identity as solve, identity as momentum};
+    use ::core::convert::{identity as change, identity as sin7, identity as cos7};
+    use ::core::convert::{identity as s40, identity as s41, identity as s42};
+    use ::core::convert::{identity as s43, identity as s44, identity as s45};
+    use ::core::convert::{identity as s46, identity as change_h, identity as systems};
+    use ::core::convert::{identity as index, identity as rows};
+    use ::core::primitive::{bool, f64, str, usize};
 
-    /// `L = l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)`
-    ///
-    /// 32 operations.
-    #[inline]
-    fn lagrangian(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> T {
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1, θ2]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
-        let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
-            + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
-        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
-            + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
-        s5 + s4 * θ1_dot
-    }
-
-    /// `v·L_v − L = m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1) - m2*l2*g*cos(θ2) + m1*l1^2*dot(θ1)^2/2 + m2*l1^2*dot(θ1)^2/2`
-    ///
-    /// 32 operations.
-    #[inline]
-    fn energy(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> T {
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1, θ2]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
-        let s4 = self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3)
-            + s1 * (self.l1 * self.l1) * real(0.5) * θ1_dot;
-        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
-            - self.l1 * self.g * s1 * cos2 - self.m2 * self.l2 * self.g * cos3;
-        s5 + s4 * θ1_dot
-    }
-
-    /// `p_θ1 = l1^2*(m1 + m2)*dot(θ1) + m2*l1*l2*dot(θ2)*cos(θ1 - θ2)`
-    ///
-    /// `p_θ2 = m2*l2^2*dot(θ2) + m2*l1*l2*dot(θ1)*cos(θ1 - θ2)`
-    ///
-    /// 17 operations.
-    #[inline]
-    fn momentum(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1, θ2]: [T; 2] = (*q).into();
-        let s1 = (θ1 - θ2).cos();
-        let s2 = self.m2 * self.l1 * self.l2;
-        ::vi_core::SVector::from([
-            self.l1 * self.l1 * (self.m1 + self.m2) * θ1_dot + s2 * θ2_dot * s1,
-            self.m2 * (self.l2 * self.l2) * θ2_dot + s2 * θ1_dot * s1,
-        ])
-    }
-
-    /// `f_θ1 = 0`
-    ///
-    /// `f_θ2 = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn force(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let real = T::real;
-        ::vi_core::SVector::from([real(0.0), real(0.0)])
-    }
-
-    /// Solves `M a = L_q + f − L_vt − L_vq v`.
-    ///
-    /// 33 operations.
-    #[inline]
-    fn acceleration(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
-        let time = t;
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1, θ2]: [T; 2] = (*q).into();
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
-        let s4 = self.m2 * self.l1 * self.l2;
-        let s5 = s4 * (cos2 * cos3 + sin2 * sin3);
-        let s6 = sin2 * cos3 - cos2 * sin3;
-        let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
-            &[self.l1 * self.l1 * s1, s5, s5, self.m2 * (self.l2 * self.l2)],
-        );
-        let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
-            -(self.l1 * self.g * s1 * sin2 + s4 * (θ2_dot * θ2_dot) * s6),
-            s4 * (θ1_dot * θ1_dot) * s6 - self.m2 * self.l2 * self.g * sin3,
-        ]);
-        ::vi_core::linear::acceleration(time, &mass, &applied)
-    }
-
-    /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - …`
-    ///
-    /// 56 operations.
-    #[inline]
-    fn step_density(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::core::result::Result<T, ::vi_core::StepError> {
-        let [θ1_ddot, θ2_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1, θ2]: [T; 2] = (*q).into();
-        let [(sin1, cos1), (sin2, cos2)] = T::sin_cos_each([θ1, θ2]);
-        let s3 = cos1 * cos2 + sin1 * sin2;
-        let s4 = self.m2 * self.l1 * self.l2;
-        let s5 = s4 * θ1_dot;
-        let s6 = s5 * θ2_dot;
-        let s7 = s6 * s3;
-        let s8 = self.l1 * self.g * (self.m1 + self.m2);
-        let s9 = self.m2 * self.l2 * self.g;
-        let s10 = sin1 * cos2 - cos1 * sin2;
-        let s11 = s6 * s10;
-        let s12 = s4 * θ2_dot * s10 * θ1_ddot;
-        let s13 = s5 * s10 * θ2_ddot;
-        let s14 = θ2_dot
-            * (s12 + s13 + s4 * (θ1_dot * θ1_dot) * θ2_dot * s3
-                - θ2_dot * (s7 + s9 * cos2));
-        let s15 = θ2_ddot * (s11 - s9 * sin2) - (s11 + s8 * sin1) * θ1_ddot
-            - θ1_dot
-                * (s5 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s7 + s8 * cos1) - s12
-                    - s13);
-        Ok(s15 - s14)
-    }
-
-    /// The first of what L and f are made of that is not finite here.
-    ///
-    /// 32 operations.
-    #[cold]
-    fn non_finite(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::core::option::Option<&'static str> {
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1, θ2]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
-            + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
-        let values = [
-            ("m1", self.m1),
-            ("m2", self.m2),
-            ("l1", self.l1),
-            ("l2", self.l2),
-            ("g", self.g),
-            ("dot(θ1)", θ1_dot),
-            ("dot(θ2)", θ2_dot),
-            ("θ1", θ1),
-            ("θ2", θ2),
-            ("cos(θ1 - θ2)", s4),
-            ("cos(θ1)", cos2),
-            ("cos(θ2)", cos3),
-            (
-                "l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)",
-                s5
-                    + (self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
-                        + self.m2 * self.l1 * self.l2 * θ2_dot * s4) * θ1_dot,
-            ),
-        ];
-        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
-    /// `ld = h*L`
-    ///
-    /// 37 operations.
-    #[inline]
-    fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
-        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
-        let θ1_dot = (θ1_1 - θ1_0) / h;
-        let θ2_dot = (θ2_1 - θ2_0) / h;
-        let real = T::real;
-        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
-        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
-            + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
-        let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
-            + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
-        h * (s5 + s4 * θ1_dot)
-    }
-
-    /// `d1_ld = L_v_θ1*v_θ1 - L + L_v_θ2*v_θ2`
-    ///
-    /// 48 operations.
-    #[inline]
-    fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
-        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
-        let θ1_dot = (θ1_1 - θ1_0) / h;
-        let θ2_dot = (θ2_1 - θ2_0) / h;
-        let real = T::real;
-        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
-        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = self.l1 * self.l1 * s1;
-        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s6 = cos4 * cos5 + sin4 * sin5;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
-            + θ2_dot * (s2 * θ2_dot + s8 * s6) - s3 * (θ1_dot * θ1_dot) * real(0.5);
-        let s10 = s9 - s2 * (θ2_dot * θ2_dot) * real(0.5) - s8 * θ2_dot * s6
-            - self.l1 * self.g * s1 * cos4;
-        s10 - self.m2 * self.l2 * self.g * cos5
-    }
-
-    /// `d2_ld_θ1 = h*L_θ1/2 - L_v_θ1`
-    ///
-    /// `d2_ld_θ2 = h*L_θ2/2 - L_v_θ2`
-    ///
-    /// 45 operations.
-    #[inline]
-    fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
-        let h = interval.t1 - interval.t0;
-        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
-        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
-        let θ1_dot = (θ1_1 - θ1_0) / h;
-        let θ2_dot = (θ2_1 - θ2_0) / h;
-        let real = T::real;
-        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
-        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.m2 * self.l1 * self.l2;
-        let s6 = s5 * θ1_dot;
-        let s7 = s6 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
-        let s8 = h * real(0.5);
-        ::vi_core::SVector::from([
-            -(self.l1 * self.l1 * s1 * θ1_dot + s5 * θ2_dot * s4)
-                - s8 * (s7 + self.l1 * self.g * s1 * sin2),
-            s8 * (s7 - self.m2 * self.l2 * self.g * sin3)
-                - (self.m2 * (self.l2 * self.l2) * θ2_dot + s6 * s4),
-        ])
-    }
-
-    /// `d3_ld = L - L_v_θ1*v_θ1 - L_v_θ2*v_θ2`
-    ///
-    /// 48 operations.
-    #[inline]
-    fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
-        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
-        let θ1_dot = (θ1_1 - θ1_0) / h;
-        let θ2_dot = (θ2_1 - θ2_0) / h;
-        let real = T::real;
-        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
-        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = self.l1 * self.l1 * s1;
-        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s6 = cos4 * cos5 + sin4 * sin5;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s3 * (θ1_dot * θ1_dot) * real(0.5)
-            + s2 * (θ2_dot * θ2_dot) * real(0.5) + s8 * θ2_dot * s6
-            + self.l1 * self.g * s1 * cos4;
-        s9 + self.m2 * self.l2 * self.g * cos5
-            - θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
-            - θ2_dot * (s2 * θ2_dot + s8 * s6)
-    }
-
-    /// `d4_ld_θ1 = L_v_θ1 + h*L_θ1/2`
-    ///
-    /// `d4_ld_θ2 = L_v_θ2 + h*L_θ2/2`
-    ///
-    /// 44 operations.
-    #[inline]
-    fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
-        let h = interval.t1 - interval.t0;
-        let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
-        let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
-        let θ1_dot = (θ1_1 - θ1_0) / h;
-        let θ2_dot = (θ2_1 - θ2_0) / h;
-        let real = T::real;
-        let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
-        let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
-        let s1 = self.m1 + self.m2;
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = cos2 * cos3 + sin2 * sin3;
-        let s5 = self.m2 * self.l1 * self.l2;
-        let s6 = s5 * θ1_dot;
-        let s7 = s6 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
-        let s8 = h * real(0.5);
-        ::vi_core::SVector::from([
-            self.l1 * self.l1 * s1 * θ1_dot + s5 * θ2_dot * s4
-                - s8 * (s7 + self.l1 * self.g * s1 * sin2),
-            self.m2 * (self.l2 * self.l2) * θ2_dot + s6 * s4
-                + s8 * (s7 - self.m2 * self.l2 * self.g * sin3),
-        ])
-    }
-
-    /// `fd_minus_θ1 = 0`
-    ///
-    /// `fd_minus_θ2 = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn fd_minus(
-        &self,
-        interval: &::vi_core::Interval<2, T>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let real = T::real;
-        ::vi_core::SVector::from([real(0.0), real(0.0)])
-    }
-
-    /// `fd_plus_θ1 = 0`
-    ///
-    /// `fd_plus_θ2 = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn fd_plus(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
-        let real = T::real;
-        ::vi_core::SVector::from([real(0.0), real(0.0)])
-    }
-
-    /// `gd_minus = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let real = T::real;
-        real(0.0)
-    }
-
-    /// `gd_plus = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let real = T::real;
-        real(0.0)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
-    type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
-    const CONSTANT_JACOBIAN: bool = false;
-    const SMOOTH: bool = true;
-    const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
-
-    /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
-    ///
-    /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
-    ///
-    /// 75 operations.
-    #[inline(always)]
-    fn momentum_equation(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let s2 = self.m1 + self.m2;
-        let s3 = self.m2 * (self.l2 * self.l2);
-        let s4 = self.l1 * self.l1;
-        let [(sin5, cos5), (sin6, cos6)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s7 = cos5 * cos6 + sin5 * sin6;
-        let s8 = self.m2 * self.l1 * self.l2;
-        let s9 = s8 * θ1_dot;
-        let s10 = s9 * θ2_dot;
-        let s11 = s10 * s7;
-        let s12 = self.l1 * self.g * s2;
-        let s13 = self.m2 * self.l2 * self.g;
-        let s14 = sin5 * cos6 - cos5 * sin6;
-        let s15 = s10 * s14;
-        let s16 = h * h * real(0.25);
-        let s17 = s8 * s7;
-        let s18 = s8 * real(0.5) * (θ1_dot + θ2_dot) * s14;
-        let s19 = s11 * (h * real(0.25));
-        ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                s4 * s2 * θ1_dot + s8 * θ2_dot * s7 - p0_θ1
-                    - (p0_θ1_low - s1 * (s15 + s12 * sin5)),
-                s3 * θ2_dot + s9 * s7 - p0_θ2 - (p0_θ2_low + s1 * (s15 - s13 * sin6)),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[
-                    s2 * s4 + s16 * (s11 + s12 * cos5),
-                    s17 + (s18 - s19) * h,
-                    s17 - (s18 + s19) * h,
-                    s3 + s16 * (s11 + s13 * cos6),
-                ],
-            ),
+    impl ::core::default::Default for DoublePendulum<f64> {
+        fn default() -> Self {
+            Self {
+                m1: 1.0,
+                m2: 1.0,
+                l1: 1.0,
+                l2: 1.0,
+                g: 9.81,
+            }
         }
     }
 
-    /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
-    ///
-    /// 136 operations.
-    #[inline(always)]
-    fn extended_system(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let s2 = self.m1 + self.m2;
-        let s3 = self.m2 * (self.l2 * self.l2);
-        let s4 = self.l1 * self.l1;
-        let s5 = s3 * θ2_dot;
-        let s6 = θ1_dot * θ1_dot;
-        let s7 = θ2_dot * θ2_dot;
-        let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s10 = cos8 * cos9 + sin8 * sin9;
-        let s11 = self.m2 * self.l1 * self.l2;
-        let s12 = s11 * θ1_dot;
-        let s13 = s12 * θ2_dot;
-        let s14 = s13 * s10;
-        let s15 = self.l1 * self.g * s2;
-        let s16 = s15 * cos8;
-        let s17 = self.m2 * self.l2 * self.g;
-        let s18 = s17 * cos9;
-        let s19 = s4 * s2 * θ1_dot;
-        let s20 = s11 * θ2_dot * s10;
-        let s21 = sin8 * cos9 - cos8 * sin9;
-        let s22 = s13 * s21;
-        let s23 = s15 * sin8;
-        let s24 = s22 + s23;
-        let s25 = s17 * sin9;
-        let s26 = s22 - s25;
-        let s27 = (p0_θ2 - s5 * real(0.5)) * θ2_dot - (energy0 + s16 + s18)
-            + (p0_θ1 - s19 * real(0.5) - s20) * θ1_dot;
-        let s28 = s14 + s16;
-        let s29 = s14 + s18;
-        let s30 = h * h * real(0.25);
-        let s31 = s11 * s10;
-        let s32 = s11 * real(0.5) * (θ1_dot + θ2_dot) * s21;
-        let s33 = s14 * (h * real(0.25));
-        let s34 = s23 * real(0.5) + s11 * s7 * s21 * real(0.5);
-        let s35 = s11 * real(0.25);
-        let s36 = (s35 * θ1_dot * s7 * s10 - θ1_dot * s28 * real(0.25)) * h;
-        let s37 = s11 * s6;
-        let s38 = s25 * real(0.5) - s37 * s21 * real(0.5);
-        let s39 = (s35 * s6 * θ2_dot * s10 - θ2_dot * s29 * real(0.25)) * h;
-        ::vi_core::ExtendedSystem {
-            momentum: ::vi_core::MomentumEquation {
+    impl<T: ::vi_core::Real> DoublePendulum<T> {
+        /// The same system in another kind of number, every parameter rounded to it.
+        pub fn from_f64(system: &DoublePendulum<f64>) -> Self {
+            Self {
+                m1: T::real(system.m1),
+                m2: T::real(system.m2),
+                l1: T::real(system.l1),
+                l2: T::real(system.l2),
+                g: T::real(system.g),
+            }
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DoublePendulum<T> {
+        const PARAMETERS: &'static [&'static str] = &["m1", "m2", "l1", "l2", "g"];
+        fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+            match name {
+                "m1" => ::core::option::Option::Some(&mut self.m1),
+                "m2" => ::core::option::Option::Some(&mut self.m2),
+                "l1" => ::core::option::Option::Some(&mut self.l1),
+                "l2" => ::core::option::Option::Some(&mut self.l2),
+                "g" => ::core::option::Option::Some(&mut self.g),
+                _ => ::core::option::Option::None,
+            }
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
+        const NAME: &'static str = "DoublePendulum";
+        const COORDINATES: [&'static str; 2] = ["θ1", "θ2"];
+        const AUTONOMOUS: bool = true;
+        const FORCED: bool = false;
+        const CYCLIC: [bool; 2] = [false, false];
+
+        /// `L = l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)`
+        ///
+        /// 32 operations.
+        #[inline]
+        fn lagrangian(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+            let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
+                + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
+            let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
+                + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
+            s5 + s4 * θ1_dot
+        }
+
+        /// `v·L_v − L = m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1) - m2*l2*g*cos(θ2) + m1*l1^2*dot(θ1)^2/2 + m2*l1^2*dot(θ1)^2/2`
+        ///
+        /// 32 operations.
+        #[inline]
+        fn energy(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+            let s4 = self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3)
+                + s1 * (self.l1 * self.l1) * real(0.5) * θ1_dot;
+            let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
+                - self.l1 * self.g * s1 * cos2 - self.m2 * self.l2 * self.g * cos3;
+            s5 + s4 * θ1_dot
+        }
+
+        /// `p_θ1 = l1^2*(m1 + m2)*dot(θ1) + m2*l1*l2*dot(θ2)*cos(θ1 - θ2)`
+        ///
+        /// `p_θ2 = m2*l2^2*dot(θ2) + m2*l1*l2*dot(θ1)*cos(θ1 - θ2)`
+        ///
+        /// 17 operations.
+        #[inline]
+        fn momentum(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let s1 = (θ1 - θ2).cos();
+            let s2 = self.m2 * self.l1 * self.l2;
+            ::vi_core::SVector::from([
+                self.l1 * self.l1 * (self.m1 + self.m2) * θ1_dot + s2 * θ2_dot * s1,
+                self.m2 * (self.l2 * self.l2) * θ2_dot + s2 * θ1_dot * s1,
+            ])
+        }
+
+        /// `f_θ1 = 0`
+        ///
+        /// `f_θ2 = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn force(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let real = T::real;
+            ::vi_core::SVector::from([real(0.0), real(0.0)])
+        }
+
+        /// Solves `M a = L_q + f − L_vt − L_vq v`.
+        ///
+        /// 33 operations.
+        #[inline]
+        fn acceleration(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
+            let time = t;
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+            let s4 = self.m2 * self.l1 * self.l2;
+            let s5 = s4 * (cos2 * cos3 + sin2 * sin3);
+            let s6 = sin2 * cos3 - cos2 * sin3;
+            let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
+                &[self.l1 * self.l1 * s1, s5, s5, self.m2 * (self.l2 * self.l2)],
+            );
+            let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
+                -(self.l1 * self.g * s1 * sin2 + s4 * (θ2_dot * θ2_dot) * s6),
+                s4 * (θ1_dot * θ1_dot) * s6 - self.m2 * self.l2 * self.g * sin3,
+            ]);
+            ::vi_core::linear::acceleration(time, &mass, &applied)
+        }
+
+        /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - …`
+        ///
+        /// 56 operations.
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let [θ1_ddot, θ2_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let [(sin1, cos1), (sin2, cos2)] = T::sin_cos_each([θ1, θ2]);
+            let s3 = cos1 * cos2 + sin1 * sin2;
+            let s4 = self.m2 * self.l1 * self.l2;
+            let s5 = s4 * θ1_dot;
+            let s6 = s5 * θ2_dot;
+            let s7 = s6 * s3;
+            let s8 = self.l1 * self.g * (self.m1 + self.m2);
+            let s9 = self.m2 * self.l2 * self.g;
+            let s10 = sin1 * cos2 - cos1 * sin2;
+            let s11 = s6 * s10;
+            let s12 = s4 * θ2_dot * s10 * θ1_ddot;
+            let s13 = s5 * s10 * θ2_ddot;
+            let s14 = θ2_dot
+                * (s12 + s13 + s4 * (θ1_dot * θ1_dot) * θ2_dot * s3
+                    - θ2_dot * (s7 + s9 * cos2));
+            let s15 = θ2_ddot * (s11 - s9 * sin2) - (s11 + s8 * sin1) * θ1_ddot
+                - θ1_dot
+                    * (s5 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s7 + s8 * cos1) - s12
+                        - s13);
+            ::core::result::Result::Ok(s15 - s14)
+        }
+
+        /// The first of what L and f are made of that is not finite here.
+        ///
+        /// 32 operations.
+        #[cold]
+        fn non_finite(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::option::Option<&'static str> {
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+            let s4 = cos2 * cos3 + sin2 * sin3;
+            let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
+                + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
+            let values = [
+                ("m1", self.m1),
+                ("m2", self.m2),
+                ("l1", self.l1),
+                ("l2", self.l2),
+                ("g", self.g),
+                ("dot(θ1)", θ1_dot),
+                ("dot(θ2)", θ2_dot),
+                ("θ1", θ1),
+                ("θ2", θ2),
+                ("cos(θ1 - θ2)", s4),
+                ("cos(θ1)", cos2),
+                ("cos(θ2)", cos3),
+                (
+                    "l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)",
+                    s5
+                        + (self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
+                            + self.m2 * self.l1 * self.l2 * θ2_dot * s4) * θ1_dot,
+                ),
+            ];
+            values
+                .into_iter()
+                .find(|(_, value)| !value.is_finite())
+                .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
+        /// `ld = h*L`
+        ///
+        /// 37 operations.
+        #[inline]
+        fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+            let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+            let θ1_dot = (θ1_1 - θ1_0) / h;
+            let θ2_dot = (θ2_1 - θ2_0) / h;
+            let real = T::real;
+            let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+            let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s4 = self.l1 * self.l1 * s1 * real(0.5) * θ1_dot
+                + self.m2 * self.l1 * self.l2 * θ2_dot * (cos2 * cos3 + sin2 * sin3);
+            let s5 = self.m2 * (self.l2 * self.l2) * (θ2_dot * θ2_dot) * real(0.5)
+                + self.l1 * self.g * s1 * cos2 + self.m2 * self.l2 * self.g * cos3;
+            h * (s5 + s4 * θ1_dot)
+        }
+
+        /// `d1_ld = L_v_θ1*v_θ1 - L + L_v_θ2*v_θ2`
+        ///
+        /// 48 operations.
+        #[inline]
+        fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+            let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+            let θ1_dot = (θ1_1 - θ1_0) / h;
+            let θ2_dot = (θ2_1 - θ2_0) / h;
+            let real = T::real;
+            let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+            let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+            let s1 = self.m1 + self.m2;
+            let s2 = self.m2 * (self.l2 * self.l2);
+            let s3 = self.l1 * self.l1 * s1;
+            let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s6 = cos4 * cos5 + sin4 * sin5;
+            let s7 = self.m2 * self.l1 * self.l2;
+            let s8 = s7 * θ1_dot;
+            let s9 = θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
+                + θ2_dot * (s2 * θ2_dot + s8 * s6)
+                - s3 * (θ1_dot * θ1_dot) * real(0.5);
+            let s10 = s9 - s2 * (θ2_dot * θ2_dot) * real(0.5) - s8 * θ2_dot * s6
+                - self.l1 * self.g * s1 * cos4;
+            s10 - self.m2 * self.l2 * self.g * cos5
+        }
+
+        /// `d2_ld_θ1 = h*L_θ1/2 - L_v_θ1`
+        ///
+        /// `d2_ld_θ2 = h*L_θ2/2 - L_v_θ2`
+        ///
+        /// 45 operations.
+        #[inline]
+        fn d2_ld(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let h = interval.t1 - interval.t0;
+            let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+            let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+            let θ1_dot = (θ1_1 - θ1_0) / h;
+            let θ2_dot = (θ2_1 - θ2_0) / h;
+            let real = T::real;
+            let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+            let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s4 = cos2 * cos3 + sin2 * sin3;
+            let s5 = self.m2 * self.l1 * self.l2;
+            let s6 = s5 * θ1_dot;
+            let s7 = s6 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
+            let s8 = h * real(0.5);
+            ::vi_core::SVector::from([
+                -(self.l1 * self.l1 * s1 * θ1_dot + s5 * θ2_dot * s4)
+                    - s8 * (s7 + self.l1 * self.g * s1 * sin2),
+                s8 * (s7 - self.m2 * self.l2 * self.g * sin3)
+                    - (self.m2 * (self.l2 * self.l2) * θ2_dot + s6 * s4),
+            ])
+        }
+
+        /// `d3_ld = L - L_v_θ1*v_θ1 - L_v_θ2*v_θ2`
+        ///
+        /// 48 operations.
+        #[inline]
+        fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+            let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+            let θ1_dot = (θ1_1 - θ1_0) / h;
+            let θ2_dot = (θ2_1 - θ2_0) / h;
+            let real = T::real;
+            let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+            let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+            let s1 = self.m1 + self.m2;
+            let s2 = self.m2 * (self.l2 * self.l2);
+            let s3 = self.l1 * self.l1 * s1;
+            let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s6 = cos4 * cos5 + sin4 * sin5;
+            let s7 = self.m2 * self.l1 * self.l2;
+            let s8 = s7 * θ1_dot;
+            let s9 = s3 * (θ1_dot * θ1_dot) * real(0.5)
+                + s2 * (θ2_dot * θ2_dot) * real(0.5) + s8 * θ2_dot * s6
+                + self.l1 * self.g * s1 * cos4;
+            s9 + self.m2 * self.l2 * self.g * cos5
+                - θ1_dot * (s3 * θ1_dot + s7 * θ2_dot * s6)
+                - θ2_dot * (s2 * θ2_dot + s8 * s6)
+        }
+
+        /// `d4_ld_θ1 = L_v_θ1 + h*L_θ1/2`
+        ///
+        /// `d4_ld_θ2 = L_v_θ2 + h*L_θ2/2`
+        ///
+        /// 44 operations.
+        #[inline]
+        fn d4_ld(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let h = interval.t1 - interval.t0;
+            let [θ1_0, θ2_0]: [T; 2] = interval.q0.into();
+            let [θ1_1, θ2_1]: [T; 2] = interval.q1.into();
+            let θ1_dot = (θ1_1 - θ1_0) / h;
+            let θ2_dot = (θ2_1 - θ2_0) / h;
+            let real = T::real;
+            let θ1_mid = (θ1_0 + θ1_1) * real(0.5);
+            let θ2_mid = (θ2_0 + θ2_1) * real(0.5);
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s4 = cos2 * cos3 + sin2 * sin3;
+            let s5 = self.m2 * self.l1 * self.l2;
+            let s6 = s5 * θ1_dot;
+            let s7 = s6 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
+            let s8 = h * real(0.5);
+            ::vi_core::SVector::from([
+                self.l1 * self.l1 * s1 * θ1_dot + s5 * θ2_dot * s4
+                    - s8 * (s7 + self.l1 * self.g * s1 * sin2),
+                self.m2 * (self.l2 * self.l2) * θ2_dot + s6 * s4
+                    + s8 * (s7 - self.m2 * self.l2 * self.g * sin3),
+            ])
+        }
+
+        /// `fd_minus_θ1 = 0`
+        ///
+        /// `fd_minus_θ2 = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn fd_minus(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let real = T::real;
+            ::vi_core::SVector::from([real(0.0), real(0.0)])
+        }
+
+        /// `fd_plus_θ1 = 0`
+        ///
+        /// `fd_plus_θ2 = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn fd_plus(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let real = T::real;
+            ::vi_core::SVector::from([real(0.0), real(0.0)])
+        }
+
+        /// `gd_minus = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let real = T::real;
+            real(0.0)
+        }
+
+        /// `gd_plus = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let real = T::real;
+            real(0.0)
+        }
+    }
+
+    #[allow(
+        clippy::all,
+        clippy::pedantic,
+        non_snake_case,
+        unused_variables,
+        unused_parens
+    )]
+    impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
+        type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+        const CONSTANT_JACOBIAN: bool = false;
+        const SMOOTH: bool = true;
+        const PLACE: ::core::option::Option<f64> = ::core::option::Option::Some(0.5f64);
+
+        /// `residual_θ1 = L_v_θ1 - h*L_θ1/2 - p0_θ1_low - p0_θ1`
+        ///
+        /// `residual_θ2 = L_v_θ2 - h*L_θ2/2 - p0_θ2_low - p0_θ2`
+        ///
+        /// 75 operations.
+        #[inline(always)]
+        fn momentum_equation(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+            let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let s2 = self.m1 + self.m2;
+            let s3 = self.m2 * (self.l2 * self.l2);
+            let s4 = self.l1 * self.l1;
+            let [(sin5, cos5), (sin6, cos6)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s7 = cos5 * cos6 + sin5 * sin6;
+            let s8 = self.m2 * self.l1 * self.l2;
+            let s9 = s8 * θ1_dot;
+            let s10 = s9 * θ2_dot;
+            let s11 = s10 * s7;
+            let s12 = self.l1 * self.g * s2;
+            let s13 = self.m2 * self.l2 * self.g;
+            let s14 = sin5 * cos6 - cos5 * sin6;
+            let s15 = s10 * s14;
+            let s16 = h * h * real(0.25);
+            let s17 = s8 * s7;
+            let s18 = s8 * real(0.5) * (θ1_dot + θ2_dot) * s14;
+            let s19 = s11 * (h * real(0.25));
+            ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    s19 + s20 - p0_θ1 - (p0_θ1_low - s1 * s24),
-                    s5 + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s26),
+                    s4 * s2 * θ1_dot + s8 * θ2_dot * s7 - p0_θ1
+                        - (p0_θ1_low - s1 * (s15 + s12 * sin5)),
+                    s3 * θ2_dot + s9 * s7 - p0_θ2
+                        - (p0_θ2_low + s1 * (s15 - s13 * sin6)),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
                     &[
-                        s2 * s4 + s30 * s28,
-                        s31 + (s32 - s33) * h,
-                        s31 - (s32 + s33) * h,
-                        s3 + s30 * s29,
+                        s2 * s4 + s16 * (s11 + s12 * cos5),
+                        s17 + (s18 - s19) * h,
+                        s17 - (s18 + s19) * h,
+                        s3 + s16 * (s11 + s13 * cos6),
                     ],
                 ),
-            },
-            residual_dh: ::vi_core::SVector::from([s34 - s36, s38 - s39]),
-            energy_residual: s27
-                + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                    + s1 * (θ2_dot * s26 - θ1_dot * s24)),
-            energy_dv: ::vi_core::SVector::from([s34 + s36, s38 + s39]),
-            energy_dh: s37 * s7 * s10 * real(0.5) - s6 * s28 * real(0.25)
-                - s7 * s29 * real(0.25),
+            }
         }
-    }
 
-    /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
-    ///
-    /// 148 operations.
-    #[cold]
-    fn magnitudes(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Magnitudes<2, T> {
-        let energy0 = node.energy;
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = θ2_dot * θ2_dot;
-        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s6 = cos4 * cos5 + sin4 * sin5;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g;
-        let s12 = s11 * (self.m1 + self.m2);
-        let s13 = self.m2 * self.l2 * self.g;
-        let s14 = s13 * cos5;
-        let s15 = s7 * θ2_dot;
-        let s16 = sin4 * cos5 - cos4 * sin5;
-        let s17 = s9 * s16;
-        let s18 = s12 * sin4;
-        let s19 = s13 * sin5;
-        let s20 = self.m1.abs() + self.m2.abs();
-        let s21 = self.l1 * self.l1;
-        let s22 = s17.abs();
-        let s23 = s22 + s18.abs();
-        let s24 = s15 * s16;
-        let s25 = s10 + s12 * cos4;
-        let s26 = s10 * s1;
-        let s27 = h.abs() * real(0.5);
-        let s28 = p0_θ1.abs() + s20 * (s21 * θ1_dot).abs() + (s15 * s6).abs()
-            + s27 * s23 + (θ1_mid * (s24 - s1 * s25)).abs();
-        let s29 = s22 + s19.abs();
-        let s30 = s8 * s16;
-        let s31 = s10 + s14;
-        let s32 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * s6).abs() + s27 * s29
-            + (θ1_mid * (s30 + s26)).abs();
-        let s33 = θ1_dot * θ1_dot;
-        let s34 = s7 * real(0.5);
-        let s35 = (θ1_mid
-            * (s17 + s18 + (s34 * θ1_dot * s3 * s6 - θ1_dot * s25 * real(0.5)) * h))
-            .abs();
-        let s36 = (θ2_mid
-            * (s17 - s19 - (s34 * s33 * θ2_dot * s6 - θ2_dot * s31 * real(0.5)) * h))
-            .abs();
-        let s37 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
-            + s21 * s20 * s33 * real(0.5);
-        let s38 = s37 + (s2 * s3).abs() * real(0.5) + s10.abs()
-            + s20 * (s11 * cos4).abs() + s14.abs();
-        let s39 = s38 + s23 * (h * θ1_dot).abs() * real(0.5)
-            + s29 * (h * θ2_dot).abs() * real(0.5) + s35;
-        ::vi_core::Magnitudes {
-            residual: ::vi_core::SVector::from([
-                s28 + (θ2_mid * (s24 - s26)).abs(),
-                s32 + (θ2_mid * (s30 + s1 * s31)).abs(),
-            ]),
-            energy_residual: s39 + s36,
-        }
-    }
-
-    /// `p1 − p0_θ1 = h*L_θ1`
-    ///
-    /// `p1 − p0_θ2 = h*L_θ2`
-    ///
-    /// `E1 − E0 = 0`
-    ///
-    /// 31 operations.
-    #[inline(always)]
-    fn increment(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Increment<2, T> {
-        let [θ1_0, θ2_0]: [T; 2] = node.q.into();
-        let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
-        let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
-        let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s4 = self.m2 * self.l1 * self.l2 * θ1_dot * θ2_dot
-            * (sin2 * cos3 - cos2 * sin3);
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                -(h * (s4 + self.l1 * self.g * (self.m1 + self.m2) * sin2)),
-                h * (s4 - self.m2 * self.l2 * self.g * sin3),
-            ]),
-            energy: real(0.0),
-        }
-    }
-
-    /// `p1 − p0_θ1 = h*L_θ1`
-    ///
-    /// `p1 − p0_θ2 = h*L_θ2`
-    ///
-    /// to first order at `v + dv`.
-    ///
-    /// 86 operations.
-    #[inline(always)]
-    fn momentum_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
-        ) -> ::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = self.l1 * self.l1;
-        let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s6 = cos4 * cos5 + sin4 * sin5;
-        let s7 = self.m2 * self.l1 * self.l2;
-        let s8 = s7 * θ1_dot;
-        let s9 = s8 * θ2_dot;
-        let s10 = s9 * s6;
-        let s11 = self.l1 * self.g * s1;
-        let s12 = self.m2 * self.l2 * self.g;
-        let s13 = s7 * θ2_dot;
-        let s14 = sin4 * cos5 - cos4 * sin5;
-        let s15 = s9 * s14;
-        let s16 = s15 + s11 * sin4;
-        let s17 = s15 - s12 * sin5;
-        let s18 = h * real(0.5);
-        let s19 = s10 + s11 * cos4;
-        let s20 = s10 + s12 * cos5;
-        let s21 = h * h * real(0.25);
-        let s22 = s7 * s6;
-        let s23 = s7 * real(0.5) * (θ1_dot + θ2_dot) * s14;
-        let s24 = s10 * (h * real(0.25));
-        let s25 = s13 * s14;
-        let s26 = s8 * s14;
-        let s27 = s10 * s18;
-        let momentum = ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                s3 * s1 * θ1_dot + s13 * s6 - p0_θ1 - (p0_θ1_low - s18 * s16),
-                s2 * θ2_dot + s8 * s6 - p0_θ2 - (p0_θ2_low + s18 * s17),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[
-                    s1 * s3 + s21 * s19,
-                    s22 + (s23 - s24) * h,
-                    s22 - (s23 + s24) * h,
-                    s2 + s21 * s20,
-                ],
-            ),
-        };
-        let change: [T; 2] = solve(&momentum).into();
-        ::vi_core::SVector::from([
-            -(h * s16)
-                + ((-s25 - s18 * s19) * h * change[0] + (s27 - s26) * h * change[1]),
-            h * s17 + ((s25 + s27) * h * change[0] + (s26 - s18 * s20) * h * change[1]),
-        ])
-    }
-
-    /// `p1 − p0_θ1 = h*L_θ1`
-    ///
-    /// `p1 − p0_θ2 = h*L_θ2`
-    ///
-    /// `E1 − E0 = 0`
-    ///
-    /// to first order at `(v + dv, h + dh)`.
-    ///
-    /// 161 operations.
-    #[inline(always)]
-    fn extended_step(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        place: &::vi_core::SVector<T, 2>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-        solve: impl ::core::ops::FnOnce(
-            &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
-        ) -> (::vi_core::SVector<T, 2>, T),
-    ) -> ::vi_core::Increment<2, T> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
-        let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
-        let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-        let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
-        let real = T::real;
-        let s1 = self.m1 + self.m2;
-        let s2 = self.m2 * (self.l2 * self.l2);
-        let s3 = self.l1 * self.l1;
-        let s4 = s2 * θ2_dot;
-        let s5 = θ1_dot * θ1_dot;
-        let s6 = θ2_dot * θ2_dot;
-        let [(sin7, cos7), (sin8, cos8)] = T::sin_cos_each([θ1_mid, θ2_mid]);
-        let s9 = cos7 * cos8 + sin7 * sin8;
-        let s10 = self.m2 * self.l1 * self.l2;
-        let s11 = s10 * θ1_dot;
-        let s12 = s11 * θ2_dot;
-        let s13 = s12 * s9;
-        let s14 = self.l1 * self.g * s1;
-        let s15 = s14 * cos7;
-        let s16 = self.m2 * self.l2 * self.g;
-        let s17 = s16 * cos8;
-        let s18 = s3 * s1 * θ1_dot;
-        let s19 = s10 * θ2_dot;
-        let s20 = s19 * s9;
-        let s21 = sin7 * cos8 - cos7 * sin8;
-        let s22 = s12 * s21;
-        let s23 = s14 * sin7;
-        let s24 = s22 + s23;
-        let s25 = s16 * sin8;
-        let s26 = s22 - s25;
-        let s27 = h * real(0.5);
-        let s28 = (p0_θ2 - s4 * real(0.5)) * θ2_dot - (energy0 + s15 + s17)
-            + (p0_θ1 - s18 * real(0.5) - s20) * θ1_dot;
-        let s29 = s13 + s15;
-        let s30 = s13 + s17;
-        let s31 = h * h * real(0.25);
-        let s32 = s10 * s9;
-        let s33 = s10 * real(0.5);
-        let s34 = s33 * (θ1_dot + θ2_dot) * s21;
-        let s35 = s13 * (h * real(0.25));
-        let s36 = s23 * real(0.5) + s10 * s6 * s21 * real(0.5);
-        let s37 = θ1_dot * s29;
-        let s38 = s10 * real(0.25);
-        let s39 = (s38 * θ1_dot * s6 * s9 - s37 * real(0.25)) * h;
-        let s40 = s10 * s5;
-        let s41 = s25 * real(0.5) - s40 * s21 * real(0.5);
-        let s42 = θ2_dot * s30;
-        let s43 = (s38 * s5 * θ2_dot * s9 - s42 * real(0.25)) * h;
-        let s44 = s19 * s21;
-        let s45 = s11 * s21;
-        let s46 = s13 * s27;
-        let (change, change_h) = solve(
-            &::vi_core::ExtendedSystem {
+        /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
+        ///
+        /// 136 operations.
+        #[inline(always)]
+        fn extended_system(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
+            let energy0 = node.energy;
+            let energy0_low = node.energy_low;
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+            let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let s2 = self.m1 + self.m2;
+            let s3 = self.m2 * (self.l2 * self.l2);
+            let s4 = self.l1 * self.l1;
+            let s5 = s3 * θ2_dot;
+            let s6 = θ1_dot * θ1_dot;
+            let s7 = θ2_dot * θ2_dot;
+            let [(sin8, cos8), (sin9, cos9)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s10 = cos8 * cos9 + sin8 * sin9;
+            let s11 = self.m2 * self.l1 * self.l2;
+            let s12 = s11 * θ1_dot;
+            let s13 = s12 * θ2_dot;
+            let s14 = s13 * s10;
+            let s15 = self.l1 * self.g * s2;
+            let s16 = s15 * cos8;
+            let s17 = self.m2 * self.l2 * self.g;
+            let s18 = s17 * cos9;
+            let s19 = s4 * s2 * θ1_dot;
+            let s20 = s11 * θ2_dot * s10;
+            let s21 = sin8 * cos9 - cos8 * sin9;
+            let s22 = s13 * s21;
+            let s23 = s15 * sin8;
+            let s24 = s22 + s23;
+            let s25 = s17 * sin9;
+            let s26 = s22 - s25;
+            let s27 = (p0_θ2 - s5 * real(0.5)) * θ2_dot - (energy0 + s16 + s18)
+                + (p0_θ1 - s19 * real(0.5) - s20) * θ1_dot;
+            let s28 = s14 + s16;
+            let s29 = s14 + s18;
+            let s30 = h * h * real(0.25);
+            let s31 = s11 * s10;
+            let s32 = s11 * real(0.5) * (θ1_dot + θ2_dot) * s21;
+            let s33 = s14 * (h * real(0.25));
+            let s34 = s23 * real(0.5) + s11 * s7 * s21 * real(0.5);
+            let s35 = s11 * real(0.25);
+            let s36 = (s35 * θ1_dot * s7 * s10 - θ1_dot * s28 * real(0.25)) * h;
+            let s37 = s11 * s6;
+            let s38 = s25 * real(0.5) - s37 * s21 * real(0.5);
+            let s39 = (s35 * s6 * θ2_dot * s10 - θ2_dot * s29 * real(0.25)) * h;
+            ::vi_core::ExtendedSystem {
                 momentum: ::vi_core::MomentumEquation {
                     residual: ::vi_core::SVector::from([
-                        s18 + s20 - p0_θ1 - (p0_θ1_low - s27 * s24),
-                        s4 + s11 * s9 - p0_θ2 - (p0_θ2_low + s27 * s26),
+                        s19 + s20 - p0_θ1 - (p0_θ1_low - s1 * s24),
+                        s5 + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s26),
                     ]),
                     jacobian: ::vi_core::SMatrix::from_row_slice(
                         &[
-                            s1 * s3 + s31 * s29,
-                            s32 + (s34 - s35) * h,
-                            s32 - (s34 + s35) * h,
-                            s2 + s31 * s30,
+                            s2 * s4 + s30 * s28,
+                            s31 + (s32 - s33) * h,
+                            s31 - (s32 + s33) * h,
+                            s3 + s30 * s29,
                         ],
                     ),
                 },
-                residual_dh: ::vi_core::SVector::from([s36 - s39, s41 - s43]),
-                energy_residual: s28
+                residual_dh: ::vi_core::SVector::from([s34 - s36, s38 - s39]),
+                energy_residual: s27
                     + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
-                        + s27 * (θ2_dot * s26 - θ1_dot * s24)),
-                energy_dv: ::vi_core::SVector::from([s36 + s39, s41 + s43]),
-                energy_dh: s40 * s6 * s9 * real(0.5) - s5 * s29 * real(0.25)
-                    - s6 * s30 * real(0.25),
-            },
-        );
-        let change: [T; 2] = change.into();
-        ::vi_core::Increment {
-            momentum: ::vi_core::SVector::from([
-                -(h * s24)
-                    + ((-s44 - s27 * s29) * h * change[0] + (s46 - s45) * h * change[1]
-                        + ((s33 * θ1_dot * s6 * s9 - s37 * real(0.5)) * h - s24)
-                            * change_h),
-                h * s26
-                    + ((s44 + s46) * h * change[0] + (s45 - s27 * s30) * h * change[1]
-                        + (s26 + (s33 * s5 * θ2_dot * s9 - s42 * real(0.5)) * h)
-                            * change_h),
-            ]),
-            energy: real(0.0),
+                        + s1 * (θ2_dot * s26 - θ1_dot * s24)),
+                energy_dv: ::vi_core::SVector::from([s34 + s36, s38 + s39]),
+                energy_dh: s37 * s7 * s10 * real(0.5) - s6 * s28 * real(0.25)
+                    - s7 * s29 * real(0.25),
+            }
+        }
+
+        /// Sums of the absolute values of the terms of `residual` and `energy_residual`.
+        ///
+        /// 148 operations.
+        #[cold]
+        fn magnitudes(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::Magnitudes<2, T> {
+            let energy0 = node.energy;
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let s2 = self.m2 * (self.l2 * self.l2);
+            let s3 = θ2_dot * θ2_dot;
+            let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s6 = cos4 * cos5 + sin4 * sin5;
+            let s7 = self.m2 * self.l1 * self.l2;
+            let s8 = s7 * θ1_dot;
+            let s9 = s8 * θ2_dot;
+            let s10 = s9 * s6;
+            let s11 = self.l1 * self.g;
+            let s12 = s11 * (self.m1 + self.m2);
+            let s13 = self.m2 * self.l2 * self.g;
+            let s14 = s13 * cos5;
+            let s15 = s7 * θ2_dot;
+            let s16 = sin4 * cos5 - cos4 * sin5;
+            let s17 = s9 * s16;
+            let s18 = s12 * sin4;
+            let s19 = s13 * sin5;
+            let s20 = self.m1.abs() + self.m2.abs();
+            let s21 = self.l1 * self.l1;
+            let s22 = s17.abs();
+            let s23 = s22 + s18.abs();
+            let s24 = s15 * s16;
+            let s25 = s10 + s12 * cos4;
+            let s26 = s10 * s1;
+            let s27 = h.abs() * real(0.5);
+            let s28 = p0_θ1.abs() + s20 * (s21 * θ1_dot).abs() + (s15 * s6).abs()
+                + s27 * s23 + (θ1_mid * (s24 - s1 * s25)).abs();
+            let s29 = s22 + s19.abs();
+            let s30 = s8 * s16;
+            let s31 = s10 + s14;
+            let s32 = p0_θ2.abs() + (s2 * θ2_dot).abs() + (s8 * s6).abs() + s27 * s29
+                + (θ1_mid * (s30 + s26)).abs();
+            let s33 = θ1_dot * θ1_dot;
+            let s34 = s7 * real(0.5);
+            let s35 = (θ1_mid
+                * (s17 + s18
+                    + (s34 * θ1_dot * s3 * s6 - θ1_dot * s25 * real(0.5)) * h))
+                .abs();
+            let s36 = (θ2_mid
+                * (s17 - s19
+                    - (s34 * s33 * θ2_dot * s6 - θ2_dot * s31 * real(0.5)) * h))
+                .abs();
+            let s37 = energy0.abs() + (θ1_dot * p0_θ1).abs() + (θ2_dot * p0_θ2).abs()
+                + s21 * s20 * s33 * real(0.5);
+            let s38 = s37 + (s2 * s3).abs() * real(0.5) + s10.abs()
+                + s20 * (s11 * cos4).abs() + s14.abs();
+            let s39 = s38 + s23 * (h * θ1_dot).abs() * real(0.5)
+                + s29 * (h * θ2_dot).abs() * real(0.5) + s35;
+            ::vi_core::Magnitudes {
+                residual: ::vi_core::SVector::from([
+                    s28 + (θ2_mid * (s24 - s26)).abs(),
+                    s32 + (θ2_mid * (s30 + s1 * s31)).abs(),
+                ]),
+                energy_residual: s39 + s36,
+            }
+        }
+
+        /// `p1 − p0_θ1 = h*L_θ1`
+        ///
+        /// `p1 − p0_θ2 = h*L_θ2`
+        ///
+        /// `E1 − E0 = 0`
+        ///
+        /// 31 operations.
+        #[inline(always)]
+        fn increment(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::Increment<2, T> {
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s4 = self.m2 * self.l1 * self.l2 * θ1_dot * θ2_dot
+                * (sin2 * cos3 - cos2 * sin3);
+            ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from([
+                    -(h * (s4 + self.l1 * self.g * (self.m1 + self.m2) * sin2)),
+                    h * (s4 - self.m2 * self.l2 * self.g * sin3),
+                ]),
+                energy: real(0.0),
+            }
+        }
+
+        /// `p1 − p0_θ1 = h*L_θ1`
+        ///
+        /// `p1 − p0_θ2 = h*L_θ2`
+        ///
+        /// to first order at `v + dv`.
+        ///
+        /// 86 operations.
+        #[inline(always)]
+        fn momentum_step(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            place: &::vi_core::SVector<T, 2>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+            solve: impl ::core::ops::FnOnce(
+                &::vi_core::MomentumEquation<2, T, Self::Jacobian>,
+            ) -> ::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+            let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
+            let real = T::real;
+            let s1 = self.m1 + self.m2;
+            let s2 = self.m2 * (self.l2 * self.l2);
+            let s3 = self.l1 * self.l1;
+            let [(sin4, cos4), (sin5, cos5)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s6 = cos4 * cos5 + sin4 * sin5;
+            let s7 = self.m2 * self.l1 * self.l2;
+            let s8 = s7 * θ1_dot;
+            let s9 = s8 * θ2_dot;
+            let s10 = s9 * s6;
+            let s11 = self.l1 * self.g * s1;
+            let s12 = self.m2 * self.l2 * self.g;
+            let s13 = s7 * θ2_dot;
+            let s14 = sin4 * cos5 - cos4 * sin5;
+            let s15 = s9 * s14;
+            let s16 = s15 + s11 * sin4;
+            let s17 = s15 - s12 * sin5;
+            let s18 = h * real(0.5);
+            let s19 = s10 + s11 * cos4;
+            let s20 = s10 + s12 * cos5;
+            let s21 = h * h * real(0.25);
+            let s22 = s7 * s6;
+            let s23 = s7 * real(0.5) * (θ1_dot + θ2_dot) * s14;
+            let s24 = s10 * (h * real(0.25));
+            let s25 = s13 * s14;
+            let s26 = s8 * s14;
+            let s27 = s10 * s18;
+            let momentum = ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([
+                    s3 * s1 * θ1_dot + s13 * s6 - p0_θ1 - (p0_θ1_low - s18 * s16),
+                    s2 * θ2_dot + s8 * s6 - p0_θ2 - (p0_θ2_low + s18 * s17),
+                ]),
+                jacobian: ::vi_core::SMatrix::from_row_slice(
+                    &[
+                        s1 * s3 + s21 * s19,
+                        s22 + (s23 - s24) * h,
+                        s22 - (s23 + s24) * h,
+                        s2 + s21 * s20,
+                    ],
+                ),
+            };
+            let change: [T; 2] = solve(&momentum).into();
+            ::vi_core::SVector::from([
+                -(h * s16)
+                    + ((-s25 - s18 * s19) * h * change[0] + (s27 - s26) * h * change[1]),
+                h * s17
+                    + ((s25 + s27) * h * change[0] + (s26 - s18 * s20) * h * change[1]),
+            ])
+        }
+
+        /// `p1 − p0_θ1 = h*L_θ1`
+        ///
+        /// `p1 − p0_θ2 = h*L_θ2`
+        ///
+        /// `E1 − E0 = 0`
+        ///
+        /// to first order at `(v + dv, h + dh)`.
+        ///
+        /// 161 operations.
+        #[inline(always)]
+        fn extended_step(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            place: &::vi_core::SVector<T, 2>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+            solve: impl ::core::ops::FnOnce(
+                &::vi_core::ExtendedSystem<2, T, Self::Jacobian>,
+            ) -> (::vi_core::SVector<T, 2>, T),
+        ) -> ::vi_core::Increment<2, T> {
+            let energy0 = node.energy;
+            let energy0_low = node.energy_low;
+            let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
+            let [p0_θ1_low, p0_θ2_low]: [T; 2] = node.p_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1_mid, θ2_mid]: [T; 2] = (*place).into();
+            let real = T::real;
+            let s1 = self.m1 + self.m2;
+            let s2 = self.m2 * (self.l2 * self.l2);
+            let s3 = self.l1 * self.l1;
+            let s4 = s2 * θ2_dot;
+            let s5 = θ1_dot * θ1_dot;
+            let s6 = θ2_dot * θ2_dot;
+            let [(sin7, cos7), (sin8, cos8)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s9 = cos7 * cos8 + sin7 * sin8;
+            let s10 = self.m2 * self.l1 * self.l2;
+            let s11 = s10 * θ1_dot;
+            let s12 = s11 * θ2_dot;
+            let s13 = s12 * s9;
+            let s14 = self.l1 * self.g * s1;
+            let s15 = s14 * cos7;
+            let s16 = self.m2 * self.l2 * self.g;
+            let s17 = s16 * cos8;
+            let s18 = s3 * s1 * θ1_dot;
+            let s19 = s10 * θ2_dot;
+            let s20 = s19 * s9;
+            let s21 = sin7 * cos8 - cos7 * sin8;
+            let s22 = s12 * s21;
+            let s23 = s14 * sin7;
+            let s24 = s22 + s23;
+            let s25 = s16 * sin8;
+            let s26 = s22 - s25;
+            let s27 = h * real(0.5);
+            let s28 = (p0_θ2 - s4 * real(0.5)) * θ2_dot - (energy0 + s15 + s17)
+                + (p0_θ1 - s18 * real(0.5) - s20) * θ1_dot;
+            let s29 = s13 + s15;
+            let s30 = s13 + s17;
+            let s31 = h * h * real(0.25);
+            let s32 = s10 * s9;
+            let s33 = s10 * real(0.5);
+            let s34 = s33 * (θ1_dot + θ2_dot) * s21;
+            let s35 = s13 * (h * real(0.25));
+            let s36 = s23 * real(0.5) + s10 * s6 * s21 * real(0.5);
+            let s37 = θ1_dot * s29;
+            let s38 = s10 * real(0.25);
+            let s39 = (s38 * θ1_dot * s6 * s9 - s37 * real(0.25)) * h;
+            let s40 = s10 * s5;
+            let s41 = s25 * real(0.5) - s40 * s21 * real(0.5);
+            let s42 = θ2_dot * s30;
+            let s43 = (s38 * s5 * θ2_dot * s9 - s42 * real(0.25)) * h;
+            let s44 = s19 * s21;
+            let s45 = s11 * s21;
+            let s46 = s13 * s27;
+            let (change, change_h) = solve(
+                &::vi_core::ExtendedSystem {
+                    momentum: ::vi_core::MomentumEquation {
+                        residual: ::vi_core::SVector::from([
+                            s18 + s20 - p0_θ1 - (p0_θ1_low - s27 * s24),
+                            s4 + s11 * s9 - p0_θ2 - (p0_θ2_low + s27 * s26),
+                        ]),
+                        jacobian: ::vi_core::SMatrix::from_row_slice(
+                            &[
+                                s1 * s3 + s31 * s29,
+                                s32 + (s34 - s35) * h,
+                                s32 - (s34 + s35) * h,
+                                s2 + s31 * s30,
+                            ],
+                        ),
+                    },
+                    residual_dh: ::vi_core::SVector::from([s36 - s39, s41 - s43]),
+                    energy_residual: s28
+                        + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
+                            + s27 * (θ2_dot * s26 - θ1_dot * s24)),
+                    energy_dv: ::vi_core::SVector::from([s36 + s39, s41 + s43]),
+                    energy_dh: s40 * s6 * s9 * real(0.5) - s5 * s29 * real(0.25)
+                        - s6 * s30 * real(0.25),
+                },
+            );
+            let change: [T; 2] = change.into();
+            ::vi_core::Increment {
+                momentum: ::vi_core::SVector::from([
+                    -(h * s24)
+                        + ((-s44 - s27 * s29) * h * change[0]
+                            + (s46 - s45) * h * change[1]
+                            + ((s33 * θ1_dot * s6 * s9 - s37 * real(0.5)) * h - s24)
+                                * change_h),
+                    h * s26
+                        + ((s44 + s46) * h * change[0]
+                            + (s45 - s27 * s30) * h * change[1]
+                            + (s26 + (s33 * s5 * θ2_dot * s9 - s42 * real(0.5)) * h)
+                                * change_h),
+                ]),
+                energy: real(0.0),
+            }
         }
     }
-}
 
-#[allow(clippy::all, clippy::pedantic, unused_variables)]
-impl ::vi_core::Batch<2> for DoublePendulum<f64> {
-    type Rows<const W: usize> = DoublePendulum<[f64; W]>;
-    type In<T: ::vi_core::Real> = DoublePendulum<T>;
-    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
-        DoublePendulum {
-            m1: ::core::array::from_fn(|index| systems[index].m1),
-            m2: ::core::array::from_fn(|index| systems[index].m2),
-            l1: ::core::array::from_fn(|index| systems[index].l1),
-            l2: ::core::array::from_fn(|index| systems[index].l2),
-            g: ::core::array::from_fn(|index| systems[index].g),
+    impl ::vi_core::Batch<2> for DoublePendulum<f64> {
+        type Rows<const W: usize> = DoublePendulum<[f64; W]>;
+        type In<T: ::vi_core::Real> = DoublePendulum<T>;
+        fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+            DoublePendulum {
+                m1: ::core::array::from_fn(|index| systems[index].m1),
+                m2: ::core::array::from_fn(|index| systems[index].m2),
+                l1: ::core::array::from_fn(|index| systems[index].l1),
+                l2: ::core::array::from_fn(|index| systems[index].l2),
+                g: ::core::array::from_fn(|index| systems[index].g),
+            }
+        }
+
+        #[inline(always)]
+        fn pick<T: ::vi_core::Real, const W: usize>(
+            rows: &Self::Rows<W>,
+            index: usize,
+        ) -> Self::In<T> {
+            DoublePendulum {
+                m1: T::real(rows.m1[index]),
+                m2: T::real(rows.m2[index]),
+                l1: T::real(rows.l1[index]),
+                l2: T::real(rows.l2[index]),
+                g: T::real(rows.g[index]),
+            }
         }
     }
 
-    #[inline(always)]
-    fn pick<T: ::vi_core::Real, const W: usize>(
-        rows: &Self::Rows<W>,
-        index: usize,
-    ) -> Self::In<T> {
-        DoublePendulum {
-            m1: T::real(rows.m1[index]),
-            m2: T::real(rows.m2[index]),
-            l1: T::real(rows.l1[index]),
-            l2: T::real(rows.l2[index]),
-            g: T::real(rows.g[index]),
+    impl ::vi_core::check::Checked<2> for DoublePendulum<f64> {
+        type In<T: ::vi_core::Real> = DoublePendulum<T>;
+        fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
+            DoublePendulum::from_f64(self)
         }
     }
-}
-
-impl ::vi_core::check::Checked<2> for DoublePendulum<f64> {
-    type In<T: ::vi_core::Real> = DoublePendulum<T>;
-    fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
-        DoublePendulum::from_f64(self)
-    }
-}
+};
 
 /// Checks of [`DoublePendulum`](super::DoublePendulum) at the place that it names.
 #[cfg(test)]

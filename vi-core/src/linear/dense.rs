@@ -59,8 +59,7 @@ fn solve_2<T: Real, const N: usize, const M: usize>(a: &SMatrix<T, N, N>, b: &SM
 /// Zero; not a number where the determinant overflowed, or is too small to hold all its digits.
 #[inline]
 fn lost<T: Real>(determinant: T) -> T {
-    let one = determinant * determinant.recip();
-    one - one
+    determinant * determinant.recip() * T::zero()
 }
 
 #[inline]

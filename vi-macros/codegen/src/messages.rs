@@ -14,6 +14,12 @@ pub enum Message {
     Duplicate { name: String },
     /// A name that the language keeps for itself.
     Reserved { name: String },
+    /// A name of the struct that the emitted code uses for something else.
+    ReservedType { name: String },
+    /// A trait that every system has.
+    SecondDerive { name: String },
+    /// An attribute that does nothing where it stands.
+    AttributeOfClause,
     /// A name that is not declared (or not yet).
     Unknown { name: String, near: Option<String> },
     /// A function that the language does not have.
@@ -132,7 +138,9 @@ impl Message {
     pub fn what(&self) -> String {
         match self {
             Self::Duplicate { name } => format!("the name `{name}` is declared twice"),
-            Self::Reserved { name } => format!("the name `{name}` is reserved"),
+            Self::Reserved { name } | Self::ReservedType { name } => format!("the name `{name}` is reserved"),
+            Self::SecondDerive { name } => format!("every system implements `{name}`"),
+            Self::AttributeOfClause => "this attribute has no meaning here".to_owned(),
             Self::Unknown { name, .. } => format!("unknown name `{name}`"),
             Self::UnknownFunction { name, .. } => format!("unknown function `{name}`"),
             Self::Arity { name, takes, given } => format!("`{name}` takes {takes} argument(s), not {given}"),
@@ -200,6 +208,12 @@ impl Message {
                 "L" | "f" => format!("`{name}` stands for the Lagrangian or the force; choose another name"),
                 _ => "choose another name".to_owned(),
             },
+            Self::ReservedType { .. } => "generated code uses this type; choose another name".to_owned(),
+            Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
+            Self::AttributeOfClause => {
+                "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`"
+                    .to_owned()
+            }
             Self::Unknown { near, .. } => {
                 did_you_mean(near.as_ref(), "declare it above with `param`, `const`, `coord` or `let`")
             }

@@ -326,6 +326,81 @@ fn delimiters_around_a_clause_are_bounded_too() {
 }
 
 #[test]
+fn names_and_attributes_of_a_struct() {
+    let said = |text: &str| errors(text);
+    for name in ["T", "W", "f64", "bool", "str", "usize"] {
+        let found = said(&format!("struct {name} {{ {REST} }}"));
+        let wanted = format!("the name `{name}` is reserved\nhelp: generated code uses this type; choose another name");
+        assert_eq!(found, [(name.to_owned(), wanted)]);
+    }
+    // Reserved words of one edition or another.
+    assert!(said(&format!("struct gen {{ {REST} }}"))[0].1.starts_with("the name `gen` is reserved"));
+    assert!(said(&format!("struct r#match {{ {REST} }}"))[0].1.starts_with("the name `r#match` is reserved"));
+    case("coord «gen»; L = dot(gen)^2; discretize midpoint;", "the name `gen` is reserved\nhelp: choose another name");
+    case(&format!("param «r#gen» = 1; {REST}"), "the name `r#gen` is reserved");
+
+    for derived in ["Clone", "Copy", "Debug", "Default", "PartialEq"] {
+        let found = said(&format!("#[derive(PartialOrd, core::any::{derived})] struct System {{ {REST} }}"));
+        let wanted =
+            format!("every system implements `{derived}`\nhelp: remove `{derived}`; other traits may be derived");
+        assert_eq!(found, [(derived.to_owned(), wanted)]);
+    }
+    for attributes in ["#[derive(PartialOrd, Eq)] #[derive(Hash)]", "#[cfg(test)] #[allow(x)] #[doc = \"x\"]", "/// x\n"]
+    {
+        assert_eq!(
+            said(&format!(
+                "{attributes} struct System {{ #[doc(alias = \"a\")] #[allow(b)] param a = 1; coord x; L = a * dot(x)^2; discretize midpoint; }}"
+            )),
+            []
+        );
+    }
+}
+
+#[test]
+fn attributes_of_clauses() {
+    for clause in
+        ["const a = 1;", "coord y;", "let a = 1;", "force x = 1;", "dissipation = dot(x)^2;", "check { h = 1; }"]
+    {
+        case(
+            &format!("«#»[cfg(test)] {clause} {REST}"),
+            "this attribute has no meaning here\nhelp: before a clause stand",
+        );
+        case(&format!("/// Words.\n «#»[allow(x)] {clause} {REST}"), "this attribute has no meaning here");
+    }
+    for attribute in ["cfg(test)", "cfg_attr(test, doc = \"\")", "derive(Clone)"] {
+        case(&format!("«#»[{attribute}] param a = 1; {REST}"), "this attribute has no meaning here");
+    }
+    assert_eq!(
+        errors(&format!("struct System {{ /// Words.\n coord y; {} }}", REST.replace("L =", "L = dot(y)^2 +"))),
+        []
+    );
+}
+
+/// A system that is not there needs no sense; what it becomes is not there either.
+#[test]
+fn conditions_hold_for_all_items() {
+    for body in [
+        REST,
+        "coord x; L = y; discretize midpoint;",
+        "nonsense",
+        "coord x; L = dot(x)^2; discretize midpoint; check { h = 1; }",
+    ] {
+        let tokens = format!("#[cfg(a)] #[derive(Eq)] #[cfg(b)] struct System {{ {body} }}").parse().expect("tokens");
+        let file: syn::File = syn::parse2(vi_codegen::expand(tokens)).expect("Rust");
+        assert!(file.items.len() >= 2);
+        for item in file.items {
+            let attributes = match item {
+                syn::Item::Struct(item) => item.attrs,
+                syn::Item::Const(item) => item.attrs,
+                syn::Item::Mod(item) => item.attrs,
+                _ => panic!("another item of {body}"),
+            };
+            assert!(attributes.iter().filter(|attribute| attribute.path().is_ident("cfg")).count() >= 2, "{body}");
+        }
+    }
+}
+
+#[test]
 fn tokens_names_and_coordinates_are_bounded() {
     let long = format!("«{}»", "x".repeat(201));
     case(&format!("coord {long}; L = 1; discretize midpoint;"), "this name is longer than 200 letters\nhelp: choose");

@@ -52,11 +52,11 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         bounded(pool)?;
         // Most second derivatives of a long chain are zero, and not looked for.
         let by_velocity = fields.variables(pool, velocity(i));
-        let entry = |j| match by_velocity.contains(&velocity(j)) {
-            true => fields.lagrangian(pool, &[velocity(i), velocity(j)]),
-            false => zero,
-        };
-        mass.push((0..dimension).map(entry).collect());
+        let mut row = vec![zero; dimension];
+        for j in (0..dimension).filter(|j| by_velocity.contains(&velocity(*j))) {
+            row[j] = fields.lagrangian(pool, &[velocity(i), velocity(j)]);
+        }
+        mass.push(row);
         let (lq, lvt) =
             (fields.lagrangian(pool, &[coordinate(i)]), fields.lagrangian(pool, &[velocity(i), Variable::Time]));
         let applied = pool.add(lq, model.forces[i]);

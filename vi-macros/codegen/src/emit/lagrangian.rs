@@ -29,7 +29,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
         non_finite(source),
     ];
     quote! {
-        #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;
             const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
@@ -170,7 +169,7 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
             v: &::vi_core::SVector<T, #dimension>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
             #inputs #statements
-            Ok(#result)
+            ::core::result::Result::Ok(#result)
         }
     }
 }

@@ -87,12 +87,12 @@ impl Check {
     pub(super) fn report<P>(&mut self, made: Result<P>) -> Option<P> {
         let reported = self.too_large;
         self.too_large = self.is_too_large();
-        made.map_err(|error| {
-            if !reported {
-                self.errors.add(error)
-            }
-        })
-        .ok()
+        match made {
+            Ok(made) => return Some(made),
+            Err(error) if !reported => self.errors.add(error),
+            Err(_) => {}
+        }
+        None
     }
 
     /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.

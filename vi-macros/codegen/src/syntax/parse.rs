@@ -9,10 +9,17 @@ use crate::messages::{Errors, Message, error, nearest};
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
-use syn::{Attribute, Result, Token, Visibility};
+use syn::punctuated::Punctuated;
+use syn::{Attribute, Path, Result, Token, Visibility};
 
 /// The words that open a clause.
 const CLAUSES: [&str; 9] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
+
+/// Names of types that the emitted code uses without a path.
+const TYPES: [&str; 6] = ["T", "W", "bool", "f64", "str", "usize"];
+
+/// What every system derives or implements.
+const DERIVED: [&str; 5] = ["Clone", "Copy", "Debug", "Default", "PartialEq"];
 
 /// Tokens that a system may have.
 const TOKENS: usize = 200_000;
@@ -119,6 +126,9 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
     }
     input.parse::<Token![struct]>()?;
     let name = name(input)?;
+    if TYPES.contains(&name.to_string().as_str()) {
+        return Err(error(name.span(), &Message::ReservedType { name: name.to_string() }));
+    }
     if !input.peek(syn::token::Brace) {
         return Err(error(input.span(), &Message::Expected { what: "`{` and the clauses of the system" }));
     }
@@ -139,6 +149,9 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         checks: Vec::new(),
     };
     let mut errors = Errors::default();
+    if let Err(found) = derives_nothing_twice(&system.attributes) {
+        errors.add(found);
+    }
     while !body.is_empty() {
         if let Err(found) = clause(&body, &mut system) {
             errors.add(found);
@@ -149,6 +162,33 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         errors.at(input.span(), &Message::AfterSystem);
     }
     Ok((system, errors))
+}
+
+/// A system derives some traits whether its struct says so or not.
+fn derives_nothing_twice(attributes: &[Attribute]) -> Result<()> {
+    let mut errors = Errors::default();
+    for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("derive")) {
+        // What is no list of paths, rustc reports.
+        let Ok(derived) = attribute.parse_args_with(Punctuated::<Path, Token![,]>::parse_terminated) else { continue };
+        for name in derived.iter().filter_map(|path| path.segments.last()).map(|segment| &segment.ident) {
+            if DERIVED.contains(&name.to_string().as_str()) {
+                errors.at(name.span(), &Message::SecondDerive { name: name.to_string() });
+            }
+        }
+    }
+    errors.finish(())
+}
+
+/// Attributes of a clause: those of a parameter go over to its field, of others to nothing, and the macro knows no conditions.
+fn fitting(attributes: &[Attribute], word: &Ident) -> Result<()> {
+    let fits = |attribute: &Attribute| {
+        let named = |names: &[&str]| names.iter().any(|name| attribute.path().is_ident(name));
+        named(&["doc"]) || word == "param" && !named(&["cfg", "cfg_attr", "derive"])
+    };
+    match attributes.iter().find(|attribute| !fits(attribute)) {
+        Some(attribute) => Err(error(attribute.pound_token.span, &Message::AttributeOfClause)),
+        None => Ok(()),
+    }
 }
 
 /// Drops the tokens up to the end of a clause that could not be read.
@@ -165,6 +205,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     let Ok(word) = input.call(Ident::parse_any) else {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
+    if CLAUSES.contains(&word.to_string().as_str()) {
+        fitting(&attributes, &word)?;
+    }
     match word.to_string().as_str() {
         "const" => system.constants.extend(list(input, &mut |input| definition(input, &attributes))?),
         "param" => system.parameters.extend(list(input, &mut |input| definition(input, &attributes))?),
