@@ -13,7 +13,7 @@ use libfuzzer_sys::fuzz_target;
 use proc_macro2::TokenStream;
 
 /// One token for each byte; the last ones open and close.
-const TOKENS: [&str; 96] = [
+const TOKENS: [&str; 112] = [
     "const",
     "param",
     "coord",
@@ -104,6 +104,22 @@ const TOKENS: [&str; 96] = [
     "coord x;",
     "discretize midpoint;",
     "L = dot(x)^2;",
+    "coord q[256];",
+    "L = sum(i in 0..256, dot(q[i])^2) +",
+    "sum(i in 0..256, q[i])^4",
+    "sum(i in 0..20000, 1/(i + 1))",
+    "sum(j in 0..i,",
+    "let a = x;",
+    "let b = a * (x + 7) + sin(a);",
+    "let c[i in 0..N] = b * b[i];",
+    "const N = 64;",
+    "const u = 1e-30;",
+    "* (x + sin(x))",
+    "^2^2^2^2^2",
+    "/3^100000",
+    "1e999999999",
+    "1_000_000",
+    "check { x = 1; h = 0.1; }",
     "(",
     "(",
     "[",

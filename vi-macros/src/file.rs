@@ -21,7 +21,7 @@ fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
     quote! {
         #expansion
         #error
-        const _: ::core::option::Option<&str> = ::core::option_env!("VI_EXPAND_DIR");
+        const _: ::core::option::Option<&::core::primitive::str> = ::core::option_env!("VI_EXPAND_DIR");
     }
 }
 
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn cargo_builds_again_when_the_variable_changes() {
         let line = quote!(
-            const _: ::core::option::Option<&str> = ::core::option_env!("VI_EXPAND_DIR");
+            const _: ::core::option::Option<&::core::primitive::str> = ::core::option_env!("VI_EXPAND_DIR");
         )
         .to_string();
         assert!(expansion(SYSTEM, None).ends_with(&line));

@@ -1,6 +1,6 @@
 //! Banded matrices, eliminated inside the band.
 
-use super::Matrix;
+use super::{Matrix, is_kept};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -19,19 +19,15 @@ impl<const N: usize, const D: usize, T: Real> Banded<N, D, T> {
     fn factors(mut self) -> Self {
         let (w, rows, mut kept) = (Self::WIDTH, &mut self.rows, true);
         for i in 0..N {
-            let row = rows[i][w..].iter().fold(T::zero(), |sum, entry| sum + entry.abs());
             // The last unknown passes on to all others.
-            let mut reciprocal = rows[i][w].recip();
-            kept &= (row * reciprocal.abs()).is_at_most(T::real(super::GROWTH));
-            if i + 1 == N && !kept {
-                reciprocal = T::real(f64::NAN);
-            }
+            let reciprocal = if i + 1 == N && !kept { T::real(f64::NAN) } else { rows[i][w].recip() };
             rows[i][w] = reciprocal;
             let pivot_row = rows[i];
             for below in 1..=w.min(N - 1 - i) {
                 let row = &mut rows[i + below];
                 let factor = row[w - below] * reciprocal;
                 row[w - below] = factor;
+                kept &= is_kept(row[w], factor * pivot_row[w + below]);
                 for k in 1..=w {
                     let eliminated = factor * pivot_row[w + k];
                     row[w - below + k] -= eliminated;

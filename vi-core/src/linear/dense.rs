@@ -1,7 +1,7 @@
-//! Dense matrices: closed forms without a branch up to N = 3, elimination with partial pivoting beyond. N is a constant, so
-//! that one of these is left in the program.
+//! Dense matrices: closed forms without a branch up to N = 3, elimination beyond. N is a constant, so that one of these is left in
+//! the program.
 
-use super::Matrix;
+use super::{Matrix, is_kept};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -23,9 +23,11 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
         let (mut x, determinant) = self.quotient(rhs);
         if N <= 3 {
             let reciprocal = determinant.recip();
+            // Not a number where the determinant overflowed, or is too small to hold all its digits.
+            let lost = determinant * reciprocal * T::zero();
             for column in 0..M {
                 for row in 0..N {
-                    x[(row, column)] *= reciprocal;
+                    x[(row, column)] = x[(row, column)] * reciprocal + lost;
                 }
             }
         }
@@ -33,7 +35,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     }
 
     fn inverse(&self) -> Self {
-        self.solve(&Self::identity())
+        eliminate(*self, Self::identity())
     }
 
     #[inline(always)]
@@ -69,11 +71,11 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
     b: &SMatrix<T, N, M>,
 ) -> (SMatrix<T, N, M>, T) {
     let mut cofactors = [[T::zero(); 3]; 3];
-    for i in 0..3 {
-        for j in 0..3 {
+    for (i, row) in cofactors.iter_mut().enumerate() {
+        for (j, cofactor) in row.iter_mut().enumerate() {
             // Cyclic indices carry the sign of the cofactor.
             let (i1, i2, j1, j2) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
-            cofactors[i][j] = a[(i1, j1)] * a[(i2, j2)] - a[(i1, j2)] * a[(i2, j1)];
+            *cofactor = a[(i1, j1)] * a[(i2, j2)] - a[(i1, j2)] * a[(i2, j1)];
         }
     }
     let mut x = *b;
@@ -87,39 +89,72 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
     (x, a[(0, 0)] * c0 + a[(0, 1)] * c1 + a[(0, 2)] * c2)
 }
 
-/// Swaps the row with the largest entry of `column` onto the diagonal; which row, where it was another one.
-pub(super) fn pivot<T: Real, const N: usize>(a: &mut SMatrix<T, N, N>, column: usize) -> Option<usize> {
-    let mut pivot = column;
-    for row in column + 1..N {
-        if a[(row, column)].abs().to_f64() > a[(pivot, column)].abs().to_f64() {
-            pivot = row;
-        }
-    }
-    a.swap_rows(column, pivot);
-    (pivot != column).then_some(pivot)
+/// Gaussian elimination in the order of the rows; with pivoting where digits would be lost.
+pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
+    a: SMatrix<T, N, N>,
+    b: SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
+    in_order(a, b).unwrap_or_else(|| pivoted(a, b))
 }
 
-/// Gaussian elimination with partial pivoting and back substitution.
-pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
+/// `None` where a pivot is lost.
+fn in_order<T: Real, const N: usize, const M: usize>(
+    mut a: SMatrix<T, N, N>,
+    mut b: SMatrix<T, N, M>,
+) -> Option<SMatrix<T, N, M>> {
+    let mut kept = true;
+    for column in 0..N {
+        for row in column + 1..N {
+            let eliminated = a[(row, column)] / a[(column, column)] * a[(column, row)];
+            kept &= is_kept(a[(row, row)], eliminated);
+        }
+        eliminate_column(&mut a, &mut b, column);
+    }
+    kept.then(|| substitute(&a, b))
+}
+
+/// With partial pivoting of rows that are made comparable.
+#[cold]
+pub(super) fn pivoted<T: Real, const N: usize, const M: usize>(
     mut a: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, M>,
 ) -> SMatrix<T, N, M> {
+    let mut weights = weights(&a);
     for column in 0..N {
-        if let Some(row) = pivot(&mut a, column) {
+        if let Some(row) = pivot(&mut a, &mut weights, column) {
             b.swap_rows(column, row);
         }
-        for row in column + 1..N {
-            let factor = a[(row, column)] / a[(column, column)];
-            for k in column + 1..N {
-                let eliminated = factor * a[(column, k)];
-                a[(row, k)] -= eliminated;
-            }
-            for k in 0..M {
-                let eliminated = factor * b[(column, k)];
-                b[(row, k)] -= eliminated;
-            }
+        eliminate_column(&mut a, &mut b, column);
+    }
+    substitute(&a, b)
+}
+
+/// Subtracts multiples of the pivot's row from those below it.
+#[inline]
+fn eliminate_column<T: Real, const N: usize, const M: usize>(
+    a: &mut SMatrix<T, N, N>,
+    b: &mut SMatrix<T, N, M>,
+    column: usize,
+) {
+    for row in column + 1..N {
+        let factor = a[(row, column)] / a[(column, column)];
+        for k in column + 1..N {
+            let eliminated = factor * a[(column, k)];
+            a[(row, k)] -= eliminated;
+        }
+        for k in 0..M {
+            let eliminated = factor * b[(column, k)];
+            b[(row, k)] -= eliminated;
         }
     }
+}
+
+/// Back substitution in what is above the diagonal.
+#[inline]
+fn substitute<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    mut b: SMatrix<T, N, M>,
+) -> SMatrix<T, N, M> {
     for row in (0..N).rev() {
         for k in 0..M {
             let known = (row + 1..N).fold(T::zero(), |sum, column| sum + a[(row, column)] * b[(column, k)]);
@@ -127,4 +162,45 @@ pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
         }
     }
     b
+}
+
+/// Rounds of scaling, each of which takes the square root of how far a row or column is from its length: ratios of 10⁴⁰ become ratios
+/// of 1.5.
+const ROUNDS: usize = 8;
+
+/// What rows are multiplied by to be comparable, whatever the units of rows and columns are: with columns multiplied likewise, the
+/// largest entry of each row and of each column is about 1 (D. Ruiz, A scaling algorithm to equilibrate both rows and columns norms
+/// in matrices, 2001).
+pub(super) fn weights<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> [f64; N] {
+    let (mut rows, mut columns) = ([1.0_f64; N], [1.0_f64; N]);
+    for _ in 0..ROUNDS {
+        let (mut row_lengths, mut column_lengths) = ([0.0_f64; N], [0.0_f64; N]);
+        for i in 0..N {
+            for j in 0..N {
+                let entry = a[(i, j)].abs().to_f64() * rows[i] * columns[j];
+                row_lengths[i] = row_lengths[i].max(entry);
+                column_lengths[j] = column_lengths[j].max(entry);
+            }
+        }
+        let lengths = row_lengths.into_iter().chain(column_lengths);
+        for (scale, length) in rows.iter_mut().chain(&mut columns).zip(lengths) {
+            if length > 0.0 && length.is_finite() {
+                *scale /= length.sqrt();
+            }
+        }
+    }
+    rows
+}
+
+/// Swaps the row with the largest entry of `column`, in comparable rows, onto the diagonal; which row, where it was another one.
+pub(super) fn pivot<T: Real, const N: usize>(
+    a: &mut SMatrix<T, N, N>,
+    weights: &mut [f64; N],
+    column: usize,
+) -> Option<usize> {
+    let size = |row: usize| a[(row, column)].abs().to_f64() * weights[row];
+    let pivot = (column + 1..N).fold(column, |pivot, row| if size(row) > size(pivot) { row } else { pivot });
+    a.swap_rows(column, pivot);
+    weights.swap(column, pivot);
+    (pivot != column).then_some(pivot)
 }

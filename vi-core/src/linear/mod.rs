@@ -5,14 +5,15 @@
 //!
 //! | form | A | by |
 //! |---|---|---|
-//! | `SMatrix` | dense | closed form for N ≤ 3; else elimination with partial pivoting |
-//! | [`Symmetric`] | dense and symmetric, N ≥ 4 | `L D Lᵀ`; where a pivot is not positive, elimination with pivoting |
+//! | `SMatrix` | dense | closed form for N ≤ 3; else elimination, with pivoting where digits would be lost |
+//! | [`Symmetric`] | dense and symmetric, N ≥ 4 | `L D Lᵀ`; where a pivot is not positive, elimination as of dense ones |
 //! | [`Tridiagonal`] | neighbours only | elimination of two rows at a time, from both ends at once |
 //! | [`Banded`] | up to a few places from the diagonal | elimination inside the band |
 //! | [`Blocks`] | blocks that do not touch each other | each block for itself |
 //!
-//! [`Tridiagonal`] and [`Banded`] eliminate without pivoting. Their matrices are mass matrices plus terms of order h: where
-//! a pivot is lost nevertheless, the solution is not a number, and [`solve`] solves the dense matrix instead.
+//! The matrices are mass matrices plus terms of order h: elimination in the order of the rows is stable for almost all of them,
+//! in whatever units their rows and columns are. Where a pivot is lost nevertheless, the solution by [`Tridiagonal`] and [`Banded`]
+//! is not a number, nor is that in closed form where the determinant leaves the range of the numbers; [`solve`] then pivots.
 
 mod banded;
 mod blocks;
@@ -58,24 +59,23 @@ pub fn solve<T: Real, const N: usize, const M: usize>(
     rhs: &SMatrix<T, N, M>,
 ) -> Option<SMatrix<T, N, M>> {
     let solution = matrix.solve(rhs);
-    if is_finite(&solution) { Some(solution) } else { pivoted(&matrix.dense(), rhs) }
-}
-
-#[cold]
-fn pivoted<T: Real, const N: usize, const M: usize>(
-    matrix: &SMatrix<T, N, N>,
-    rhs: &SMatrix<T, N, M>,
-) -> Option<SMatrix<T, N, M>> {
-    Some(Matrix::solve(matrix, rhs)).filter(is_finite)
+    if is_finite(&solution) { Some(solution) } else { Some(dense::pivoted(matrix.dense(), *rhs)).filter(is_finite) }
 }
 
 fn is_finite<T: Real, const N: usize, const M: usize>(solution: &SMatrix<T, N, M>) -> bool {
     solution.iter().all(|entry| entry.is_finite())
 }
 
-/// How many times a pivot may be smaller than its row, or the determinant of two rows than the product of both: so many of its
-/// roundings are lost.
+/// How many times what an elimination takes from an entry of the diagonal may be larger than that entry, or the products in a
+/// determinant larger than the determinant: so many roundings are lost. Both are ratios that no units of rows and columns change,
+/// and that stay below 1 in a positive definite matrix.
 const GROWTH: f64 = 1024.0;
+
+/// Whether an entry of the diagonal keeps its digits when `eliminated` is taken from it.
+#[inline(always)]
+fn is_kept<T: Real>(entry: T, eliminated: T) -> bool {
+    eliminated.abs().is_at_most(entry.abs() * T::real(GROWTH))
+}
 
 /// The acceleration a with `mass · a = applied`, as generated code asks for it.
 ///
@@ -94,9 +94,10 @@ pub fn acceleration<T: Real, const N: usize>(
 #[must_use]
 pub fn determinant_sign<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> i8 {
     let mut a = *matrix;
+    let mut weights = dense::weights(&a);
     let mut sign = 1;
     for column in 0..N {
-        if dense::pivot(&mut a, column).is_some() {
+        if dense::pivot(&mut a, &mut weights, column).is_some() {
             sign = -sign;
         }
         match a[(column, column)].to_f64() {

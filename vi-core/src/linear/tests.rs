@@ -1,6 +1,8 @@
-//! Dense matrices by their defect, and the sign of the determinant; the other forms in `forms`.
+//! Dense matrices by their defect, and the sign of the determinant; the other forms in `forms`, units of rows and columns in
+//! `units`.
 
 mod forms;
+mod units;
 
 use super::{determinant_sign, solve};
 use nalgebra::{SMatrix, SVector};

@@ -11,7 +11,7 @@
 //!
 //! and mirrored from below. One row or two in the middle close the elimination.
 
-use super::{GROWTH, Matrix};
+use super::{GROWTH, Matrix, is_kept};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -74,27 +74,25 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
         if FROM_ABOVE { [self.lower[row], self.upper[row]] } else { [self.upper[row], self.lower[row]] }
     }
 
-    /// Sums of the absolute values of each row.
-    #[inline(always)]
-    fn lengths(&self) -> [T; N] {
-        core::array::from_fn(|i| self.lower[i].abs() + self.diagonal[i].abs() + self.upper[i].abs())
-    }
-
-    /// The pivot of the next two rows, [d, ρ], and their weights.
+    /// The pivot of the next two rows, [d, ρ], and their weights; and whether digits are kept.
     #[inline(always)]
     fn pivot<const FROM_ABOVE: bool, const M: usize>(
         &self,
         [i, j]: [usize; 2],
         front: &mut Front<M, T>,
-    ) -> ([T; 2], [T; 2]) {
+    ) -> ([T; 2], [T; 2], bool) {
         let ([before, after], [back, beyond]) = (self.beside::<FROM_ABOVE>(i), self.beside::<FROM_ABOVE>(j));
         let ([near, far], product) = ([self.diagonal[i], self.diagonal[j]], before * front.beyond);
-        let first = near - product * front.corner;
+        let (straight, across, eliminated) = (near * far, after * back, product * front.corner);
+        let first = near - eliminated;
         // Of the corner at once, which is waited for.
-        let reciprocal = ((near * far - after * back) - far * product * front.corner).recip();
+        let reciprocal = ((straight - across) - far * product * front.corner).recip();
+        // Two rows that are nearly one lose digits, too.
+        let ratio = (straight.abs() + across.abs()) * reciprocal.abs();
+        let kept = is_kept(near, eliminated) & ratio.is_at_most(T::real(GROWTH));
         (front.beyond, front.corner) = (beyond, first * reciprocal);
         let weight = beyond * reciprocal;
-        ([first, reciprocal], [after * weight, -(first * weight)])
+        ([first, reciprocal], [after * weight, -(first * weight)], kept)
     }
 
     /// The y of the next two rows.
@@ -118,38 +116,41 @@ impl<const N: usize, T: Real> Tridiagonal<N, T> {
     /// The matrix eliminated, and right-hand sides on the way: they wait for less than the pivots do.
     #[inline]
     fn eliminate<const M: usize>(&self, x: &mut SMatrix<T, N, M>) -> ([T; N], [T; N]) {
-        let (lengths, mut pivots, mut weights) = (self.lengths(), [T::zero(); N], [T::zero(); N]);
-        let (mut above, mut below, mut kept) = (Front::start(), Front::start(), true);
-        let mut enter = |[i, j]: [usize; 2], pivot: [T; 2], [near, far]: [T; 2]| {
+        let (mut pivots, mut weights) = ([T::zero(); N], [T::zero(); N]);
+        let (mut above, mut below, mut all_kept) = (Front::start(), Front::start(), true);
+        let mut enter = |[i, j]: [usize; 2], pivot: [T; 2], [near, far]: [T; 2], kept: bool| {
             [pivots[i], pivots[j]] = pivot;
             (weights[i], weights[j]) = (near, far);
-            // Two rows that are nearly one lose digits.
-            kept &= (lengths[i] * lengths[j] * pivot[1].abs()).is_at_most(T::real(GROWTH));
+            all_kept &= kept;
         };
         for step in 0..Self::BELOW {
             if step < Self::ABOVE {
                 let rows = Self::rows::<true>(step);
-                let (pivot, weight) = self.pivot::<true, M>(rows, &mut above);
-                enter(rows, pivot, weight);
+                let (pivot, weight, kept) = self.pivot::<true, M>(rows, &mut above);
+                enter(rows, pivot, weight, kept);
                 self.forward::<true, M>(rows, pivot, &mut above, x);
             }
             let rows = Self::rows::<false>(step);
-            let (pivot, weight) = self.pivot::<false, M>(rows, &mut below);
-            enter(rows, pivot, weight);
+            let (pivot, weight, kept) = self.pivot::<false, M>(rows, &mut below);
+            enter(rows, pivot, weight, kept);
             self.forward::<false, M>(rows, pivot, &mut below, x);
         }
         let [first, last] = Self::MIDDLE;
-        let mut pivot = self.diagonal[first] - self.lower[first] * above.beyond * above.corner;
+        let eliminated = self.lower[first] * above.beyond * above.corner;
+        let mut kept = is_kept(self.diagonal[first], eliminated);
+        let mut pivot = self.diagonal[first] - eliminated;
         if first < last {
             pivots[first] = pivot.recip();
             weights[first] = -(self.upper[first] * pivots[first]);
-            kept &= (lengths[first] * pivots[first].abs()).is_at_most(T::real(GROWTH));
-            pivot = self.diagonal[last] + self.lower[last] * weights[first];
+            let eliminated = self.lower[last] * weights[first];
+            kept &= is_kept(self.diagonal[last], eliminated);
+            pivot = self.diagonal[last] + eliminated;
         }
-        pivots[last] = (pivot - self.upper[last] * below.beyond * below.corner).recip();
-        kept &= (lengths[last] * pivots[last].abs()).is_at_most(T::real(GROWTH));
+        let eliminated = self.upper[last] * below.beyond * below.corner;
+        kept &= is_kept(self.diagonal[last], eliminated);
+        pivots[last] = (pivot - eliminated).recip();
         // Everything passes through the middle.
-        if !kept {
+        if !(kept && all_kept) {
             pivots[last] = T::real(f64::NAN);
         }
         (pivots, weights)

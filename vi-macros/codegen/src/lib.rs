@@ -22,11 +22,11 @@ pub mod symbol;
 pub mod syntax;
 
 use discrete::DiscreteSystem;
+use emit::Broken;
 use found::Findings;
 use model::{Model, check};
 use proc_macro2::TokenStream;
 use program::Program;
-use quote::quote;
 use syntax::parse;
 
 /// A system with all that was derived from it.
@@ -47,17 +47,14 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
     let system = match parse::system(tokens.clone()) {
         Ok(system) => system,
         Err(error) => {
-            let (errors, stub) = (error.into_compile_error(), parse::outline(tokens).map(|system| emit::stub(&system)));
-            return quote! { #errors #stub };
+            let outline = parse::outline(tokens);
+            return outline.map_or_else(|| error.to_compile_error(), |system| Broken::of(&system).with(&error));
         }
     };
-    let stub = emit::stub(&system);
+    let broken = Broken::of(&system);
     match derive(system) {
         Ok(derived) => items(&derived),
-        Err(error) => {
-            let errors = error.into_compile_error();
-            quote! { #errors #stub }
-        }
+        Err(error) => broken.with(&error),
     }
 }
 

@@ -4,6 +4,7 @@
 //! A stage collects its errors in [`Errors`] and reports them all before the next stage starts.
 
 use proc_macro2::Span;
+use vi_expr::TooLarge;
 
 /// A mistake in the input. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]
@@ -13,6 +14,12 @@ pub enum Message {
     Duplicate { name: String },
     /// A name that the language keeps for itself.
     Reserved { name: String },
+    /// A name of the struct that the emitted code uses for something else.
+    ReservedType { name: String },
+    /// A trait that every system has.
+    SecondDerive { name: String },
+    /// An attribute that does nothing where it stands.
+    AttributeOfClause,
     /// A name that is not declared (or not yet).
     Unknown { name: String, near: Option<String> },
     /// A function that the language does not have.
@@ -107,8 +114,14 @@ pub enum Message {
     CoefficientRange,
     /// Parentheses nested too deep.
     TooDeep { limit: usize },
-    /// An expression that grew over the limit.
-    TooLarge { limit: usize },
+    /// A system of too many tokens.
+    TooLong { limit: usize },
+    /// A name of too many letters.
+    LongName { limit: usize },
+    /// More coordinates than a system may have.
+    TooManyCoordinates { limit: usize },
+    /// A system that grew over a limit.
+    TooLarge(TooLarge),
     /// Text after the system.
     AfterSystem,
     /// A mistake of this compiler, found by checking its own output.
@@ -125,7 +138,9 @@ impl Message {
     pub fn what(&self) -> String {
         match self {
             Self::Duplicate { name } => format!("the name `{name}` is declared twice"),
-            Self::Reserved { name } => format!("the name `{name}` is reserved"),
+            Self::Reserved { name } | Self::ReservedType { name } => format!("the name `{name}` is reserved"),
+            Self::SecondDerive { name } => format!("every system implements `{name}`"),
+            Self::AttributeOfClause => "this attribute has no meaning here".to_owned(),
             Self::Unknown { name, .. } => format!("unknown name `{name}`"),
             Self::UnknownFunction { name, .. } => format!("unknown function `{name}`"),
             Self::Arity { name, takes, given } => format!("`{name}` takes {takes} argument(s), not {given}"),
@@ -173,7 +188,11 @@ impl Message {
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
             Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
-            Self::TooLarge { limit } => format!("the system grows over {limit} terms"),
+            Self::TooLong { limit } => format!("the system is longer than {limit} tokens"),
+            Self::LongName { limit } => format!("this name is longer than {limit} letters"),
+            Self::TooManyCoordinates { limit } => format!("the system has more than {limit} coordinates"),
+            Self::TooLarge(TooLarge::Terms { limit }) => format!("the system grows over {limit} terms"),
+            Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
             Self::Internal { what } => format!("internal error: the operations of `{what}` do not compute its formula"),
         }
@@ -189,6 +208,12 @@ impl Message {
                 "L" | "f" => format!("`{name}` stands for the Lagrangian or the force; choose another name"),
                 _ => "choose another name".to_owned(),
             },
+            Self::ReservedType { .. } => "generated code uses this type; choose another name".to_owned(),
+            Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
+            Self::AttributeOfClause => {
+                "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`"
+                    .to_owned()
+            }
             Self::Unknown { near, .. } => {
                 did_you_mean(near.as_ref(), "declare it above with `param`, `const`, `coord` or `let`")
             }
@@ -211,6 +236,7 @@ impl Message {
             Self::NoValue => "look for a division by zero, a root or logarithm of a negative number".to_owned(),
             Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
+            Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
             Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),
             Self::BackwardRange { .. } => "write the smaller bound first; the second one is not included".to_owned(),
             Self::NotArray { name } => format!("write `{name}` without an index"),
@@ -264,7 +290,11 @@ impl Message {
             Self::NumberRange => "choose other units".to_owned(),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
-            Self::TooLarge { .. } => "use fewer coordinates or a simpler Lagrangian".to_owned(),
+            Self::TooLong { .. } => "write what repeats with arrays and `sum`".to_owned(),
+            Self::LongName { .. } => "choose a shorter one".to_owned(),
+            Self::TooLarge(_) | Self::TooManyCoordinates { .. } => {
+                "use fewer coordinates or a simpler Lagrangian".to_owned()
+            }
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
             Self::Internal { .. } => "please report this system".to_owned(),
         }

@@ -15,14 +15,17 @@ pub fn text(items: TokenStream) -> syn::Result<String> {
     Ok(spaced(&prettyplease::unparse(&syn::parse2(items)?)))
 }
 
-/// The text with an empty line after each item, of the file and of an `impl`, but for the last.
+/// The text with an empty line after each item, of the file, of the scope of the implementations and of an `impl`, but for the last.
 fn spaced(text: &str) -> String {
     let mut spaced = String::new();
     let mut last = "";
     for line in text.lines() {
         let indent = |line: &str| line.len() - line.trim_start().len();
-        let ends = matches!(last, "}" | "    }") || (last.ends_with(';') && line.trim_start().starts_with("///"));
-        if ends && indent(line) == indent(last) && indent(line) <= 4 && line.trim() != "}" {
+        let uses = |line: &str| line.trim_start().starts_with("use ");
+        let ends = matches!(last.trim_start(), "}" | "};")
+            || (last.ends_with(';') && line.trim_start().starts_with("///"))
+            || (uses(last) && !uses(line));
+        if ends && indent(line) == indent(last) && indent(line) <= 8 && line.trim() != "}" {
             spaced.push('\n');
         }
         spaced.extend([line, "\n"]);

@@ -164,7 +164,15 @@ fn arrays() {
     case(&system("let e = sum(i in 0«.».=2, i);"), "expected `..` and the end");
     case(&system("let e = sum(i in 0..2 «i»);"), "expected `,` and what is summed");
     case(&system("let e = «sum»;"), "`sum` is a function");
-    case(&system("let e = sum(i in 0..1000000000, «1»);"), "the system grows over 50000 terms");
+    case(&system("let e = sum(i in 0..1000000000, «1»);"), "the system grows over 75000 terms");
+    case(
+        &system("let e[i in 5..6] = 0; let g = e[«-»9223372036854775807];"),
+        "`e[-9223372036854775807]` is out of range 5..6",
+    );
+    case(
+        &system("let e[i in 3..3] = 0; let g = e[«3»];"),
+        "`e[3]` is out of range 3..3\nhelp: this array has no entries",
+    );
     case(&system("force «q» = 1;"), "`q` is an array");
     case(&system("force «x»[0] = 1;"), "`x` is not an array");
     case(&system("force q[«4»] = 1;"), "`q[4]` is out of range 0..4");
@@ -315,6 +323,119 @@ fn delimiters_around_a_clause_are_bounded_too() {
             assert!(found[0].1.starts_with("this expression is nested deeper than 100 levels"), "{found:?}");
         }
     }
+}
+
+#[test]
+fn names_and_attributes_of_a_struct() {
+    let said = |text: &str| errors(text);
+    for name in ["T", "W", "f64", "bool", "str", "usize"] {
+        let found = said(&format!("struct {name} {{ {REST} }}"));
+        let wanted = format!("the name `{name}` is reserved\nhelp: generated code uses this type; choose another name");
+        assert_eq!(found, [(name.to_owned(), wanted)]);
+    }
+    // Reserved words of one edition or another.
+    assert!(said(&format!("struct gen {{ {REST} }}"))[0].1.starts_with("the name `gen` is reserved"));
+    assert!(said(&format!("struct r#match {{ {REST} }}"))[0].1.starts_with("the name `r#match` is reserved"));
+    case("coord «gen»; L = dot(gen)^2; discretize midpoint;", "the name `gen` is reserved\nhelp: choose another name");
+    case(&format!("param «r#gen» = 1; {REST}"), "the name `r#gen` is reserved");
+
+    for derived in ["Clone", "Copy", "Debug", "Default", "PartialEq"] {
+        let found = said(&format!("#[derive(PartialOrd, core::any::{derived})] struct System {{ {REST} }}"));
+        let wanted =
+            format!("every system implements `{derived}`\nhelp: remove `{derived}`; other traits may be derived");
+        assert_eq!(found, [(derived.to_owned(), wanted)]);
+    }
+    for attributes in
+        ["#[derive(PartialOrd, Eq)] #[derive(Hash)]", "#[cfg(test)] #[allow(x)] #[doc = \"x\"]", "/// x\n"]
+    {
+        assert_eq!(
+            said(&format!(
+                "{attributes} struct System {{ #[doc(alias = \"a\")] #[allow(b)] param a = 1; coord x; L = a * dot(x)^2; discretize midpoint; }}"
+            )),
+            []
+        );
+    }
+}
+
+#[test]
+fn attributes_of_clauses() {
+    for clause in
+        ["const a = 1;", "coord y;", "let a = 1;", "force x = 1;", "dissipation = dot(x)^2;", "check { h = 1; }"]
+    {
+        case(
+            &format!("«#»[cfg(test)] {clause} {REST}"),
+            "this attribute has no meaning here\nhelp: before a clause stand",
+        );
+        case(&format!("/// Words.\n «#»[allow(x)] {clause} {REST}"), "this attribute has no meaning here");
+    }
+    for attribute in ["cfg(test)", "cfg_attr(test, doc = \"\")", "derive(Clone)"] {
+        case(&format!("«#»[{attribute}] param a = 1; {REST}"), "this attribute has no meaning here");
+    }
+    assert_eq!(
+        errors(&format!("struct System {{ /// Words.\n coord y; {} }}", REST.replace("L =", "L = dot(y)^2 +"))),
+        []
+    );
+}
+
+/// A system that is not there needs no sense; what it becomes is not there either.
+#[test]
+fn conditions_hold_for_all_items() {
+    for body in [
+        REST,
+        "coord x; L = y; discretize midpoint;",
+        "nonsense",
+        "coord x; L = dot(x)^2; discretize midpoint; check { h = 1; }",
+    ] {
+        let tokens = format!("#[cfg(a)] #[derive(Eq)] #[cfg(b)] struct System {{ {body} }}").parse().expect("tokens");
+        let file: syn::File = syn::parse2(vi_codegen::expand(tokens)).expect("Rust");
+        assert!(file.items.len() >= 2);
+        for item in file.items {
+            let attributes = match item {
+                syn::Item::Struct(item) => item.attrs,
+                syn::Item::Const(item) => item.attrs,
+                syn::Item::Mod(item) => item.attrs,
+                _ => panic!("another item of {body}"),
+            };
+            assert!(attributes.iter().filter(|attribute| attribute.path().is_ident("cfg")).count() >= 2, "{body}");
+        }
+    }
+}
+
+#[test]
+fn tokens_names_and_coordinates_are_bounded() {
+    let long = format!("«{}»", "x".repeat(201));
+    case(&format!("coord {long}; L = 1; discretize midpoint;"), "this name is longer than 200 letters\nhelp: choose");
+    case(&format!("coord x; L = dot(x)^2 * {long}; discretize midpoint;"), "this name is longer than 200 letters");
+    let many = format!("struct System {{ coord x; L = dot(x)^2{}; discretize midpoint; }}", " + x".repeat(100_000));
+    let found = errors(&many);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].1.starts_with("the system is longer than 200000 tokens\nhelp: write what repeats"), "{found:?}");
+    let names = |count: usize| (0..count).map(|i| format!("x{i}")).collect::<Vec<_>>();
+    let squares = names(300).iter().map(|name| format!("dot({name})^2")).collect::<Vec<_>>().join(" + ");
+    let coordinates = names(300).join(", ").replace("x256", "«x256»");
+    case(
+        &format!("coord {coordinates}; L = {squares}; discretize midpoint;"),
+        "the system has more than 256 coordinates\nhelp: use fewer coordinates",
+    );
+}
+
+#[test]
+fn numbers_of_any_length_are_read() {
+    let rest = "coord x; discretize midpoint; L = dot(x)^2 +";
+    for number in ["1".repeat(100_000), format!("0x{}", "f".repeat(100_000)), format!("1{}", "_".repeat(100_000))] {
+        let found = errors(&format!("struct System {{ {rest} {number} * x; }}"));
+        assert_eq!(found.len(), 1);
+        let wanted = if number.starts_with("0x") { "not a decimal number" } else { "this number is outside the range" };
+        assert!(found[0].1.starts_with(wanted), "{}", found[0].1);
+    }
+    for number in ["1e999999999", "1e-999999999", "1e99999999999999999999999", "1e-310", "1e309"] {
+        case(&format!("{rest} «{number}» * x;"), "this number is outside the range of `f64`");
+    }
+    case(&format!("{rest} «1_000kg» * x;"), "the number `1000` runs into `kg`");
+    case(&format!("{rest} «1.5e3kg» * x;"), "the number `1.5e3` runs into `kg`");
+    case(&format!("{rest} «0b11» * x;"), "not a decimal number\nhelp: write integers and decimals");
+    case(&format!("{rest} «'c'» * x;"), "not a decimal number");
+    assert_eq!(errors(&format!("struct System {{ {rest} 1_0.5_0e-1_0 * x^2; }}")), []);
 }
 
 #[test]

@@ -14,14 +14,15 @@ use std::hash::Hash;
 use num_bigint::BigInt;
 use num_traits::One;
 
+use crate::effort::MADE;
 use crate::{Expr, Function, Node, Pool, Rational, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
     /// Derivative of `expr`, where the closure gives that of each symbol (asked once per symbol): 1 for the variable and 0 for
     /// the others gives a partial derivative, the rates of all symbols give a total one.
     pub fn derivative(&mut self, expr: Expr, symbol_derivative: &mut dyn FnMut(&mut Self, &S) -> Expr) -> Expr {
-        if self.is_undefined(expr) {
-            return expr;
+        if self.is_undefined(expr) || self.is_exhausted() {
+            return Expr::UNDEFINED;
         }
         // Only derivatives other than 0.
         let mut derivatives = Table::default();
@@ -47,6 +48,10 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let mut terms = Vec::new();
         for (place, (base, exponent)) in factors.iter().enumerate() {
             let Some(derivative) = derivatives.get(*base) else { continue };
+            self.spend(MADE * factors.len());
+            if self.is_exhausted() {
+                return Expr::UNDEFINED;
+            }
             let mut powers = factors.to_vec();
             if let Some((_, lowered)) = powers.get_mut(place) {
                 *lowered -= Rational::one();

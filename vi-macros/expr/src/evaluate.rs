@@ -7,6 +7,7 @@ use std::hash::Hash;
 
 use num_traits::ToPrimitive;
 
+use crate::effort::EVALUATED;
 use crate::{Expr, Node, Pool, Rational, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
@@ -20,14 +21,15 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     #[must_use]
     pub fn evaluate_all(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<f64> {
         let mut known = Table::default();
-        for expr in self.reachable(exprs) {
+        for expr in self.visited(exprs, EVALUATED) {
             let value = self.node_value(expr, &known, values);
             known.insert(expr, value);
         }
         exprs.iter().map(|expr| value_of(&known, *expr)).collect()
     }
 
-    fn node_value(&self, expr: Expr, known: &Table<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
+    /// Value of an expression whose operands have known values.
+    pub fn node_value(&self, expr: Expr, known: &Table<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
         if self.is_undefined(expr) {
             return f64::NAN;
         }
@@ -59,7 +61,7 @@ fn float(number: &Rational) -> f64 {
 }
 
 /// Integer powers by multiplication, square roots by `sqrt`, the others by `powf`.
-fn raise(base: f64, exponent: &Rational) -> f64 {
+pub(crate) fn raise(base: f64, exponent: &Rational) -> f64 {
     match (exponent.numer().to_i32(), exponent.denom().to_u32()) {
         (Some(power), Some(1)) => base.powi(power),
         (Some(power), Some(2)) => base.sqrt().powi(power),

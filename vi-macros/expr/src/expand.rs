@@ -4,12 +4,11 @@
 //! that polynomials in symbols, functions and roots cancel exactly. Sums in denominators and arguments are expanded in
 //! themselves and stay factors. The work is bounded: an expansion over the limit is an error, never a hang.
 
-use std::fmt;
 use std::hash::Hash;
 
 use num_traits::{One, Signed, ToPrimitive};
 
-use crate::{Expr, Node, Pool, Rational, Table, number};
+use crate::{Expr, Node, Pool, Rational, Table, TooLarge, number};
 
 /// Most terms that one expansion may write.
 const LIMIT: usize = 50_000;
@@ -17,27 +16,12 @@ const LIMIT: usize = 50_000;
 /// So many bits of a coefficient count as one more term.
 const BITS_OF_A_TERM: usize = 16;
 
-/// The expansion would write more terms than the limit.
-#[derive(Copy, Clone, PartialEq, Eq, Debug)]
-pub struct TooLarge {
-    /// The number of terms that one call of [`Pool::expand`] may write, intermediate ones included; long coefficients count as several.
-    pub limit: usize,
-}
-
-impl fmt::Display for TooLarge {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "multiplying the expression out takes more than {} terms", self.limit)
-    }
-}
-
-impl std::error::Error for TooLarge {}
-
 /// Terms that may still be written.
 struct Budget(usize);
 
 impl Budget {
     fn spend(&mut self, terms: usize) -> Result<(), TooLarge> {
-        self.0 = self.0.checked_sub(terms).ok_or(TooLarge { limit: LIMIT })?;
+        self.0 = self.0.checked_sub(terms).ok_or(TooLarge::Terms { limit: LIMIT })?;
         Ok(())
     }
 }
@@ -46,13 +30,14 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// `expr` multiplied out.
     ///
     /// # Errors
-    /// [`TooLarge`] if more than 50 000 terms would have to be written on the way.
+    /// [`TooLarge::Terms`] if more than 50 000 terms would have to be written on the way, [`TooLarge::Work`] if the pool is exhausted.
     pub fn expand(&mut self, expr: Expr) -> Result<Expr, TooLarge> {
         let mut budget = Budget(LIMIT);
         let mut current = expr;
         // Roots that meet in a product of terms can free a new sum: (1 + c*(a + b)^(1/2))^2. Then once more.
         loop {
             let next = self.expand_once(current, &mut budget)?;
+            self.within_work()?;
             if next == current {
                 return Ok(current);
             }

@@ -52,10 +52,11 @@ impl<S: Eq> PartialEq for Node<S> {
 
 impl<S: Eq> Eq for Node<S> {}
 
-/// Long numbers are few: those with the same sign count as one.
+/// Of long numbers their last digits.
 fn hash_number(number: &Rational, state: &mut impl Hasher) {
     for part in [number.numer(), number.denom()] {
-        state.write_u64(part.to_i64().map_or(u64::MAX, i64::cast_unsigned));
+        let short = part.to_i64().map(i64::cast_unsigned);
+        state.write_u64(short.or_else(|| part.iter_u64_digits().next()).unwrap_or(u64::MAX));
     }
 }
 

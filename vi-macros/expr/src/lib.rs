@@ -30,15 +30,17 @@
 //! |---|---|
 //! | `node`, `identity`, `function`, `pool` | what an expression is, and where it lives |
 //! | `table` | values by index |
+//! | `effort` | work, counted and bounded |
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand` | new expressions from old |
-//! | `evaluate`, `render` | values and text |
+//! | `evaluate`, `rounding`, `render` | values, values with their errors, text |
 //!
 //! No pass recurses: children are older than parents, so each is a loop in the order of creation.
 
 mod call;
 mod derivative;
+mod effort;
 mod evaluate;
 mod expand;
 mod function;
@@ -48,6 +50,7 @@ mod number;
 mod pool;
 mod product;
 mod render;
+mod rounding;
 mod substitute;
 mod sum;
 mod table;
@@ -55,9 +58,10 @@ mod table;
 /// Values, each once, numbered as they came and found by hash: a search among ordered values compares with a dozen of them, here it
 /// is one or two, which shows in a macro, built without optimisation. The hasher has no seed.
 pub type Distinct<T> = indexmap::IndexSet<T, core::hash::BuildHasherDefault<rustc_hash::FxHasher>>;
-pub use expand::TooLarge;
+pub use effort::TooLarge;
 pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};
 pub use pool::Pool;
 pub use render::MAX_CHARACTERS;
+pub use rounding::Rounded;
 pub use table::{Index, Table};

@@ -99,6 +99,15 @@ impl<S> Node<S> {
         }
     }
 
+    /// How many operands there are.
+    pub(crate) fn operands(&self) -> usize {
+        match self {
+            Self::Number(_) | Self::Pi | Self::Symbol(_) => 0,
+            Self::Sum(Sum { terms: parts, .. }) | Self::Product(Product { factors: parts }) => parts.len(),
+            Self::Call(_, arguments) => arguments.len(),
+        }
+    }
+
     /// Whether one of the operands is so.
     pub(crate) fn any_child(&self, is: impl Fn(Expr) -> bool) -> bool {
         let mut any = false;

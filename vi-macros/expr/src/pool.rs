@@ -4,6 +4,7 @@
 //! AFTER THIS a node never changes, and its children have smaller handles than itself, so that every pass is a loop over
 //! [`Pool::reachable`] in ascending order and no depth of nesting exhausts the stack.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::hash::Hash;
 use std::sync::Arc;
@@ -11,12 +12,16 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
+use crate::effort::{KEPT, MADE};
 use crate::{Distinct, Expr, Node, Product, Rational};
 
 /// Owner of expressions over symbols of type `S`.
 #[derive(Clone, Debug)]
 pub struct Pool<S> {
     nodes: Distinct<Arc<Node<S>>>,
+    /// Work that may be done, and what is left of it.
+    pub(crate) limit: usize,
+    pub(crate) left: Cell<usize>,
 }
 
 impl<S: Clone + Eq + Hash> Default for Pool<S> {
@@ -26,10 +31,10 @@ impl<S: Clone + Eq + Hash> Default for Pool<S> {
 }
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Pool with the three expressions that every pool has: 0, 1 and the undefined one.
+    /// Pool with the three expressions that every pool has: 0, 1 and the undefined one. Its work is not bounded.
     #[must_use]
     pub fn new() -> Self {
-        let mut pool = Self { nodes: Distinct::default() };
+        let mut pool = Self { nodes: Distinct::default(), limit: usize::MAX, left: Cell::new(usize::MAX) };
         pool.intern(Node::Number(Rational::zero()));
         pool.intern(Node::Number(Rational::one()));
         pool.intern(Node::Product(Product { factors: vec![(Expr::ZERO, -Rational::one())] }));
@@ -116,12 +121,23 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// All nodes at and below the given expressions, each once, children before parents.
     #[must_use]
     pub fn reachable(&self, exprs: &[Expr]) -> Vec<Expr> {
+        self.visited(exprs, 1)
+    }
+
+    /// The same for a pass that takes so much work for each operand.
+    pub(crate) fn visited(&self, exprs: &[Expr], work: usize) -> Vec<Expr> {
+        if self.is_exhausted() {
+            return Vec::new();
+        }
         let mut open = Open::new(exprs);
-        let mut found = Vec::new();
+        let (mut found, mut operands) = (Vec::new(), 1);
         while let Some(expr) = open.take_newest() {
             found.push(expr);
-            self.node(expr).each_child(|child| open.insert(child));
+            let node = self.node(expr);
+            operands += 1 + node.operands();
+            node.each_child(|child| open.insert(child));
         }
+        self.spend(work * operands);
         found.reverse();
         found
     }
@@ -132,7 +148,16 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     where
         S: Ord,
     {
-        self.reachable(&[expr]).into_iter().filter_map(|expr| self.as_symbol(expr)).cloned().collect()
+        self.symbols_of(&[expr])
+    }
+
+    /// The symbols in some expressions.
+    #[must_use]
+    pub fn symbols_of(&self, exprs: &[Expr]) -> BTreeSet<S>
+    where
+        S: Ord,
+    {
+        self.reachable(exprs).into_iter().filter_map(|expr| self.as_symbol(expr)).cloned().collect()
     }
 
     /// Whether a symbol of the kind is in the expression.
@@ -157,21 +182,34 @@ impl<S: Clone + Eq + Hash> Pool<S> {
 
     /// Handle of a node that is already canonical.
     pub(crate) fn intern(&mut self, node: Node<S>) -> Expr {
-        Expr(self.nodes.get_index_of(&node).unwrap_or_else(|| self.nodes.insert_full(Arc::new(node)).0))
+        let operands = 1 + node.operands();
+        self.spend(MADE * operands);
+        if self.is_exhausted() {
+            return Expr::UNDEFINED;
+        }
+        if let Some(known) = self.nodes.get_index_of(&node) {
+            return Expr(known);
+        }
+        self.spend(KEPT * operands);
+        Expr(self.nodes.insert_full(Arc::new(node)).0)
     }
 }
 
-/// Expressions that are still to be visited, the newest first: one bit for each, so that neither a search nor a sort is needed.
+/// Expressions that are still to be visited, the newest first: one bit for each, and one for each word of these, so that neither a
+/// search nor a sort is needed, and a few expressions of a large pool are found as fast as those of a small one.
 struct Open {
     words: Vec<u64>,
-    /// No bit is set in the words from here on.
+    /// Which words have a bit.
+    filled: Vec<u64>,
+    /// No bit is set in what is filled from here on.
     end: usize,
 }
 
 impl Open {
     fn new(exprs: &[Expr]) -> Self {
-        let end = exprs.iter().max().map_or(0, |newest| newest.0 / 64 + 1);
-        let mut open = Self { words: vec![0; end], end };
+        let words = exprs.iter().max().map_or(0, |newest| newest.0 / 64 + 1);
+        let end = words.div_ceil(64);
+        let mut open = Self { words: vec![0; words], filled: vec![0; end], end };
         for expr in exprs {
             open.insert(*expr);
         }
@@ -180,17 +218,25 @@ impl Open {
 
     /// Adds an expression that is not newer than the first ones.
     fn insert(&mut self, expr: Expr) {
-        self.words[expr.0 / 64] |= 1 << (expr.0 % 64);
+        let word = expr.0 / 64;
+        self.words[word] |= 1 << (expr.0 % 64);
+        self.filled[word / 64] |= 1 << (word % 64);
     }
 
     fn take_newest(&mut self) -> Option<Expr> {
         while self.end > 0 {
-            let word = &mut self.words[self.end - 1];
+            let filled = &mut self.filled[self.end - 1];
+            let Some(last) = filled.checked_ilog2() else {
+                self.end -= 1;
+                continue;
+            };
+            let place = 64 * (self.end - 1) + last as usize;
+            let word = &mut self.words[place];
             if let Some(bit) = word.checked_ilog2() {
                 *word ^= 1 << bit;
-                return Some(Expr(64 * (self.end - 1) + bit as usize));
+                return Some(Expr(64 * place + bit as usize));
             }
-            self.end -= 1;
+            *filled ^= 1 << last;
         }
         None
     }

@@ -10,21 +10,13 @@
 //! Exponents are added without a look at the domain: `x·x^-1 = 1`.
 //! AFTER THIS the coefficient is outside (see [`crate::Sum`]) and the factors obey [`Product`].
 
-use std::collections::BTreeMap;
 use std::hash::Hash;
 
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
+use crate::effort::MADE;
 use crate::number::{self, Power};
 use crate::{Expr, Node, Pool, Product, Rational};
-
-/// A product under construction.
-struct Factors {
-    coefficient: Rational,
-    powers: BTreeMap<Expr, Rational>,
-    /// Powers that are not yet in the product.
-    open: Vec<(Expr, Rational)>,
-}
 
 /// What a single power is.
 enum Reduction {
@@ -66,34 +58,40 @@ impl<S: Clone + Eq + Hash> Pool<S> {
 
     /// `Π base^exponent`.
     pub(crate) fn powers(&mut self, factors: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
-        let open: Vec<_> = factors.into_iter().collect();
-        if open.iter().any(|(base, _)| self.is_undefined(*base)) {
+        let mut factors: Vec<_> = factors.into_iter().collect();
+        let has_no_value = |(base, exponent): &(Expr, Rational)| {
+            self.is_undefined(*base) || *base == Expr::ZERO && exponent.is_negative()
+        };
+        if factors.iter().any(has_no_value) {
             return Expr::UNDEFINED;
         }
-        let mut product = Factors { coefficient: Rational::one(), powers: BTreeMap::new(), open };
-        while let Some((base, mut exponent)) = product.open.pop() {
-            if let Some(present) = product.powers.remove(&base) {
-                exponent = number::sum(&exponent, &present);
+        let (mut coefficient, mut canonical) = (Rational::one(), false);
+        while !canonical {
+            self.spend(MADE * factors.len());
+            if self.is_exhausted() {
+                return Expr::UNDEFINED;
             }
-            if exponent.is_zero() {
-                continue;
-            }
-            match self.reduce(base, &exponent, &product.coefficient) {
-                Reduction::Canonical => {
-                    product.powers.insert(base, exponent);
+            canonical = true;
+            let mut reduced = Vec::with_capacity(factors.len());
+            for (base, exponent) in gathered(factors) {
+                match self.reduce(base, &exponent, &coefficient) {
+                    Reduction::Canonical => reduced.push((base, exponent)),
+                    Reduction::Parts(number, parts) => {
+                        coefficient = number::product(&coefficient, &number);
+                        self.spend_on(&coefficient);
+                        reduced.extend(parts);
+                        canonical = false;
+                    }
+                    Reduction::Undefined => return Expr::UNDEFINED,
                 }
-                Reduction::Parts(coefficient, parts) => {
-                    product.coefficient = number::product(&product.coefficient, &coefficient);
-                    product.open.extend(parts);
-                }
-                Reduction::Undefined => return Expr::UNDEFINED,
             }
+            factors = reduced;
         }
-        if product.coefficient.is_zero() {
+        if coefficient.is_zero() {
             return Expr::ZERO;
         }
-        let body = self.intern_product(product.powers.into_iter().collect());
-        self.scale(body, &product.coefficient)
+        let body = self.intern_product(factors);
+        self.scale(body, &coefficient)
     }
 
     /// One power apart, numbers folded as long as they fit beside `coefficient`.
@@ -144,6 +142,20 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             _ => self.intern(Node::Product(Product { factors })),
         }
     }
+}
+
+/// Equal bases as one, in ascending order, without those to the power 0.
+fn gathered(mut factors: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
+    factors.sort_by_key(|(base, _)| *base);
+    let mut gathered: Vec<(Expr, Rational)> = Vec::with_capacity(factors.len());
+    for (base, exponent) in factors {
+        match gathered.last_mut() {
+            Some((last, sum)) if *last == base => *sum = number::sum(sum, &exponent),
+            _ => gathered.push((base, exponent)),
+        }
+    }
+    gathered.retain(|(_, exponent)| !exponent.is_zero());
+    gathered
 }
 
 /// Whether two numbers may be multiplied; a zero or a one always may.

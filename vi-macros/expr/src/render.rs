@@ -1,7 +1,7 @@
 //! Plain text.
 //!
 //! In: an expression and a name for each symbol. Out: text as a person writes it, `m*v^2/2 - k*x^2/2`, with no parentheses
-//! that are not needed, subtraction and division as such, and `sqrt`. At most [`MAX_CHARACTERS`], then `…`: the text of a
+//! that are not needed, subtraction and division as such, and `sqrt`. At most [`MAX_CHARACTERS`], or fewer, then `…`: the text of a
 //! shared expression can be exponentially longer than the expression.
 
 use std::hash::Hash;
@@ -35,6 +35,12 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// The expression as text.
     #[must_use]
     pub fn render(&self, expr: Expr, name: &dyn Fn(&S) -> String) -> String {
+        self.render_within(MAX_CHARACTERS, expr, name)
+    }
+
+    /// The expression as text of at most so many characters, then `…`.
+    #[must_use]
+    pub fn render_within(&self, limit: usize, expr: Expr, name: &dyn Fn(&S) -> String) -> String {
         let mut text = String::new();
         let mut characters = 0;
         let mut open = vec![Piece::Inside(expr, Binding::Sum)];
@@ -53,7 +59,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 }
             };
             for character in written.chars() {
-                if characters == MAX_CHARACTERS {
+                if characters == limit {
                     text.push('…');
                     return text;
                 }

@@ -11,6 +11,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// `expr` with each symbol replaced by what the closure gives (asked once per symbol); nothing keeps the symbol.
     /// Replacements are not substituted into again.
     pub fn substitute(&mut self, expr: Expr, map: &mut dyn FnMut(&mut Self, &S) -> Option<Expr>) -> Expr {
+        if self.is_exhausted() {
+            return Expr::UNDEFINED;
+        }
         // Only nodes that change.
         let mut changed: Table<Expr, Expr> = Table::default();
         for node in self.reachable(&[expr]) {

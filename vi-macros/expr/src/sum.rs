@@ -8,6 +8,7 @@ use std::hash::Hash;
 
 use num_traits::{One, Zero};
 
+use crate::effort::MADE;
 use crate::{Expr, Node, Pool, Rational, Sum, number};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
@@ -43,7 +44,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     }
 
     /// `Σ coefficient·term`, undefined if a term is, whatever its coefficient.
-    pub(crate) fn combination(&mut self, parts: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
+    pub fn combination(&mut self, parts: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
         let mut constant = Rational::zero();
         let mut terms = Vec::new();
         for (expr, coefficient) in parts {
@@ -54,17 +55,28 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 continue;
             }
             match self.node(expr) {
-                Node::Number(value) => constant = number::sum(&constant, &number::product(&coefficient, value)),
+                Node::Number(value) => {
+                    constant = number::sum(&constant, &number::product(&coefficient, value));
+                    self.spend_on(&constant);
+                }
                 Node::Sum(sum) => {
                     constant = number::sum(&constant, &number::product(&coefficient, &sum.constant));
+                    self.spend_on(&constant);
                     for (term, inner) in &sum.terms {
-                        terms.push((*term, number::product(&coefficient, inner)));
+                        let product = number::product(&coefficient, inner);
+                        self.spend_on(&product);
+                        terms.push((*term, product));
                     }
                 }
                 _ => terms.push((expr, coefficient)),
             }
+            if self.is_exhausted() {
+                return Expr::UNDEFINED;
+            }
         }
-        self.intern_sum(constant, collected(terms))
+        self.spend(MADE * terms.len());
+        let terms = self.collected(terms);
+        self.intern_sum(constant, terms)
     }
 
     fn intern_sum(&mut self, constant: Rational, terms: Vec<(Expr, Rational)>) -> Expr {
@@ -74,18 +86,24 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             _ => self.intern(Node::Sum(Sum { constant, terms })),
         }
     }
-}
 
-/// Equal terms as one, in ascending order.
-fn collected(mut terms: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
-    terms.sort_by_key(|(term, _)| *term);
-    let mut collected: Vec<(Expr, Rational)> = Vec::with_capacity(terms.len());
-    for (term, coefficient) in terms {
-        match collected.last_mut() {
-            Some((last, sum)) if *last == term => *sum = number::sum(sum, &coefficient),
-            _ => collected.push((term, coefficient)),
+    /// Equal terms as one, in ascending order.
+    fn collected(&self, mut terms: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
+        terms.sort_by_key(|(term, _)| *term);
+        let mut collected: Vec<(Expr, Rational)> = Vec::with_capacity(terms.len());
+        for (term, coefficient) in terms {
+            match collected.last_mut() {
+                Some((last, sum)) if *last == term => {
+                    *sum = number::sum(sum, &coefficient);
+                    self.spend_on(sum);
+                }
+                _ => collected.push((term, coefficient)),
+            }
+            if self.is_exhausted() {
+                break;
+            }
         }
+        collected.retain(|(_, coefficient)| !coefficient.is_zero());
+        collected
     }
-    collected.retain(|(_, coefficient)| !coefficient.is_zero());
-    collected
 }

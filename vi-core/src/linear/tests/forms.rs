@@ -8,14 +8,14 @@ use nalgebra::{SMatrix, SVector};
 const MATRICES: usize = 20;
 
 /// The next entry of a fixed sequence in [−1, 1) that looks random.
-fn next(seed: &mut u32) -> f64 {
+pub(super) fn next(seed: &mut u32) -> f64 {
     *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     f64::from(*seed >> 8) / f64::from(1_u32 << 23) - 1.0
 }
 
 /// M + h² K: masses of 1 to 2, and entries of either sign beside the diagonal that it outweighs in each row; symmetric, it
 /// is positive definite.
-fn dominant<const N: usize>(
+pub(super) fn dominant<const N: usize>(
     seed: &mut u32,
     symmetric: bool,
     touching: impl Fn(usize, usize) -> bool,
@@ -30,7 +30,7 @@ fn dominant<const N: usize>(
     a
 }
 
-fn tridiagonal<const N: usize>(a: &SMatrix<f64, N, N>) -> Tridiagonal<N, f64> {
+pub(super) fn tridiagonal<const N: usize>(a: &SMatrix<f64, N, N>) -> Tridiagonal<N, f64> {
     let at = |i: usize, j: usize| a.get((i, j)).copied().unwrap_or(0.0);
     Tridiagonal {
         lower: core::array::from_fn(|i| at(i, i.wrapping_sub(1))),
@@ -39,12 +39,12 @@ fn tridiagonal<const N: usize>(a: &SMatrix<f64, N, N>) -> Tridiagonal<N, f64> {
     }
 }
 
-fn banded<const N: usize, const D: usize>(a: &SMatrix<f64, N, N>) -> Banded<N, D, f64> {
+pub(super) fn banded<const N: usize, const D: usize>(a: &SMatrix<f64, N, N>) -> Banded<N, D, f64> {
     let at = |i: usize, place: usize| a.get((i, (i + place).wrapping_sub(D / 2))).copied().unwrap_or(0.0);
     Banded { rows: core::array::from_fn(|i| core::array::from_fn(|place| at(i, place))) }
 }
 
-fn blocks<const N: usize, const B: usize>(
+pub(super) fn blocks<const N: usize, const B: usize>(
     a: &SMatrix<f64, N, N>,
     members: &'static [&'static [usize]],
 ) -> Blocks<N, B, f64> {

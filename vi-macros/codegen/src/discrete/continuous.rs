@@ -10,7 +10,7 @@
 
 use super::{Fields, bounded};
 use crate::model::Model;
-use crate::symbol::{Quantity, Symbol, Variable};
+use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
 
 /// Expressions in time, coordinates, velocities and parameters; the density in accelerations too.
@@ -41,38 +41,56 @@ pub struct Continuous {
 /// Derives the continuous functions.
 pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model) -> Result<Continuous, TooLarge> {
     let dimension = model.dimension();
-    let mut l = |pool: &mut Pool<Symbol>, by: &[Variable]| fields.partial(pool, Quantity::Lagrangian, by.to_vec());
     let coordinate = Variable::Coordinate;
     let velocity = Variable::Velocity;
-    let momentum: Vec<Expr> = (0..dimension).map(|i| l(pool, &[velocity(i)])).collect();
+    let zero = pool.zero();
+    let momentum: Vec<Expr> = (0..dimension).map(|i| fields.lagrangian(pool, &[velocity(i)])).collect();
     let mut mass = Vec::with_capacity(dimension);
     let mut mass_times_acceleration = Vec::with_capacity(dimension);
     let mut density = Vec::new();
     for i in 0..dimension {
         bounded(pool)?;
-        mass.push((0..dimension).map(|j| l(pool, &[velocity(i), velocity(j)])).collect());
-        let (lq, lvt) = (l(pool, &[coordinate(i)]), l(pool, &[velocity(i), Variable::Time]));
+        // Most second derivatives of a long chain are zero, and not looked for.
+        let by_velocity = fields.variables(pool, velocity(i));
+        let mut row = vec![zero; dimension];
+        for j in (0..dimension).filter(|j| by_velocity.contains(&velocity(*j))) {
+            row[j] = fields.lagrangian(pool, &[velocity(i), velocity(j)]);
+        }
+        mass.push(row);
+        let (lq, lvt) =
+            (fields.lagrangian(pool, &[coordinate(i)]), fields.lagrangian(pool, &[velocity(i), Variable::Time]));
         let applied = pool.add(lq, model.forces[i]);
         let mut inertial = vec![lvt];
-        let mut along = vec![l(pool, &[coordinate(i), Variable::Time])];
+        let mut along = vec![fields.lagrangian(pool, &[coordinate(i), Variable::Time])];
+        let by_coordinate = fields.variables(pool, coordinate(i));
         for j in 0..dimension {
             let (v, a) = (moving(pool, j), pool.symbol(Symbol::Acceleration(j)));
-            let (lvq, lqq) = (l(pool, &[velocity(i), coordinate(j)]), l(pool, &[coordinate(i), coordinate(j)]));
-            let lqv = l(pool, &[coordinate(i), velocity(j)]);
-            inertial.push(pool.mul(lvq, v));
-            along.push(pool.mul(lqq, v));
-            along.push(pool.mul(lqv, a));
+            if by_velocity.contains(&coordinate(j)) {
+                let lvq = fields.lagrangian(pool, &[velocity(i), coordinate(j)]);
+                inertial.push(pool.mul(lvq, v));
+            }
+            if by_coordinate.contains(&coordinate(j)) {
+                let lqq = fields.lagrangian(pool, &[coordinate(i), coordinate(j)]);
+                along.push(pool.mul(lqq, v));
+            }
+            if by_coordinate.contains(&velocity(j)) {
+                let lqv = fields.lagrangian(pool, &[coordinate(i), velocity(j)]);
+                along.push(pool.mul(lqv, a));
+            }
         }
         let (inertial, along) = (pool.sum(&inertial), pool.sum(&along));
         mass_times_acceleration.push(pool.sub(applied, inertial));
         let (v, a) = (moving(pool, i), pool.symbol(Symbol::Acceleration(i)));
-        let (ltq, ltv) = (l(pool, &[Variable::Time, coordinate(i)]), l(pool, &[Variable::Time, velocity(i)]));
+        let (ltq, ltv) = (
+            fields.lagrangian(pool, &[Variable::Time, coordinate(i)]),
+            fields.lagrangian(pool, &[Variable::Time, velocity(i)]),
+        );
         for (sign, left, right) in [(1, a, applied), (-1, v, along), (-1, v, ltq), (-1, a, ltv)] {
             let product = pool.mul(left, right);
             density.push(if sign > 0 { product } else { pool.neg(product) });
         }
     }
-    let ltt = l(pool, &[Variable::Time, Variable::Time]);
+    let ltt = fields.lagrangian(pool, &[Variable::Time, Variable::Time]);
     density.push(pool.neg(ltt));
     let (forced_time, autonomous) = dependence(pool, model);
     Ok(Continuous {

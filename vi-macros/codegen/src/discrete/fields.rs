@@ -16,6 +16,9 @@ use crate::symbol::{Field, Quantity, Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::{Distinct, Expr, Pool};
 
+/// Work of looking up a partial derivative.
+const LOOKED_UP: usize = 8;
+
 /// Partial derivatives of L and f in `(t, q, v)`.
 pub struct Fields {
     /// What is defined: the quantity, and by what it is differentiated, in ascending order.
@@ -27,16 +30,59 @@ pub struct Fields {
 /// A partial derivative, and what it depends on but parameters.
 struct Definition {
     expr: Expr,
-    variables: BTreeSet<Variable>,
+    variables: Variables,
 }
 
 impl Definition {
     fn new(pool: &Pool<Symbol>, expr: Expr) -> Self {
-        let variable = |symbol| match symbol {
-            Symbol::Continuous(variable) => Some(variable),
-            _ => None,
+        let mut variables = Variables::default();
+        for symbol in pool.reachable(&[expr]).into_iter().filter_map(|expr| pool.as_symbol(expr)) {
+            if let Symbol::Continuous(variable) = symbol {
+                variables.insert(variable);
+            }
+        }
+        Self { expr, variables }
+    }
+}
+
+/// A set of variables, one bit for each: a dense system has as many sets as pairs of coordinates.
+#[derive(Clone, Default)]
+pub(super) struct Variables(Vec<u64>);
+
+impl Variables {
+    /// The word and the bit of a variable.
+    fn place(variable: &Variable) -> (usize, u64) {
+        let number = match variable {
+            Variable::Time => 0,
+            Variable::Coordinate(index) => 2 * index + 1,
+            Variable::Velocity(index) => 2 * index + 2,
         };
-        Self { expr, variables: pool.symbols(expr).into_iter().filter_map(variable).collect() }
+        (number / 64, 1 << (number % 64))
+    }
+
+    fn insert(&mut self, variable: &Variable) {
+        let (word, bit) = Self::place(variable);
+        if word >= self.0.len() {
+            self.0.resize(word + 1, 0);
+        }
+        self.0[word] |= bit;
+    }
+
+    pub(super) fn contains(&self, variable: &Variable) -> bool {
+        let (word, bit) = Self::place(variable);
+        self.0.get(word).is_some_and(|word| word & bit != 0)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn extend(&mut self, others: &Self) {
+        let length = self.0.len().max(others.0.len());
+        self.0.resize(length, 0);
+        for (word, other) in self.0.iter_mut().zip(&others.0) {
+            *word |= other;
+        }
     }
 }
 
@@ -56,19 +102,21 @@ impl Fields {
         fields
     }
 
-    /// A partial derivative of L or f in `(t, q, v)`: `derivatives` in any order.
-    pub(super) fn partial(
-        &mut self,
-        pool: &mut Pool<Symbol>,
-        quantity: Quantity,
-        mut derivatives: Vec<Variable>,
-    ) -> Expr {
+    /// A partial derivative of L in `(t, q, v)`, by these variables in any order.
+    pub(super) fn lagrangian(&mut self, pool: &mut Pool<Symbol>, by: &[Variable]) -> Expr {
+        let mut derivatives = by.to_vec();
         derivatives.sort_unstable();
-        self.defined(pool, quantity, &derivatives).expr
+        self.defined(pool, Quantity::Lagrangian, &derivatives).expr
+    }
+
+    /// On what a first partial derivative of L depends, but parameters.
+    pub(super) fn variables(&mut self, pool: &mut Pool<Symbol>, by: Variable) -> Variables {
+        self.defined(pool, Quantity::Lagrangian, &[by]).variables.clone()
     }
 
     /// A partial derivative, kept from the first time on unless it is trivially zero: `derivatives` ascend.
     fn defined(&mut self, pool: &mut Pool<Symbol>, quantity: Quantity, derivatives: &[Variable]) -> &Definition {
+        pool.spend(LOOKED_UP);
         let key = (quantity, derivatives.to_vec());
         if let Some(place) = self.known.get_index_of(&key) {
             return &self.definitions[place];
@@ -104,11 +152,17 @@ impl Fields {
         if value.variables.is_empty() { value.expr } else { pool.symbol(Symbol::Field(field)) }
     }
 
-    /// Whether a symbol changes with the points; others change by themselves only.
-    pub(super) fn moves(&self, symbol: &Symbol, changes: &Changes) -> bool {
-        let Symbol::Field(field) = symbol else { return false };
-        let moves = |of: &Definition| changes[field.point].iter().any(|(variable, _)| of.variables.contains(variable));
-        self.known(field).is_some_and(moves)
+    /// On what the fields among some symbols depend at each point.
+    pub(super) fn read(&self, symbols: &BTreeSet<Symbol>, points: usize) -> Vec<Variables> {
+        let mut read = vec![Variables::default(); points];
+        for symbol in symbols {
+            if let Symbol::Field(field) = symbol
+                && let Some(definition) = self.known(field)
+            {
+                read[field.point].extend(&definition.variables);
+            }
+        }
+        read
     }
 
     /// The fields of an expression that depend on parameters only, put in place.
@@ -148,21 +202,38 @@ impl Fields {
     }
 }
 
+/// The arguments of a point with the symbols in them: most of them know no coordinate but one.
+pub(super) struct Arguments(Vec<(Variable, Expr, BTreeSet<Symbol>)>);
+
+impl Arguments {
+    /// Those of each point.
+    pub(super) fn of(pool: &Pool<Symbol>, points: &[Point]) -> Vec<Self> {
+        let of_point = |point: &Point| {
+            let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
+            let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
+            let arguments = [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities);
+            Self(arguments.map(|(variable, argument)| (variable, argument, pool.symbols(argument))).collect())
+        };
+        points.iter().map(of_point).collect()
+    }
+}
+
 /// How the arguments of the points change with one variable, which changes symbols by `direct`.
 pub(super) fn changes(
     pool: &mut Pool<Symbol>,
-    points: &[Point],
+    arguments: &[Arguments],
     direct: &dyn Fn(&mut Pool<Symbol>, &Symbol) -> Expr,
 ) -> Changes {
-    points
+    arguments
         .iter()
-        .map(|point| {
-            let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
-            let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
-            let arguments: Vec<_> =
-                [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities).collect();
+        .map(|Arguments(arguments)| {
             let mut found = Vec::new();
-            for (variable, argument) in arguments {
+            for (variable, argument, symbols) in arguments {
+                let zero = pool.zero();
+                if symbols.iter().all(|symbol| direct(pool, symbol) == zero) {
+                    continue;
+                }
+                let (variable, argument) = (*variable, *argument);
                 let change = pool.derivative(argument, &mut |pool, symbol| direct(pool, symbol));
                 if !pool.is_zero(change) {
                     found.push((variable, change));

@@ -27,9 +27,13 @@ use vi_expr::{Expr, Pool, TooLarge};
 /// Distinct terms that the expressions of one system may have together, those of all stages.
 pub(crate) const NODES: usize = 75_000;
 
+/// Steps of algebra that one system may take, those of all stages: half a second, and 3 s in a build without optimisation.
+pub(crate) const WORK: usize = 40_000_000;
+
 /// Whether a system is still within its size.
 pub(crate) fn bounded(pool: &Pool<Symbol>) -> Result<(), TooLarge> {
-    if pool.len() > NODES { Err(TooLarge { limit: NODES }) } else { Ok(()) }
+    pool.within_work()?;
+    if pool.len() > NODES { Err(TooLarge::Terms { limit: NODES }) } else { Ok(()) }
 }
 
 /// The rules that have a name.

@@ -3,7 +3,7 @@
 //! In: a [`Rule`] as written. Out: an [`Evaluated`]. Values are numbers or vectors of N entries; `*` of two vectors is
 //! their dot product.
 
-use super::Point;
+use super::{Point, bounded};
 use crate::messages::{Errors, Message, error};
 use crate::symbol::{Field, Quantity, Symbol};
 use crate::syntax::{Expression, Kind, Operator, Rule};
@@ -105,6 +105,7 @@ impl Evaluation<'_> {
     }
 
     fn value(&mut self, written: &Expression) -> Result<Value> {
+        bounded(self.pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
         match &written.kind {
             Kind::Number(value) => Ok(Value::Number(self.pool.number(value.clone()))),
             Kind::Name(name) => self.name(name),

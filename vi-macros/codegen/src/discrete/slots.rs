@@ -8,7 +8,7 @@
 //! D2 L_d = (h/2) L_q − L_v           D4 L_d =  (h/2) L_q + L_v
 //! ```
 
-use super::fields::{Changes, changes};
+use super::fields::{Arguments, Changes, changes};
 use super::rule::Evaluated;
 use super::{Fields, Point, bounded};
 use crate::symbol::Symbol;
@@ -46,9 +46,10 @@ pub(super) fn slots(
     dimension: usize,
 ) -> Result<Slots, TooLarge> {
     let Evaluated { ld, fd: [fd_minus, fd_plus], gd: [gd_minus, gd_plus], points } = rule;
+    let arguments = Arguments::of(pool, &points);
     let mut by_slot = |pool: &mut Pool<Symbol>, slot: Symbol| {
         bounded(pool)?;
-        let changes = changes(pool, &points, &|pool, symbol| direct(pool, symbol, &slot));
+        let changes = changes(pool, &arguments, &|pool, symbol| direct(pool, symbol, &slot));
         let slope = derivative(pool, fields, ld, &slot, &changes);
         in_step(pool, slope)
     };

@@ -10,9 +10,9 @@
 //! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
 //! ```
 
-use super::fields::changes;
+use super::fields::{Arguments, Changes, Variables, changes};
 use super::{Fields, Point, Slots, bounded};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::{Expr, Pool, Rational, TooLarge};
 
@@ -58,15 +58,16 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
 
     let rows = residual.iter().chain([&energy]);
-    let rows = rows.map(|row| (*row, pool.symbols(*row))).collect::<Vec<_>>();
+    let rows = rows.map(|row| Row::new(pool, fields, *row, points.len())).collect::<Vec<_>>();
+    let arguments = Arguments::of(pool, &points);
     let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
-        let column = by_unknown(pool, fields, &points, &rows, &Symbol::StepVelocity(j))?;
+        let column = by_unknown(pool, fields, &arguments, &rows, &Symbol::StepVelocity(j))?;
         energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
         residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
     }
-    let column = by_unknown(pool, fields, &points, &rows, &Symbol::Step)?;
+    let column = by_unknown(pool, fields, &arguments, &rows, &Symbol::Step)?;
     let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
 
     Ok(Equations {
@@ -141,24 +142,47 @@ struct Column {
     energy: Expr,
 }
 
-/// The derivatives of the rows, those of momentum and then that of energy, each with the symbols in it.
+/// An equation, and what it knows: most of those of a long chain do not know most unknowns.
+struct Row {
+    expr: Expr,
+    symbols: BTreeSet<Symbol>,
+    /// Of the arguments of each point.
+    read: Vec<Variables>,
+}
+
+impl Row {
+    fn new(pool: &Pool<Symbol>, fields: &Fields, expr: Expr, points: usize) -> Self {
+        let symbols = pool.symbols(expr);
+        let read = fields.read(&symbols, points);
+        Self { expr, symbols, read }
+    }
+
+    /// Whether it changes with an unknown, by which the arguments change so.
+    fn varies(&self, unknown: &Symbol, changes: &Changes) -> bool {
+        let reads = |(changes, read): (&Vec<(Variable, Expr)>, &Variables)| {
+            changes.iter().any(|(variable, _)| read.contains(variable))
+        };
+        self.symbols.contains(unknown) || changes.iter().zip(&self.read).any(reads)
+    }
+}
+
+/// The derivatives of the rows, those of momentum and then that of energy.
 fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
-    points: &[Point],
-    rows: &[(Expr, BTreeSet<Symbol>)],
+    arguments: &[Arguments],
+    rows: &[Row],
     unknown: &Symbol,
 ) -> Result<Column, TooLarge> {
     bounded(pool)?;
     let direct = |pool: &mut Pool<Symbol>, symbol: &Symbol| {
         if symbol == unknown { pool.one() } else { pool.zero() }
     };
-    let changes = changes(pool, points, &direct);
+    let changes = changes(pool, arguments, &direct);
     let mut residual = Vec::with_capacity(rows.len());
-    for (row, symbols) in rows {
-        // Most rows of a long chain do not know most unknowns.
-        let varies = symbols.iter().any(|symbol| symbol == unknown || fields.moves(symbol, &changes));
-        let slope = if varies { fields.derivative(pool, *row, &direct, &changes) } else { pool.zero() };
+    for row in rows {
+        let varies = row.varies(unknown, &changes);
+        let slope = if varies { fields.derivative(pool, row.expr, &direct, &changes) } else { pool.zero() };
         residual.push(pool.expand(slope)?);
     }
     let energy = residual.pop().unwrap_or(pool.zero());

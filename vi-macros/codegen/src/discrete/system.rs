@@ -3,7 +3,7 @@
 //! In: a [`Model`]. Out: a [`DiscreteSystem`], or the message that a rule is written wrongly or the system too large.
 
 use super::rule::Evaluated;
-use super::{DiscreteSystem, Fields, RULES, Slots, continuous, named_rule, rule, slots, step};
+use super::{DiscreteSystem, Fields, RULES, Slots, bounded, continuous, named_rule, rule, slots, step};
 use crate::messages::{Message, error};
 use crate::model::Model;
 use crate::symbol::Symbol;
@@ -23,13 +23,15 @@ pub fn system(model: &mut Model) -> Result<DiscreteSystem> {
 
 fn derive(model: &Model, pool: &mut Pool<Symbol>) -> Result<DiscreteSystem> {
     let mut fields = Fields::new(pool, model);
-    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge { limit: found.limit });
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
     let evaluated = rule::evaluate(pool, &model.rule, model.dimension(), model.forced)?;
     let rule = known_rule(pool, model, &evaluated);
     let slots = slots::slots(pool, &mut fields, evaluated, model.dimension()).map_err(too_large)?;
+    bounded(pool).map_err(too_large)?;
     every_slot_acts(pool, model, &slots)?;
     let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;
+    bounded(pool).map_err(too_large)?;
     Ok(DiscreteSystem { rule, continuous, fields, slots, equations })
 }
 

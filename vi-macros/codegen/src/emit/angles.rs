@@ -5,7 +5,7 @@
 //! instructions: two angles take as long as one.
 
 use crate::program::{Function, Operation, OperationId};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
 
 /// Angles of one group: as many as the widest registers of a common processor hold, and no more in one place.
@@ -13,12 +13,16 @@ const TOGETHER: usize = 4;
 
 /// The groups of a function.
 #[derive(Default)]
-pub(super) struct Angles(Vec<Vec<OperationId>>);
+pub(super) struct Angles {
+    groups: Vec<Vec<OperationId>>,
+    /// The group of each angle that is in one.
+    of: BTreeMap<OperationId, usize>,
+}
 
 impl Angles {
     /// Of a function that needs these operations, operands before results.
     pub(super) fn of(function: &Function, needed: &[OperationId]) -> Self {
-        let (mut late, mut angles) = (BTreeSet::new(), Vec::new());
+        let (mut late, mut known, mut angles) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
         for id in needed {
             let operation = function.operations.get(*id);
             let waits = operation.operands().any(|operand| late.contains(&operand));
@@ -26,22 +30,25 @@ impl Angles {
                 Operation::Call(Elementary::Sin | Elementary::Cos, angle) => Some(*angle),
                 _ => None,
             };
-            angles.extend(angle.filter(|angle| !waits && !angles.contains(angle)));
+            angles.extend(angle.filter(|angle| !waits && known.insert(*angle)));
             if waits || angle.is_some() {
                 late.insert(*id);
             }
         }
-        Self(angles.chunks(TOGETHER).filter(|group| group.len() > 1).map(<[OperationId]>::to_vec).collect())
+        let groups: Vec<Vec<OperationId>> =
+            angles.chunks(TOGETHER).filter(|group| group.len() > 1).map(<[OperationId]>::to_vec).collect();
+        let of = groups.iter().zip(0..).flat_map(|(group, number)| group.iter().map(move |angle| (*angle, number)));
+        Self { of: of.collect(), groups }
     }
 
     /// The group of an angle; the angle alone where it is in none.
     pub(super) fn with(&self, angle: OperationId) -> Vec<OperationId> {
-        self.0.iter().find(|group| group.contains(&angle)).cloned().unwrap_or_else(|| vec![angle])
+        self.of.get(&angle).map_or_else(|| vec![angle], |group| self.groups[*group].clone())
     }
 
     /// The operations in an order in which all that a group is computed from comes before it.
     pub(super) fn first(&self, function: &Function, needed: Vec<OperationId>) -> Vec<OperationId> {
-        let mut open: Vec<OperationId> = self.0.iter().flatten().copied().collect();
+        let mut open: Vec<OperationId> = self.groups.iter().flatten().copied().collect();
         let mut early = BTreeSet::new();
         while let Some(id) = open.pop() {
             if early.insert(id) {

@@ -5,14 +5,13 @@
 
 use super::Source;
 use super::formula::number;
-use crate::model::Place;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
+use syn::Attribute;
 
-/// The implementation of `Checked`, and the tests of the clause `check`.
-pub(super) fn items(source: &Source) -> TokenStream {
+/// The implementation of `Checked`.
+pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
-    let tests = source.model.place.as_ref().map(|place| tests(source, place));
     quote! {
         impl ::vi_core::check::Checked<#dimension> for #name<f64> {
             type In<T: ::vi_core::Real> = #name<T>;
@@ -21,15 +20,16 @@ pub(super) fn items(source: &Source) -> TokenStream {
                 #name::from_f64(self)
             }
         }
-
-        #tests
     }
 }
 
+/// The tests of the clause `check`, in a module of their own:
+///
 /// ```text
 /// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … }
 /// ```
-fn tests(source: &Source, place: &Place) -> TokenStream {
+pub(super) fn tests(source: &Source, conditions: &[&Attribute]) -> Option<TokenStream> {
+    let place = source.model.place.as_ref()?;
     let (name, dimension) = (&source.model.name, source.dimension());
     let module = format_ident!("{}_checks", snake_case(name));
     let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
@@ -47,10 +47,11 @@ fn tests(source: &Source, place: &Place) -> TokenStream {
             }
         }
     });
-    quote! {
+    Some(quote! {
         #[doc = #documentation]
+        #(#conditions)*
         #[cfg(test)]
-        #[allow(clippy::all, clippy::pedantic)]
+        #[allow(clippy::all, clippy::pedantic, deprecated)]
         mod #module {
             fn place() -> ::vi_core::check::Place<#dimension> {
                 ::vi_core::check::Place { t: #t, q: [#(#q),*].into(), v: [#(#v),*].into(), h: #h }
@@ -58,7 +59,7 @@ fn tests(source: &Source, place: &Place) -> TokenStream {
 
             #(#tests)*
         }
-    }
+    })
 }
 
 /// The checks that apply, with the further argument that the order takes.

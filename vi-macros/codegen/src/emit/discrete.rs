@@ -23,7 +23,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
         number(source, "gd_plus", of.gd_plus),
     ];
     quote! {
-        #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
             #(#functions)*
         }

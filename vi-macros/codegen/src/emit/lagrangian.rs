@@ -31,7 +31,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
         non_finite(source),
     ];
     quote! {
-        #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;
             const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
@@ -52,21 +51,17 @@ pub(super) fn item(source: &Source) -> TokenStream {
 impl Source<'_> {
     /// `name = formula`, as the user's names spell it.
     pub(super) fn formula(&self, name: &str, expr: Expr) -> String {
-        let spelt = self.spelt(expr);
-        match spelt.char_indices().nth(CHARACTERS) {
-            Some((end, _)) => {
-                // Up to the last whole word.
-                let shown = &spelt[..end];
-                let words = shown.rsplit_once(' ').map_or(shown, |(words, _)| words);
-                format!("`{name} = {words} …`")
-            }
-            None => format!("`{name} = {spelt}`"),
-        }
+        format!("`{name} = {}`", self.spelt(expr))
     }
 
-    /// An expression in the user's names.
+    /// An expression in the user's names; of a long one the first words.
     fn spelt(&self, expr: Expr) -> String {
-        self.model.pool.render(expr, &|symbol: &Symbol| self.system.spell(self.model, symbol))
+        let name = |symbol: &Symbol| self.system.spell(self.model, symbol);
+        let text = self.model.pool.render_within(CHARACTERS, expr, &name);
+        match text.strip_suffix('…') {
+            Some(shown) => format!("{} …", shown.rsplit_once(' ').map_or(shown, |(words, _)| words)),
+            None => text,
+        }
     }
 
     /// One formula per coordinate.
@@ -182,7 +177,7 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
             v: &::vi_core::SVector<T, #dimension>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
             #inputs #statements
-            Ok(#result)
+            ::core::result::Result::Ok(#result)
         }
     }
 }

@@ -3,7 +3,7 @@
 //! In: a [`Model`], its [`DiscreteSystem`] and its
 //! [`Program`]. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
 //! One file per kind of item: the struct, the continuous system, the discrete one, the stepper, the
-//! checks.
+//! checks. All implementations stand in a scope of their own, in which no name of the surrounding code can get in their way.
 
 mod angles;
 mod body;
@@ -17,6 +17,7 @@ mod loops;
 mod matrix;
 mod names;
 mod pieces;
+mod scope;
 mod stepping;
 mod structure;
 
@@ -27,7 +28,7 @@ use crate::program::{Function, Program};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-pub use structure::stub;
+pub use structure::Broken;
 
 /// Everything that the items are printed from.
 struct Source<'a> {
@@ -51,13 +52,23 @@ pub fn items(
     limit: usize,
 ) -> TokenStream {
     let source = Source { model, system, program, findings, limit };
-    let structure = structure::items(&source);
+    let structure = structure::structure(&source);
+    let parameters = structure::parameters(&source);
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);
     let stepping = stepping::item(&source);
     let batch = structure::batch(&source);
-    let check = check::items(&source);
-    quote! { #structure #lagrangian #discrete #stepping #batch #check }
+    let checked = check::item(&source);
+    let implementations = quote!(#parameters #lagrangian #discrete #stepping #batch #checked);
+    let conditions: Vec<_> = conditions(&model.attributes).collect();
+    let scope = scope::scope(&conditions, &implementations);
+    let tests = check::tests(&source, &conditions);
+    quote! { #structure #scope #tests }
+}
+
+/// The conditions under which a struct is there, and all that belongs to it.
+pub(crate) fn conditions(attributes: &[syn::Attribute]) -> impl Iterator<Item = &syn::Attribute> {
+    attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
 }
 
 impl Source<'_> {

@@ -18,11 +18,9 @@ pub(super) struct Names<'a> {
     shared: usize,
 }
 
-/// Names that the printed code itself uses, and Rust's keywords that an identifier could be made into.
-const TAKEN: [&str; 15] = [
-    "real", "self", "system", "inputs", "values", "node", "interval", "mass", "applied", "entries", "T", "Some",
-    "None", "Ok", "Err",
-];
+/// Names that the printed code itself uses.
+const TAKEN: [&str; 11] =
+    ["real", "self", "system", "inputs", "values", "node", "interval", "mass", "applied", "entries", "T"];
 
 impl<'a> Names<'a> {
     /// Names for a function of a system whose rule has so many points.

@@ -33,7 +33,6 @@ pub(super) fn item(source: &Source) -> TokenStream {
         )
     });
     quote! {
-        #[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
         impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
             type Jacobian = #form;
             const CONSTANT_JACOBIAN: bool = #constant;

@@ -1,20 +1,18 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names.
 
-use super::Source;
 use super::formula::number;
+use super::{Source, conditions};
 use crate::syntax::{Kind, System};
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use std::collections::BTreeMap;
+use syn::Attribute;
 
-/// The struct, `Default`, `Parameters`, and the conversion to another kind of number.
-pub(super) fn items(source: &Source) -> TokenStream {
+/// The struct.
+pub(super) fn structure(source: &Source) -> TokenStream {
     let model = source.model;
     let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
-    let names: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
-    let texts = names.iter().map(ToString::to_string);
-    let defaults = model.parameters.iter().map(|parameter| number(parameter.default));
     let fields = model.parameters.iter().map(|parameter| {
         let (name, attributes) = (&parameter.name, &parameter.attributes);
         let default = format!(" Parameter `{name}`, {} by default.", parameter.default);
@@ -22,18 +20,35 @@ pub(super) fn items(source: &Source) -> TokenStream {
         quote!(#(#attributes)* #pause #[doc = #default] pub #name: T)
     });
     let found = found(source);
-    let arms = names.iter().zip(texts).map(|(name, text)| quote!(#text => Some(&mut self.#name)));
-    let (marker, marker_value) = marker(names.is_empty());
+    let (derived, (marker, _)) = (derived(), marker(model.parameters.is_empty()));
     quote! {
         #(#attributes)*
         #found
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #derived
         #[allow(non_snake_case)]
-        #visibility struct #name<T = f64> {
+        #visibility struct #name<T = ::core::primitive::f64> {
             #(#fields,)*
             #marker
         }
+    }
+}
 
+/// What every system derives.
+fn derived() -> TokenStream {
+    quote!(#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)])
+}
+
+/// `Default`, `Parameters`, and the conversion to another kind of number.
+pub(super) fn parameters(source: &Source) -> TokenStream {
+    let model = source.model;
+    let name = &model.name;
+    let names: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
+    let texts = names.iter().map(ToString::to_string);
+    let defaults = model.parameters.iter().map(|parameter| number(parameter.default));
+    let arms =
+        names.iter().zip(texts).map(|(name, text)| quote!(#text => ::core::option::Option::Some(&mut self.#name)));
+    let (_, marker_value) = marker(names.is_empty());
+    quote! {
         impl ::core::default::Default for #name<f64> {
             fn default() -> Self {
                 Self { #(#names: #defaults,)* #marker_value }
@@ -42,13 +57,11 @@ pub(super) fn items(source: &Source) -> TokenStream {
 
         impl<T: ::vi_core::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
-            #[allow(unused_variables)]
             pub fn from_f64(system: &#name<f64>) -> Self {
                 Self { #(#names: T::real(system.#names),)* #marker_value }
             }
 
             /// The same system in another kind of number, every parameter rounded to it.
-            #[allow(dead_code)]
             fn convert<U: ::vi_core::Real>(&self) -> #name<U> {
                 #name { #(#names: U::real(self.#names.to_f64()),)* #marker_value }
             }
@@ -58,7 +71,7 @@ pub(super) fn items(source: &Source) -> TokenStream {
             fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
                 match name {
                     #(#arms,)*
-                    _ => None,
+                    _ => ::core::option::Option::None,
                 }
             }
         }
@@ -71,7 +84,6 @@ pub(super) fn batch(source: &Source) -> TokenStream {
     let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
     let (_, marker_value) = marker(names.is_empty());
     quote! {
-        #[allow(clippy::all, clippy::pedantic, unused_variables)]
         impl ::vi_core::Batch<#dimension> for #name<f64> {
             type Rows<const W: usize> = #name<[f64; W]>;
             type In<T: ::vi_core::Real> = #name<T>;
@@ -103,10 +115,37 @@ fn pause(attributes: &[syn::Attribute]) -> Option<TokenStream> {
     attributes.iter().any(|attribute| attribute.path().is_ident("doc")).then(|| quote!(#[doc = ""]))
 }
 
-/// What is emitted beside the errors of a broken system, so that the code that uses it still type-checks: its struct, and,
-/// where the number of coordinates can be told, the traits without a body.
-#[must_use]
-pub fn stub(system: &System) -> TokenStream {
+/// What a broken system becomes.
+pub struct Broken {
+    conditions: Vec<Attribute>,
+    stub: TokenStream,
+}
+
+impl Broken {
+    /// What is left of a system: so that the code that uses it still type-checks, its struct, and, where the number of coordinates
+    /// can be told, the traits without a body.
+    #[must_use]
+    pub fn of(system: &System) -> Self {
+        Self { conditions: conditions(&system.attributes).cloned().collect(), stub: stub(system) }
+    }
+
+    /// The errors and what is left, where the system is there at all.
+    #[must_use]
+    pub fn with(&self, error: &syn::Error) -> TokenStream {
+        let Self { conditions, stub } = self;
+        let errors = error.to_compile_error();
+        if conditions.is_empty() {
+            return quote!(#errors #stub);
+        }
+        quote! {
+            #(#conditions)*
+            const _: () = { #errors };
+            #stub
+        }
+    }
+}
+
+fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
     // A parameter that is declared twice is one of the errors, and one field.
     let parameters: BTreeMap<String, &Ident> =
@@ -114,16 +153,24 @@ pub fn stub(system: &System) -> TokenStream {
     let parameters: Vec<&Ident> = parameters.into_values().collect();
     let (marker, marker_value) = marker(parameters.is_empty());
     let traits = dimension(system).map(|dimension| stub_traits(name, &dimension));
+    let (derived, conditions) = (derived(), conditions(&system.attributes).collect::<Vec<_>>());
     quote! {
-        #[derive(Clone, Copy, Debug, PartialEq)]
+        #(#conditions)*
+        #derived
         #[allow(missing_docs, dead_code, non_snake_case)]
-        #visibility struct #name<T = f64> { #(pub #parameters: T,)* #marker }
-        impl ::core::default::Default for #name<f64> {
-            fn default() -> Self {
-                Self { #(#parameters: 0.0,)* #marker_value }
+        #visibility struct #name<T = ::core::primitive::f64> { #(pub #parameters: T,)* #marker }
+        #(#conditions)*
+        #[allow(unused_imports)]
+        const _: () = {
+            use ::core::primitive::{bool, f64, str};
+
+            impl ::core::default::Default for #name<f64> {
+                fn default() -> Self {
+                    Self { #(#parameters: 0.0,)* #marker_value }
+                }
             }
-        }
-        #traits
+            #traits
+        };
     }
 }
 

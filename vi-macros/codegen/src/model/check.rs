@@ -4,7 +4,7 @@
 
 use super::scope::{Meaning, Scope};
 use super::{Coordinate, Model, Parameter, force, mass, place};
-use crate::discrete;
+use crate::discrete::{self, WORK, bounded};
 use crate::messages::{Errors, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{self, Definition, Discretization, Indices, System};
@@ -20,7 +20,8 @@ const COORDINATES: usize = 256;
 /// # Errors
 /// Everything that is wrong with it.
 pub fn model(system: System) -> Result<Model> {
-    let mut check = Check::default();
+    let (scope, errors) = (Scope::default(), Errors::default());
+    let mut check = Check { pool: Pool::bounded(WORK), scope, errors, too_large: false };
     check.constants(&system.constants);
     let defaults = check.parameters(&system.parameters);
     let coordinates = check.coordinates(&system.coordinates, &system.name);
@@ -37,7 +38,10 @@ pub fn model(system: System) -> Result<Model> {
     let (Some(lagrangian), Some((rule, rule_name))) = (lagrangian, rule) else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
-    mass::check(&mut pool, &coordinates, lagrangian, system.lagrangians[0].name.span())?;
+    let singular = mass::check(&mut pool, &coordinates, lagrangian, system.lagrangians[0].name.span());
+    // What an exhausted pool says means nothing.
+    bounded(&pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
+    singular?;
     let parameters = system.parameters.into_iter().zip(defaults);
     Ok(Model {
         attributes: system.attributes,
@@ -58,11 +62,12 @@ pub fn model(system: System) -> Result<Model> {
 }
 
 /// What the rules work on.
-#[derive(Default)]
 pub(super) struct Check {
     pub(super) pool: Pool<Symbol>,
     pub(super) scope: Scope,
     pub(super) errors: Errors,
+    /// It was reported, or will be, that the system is too large.
+    too_large: bool,
 }
 
 impl Check {
@@ -73,14 +78,25 @@ impl Check {
         }
     }
 
-    /// What a stage makes, or nothing and a report.
+    /// Whether nothing more is to be made of the system.
+    fn is_too_large(&self) -> bool {
+        bounded(&self.pool).is_err()
+    }
+
+    /// What a stage makes, or nothing and a report. Of a system that is too large only the first: where it became so.
     pub(super) fn report<P>(&mut self, made: Result<P>) -> Option<P> {
-        made.map_err(|error| self.errors.add(error)).ok()
+        let reported = self.too_large;
+        self.too_large = self.is_too_large();
+        match made {
+            Ok(made) => return Some(made),
+            Err(error) if !reported => self.errors.add(error),
+            Err(_) => {}
+        }
+        None
     }
 
     /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.
     pub(super) fn value(&mut self, written: &Definition) -> Expr {
-        self.scope.readings = 0;
         let value = self.scope.expression(&mut self.pool, &written.value);
         self.report(value).unwrap_or_else(|| self.pool.one())
     }
@@ -102,7 +118,7 @@ impl Check {
             return None;
         }
         let number = self.pool.evaluate(value, &mut |_| f64::NAN);
-        if !number.is_finite() {
+        if !number.is_finite() && !self.is_too_large() {
             self.errors.at(span, &Message::NotFinite { name });
             return None;
         }
@@ -129,10 +145,15 @@ impl Check {
         if declared.is_empty() {
             self.errors.at(system.span(), &Message::MissingCoordinates);
         }
-        let mut coordinates = Vec::new();
+        let (mut coordinates, mut too_many) = (Vec::new(), None);
         for syntax::Coordinate { name, length } in declared {
             let first = coordinates.len();
             let Some(written) = length else {
+                if first == COORDINATES {
+                    self.declare(name, Meaning::Wrong);
+                    too_many = too_many.or(Some(name.span()));
+                    continue;
+                }
                 coordinates.push(Coordinate { name: name.clone(), index: None });
                 self.declare(name, Meaning::Coordinate(first));
                 continue;
@@ -151,12 +172,14 @@ impl Check {
                 self.declare(name, Meaning::Wrong);
             }
         }
+        if let Some(first) = too_many {
+            self.errors.at(first, &Message::TooManyCoordinates { limit: COORDINATES });
+        }
         coordinates
     }
 
     fn lets(&mut self, lets: &[Definition]) {
         for named in lets {
-            self.scope.readings = 0;
             match &named.indices {
                 None => {
                     let value = self.value(named);
@@ -200,9 +223,9 @@ impl Check {
     /// A parameter that neither L nor f depends on is a mistake of spelling or of thought.
     fn every_parameter_acts(&mut self, parameters: &[Definition], lagrangian: Option<Expr>, forces: &[Expr]) {
         let acting: Vec<Expr> = lagrangian.into_iter().chain(forces.iter().copied()).collect();
+        let acting = self.pool.symbols_of(&acting);
         for (index, parameter) in parameters.iter().enumerate() {
-            let itself = |symbol: &Symbol| *symbol == Symbol::Parameter(index);
-            if !acting.iter().any(|expr| self.pool.depends_on(*expr, &itself)) {
+            if !acting.contains(&Symbol::Parameter(index)) && !self.is_too_large() {
                 let name = parameter.name.to_string();
                 self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
             }

@@ -52,7 +52,7 @@ pub(super) fn entries(check: &mut Check, line: &Definition, other: Other) -> Opt
         _ => {
             // The value may be wrong too.
             check.value(line);
-            let near = check.scope.near_coordinate(&name);
+            let near = check.scope.near_coordinate(&check.pool, &name);
             Err(error(line.name.span(), &other(name, near)))
         }
     };
@@ -61,7 +61,6 @@ pub(super) fn entries(check: &mut Check, line: &Definition, other: Other) -> Opt
 
 fn array_entries(check: &mut Check, line: &Definition, indices: &Indices) -> Result<Vec<(usize, Expr)>> {
     let Check { scope, pool, .. } = check;
-    scope.readings = 0;
     let range = match indices {
         Indices::One(index) => {
             let value = scope.expression(pool, &line.value)?;

@@ -3,7 +3,7 @@
 //! In: an [`Expression`] and the names in [`Scope`]. Out: an expression of the pool, or the message at the token.
 
 use super::scope::{Meaning, Scope};
-use crate::discrete::NODES;
+use crate::discrete::bounded;
 use crate::messages::{Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator, Range};
@@ -12,8 +12,8 @@ use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Function, Pool, Rational};
 
-/// Expressions that one definition may read, those of sums and arrays once for each value of the index.
-const READINGS: usize = 50_000;
+/// Work of reading one part of an expression.
+const READING: usize = 8;
 
 /// What is done with one value of an index.
 type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
@@ -22,14 +22,9 @@ impl Scope {
     /// The exact expression that a written one stands for.
     ///
     /// # Errors
-    /// Unknown names, wrong arguments, no value (a division by zero, say), too many terms: at the token.
+    /// Unknown names, wrong arguments, no value (a division by zero, say), too much work: at the token.
     pub(super) fn expression(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
-        self.readings += 1;
-        for (limit, reached) in [(NODES, pool.len()), (READINGS, self.readings)] {
-            if reached > limit {
-                return Err(error(written.span, &Message::TooLarge { limit }));
-            }
-        }
+        pool.spend(READING);
         let value = match &written.kind {
             Kind::Number(value) => pool.number(value.clone()),
             Kind::Name(name) => self.name(pool, name)?,
@@ -49,6 +44,7 @@ impl Scope {
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
         };
+        bounded(pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
         if pool.is_undefined(value) {
             return Err(error(written.span, &Message::NoValue));
         }
@@ -114,7 +110,7 @@ impl Scope {
             }
             (None, "t") => Ok(pool.symbol(Symbol::Continuous(Variable::Time))),
             (None, "pi") => Ok(pool.pi()),
-            (None, _) => Err(error(name.span(), &self.unknown(text))),
+            (None, _) => Err(error(name.span(), &self.unknown(pool, text))),
         }
     }
 
@@ -128,9 +124,10 @@ impl Scope {
         let (first, entries) = match self.meaning(&text) {
             Some(Meaning::Values { first, entries }) => (first, entries),
             Some(Meaning::Wrong) => return Ok(pool.one()),
-            _ => return Err(error(name.span(), &self.no_array(text))),
+            _ => return Err(error(name.span(), &self.no_array(pool, text))),
         };
-        let entry = usize::try_from(at - first).ok().and_then(|offset| entries.get(offset));
+        let offset = at.checked_sub(*first).and_then(|offset| usize::try_from(offset).ok());
+        let entry = offset.and_then(|offset| entries.get(offset));
         entry.copied().ok_or_else(|| {
             let end = first.saturating_add(i64::try_from(entries.len()).unwrap_or(i64::MAX));
             error(index.span, &Message::IndexRange { name: text, index: at, first: *first, end })
@@ -160,15 +157,15 @@ impl Scope {
     }
 
     /// What a name with an index was meant to be.
-    fn no_array(&self, name: String) -> Message {
+    fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
         if self.meaning(&name).is_some() || name == "t" || name == "pi" {
             return Message::NotArray { name };
         }
-        self.unknown(name)
+        self.unknown(pool, name)
     }
 
     /// What a name that stands for nothing was meant to be.
-    fn unknown(&self, name: String) -> Message {
+    fn unknown(&self, pool: &Pool<Symbol>, name: String) -> Message {
         if name == "dot" || name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
         }
@@ -176,7 +173,7 @@ impl Scope {
         if acceleration.is_some_and(|stem| self.is_coordinate(stem.trim_end_matches('_'))) {
             return Message::Acceleration { name };
         }
-        let near = nearest(&name, self.names());
+        let near = self.near(pool, &name);
         Message::Unknown { name, near }
     }
 
@@ -213,7 +210,7 @@ impl Scope {
                     return Err(error(name.span(), &Message::ArrayWithoutIndex { name: name.to_string() }));
                 }
                 None if name != "t" && name != "pi" => {
-                    return Err(error(name.span(), &self.unknown(name.to_string())));
+                    return Err(error(name.span(), &self.unknown(pool, name.to_string())));
                 }
                 _ => return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() })),
             },
@@ -223,7 +220,7 @@ impl Scope {
                 None if self.meaning(&name.to_string()).is_some() => {
                     return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() }));
                 }
-                None => return Err(error(name.span(), &self.unknown(name.to_string()))),
+                None => return Err(error(name.span(), &self.unknown(pool, name.to_string()))),
             },
             Kind::Call(inner, _) if inner == "dot" => {
                 return Err(error(span, &Message::Acceleration { name: "dot(dot(…))".to_owned() }));

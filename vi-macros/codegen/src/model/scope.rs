@@ -1,20 +1,22 @@
 //! The names that an expression may use, and what they stand for.
 
 use crate::messages::{Message, error, nearest};
+use crate::symbol::Symbol;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 use syn::Result;
-use vi_expr::{Expr, Function};
+use vi_expr::{Expr, Function, Pool};
 
 /// Names that the language keeps for itself, beside its functions.
 const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
+
+/// Work of comparing two names, beside that of comparing each of their letters with each.
+const COMPARISON: usize = 16;
 
 /// The names that an expression may use.
 #[derive(Default)]
 pub(super) struct Scope {
     names: BTreeMap<String, Meaning>,
-    /// Expressions read so far by this definition.
-    pub(super) readings: usize,
 }
 
 /// What a name stands for.
@@ -66,18 +68,24 @@ impl Scope {
         self.names.get(name)
     }
 
-    /// All names, in order.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.names.keys().map(String::as_str)
-    }
-
     /// Whether a name is a coordinate, or an array of them.
     pub(super) fn is_coordinate(&self, name: &str) -> bool {
         matches!(self.meaning(name), Some(Meaning::Coordinate(_) | Meaning::Coordinates { .. }))
     }
 
+    /// The declared name nearest to a misspelt one.
+    pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
+        self.near_of(pool, name, |_| true)
+    }
+
     /// The coordinate nearest to a misspelt name.
-    pub(super) fn near_coordinate(&self, name: &str) -> Option<String> {
-        nearest(name, self.names().filter(|known| self.is_coordinate(known)))
+    pub(super) fn near_coordinate(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
+        self.near_of(pool, name, |known| self.is_coordinate(known))
+    }
+
+    fn near_of(&self, pool: &Pool<Symbol>, name: &str, is_meant: impl Fn(&str) -> bool) -> Option<String> {
+        pool.spend(self.names.len() * (COMPARISON + name.len() * name.len()));
+        let known = self.names.keys().map(String::as_str).filter(|known| is_meant(known));
+        if pool.is_exhausted() { None } else { nearest(name, known) }
     }
 }

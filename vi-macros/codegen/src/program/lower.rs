@@ -30,6 +30,8 @@ pub(super) enum Dependence {
 #[derive(Default)]
 pub(super) struct Known {
     dependences: Table<Expr, Dependence>,
+    /// Values of expressions that depend on nothing.
+    numbers: Table<Expr, f64>,
     pub(super) ways: Table<Expr, Way>,
 }
 
@@ -59,7 +61,7 @@ impl<'a> Lowering<'a> {
         Self { pool, operations, occurrences, angles, values, ways, known, arguments }
     }
 
-    /// Lowers expressions and all that they need, children first.
+    /// Lowers expressions and all that they need, children first; nothing where the pool is exhausted.
     pub(super) fn lower(&mut self, exprs: &[Expr]) -> Vec<OperationId> {
         let used: Vec<Expr> = exprs.iter().copied().chain(self.arguments.values().copied()).collect();
         self.record_powers(&used);
@@ -67,6 +69,9 @@ impl<'a> Lowering<'a> {
         // Children first, so that nothing is deep; products as they are needed, with their coefficients.
         for expr in self.pool.reachable(&used) {
             self.value(expr);
+        }
+        if self.pool.is_exhausted() {
+            return Vec::new();
         }
         exprs.iter().map(|expr| self.value(*expr)).collect()
     }
@@ -76,11 +81,14 @@ impl<'a> Lowering<'a> {
         if let Some(known) = self.values.get(expr) {
             return *known;
         }
+        if self.pool.is_exhausted() {
+            return self.operations.constant(f64::NAN);
+        }
         let node = self.pool.node(expr).clone();
         let value = if self.dependence(expr) == Dependence::None {
             let number = match &node {
                 Node::Number(number) => Self::number(number),
-                _ => self.pool.evaluate(expr, &mut |_| f64::NAN),
+                _ => self.value_of_number(expr),
             };
             self.operations.constant(number)
         } else {
@@ -94,6 +102,22 @@ impl<'a> Lowering<'a> {
         };
         self.values.insert(expr, value);
         value
+    }
+
+    /// The value of an expression that depends on nothing.
+    fn value_of_number(&mut self, expr: Expr) -> f64 {
+        let Known { numbers, .. } = self.known;
+        let mut open = vec![expr];
+        while let Some(last) = open.last().copied() {
+            let first = open.len();
+            self.pool.node(last).each_child(|child| open.extend((!numbers.contains(child)).then_some(child)));
+            if open.len() == first {
+                open.pop();
+                let value = self.pool.node_value(last, numbers, &mut |_| f64::NAN);
+                numbers.insert(last, value);
+            }
+        }
+        numbers.get(expr).copied().unwrap_or(f64::NAN)
     }
 
     /// What an expression depends on; its children are known but for those that lowering made.
@@ -256,7 +280,7 @@ impl<'a> Lowering<'a> {
     fn gather(&mut self, into: &mut Gathered, base: Expr, exponent: &Rational) {
         let dependence = self.dependence(base);
         if dependence == Dependence::None {
-            let value = self.pool.evaluate(base, &mut |_| f64::NAN);
+            let value = self.value_of_number(base);
             into.number *= value.powf(Self::number(exponent));
             return;
         }

@@ -72,9 +72,8 @@ impl Lowering<'_> {
     }
 
     fn pool_sum(&mut self, sum: &Sum) -> Expr {
-        let mut terms: Vec<Expr> = sum.terms.iter().map(|(term, c)| self.pool.scale(*term, c)).collect();
-        terms.push(self.pool.number(sum.constant.clone()));
-        self.pool.sum(&terms)
+        let constant = self.pool.number(sum.constant.clone());
+        self.pool.combination(sum.terms.iter().cloned().chain([(constant, Rational::one())]))
     }
 
     /// The factor that most terms share, what it is multiplied by, and the other terms. Parameters are factors of what
@@ -99,20 +98,20 @@ impl Lowering<'_> {
         let exponents = sum.terms.iter().filter_map(|(term, _)| self.exponent(*term, base));
         let exponent = exponents.min().unwrap_or_else(Rational::one);
         let inverse = self.pool.power(base, &-exponent.clone());
-        let (mut inside, mut rest) = (Vec::new(), vec![self.pool.number(sum.constant.clone())]);
+        let (mut inside, mut rest) = (Vec::new(), Sum { constant: sum.constant.clone(), terms: Vec::new() });
         for (term, coefficient) in &sum.terms {
-            let scaled = self.pool.scale(*term, coefficient);
             if self.exponent(*term, base).is_some() {
+                let scaled = self.pool.scale(*term, coefficient);
                 inside.push(self.pool.mul(scaled, inverse));
             } else {
-                rest.push(scaled);
+                rest.terms.push((*term, coefficient.clone()));
             }
         }
         let factor = self.pool.power(base, &exponent);
         if self.dissolves(&inside) {
             return None;
         }
-        let (inside, rest) = (self.pool.sum(&inside), self.pool.sum(&rest));
+        let (inside, rest) = (self.pool.sum(&inside), self.pool_sum(&rest));
         Some(Way::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
     }
 

@@ -12,10 +12,12 @@ use crate::symbol::Symbol;
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 use syn::Result;
-use vi_expr::{Expr, Pool, Table};
+use vi_expr::{Expr, Pool, Rounded, Table};
 
 /// Relative difference that reordering may cause: cancellation in the residuals included.
 const TOLERANCE: f64 = 1e-7;
+/// How many times the rounding of an expression that of its operations may be: an angle of 1e15 leaves few digits to its cosine.
+const MARGIN: f64 = 16.0;
 
 /// Checks that every constant of a function is a finite number: derivatives multiply by exponents.
 pub(super) fn has_finite_constants(function: &Function, system: &Ident) -> Result<()> {
@@ -47,16 +49,18 @@ pub(super) fn agrees(
     let arguments: Vec<Expr> = expressions.arguments.values().copied().collect();
     let at_points = pool.evaluate_all(&arguments, &mut input);
     let at_points: BTreeMap<_, _> = expressions.arguments.keys().zip(at_points).collect();
-    let wanted = pool.evaluate_all(&expressions.results, &mut |symbol| match symbol {
+    let wanted = pool.evaluate_rounded(&expressions.results, &mut |symbol| match symbol {
         Symbol::AtPoint(point, variable) => {
             at_points.get(&(*point, *variable)).copied().unwrap_or_else(|| input(symbol))
         }
         _ => input(symbol),
     });
     let found = function.evaluate(&mut input);
-    let scale = wanted.iter().chain(&found).filter(|x| x.is_finite()).fold(1.0_f64, |scale, x| scale.max(x.abs()));
-    let equal = |(wanted, found): (&f64, &f64)| {
-        (wanted - found).abs() <= TOLERANCE * scale || !wanted.is_finite() || !found.is_finite()
+    let numbers = wanted.iter().map(|wanted| wanted.value).chain(found.iter().copied());
+    let scale = numbers.filter(|x| x.is_finite()).fold(1.0_f64, |scale, x| scale.max(x.abs()));
+    let equal = |(wanted, found): (&Rounded, &f64)| {
+        let off = (wanted.value - found).abs();
+        off <= TOLERANCE * scale + MARGIN * wanted.error || !off.is_finite()
     };
     if wanted.iter().zip(&found).all(equal) {
         return Ok(());

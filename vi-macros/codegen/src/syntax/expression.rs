@@ -13,19 +13,22 @@
 //! ```
 
 use crate::messages::{Message, error};
-use num_traits::Zero;
-use proc_macro2::{Ident, Span};
+use num_bigint::BigInt;
+use num_traits::{ToPrimitive, Zero};
+use proc_macro2::{Ident, Literal, Span, TokenTree};
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
-use syn::{Lit, Result, Token};
+use syn::{Result, Token};
 use vi_expr::Rational;
 
 /// Levels of nesting that an expression may have.
 pub(crate) const DEPTH: usize = 100;
 /// Powers of ten that a literal may have, in absolute value; `f64` ends at 308.
 const EXPONENT: i64 = 400;
-/// Digits that a literal may have.
+/// Digits that a literal may have, and other characters.
 const DIGITS: usize = 800;
+/// The power of five that a machine integer holds.
+const FIVES: u32 = 27;
 
 /// An expression as written, with the span of its first token.
 pub struct Expression {
@@ -164,8 +167,10 @@ impl Expression {
 
     fn atom(input: ParseStream, depth: usize) -> Result<Self> {
         let span = input.span();
-        if input.peek(Lit) {
-            return Ok(Self { span, kind: Kind::Number(number(&input.parse()?)?) });
+        if let Some((literal, _)) = input.cursor().literal() {
+            let value = number(&literal)?;
+            input.parse::<TokenTree>()?;
+            return Ok(Self { span, kind: Kind::Number(value) });
         }
         if input.peek(syn::token::Paren) {
             let inner;
@@ -222,19 +227,41 @@ fn end(inner: ParseStream, what: &'static str) -> Result<()> {
 }
 
 /// The exact value of a literal.
-fn number(literal: &Lit) -> Result<Rational> {
-    let (digits, suffix, written) = match literal {
-        Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned(), integer.to_string()),
-        Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned(), float.to_string()),
-        _ => return Err(error(literal.span(), &Message::NotDecimal)),
-    };
+fn number(literal: &Literal) -> Result<Rational> {
+    let span = literal.span();
+    let text = literal.to_string();
+    let based = ["0x", "0o", "0b"].iter().any(|base| text.starts_with(base));
+    if based || !text.starts_with(|first: char| first.is_ascii_digit()) {
+        return Err(error(span, &Message::NotDecimal));
+    }
+    if text.len() > DIGITS {
+        return Err(error(span, &Message::NumberRange));
+    }
+    let text = text.replace('_', "");
+    let (digits, suffix) = text.split_at(length(&text));
     if !suffix.is_empty() {
-        return Err(error(literal.span(), &Message::NumberSuffix { digits, suffix }));
+        let (digits, suffix) = (digits.to_owned(), suffix.to_owned());
+        return Err(error(span, &Message::NumberSuffix { digits, suffix }));
     }
-    if written.starts_with("0x") || written.starts_with("0o") || written.starts_with("0b") {
-        return Err(error(literal.span(), &Message::NotDecimal));
+    decimal(digits).ok_or_else(|| error(span, &Message::NumberRange))
+}
+
+/// How many characters of a literal are its number: `12.5e-3` of `12.5e-3kg`.
+fn length(text: &str) -> usize {
+    let digits = |from: usize| text[from..].bytes().take_while(u8::is_ascii_digit).count();
+    let mut length = digits(0);
+    if text[length..].starts_with('.') {
+        length += 1;
+        length += digits(length);
     }
-    decimal(&digits).ok_or_else(|| error(literal.span(), &Message::NumberRange))
+    if text[length..].starts_with(['e', 'E']) {
+        let sign = usize::from(text[length + 1..].starts_with(['+', '-']));
+        let exponent = digits(length + 1 + sign);
+        if exponent > 0 {
+            length += 1 + sign + exponent;
+        }
+    }
+    length
 }
 
 /// `12.5e-3` as 125/10000; `None` beyond the range of `f64`.
@@ -242,15 +269,34 @@ fn decimal(digits: &str) -> Option<Rational> {
     let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((digits, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let exponent: i64 = exponent.parse().ok()?;
-    let places = exponent.checked_sub(i64::try_from(fraction.len()).ok()?)?;
-    if digits.len() > DIGITS || exponent.abs() > EXPONENT {
+    if exponent.abs() > EXPONENT {
         return None;
     }
-    let value = Rational::from_integer(format!("{whole}{fraction}").parse().ok()?);
-    let power = num_traits::pow(Rational::from_integer(10.into()), usize::try_from(places.unsigned_abs()).ok()?);
-    let value = if places < 0 { value / power } else { value * power };
-    let rounded = num_traits::ToPrimitive::to_f64(&value)?;
+    let places = exponent.checked_sub(i64::try_from(fraction.len()).ok()?)?;
+    let value: BigInt = format!("{whole}{fraction}").parse().ok()?;
+    let power = u32::try_from(places.unsigned_abs()).ok()?;
+    let value = if places < 0 { over_power_of_ten(value, power) } else { (value * BigInt::from(10).pow(power)).into() };
+    let rounded = value.to_f64()?;
     (rounded.is_finite() && (value.is_zero() || rounded.abs() >= f64::MIN_POSITIVE)).then_some(value)
+}
+
+/// `number / 10^power` in lowest terms. What both have in common are twos and fives: they are found faster than a common divisor.
+fn over_power_of_ten(mut number: BigInt, power: u32) -> Rational {
+    if number.is_zero() {
+        return Rational::zero();
+    }
+    let twos = number.trailing_zeros().and_then(|twos| u32::try_from(twos).ok()).unwrap_or(u32::MAX).min(power);
+    number >>= twos;
+    let mut fives = 0;
+    // As many at once as a machine integer holds.
+    for together in [FIVES, 1] {
+        let divisor = BigInt::from(5).pow(together);
+        while fives + together <= power && (&number % &divisor).is_zero() {
+            number /= &divisor;
+            fives += together;
+        }
+    }
+    Rational::new_raw(number, BigInt::from(5).pow(power - fives) << (power - twos))
 }
 
 #[cfg(test)]
@@ -268,5 +314,24 @@ mod tests {
         assert_eq!(decimal("1e309"), None);
         assert_eq!(decimal("1e-330"), None);
         assert_eq!(decimal("1e99999999999999999999"), None);
+    }
+
+    #[test]
+    fn decimals_are_in_lowest_terms() {
+        for (digits, power) in [(1_i64, 3), (125, 3), (16, 2), (390_625, 9), (1000, 2), (30, 2), (0, 5)] {
+            let number = BigInt::from(digits) * BigInt::from(5).pow(60) * BigInt::from(2).pow(20);
+            let found = over_power_of_ten(number.clone(), power + 70);
+            let wanted = Rational::new(number, BigInt::from(10).pow(power + 70));
+            assert_eq!((found.numer(), found.denom()), (wanted.numer(), wanted.denom()), "{digits}");
+        }
+    }
+
+    #[test]
+    fn a_number_ends_where_its_unit_begins() {
+        for (text, length_of_number) in
+            [("12", 2), ("1.5e-3kg", 6), ("2x", 1), ("2e", 1), ("1f64", 1), ("1.", 2), ("1e+x", 1)]
+        {
+            assert_eq!(length(text), length_of_number, "{text}");
+        }
     }
 }

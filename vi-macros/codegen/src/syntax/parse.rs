@@ -6,13 +6,26 @@
 use super::expression::DEPTH;
 use super::{Check, Coordinate, Definition, Discretization, Entry, Expression, Indices, Rule, System};
 use crate::messages::{Errors, Message, error, nearest};
-use proc_macro2::{Ident, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
-use syn::{Attribute, Result, Token, Visibility};
+use syn::punctuated::Punctuated;
+use syn::{Attribute, Path, Result, Token, Visibility};
 
 /// The words that open a clause.
 const CLAUSES: [&str; 9] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
+
+/// Names of types that the emitted code uses without a path.
+const TYPES: [&str; 6] = ["T", "W", "bool", "f64", "str", "usize"];
+
+/// What every system derives or implements.
+const DERIVED: [&str; 5] = ["Clone", "Copy", "Debug", "Default", "PartialEq"];
+
+/// Tokens that a system may have.
+const TOKENS: usize = 200_000;
+
+/// Letters that a name may have.
+const LETTERS: usize = 200;
 
 /// Pairs of delimiters that an expression may stand in: those of the system, of a rule, of an index.
 const CLAUSE_DEPTH: usize = 3;
@@ -34,6 +47,7 @@ pub fn outline(tokens: TokenStream) -> Option<System> {
 
 /// Reads a system; one with errors is left in `outline`.
 fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
+    let tokens = if small(&tokens)? { with_parentheses(tokens, false) } else { tokens };
     let whole = |input: ParseStream| {
         let (system, errors) = header(input)?;
         match errors.finish(()) {
@@ -44,25 +58,55 @@ fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
             }
         }
     };
-    shallow(&tokens)?;
     whole.parse2(tokens)
 }
 
-/// Refuses parentheses, brackets and braces nested deeper than any right system has them, attributes included: they are
-/// read by recursion.
-fn shallow(tokens: &TokenStream) -> Result<()> {
+/// Refuses more tokens than a system may have, and names of too many letters; and parentheses, brackets and braces nested deeper than any right system has them,
+/// attributes included: they are read by recursion. Whether some delimiters are not to be seen.
+fn small(tokens: &TokenStream) -> Result<bool> {
     let mut open = vec![tokens.clone().into_iter()];
+    let (mut count, mut invisible) = (0, false);
     while let Some(innermost) = open.last_mut() {
-        match innermost.next() {
-            Some(TokenTree::Group(group)) if open.len() > DEPTH + CLAUSE_DEPTH => {
+        let Some(token) = innermost.next() else {
+            drop(open.pop());
+            continue;
+        };
+        count += 1;
+        if count > TOKENS {
+            return Err(error(token.span(), &Message::TooLong { limit: TOKENS }));
+        }
+        if let TokenTree::Ident(name) = &token
+            && name.to_string().chars().count() > LETTERS
+        {
+            return Err(error(name.span(), &Message::LongName { limit: LETTERS }));
+        }
+        if let TokenTree::Group(group) = token {
+            if open.len() > DEPTH + CLAUSE_DEPTH {
                 return Err(error(group.span_open(), &Message::TooDeep { limit: DEPTH }));
             }
-            Some(TokenTree::Group(group)) => open.push(group.stream().into_iter()),
-            Some(_) => {}
-            None => drop(open.pop()),
+            invisible |= group.delimiter() == Delimiter::None;
+            open.push(group.stream().into_iter());
         }
     }
-    Ok(())
+    Ok(invisible)
+}
+
+/// What a macro puts in for its `$a:expr` is one operand, and stands in delimiters that nobody sees: inside the clauses they become
+/// parentheses.
+fn with_parentheses(tokens: TokenStream, inside: bool) -> TokenStream {
+    let token = |token: TokenTree| {
+        let TokenTree::Group(group) = token else { return token };
+        let stream = with_parentheses(group.stream(), inside || group.delimiter() == Delimiter::Brace);
+        let alone = stream.clone().into_iter().nth(1).is_none();
+        let delimiter = match group.delimiter() {
+            Delimiter::None if inside && !alone => Delimiter::Parenthesis,
+            delimiter => delimiter,
+        };
+        let mut visible = Group::new(delimiter, stream);
+        visible.set_span(group.span());
+        TokenTree::Group(visible)
+    };
+    tokens.into_iter().map(token).collect()
 }
 
 /// Reads the lines of a rule given as text, as the named rules are.
@@ -81,7 +125,10 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         return Err(error(input.span(), &Message::Expected { what: "`struct Name { … }`" }));
     }
     input.parse::<Token![struct]>()?;
-    let name = input.parse()?;
+    let name = name(input)?;
+    if TYPES.contains(&name.to_string().as_str()) {
+        return Err(error(name.span(), &Message::ReservedType { name: name.to_string() }));
+    }
     if !input.peek(syn::token::Brace) {
         return Err(error(input.span(), &Message::Expected { what: "`{` and the clauses of the system" }));
     }
@@ -102,6 +149,9 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         checks: Vec::new(),
     };
     let mut errors = Errors::default();
+    if let Err(found) = derives_nothing_twice(&system.attributes) {
+        errors.add(found);
+    }
     while !body.is_empty() {
         if let Err(found) = clause(&body, &mut system) {
             errors.add(found);
@@ -112,6 +162,33 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         errors.at(input.span(), &Message::AfterSystem);
     }
     Ok((system, errors))
+}
+
+/// A system derives some traits whether its struct says so or not.
+fn derives_nothing_twice(attributes: &[Attribute]) -> Result<()> {
+    let mut errors = Errors::default();
+    for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("derive")) {
+        // What is no list of paths, rustc reports.
+        let Ok(derived) = attribute.parse_args_with(Punctuated::<Path, Token![,]>::parse_terminated) else { continue };
+        for name in derived.iter().filter_map(|path| path.segments.last()).map(|segment| &segment.ident) {
+            if DERIVED.contains(&name.to_string().as_str()) {
+                errors.at(name.span(), &Message::SecondDerive { name: name.to_string() });
+            }
+        }
+    }
+    errors.finish(())
+}
+
+/// Attributes of a clause: those of a parameter go over to its field, of others to nothing, and the macro knows no conditions.
+fn fitting(attributes: &[Attribute], word: &Ident) -> Result<()> {
+    let fits = |attribute: &Attribute| {
+        let named = |names: &[&str]| names.iter().any(|name| attribute.path().is_ident(name));
+        named(&["doc"]) || word == "param" && !named(&["cfg", "cfg_attr", "derive"])
+    };
+    match attributes.iter().find(|attribute| !fits(attribute)) {
+        Some(attribute) => Err(error(attribute.pound_token.span, &Message::AttributeOfClause)),
+        None => Ok(()),
+    }
 }
 
 /// Drops the tokens up to the end of a clause that could not be read.
@@ -128,6 +205,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     let Ok(word) = input.call(Ident::parse_any) else {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
+    if CLAUSES.contains(&word.to_string().as_str()) {
+        fitting(&attributes, &word)?;
+    }
     match word.to_string().as_str() {
         "const" => system.constants.extend(list(input, &mut |input| definition(input, &attributes))?),
         "param" => system.parameters.extend(list(input, &mut |input| definition(input, &attributes))?),
@@ -279,8 +359,10 @@ fn coordinate(input: ParseStream) -> Result<Coordinate> {
 fn name(input: ParseStream) -> Result<Ident> {
     let span = input.span();
     let name = input.parse::<Ident>().map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
-    if name.to_string().starts_with("r#") {
-        return Err(error(span, &Message::Reserved { name: name.to_string() }));
+    let text = name.to_string();
+    // Reserved since the edition of 2024; the tokens do not say of which edition they are.
+    if text.starts_with("r#") || text == "gen" {
+        return Err(error(span, &Message::Reserved { name: text }));
     }
     Ok(name)
 }

@@ -29,7 +29,7 @@ fn a_hundred_thousand_nodes_deep() {
 
     let derivative = pool.derivative(expr, &mut |pool, _| pool.one());
     let expansion = pool.expand(expr).map(|expansion| pool.is_zero(expansion));
-    assert_eq!(expansion, Err(TooLarge { limit: 50_000 }), "a sum of two terms at each level");
+    assert_eq!(expansion, Err(TooLarge::Terms { limit: 50_000 }), "a sum of two terms at each level");
     let y = pool.symbol("y".to_owned());
     let moved = pool.substitute(expr, &mut |_, _| Some(y));
 
@@ -140,10 +140,10 @@ fn expansion_is_bounded() {
     for text in texts {
         let mut pool = Pool::new();
         let expr = read(&mut pool, &text);
-        assert_eq!(pool.expand(expr), Err(TooLarge { limit: 50_000 }), "{text}");
+        assert_eq!(pool.expand(expr), Err(TooLarge::Terms { limit: 50_000 }), "{text}");
     }
     let message = "multiplying the expression out takes more than 50000 terms";
-    assert_eq!(TooLarge { limit: 50_000 }.to_string(), message);
+    assert_eq!(TooLarge::Terms { limit: 50_000 }.to_string(), message);
 }
 
 #[test]
@@ -199,4 +199,74 @@ fn exact_numbers_round_correctly() {
         let found = pool.evaluate(expr, &mut |_| f64::NAN);
         assert_eq!(found.to_bits(), expected.to_bits(), "{text}: {found:e} instead of {expected:e}");
     }
+}
+
+/// What a pool may do is counted, and ends in the same way every time.
+#[test]
+fn work_is_bounded() {
+    const LIMIT: usize = 100_000;
+    let grow = |pool: &mut Pool| {
+        let mut expr = pool.symbol("x".to_owned());
+        for place in 0..10_000 {
+            let one = pool.integer(place);
+            let sum = pool.add(expr, one);
+            let sine = pool.call(Function::Sin, &[sum]);
+            expr = pool.mul(expr, sine);
+        }
+        expr
+    };
+    let sizes = [0, 1].map(|_| {
+        let mut pool = Pool::bounded(LIMIT);
+        let expr = grow(&mut pool);
+        assert!(pool.is_exhausted() && pool.is_undefined(expr));
+        assert_eq!((pool.work(), pool.within_work()), (LIMIT, Err(TooLarge::Work { limit: LIMIT })));
+        pool.len()
+    });
+    assert!(sizes[0] == sizes[1] && (100..LIMIT / 12).contains(&sizes[0]), "{sizes:?}");
+    let message = "the expressions take more than 100000 steps of algebra";
+    assert_eq!(TooLarge::Work { limit: LIMIT }.to_string(), message);
+
+    // Whatever is asked then ends at once, and says nothing.
+    let mut pool = Pool::bounded(LIMIT);
+    let x = pool.symbol("x".to_owned());
+    let sum = pool.add(x, pool.one());
+    grow(&mut pool);
+    assert!(pool.reachable(&[sum]).is_empty() && pool.evaluate(sum, &mut |_| 1.0).is_nan());
+    assert_eq!(pool.derivative(sum, &mut |pool, _| pool.one()), pool.undefined());
+    assert_eq!(pool.substitute(sum, &mut |_, _| None), pool.undefined());
+    assert_eq!(pool.expand(sum), Err(TooLarge::Work { limit: LIMIT }));
+    assert_eq!(pool.uncounted(|pool| pool.evaluate(sum, &mut |_| 1.0)).to_bits(), 2.0_f64.to_bits());
+
+    let mut pool = Pool::bounded(LIMIT);
+    let expr = read(&mut pool, "sin(x)*(x + 1)^2/3");
+    let before = pool.work();
+    assert!(before > 0 && pool.reachable(&[expr]).len() == 5 && pool.work() > before);
+    assert_eq!(pool.within_work(), Ok(()));
+}
+
+/// A number costs what its digits do: the square of them.
+#[test]
+fn long_numbers_are_work() {
+    let work = |count: i64| {
+        let mut pool = Pool::bounded(usize::MAX);
+        let parts: Vec<Expr> = (1..count).map(|place| pool.number(ratio(1, place))).collect();
+        let before = pool.work();
+        pool.sum(&parts);
+        pool.work() - before
+    };
+    let (short, long) = (work(100), work(1600));
+    // 1/1 + … + 1/1600 has 4600 bits: 16 times as many terms are some 16³ times as much work.
+    assert!(long > 1000 * short, "{short} and {long}");
+}
+
+/// Numbers that differ in their last digits only are found again as fast as short ones.
+#[test]
+fn many_long_numbers_are_told_apart() {
+    let mut pool = Pool::new();
+    let x = pool.symbol("x".to_owned());
+    let long = ratio(2, 1).pow(100);
+    let multiples: Vec<Expr> = (0..20_000).map(|place| pool.scale(x, &(&long + ratio(place, 1)))).collect();
+    let again = pool.scale(x, &(&long + ratio(777, 1)));
+    assert_eq!(multiples[777], again);
+    assert_eq!(multiples.iter().collect::<std::collections::BTreeSet<_>>().len(), 20_000);
 }

@@ -4,6 +4,7 @@
 //! - `derivatives`: every function against central differences;
 //! - `random`: random expressions against exact and floating-point dual numbers that know nothing of canonical forms;
 //! - `limits`: deep, wide and huge expressions, and what has no value;
+//! - `rounding`: errors of values against identities;
 //! - `passes`: substitution, expansion and the queries.
 //!
 //! `notation` reads the text that the tables are written in; `tree` makes the random expressions.
@@ -13,6 +14,7 @@ mod limits;
 mod notation;
 mod passes;
 mod random;
+mod rounding;
 mod rules;
 mod tree;
 

@@ -1,0 +1,63 @@
+//! Which mass matrices are singular for every state: those that are, whatever hides it, and no others, whatever their sizes.
+
+use proc_macro2::TokenStream;
+use vi_codegen::{model, syntax};
+
+/// What the check of names and meanings says of a system with these clauses.
+fn said(clauses: &str) -> Option<String> {
+    let text = format!("struct System {{ {clauses} discretize midpoint; }}");
+    let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
+    syntax::parse::system(tokens).and_then(model::check::model).err().map(|error| error.to_string())
+}
+
+#[test]
+fn a_regular_matrix_of_any_sizes_is_regular() {
+    for clauses in [
+        "coord x, y; L = dot(x)^2 + 1e-12 * dot(y)^2;",
+        "coord x, y; L = 1e30 * dot(x)^2 + 1e-30 * dot(y)^2;",
+        "coord x, y; L = 1e-200 * dot(x)^2 + 1e-250 * dot(y)^2;",
+        "coord x, y, z; L = 1e30 * dot(x)^2 + 1e-30 * dot(y)^2 + dot(z)^2 + dot(x) * dot(y) / 2 + 1e14 * dot(x) * dot(z);",
+        "coord x; L = exp(-30/x) * dot(x)^2 / 2;",
+        "coord x, y; L = exp(-30/x) * dot(x)^2 / 2 + dot(y)^2 / 2;",
+        // Out of the range of numbers at every point that is tried: nothing is known.
+        "coord x, y; L = exp(-1e5/x^2) * dot(x)^2 / 2 + dot(y)^2 / 2;",
+        "coord x, y; L = x^100000 * dot(x)^2 + dot(y)^2;",
+        "coord x; L = ln(x - 5) * dot(x)^2;",
+        // Nearly singular.
+        "coord x, y; L = (dot(x) + dot(y))^2 + 1e-12 * dot(y)^2;",
+        "coord q[8]; L = sum(i in 0..8, sum(j in 0..8, dot(q[i]) * dot(q[j]) / (i + j + 1)));",
+        "coord q[64]; L = sum(i in 0..64, dot(q[i]))^2 + 1e-9 * sum(i in 0..64, dot(q[i])^2);",
+        // Singular in one half of the line only.
+        "coord x; L = (1 - sign(x)) * dot(x)^2;",
+        "coord x; L = (1 + sign(x)) * dot(x)^2;",
+        // Of no sign, and not quadratic.
+        "coord x, y; L = 1e-20 * dot(x) * dot(y);",
+        "coord x, y; L = sqrt(1 - dot(x)^2 - dot(y)^2);",
+        "param c = 3e8; coord x; L = -1e-18 * sqrt(1 - dot(x)^2 / c^2);",
+    ] {
+        assert_eq!(said(clauses), None, "{clauses}");
+    }
+}
+
+#[test]
+fn a_matrix_that_is_singular_everywhere_is_found() {
+    for clauses in [
+        "coord x, y; L = (dot(x) + dot(y))^2;",
+        "coord x, y; L = (1e20 * dot(x) + 1e-20 * dot(y))^2;",
+        "coord x, y, z; L = (dot(x) - dot(y))^2 + (dot(y) - dot(z))^2 + (dot(z) - dot(x))^2;",
+        "coord x, y, z; L = dot(x)^2 + 1e-15 * (dot(y) - 3 * dot(z))^2;",
+        // By identities of functions.
+        "coord x; L = (cos(x)^2 + sin(x)^2 - 1) * dot(x)^2;",
+        "coord x, y; L = (cos(x) * dot(x) + sin(x) * dot(y))^2;",
+        "coord x, y; L = dot(x)^2 + 2 * cos(x) * dot(x) * dot(y) + (1 - sin(x)^2) * dot(y)^2;",
+        "coord x, y; L = (cosh(x)^2 - sinh(x)^2 - 1) * dot(x)^2 + dot(y)^2;",
+        "coord q[3]; L = sum(i in 0..3, sum(j in 0..3, dot(q[i]) * dot(q[j]) * cos(q[i] - q[j])));",
+        "coord x, y; L = hypot(dot(x), dot(y));",
+        // Where half of the points that are tried have no value.
+        "coord x, y; L = sqrt(x) * (dot(x) + dot(y))^2;",
+        "coord x, y; L = sqrt(-x) * (dot(x) + dot(y))^2;",
+    ] {
+        let said = said(clauses).unwrap_or_else(|| panic!("{clauses} is accepted"));
+        assert!(said.starts_with("the mass matrix ∂²L/∂v² is singular for every state\nhelp: "), "{clauses}: {said}");
+    }
+}
