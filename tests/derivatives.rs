@@ -204,8 +204,8 @@ fn check_step<const N: usize>(
 fn passes_its_checks<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, check: &mut Comparison) {
     for report in [check::derivatives(system, place), check::slots(system, place), check::steps(system, place)] {
         let report = report.unwrap_or_else(|failure| panic!("{failure}, at {place:?}"));
-        // Measured: 8.7e-15, for the rotating hoop; else 1.9e-15.
-        assert!(report.worst <= 2e-14, "{report}");
+        // In bounds of rounding. Measured: 0.44.
+        assert!(report.worst <= 0.9, "{report}");
         check.checked = check.checked.max(report.worst);
     }
 }
@@ -238,7 +238,7 @@ macro_rules! derivatives {
                 check_step(&$s, &dual, (&node, h, &$v), &mut check);
                 passes_its_checks(&$s, &Place { t: $t, q: $q, v: $v, h: 0.01 }, &mut check);
             }
-            println!("{}: its own checks differ by {:e}", check.name, check.checked);
+            println!("{}: its own checks differ by {:.2} of their rounding", check.name, check.checked);
             println!("{}: {} numbers other than zero, worst difference {:e}", check.name, check.nonzero, check.worst);
             assert!(check.nonzero > 10 * DRAWS, "almost everything compared was zero");
         }

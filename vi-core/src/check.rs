@@ -3,6 +3,12 @@
 //! In: a system and a [`Place`]. Out: a [`Report`] with the worst number met, or a [`CheckFailure`] with the numbers that
 //! do not agree. A check that compared nothing, or only zeros, fails as vacuous.
 //!
+//! Each check knows its own rounding, from the system and the place. Formulas are evaluated in numbers that carry the bound
+//! of theirs along, and may differ by that. They are compared at steps of the system's own time scale, not at h: there no
+//! term lies below the rounding of another. What falls with a power of h is measured with its rounding; steps at which it
+//! does not stand above are dropped, and larger ones tried where fewer than three are left. Where none show it, the check
+//! fails with [`CheckFailure::StepTooSmall`], since it has proved nothing, and says which h to try.
+//!
 //! | check | what has to hold | of which systems |
 //! |---|---|---|
 //! | [`derivatives()`] | momentum, energy, acceleration, step density, Jacobians are those of dual numbers | all |
@@ -10,7 +16,7 @@
 //! | [`steps()`] | the equations and gains of a step, and the p1, E1 of steps taken, are those of the slots | all |
 //! | [`order()`] | the error falls with h to the order of the rule | all |
 //! | [`momenta()`] | momenta of cyclic coordinates keep every bit | with a cyclic coordinate |
-//! | [`symplecticity()`] | `MᵀJM = J` for the derivative M of a step | without force |
+//! | [`symplecticity()`] | `dq1 ∧ dp1 = dq0 ∧ dp0` | without force |
 //! | [`reversibility()`] | the step −h undoes the step h | symmetric rules |
 //! | [`energy()`] | `E` at each midpoint is the mean of the energies carried there; `E1 = −D3 L_d − g_d⁺` | midpoint rule |
 //! | [`step_law()`] | `h D^(1/3)` is constant to O(h²) | midpoint rule, without force |
@@ -18,11 +24,13 @@
 //! The clause `check { … }` of `lagrangian!` writes one test for each that applies. What no check can see: an L that is
 //! not the one that was meant.
 
+mod bounded;
 mod comparison;
 mod derivatives;
 pub mod dual;
 mod energy;
 mod ladder;
+mod length;
 mod motion;
 mod order;
 mod report;
@@ -59,7 +67,8 @@ pub struct Place<const N: usize> {
     pub q: SVector<f64, N>,
     /// Velocities.
     pub v: SVector<f64, N>,
-    /// Step, positive: small enough for the error to fall with h², large enough to stand above rounding.
+    /// Step, positive, in units of time: small enough for the error to fall with h². Where rounding hides what a check is
+    /// about, the check tries larger ones.
     pub h: f64,
 }
 

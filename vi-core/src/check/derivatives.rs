@@ -6,25 +6,29 @@
 //! ```
 //!
 //! Left: what the system says. Right: L, and the residuals r and c of a step, differentiated operation by operation.
+//! Rounding: both sides are evaluated in numbers that carry the bound of theirs (`rounded`), and may differ by the sum of
+//! the two bounds. h is that of the samples, a part of the system's own time scale: the place's h does not enter.
 
-use super::comparison::{Comparison, ROUNDING};
-use super::dual::{along, lift, lift_node, unit};
+use super::bounded::{Bounded, exact, vector_of};
+use super::comparison::Comparison;
+use super::dual::{along, lift, slopes, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::{Checked, Dual, Place};
 use crate::linear::Matrix;
-use crate::{Lagrangian, Node, State, Stepping};
+use crate::{Lagrangian, Node, Stepping};
 use nalgebra::SVector;
 
-/// Dual numbers for second derivatives.
-type Second = Dual<Dual<f64>>;
+/// Dual numbers for first derivatives, and for second ones.
+pub(super) type First = Dual<Bounded>;
+type Second = Dual<First>;
 
 /// Momentum, energy, acceleration, step density, and the Jacobians of a step, against dual numbers.
 ///
 /// # Errors
 /// The first number that differs; [`CheckFailure::Vacuous`] where momentum, energy or a Jacobian is zero throughout.
 pub fn derivatives<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "derivatives", ROUNDING);
+    let mut check = Comparison::new(S::NAME, "derivatives");
     for sample in samples(system, place, &check)? {
         continuous(&sample, &mut check)?;
         jacobians(&sample, &mut check)?;
@@ -35,17 +39,21 @@ pub fn derivatives<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) 
 /// `∂L/∂q`, its rate and that of `∂L/∂t` along the motion (1, v, a), by second-order dual numbers.
 fn gradient_and_rates<const N: usize>(
     system: &impl Lagrangian<N, Second>,
-    (t, q, v, a): (f64, &SVector<f64, N>, &SVector<f64, N>, &SVector<f64, N>),
-) -> (SVector<f64, N>, SVector<f64, N>, f64) {
-    let number =
-        |value: f64, rate: f64, seed: f64| Second { value: Dual { value, slope: rate }, slope: Dual::fixed(seed) };
-    let derivative = |seed_t: f64, seed_q: &SVector<f64, N>| {
-        let q = SVector::from_fn(|i, _| number(q[i], v[i], seed_q[i]));
-        let v = SVector::from_fn(|i, _| number(v[i], a[i], 0.0));
-        system.lagrangian(number(t, 1.0, seed_t), &q, &v).slope
+    t: f64,
+    [q, v, a]: [&SVector<Bounded, N>; 3],
+) -> (SVector<Bounded, N>, SVector<Bounded, N>, Bounded) {
+    let number = |value: Bounded, rate: Bounded, seed: Bounded| Second {
+        value: Dual { value, slope: rate },
+        slope: Dual::fixed(seed),
     };
-    let each: SVector<Dual<f64>, N> = SVector::from_fn(|index, _| derivative(0.0, &unit(index)));
-    (each.map(|entry| entry.value), each.map(|entry| entry.slope), derivative(1.0, &SVector::zeros()).slope)
+    let [zero, one] = [0.0, 1.0].map(Bounded::exact);
+    let derivative = |seed_t: Bounded, seed_q: &SVector<Bounded, N>| {
+        let q = SVector::from_fn(|i, _| number(q[i], v[i], seed_q[i]));
+        let v = SVector::from_fn(|i, _| number(v[i], a[i], zero));
+        system.lagrangian(number(Bounded::exact(t), one, seed_t), &q, &v).slope
+    };
+    let each: SVector<First, N> = SVector::from_fn(|index, _| derivative(zero, &unit(index)));
+    (each.map(|entry| entry.value), slopes(&each), derivative(one, &SVector::zeros()).slope)
 }
 
 fn continuous<const N: usize, S: Checked<N>>(
@@ -53,60 +61,70 @@ fn continuous<const N: usize, S: Checked<N>>(
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, t, q, v, .. } = sample;
-    let (t, dual, second) = (*t, system.convert::<Dual<f64>>(), system.convert::<Second>());
-    let momentum = SVector::from_fn(|i, _| dual.lagrangian(Dual::fixed(t), &lift(q), &along(v, &unit(i))).slope);
-    check.vector("momentum", &system.momentum(t, q, v), &momentum, 0.0)?;
-    let lagrangian = system.lagrangian(t, q, v);
-    let energy = v.dot(&momentum) - lagrangian;
-    check.number("energy", system.energy(t, q, v), energy, v.dot(&momentum).abs() + lagrangian.abs())?;
+    let (bounded, dual, second) = (system.convert::<Bounded>(), system.convert::<First>(), system.convert::<Second>());
+    let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
+    let momentum =
+        SVector::from_fn(|i, _| dual.lagrangian(Dual::fixed(time), &lift(&place), &along(&velocity, &unit(i))).slope);
+    let found = vector_of(&system.momentum(*t, q, v), &bounded.momentum(time, &place, &velocity));
+    check.vector("momentum", &found, &momentum)?;
+    let energy = velocity.dot(&momentum) - bounded.lagrangian(time, &place, &velocity);
+    check.number("energy", bounded.energy(time, &place, &velocity).of(system.energy(*t, q, v)), energy)?;
 
-    let a = system.acceleration(t, q, v).map_err(|error| check.step(error))?;
-    let rate = dual.momentum(Dual::variable(t), &along(q, v), &along(v, &a)).map(|entry| entry.slope);
-    let (gradient, gradient_rate, time_rate) = gradient_and_rates(&second, (t, q, v, &a));
-    let force = system.force(t, q, v);
-    // M a is one of the terms of the rate, and may be large where the terms of the rate cancel.
-    let inertial = dual.momentum(Dual::fixed(t), &lift(q), &along(v, &a)).map(|entry| entry.slope);
-    let scale = gradient.amax() + force.amax() + inertial.amax();
-    check.vector("rate of the momentum", &rate, &(gradient + force), scale)?;
-    let density = a.dot(&(gradient + force)) - v.dot(&gradient_rate) - time_rate;
-    let scale = magnitude(&a, &gradient) + magnitude(&a, &force) + magnitude(v, &gradient_rate) + time_rate.abs();
-    let found = system.step_density(t, q, v).map_err(|error| check.step(error))?;
-    check.number("step density", found, density, scale)
+    let a = system.acceleration(*t, q, v).map_err(|error| check.step(error))?;
+    let bound = bounded.acceleration(time, &place, &velocity).map_err(|error| check.step(error))?;
+    let a = vector_of(&a, &bound);
+    let rate = slopes(&dual.momentum(Dual::variable(time), &along(&place, &velocity), &along(&velocity, &a)));
+    let (gradient, gradient_rate, time_rate) = gradient_and_rates(&second, *t, [&place, &velocity, &a]);
+    let applied = gradient + bounded.force(time, &place, &velocity);
+    check.vector("rate of the momentum", &rate, &applied)?;
+    let density = a.dot(&applied) - velocity.dot(&gradient_rate) - time_rate;
+    let found = system.step_density(*t, q, v).map_err(|error| check.step(error))?;
+    let bound = bounded.step_density(time, &place, &velocity).map_err(|error| check.step(error))?;
+    check.number("step density", bound.of(found), density)
 }
 
-/// Sum of the absolute values of the terms of a·b.
-pub(super) fn magnitude<const N: usize>(a: &SVector<f64, N>, b: &SVector<f64, N>) -> f64 {
-    a.abs().dot(&b.abs())
-}
-
-/// A node from which `(v, h)` is no solution, so that the residuals are not zero.
-pub(super) fn node<const N: usize, S: Checked<N>>(sample: &Sample<S, N>) -> Node<N> {
-    let Sample { system, t, q, v, .. } = sample;
-    let p = system.momentum(*t, q, &(v * 0.75));
-    Node::new(State { t: *t, q: *q, p }, system.energy(*t, q, &(v * 0.5)))
+/// A node in other numbers.
+pub(super) fn carried<const N: usize, T: crate::Real>(node: &Node<N>, number: impl Fn(f64) -> T) -> Node<N, T> {
+    Node {
+        t: number(node.t),
+        t_low: number(node.t_low),
+        q: node.q.map(&number),
+        q_low: node.q_low.map(&number),
+        p: node.p.map(&number),
+        p_low: node.p_low.map(&number),
+        energy: number(node.energy),
+        energy_low: number(node.energy_low),
+    }
 }
 
 fn jacobians<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (h, node, dual) = (*h, node(sample), system.convert::<Dual<f64>>());
-    let (found, alone) = (system.extended_system(&node, h, v), system.momentum_equation(&node, h, v));
-    let (residual, lifted, rounding) = (found.momentum.residual, lift_node(&node), system.rounding(&node, h, v));
+    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
+    let (found, alone) = (system.extended_system(&node, *h, v), system.momentum_equation(&node, *h, v));
+    let (known, lifted) =
+        (carried(&node, Bounded::exact), carried(&node, |number| Dual::fixed(Bounded::exact(number))));
+    let (step, velocity) = (Bounded::exact(*h), exact(v));
+    let again = bounded.extended_system(&known, step, &velocity);
+    let bounds = again.momentum.jacobian.dense();
     let (matrix, matrix_alone) = (found.momentum.jacobian.dense(), alone.jacobian.dense());
-    let size = rounding.residual.amax() + residual.amax();
     for j in 0..N {
-        let column = dual.extended_system(&lifted, Dual::fixed(h), &along(v, &unit(j)));
-        let slope = column.momentum.residual.map(|entry| entry.slope);
-        check.vector("residual_dv", &matrix.column(j).into_owned(), &slope, 0.0)?;
-        check.vector("residual_dv alone", &matrix_alone.column(j).into_owned(), &slope, 0.0)?;
-        check.number("energy_dv", found.energy_dv[j], (column.energy_residual.slope + residual[j]) / h, size / h)?;
+        let column = dual.extended_system(&lifted, Dual::fixed(step), &along(&velocity, &unit(j)));
+        let (wanted, bound) = (slopes(&column.momentum.residual), bounds.column(j).into_owned());
+        check.vector("residual_dv", &vector_of(&matrix.column(j).into_owned(), &bound), &wanted)?;
+        check.vector("residual_dv alone", &vector_of(&matrix_alone.column(j).into_owned(), &bound), &wanted)?;
+        let wanted = (column.energy_residual.slope + again.momentum.residual[j]) / step;
+        check.number("energy_dv", again.energy_dv[j].of(found.energy_dv[j]), wanted)?;
     }
-    let column = dual.extended_system(&lifted, Dual::variable(h), &lift(v));
-    check.vector("residual_dh", &found.residual_dh, &column.momentum.residual.map(|entry| entry.slope), size / h)?;
-    check.number("energy_dh", found.energy_dh, column.energy_residual.slope / h, rounding.energy_residual / h)?;
+    let column = dual.extended_system(&lifted, Dual::variable(step), &lift(&velocity));
+    let residual_dh = vector_of(&found.residual_dh, &again.residual_dh);
+    check.vector("residual_dh", &residual_dh, &slopes(&column.momentum.residual))?;
+    check.number("energy_dh", again.energy_dh.of(found.energy_dh), column.energy_residual.slope / step)?;
     // A row is a sum that loses at least half an ulp of itself.
-    let pairs = residual.iter().zip(rounding.residual.iter());
+    let rounding = system.rounding(&node, *h, v);
+    let pairs = found.momentum.residual.iter().zip(rounding.residual.iter());
     for (residual, rounding) in pairs.chain([(&found.energy_residual, &rounding.energy_residual)]) {
-        check.number("rounding", rounding.max(0.5 * residual.abs()), *rounding, 0.0)?;
+        let least = 0.5 * residual.abs();
+        check.number("rounding", Bounded::exact(rounding.max(least)), Bounded::once(least).of(*rounding))?;
     }
     Ok(())
 }

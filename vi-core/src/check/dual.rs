@@ -4,7 +4,7 @@
 //! operation by operation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating
 //! Derivatives, chapter 3.
 
-use crate::{Node, Real};
+use crate::Real;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::SVector;
 
@@ -37,32 +37,23 @@ impl<T: Real> Dual<T> {
 }
 
 /// A vector that does not change.
-pub(super) fn lift<const N: usize>(vector: &SVector<f64, N>) -> SVector<Dual<f64>, N> {
+pub(super) fn lift<T: Real, const N: usize>(vector: &SVector<T, N>) -> SVector<Dual<T>, N> {
     vector.map(Dual::fixed)
 }
 
 /// A vector that changes in a direction.
-pub(super) fn along<const N: usize>(vector: &SVector<f64, N>, direction: &SVector<f64, N>) -> SVector<Dual<f64>, N> {
+pub(super) fn along<T: Real, const N: usize>(vector: &SVector<T, N>, direction: &SVector<T, N>) -> SVector<Dual<T>, N> {
     vector.zip_map(direction, |value, slope| Dual { value, slope })
 }
 
 /// The direction of one entry.
-pub(super) fn unit<const N: usize>(index: usize) -> SVector<f64, N> {
-    SVector::from_fn(|row, _| f64::from(u8::from(row == index)))
+pub(super) fn unit<T: Real, const N: usize>(index: usize) -> SVector<T, N> {
+    SVector::from_fn(|row, _| if row == index { T::one() } else { T::zero() })
 }
 
-/// A node that does not change.
-pub(super) fn lift_node<const N: usize>(node: &Node<N>) -> Node<N, Dual<f64>> {
-    Node {
-        t: Dual::fixed(node.t),
-        t_low: Dual::fixed(node.t_low),
-        q: lift(&node.q),
-        q_low: lift(&node.q_low),
-        p: lift(&node.p),
-        p_low: lift(&node.p_low),
-        energy: Dual::fixed(node.energy),
-        energy_low: Dual::fixed(node.energy_low),
-    }
+/// How fast each entry changes.
+pub(super) fn slopes<T: Real, const N: usize>(vector: &SVector<Dual<T>, N>) -> SVector<T, N> {
+    vector.map(|entry| entry.slope)
 }
 
 impl<T: Real> Add for Dual<T> {

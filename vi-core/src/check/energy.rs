@@ -5,22 +5,60 @@
 //! E1 = −D3 L_d − g_d⁺               any rule
 //! E1 = E0                           no force, no time in L
 //! ```
+//!
+//! Rounding: that of E at the middle, known to one rounding; that of the slots at the ends, as in `steps`; and what the
+//! solved equations may leave. The last line has none. The length of a step is rounded by `δh/h ≈ 4 ε (τ/h)²` (`length`):
+//! where that is too much for a run, the first of 2 h, 4 h, … is taken with which it is not, up to the system's own time
+//! scale.
 
-use super::comparison::{Comparison, ROUNDING};
+use super::bounded::{Bounded, exact, once};
+use super::comparison::Comparison;
+use super::ladder::REACH;
+use super::length;
 use super::report::{CheckFailure, Report};
-use super::steps::Between;
+use super::sample::Course;
+use super::steps::{Slots, solved};
 use super::{Checked, Place, STEPS};
-use crate::{EnergyPreserving, State};
+use crate::{EnergyPreserving, Lagrangian, State};
 
 /// The energy carried over a run of the energy-preserving integrator, against the energy at the midpoints and the slot
 /// derivatives. For the midpoint rule.
 ///
 /// # Errors
-/// The first energy that differs; a step that does not exist; [`CheckFailure::Vacuous`] where every energy is zero or no
-/// momentum changes, so that there is nothing to preserve.
+/// The first energy that differs; a step that does not exist; [`CheckFailure::StepTooSmall`] where rounding decides how
+/// long the steps are; [`CheckFailure::Vacuous`] where every energy is zero or no momentum changes, so that there is
+/// nothing to preserve.
 pub fn energy<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "energy", ROUNDING);
+    let check = Comparison::new(S::NAME, "energy");
+    let longest = Course::from(system, place, &check)?.h;
+    let (mut h, mut met) = (place.h, String::new());
+    loop {
+        let rounding = length::at_start(system, place, h);
+        // Where there is no density at all, the integrator says so.
+        if rounding <= length::COARSE || rounding.is_infinite() {
+            let may_be_rounding = rounding.is_finite() && rounding > length::FINE;
+            match along_run(system, &Place { h, ..*place }) {
+                Err(CheckFailure::Step { error, .. }) if may_be_rounding || h > place.h => met = format!(": {error}"),
+                result => return result,
+            }
+        }
+        if 2.0 * h > longest {
+            let needed = Some(h * (rounding / length::FINE).sqrt());
+            let needed = needed.filter(|needed| met.is_empty() && *needed <= REACH * longest);
+            return Err(check.too_small(
+                "the length of a step",
+                needed,
+                format!("steps up to {h:.0e} were tried{met}"),
+            ));
+        }
+        h *= 2.0;
+    }
+}
+
+fn along_run<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
+    let mut check = Comparison::new(S::NAME, "energy");
     let Place { t, q, v, h } = *place;
+    let bounded = system.convert::<Bounded>();
     let mut run = EnergyPreserving::from_midpoint(system, t, q, v, h).map_err(|error| check.step(error))?;
     let first = run.state();
     let mut moved = 0.0_f64;
@@ -28,12 +66,15 @@ pub fn energy<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Re
         let (before, carried) = (run.state(), run.energy());
         let step = run.step().map_err(|error| check.step(error))?;
         let (t, q, v) = step.midpoint;
-        let scale = step.p.abs().dot(&v.abs()) + system.lagrangian(t, &q, &v).abs();
-        check.number("energy at the midpoint", system.energy(t, &q, &v), f64::midpoint(carried, step.energy), scale)?;
-        let between = Between::new(system, &before, &State { t: step.t, q: step.q, p: step.p });
-        check.number("E1", step.energy, between.energy_after, between.energy_scale)?;
+        let left = solved(system, &before, step.h, &v);
+        let left = left.energy_residual + v.abs().dot(&left.residual);
+        let mean = Bounded { value: f64::midpoint(carried, step.energy), error: left };
+        let found = bounded.energy(Bounded::once(t), &once(&q), &exact(&v)).of(system.energy(t, &q, &v));
+        check.number("energy at the midpoint", found, mean)?;
+        let slots = Slots::between(system, &before, &State { t: step.t, q: step.q, p: step.p });
+        check.number("E1", Bounded { value: step.energy, error: left }, slots.energy_after)?;
         if S::AUTONOMOUS && !S::FORCED {
-            check.number("E1 - E0", step.energy - carried, 0.0, f64::MIN_POSITIVE)?;
+            check.number("E1 - E0", Bounded::exact(step.energy - carried), Bounded::exact(0.0))?;
         }
         moved = moved.max((step.p - first.p).amax());
     }

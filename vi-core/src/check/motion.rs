@@ -12,8 +12,12 @@ const ROWS: u32 = 7;
 /// Substeps of the rows; the last entry of the tableau is of order 14.
 const SUBSTEPS: [u32; ROWS as usize] = [2, 4, 6, 8, 10, 12, 14];
 /// Difference of the last two columns up to which a step is accepted, relative to the state; the last column is better by
-/// far. At the very floor of rounding no step would pass for sure.
+/// far.
 const TOLERANCE: f64 = 1e-14;
+/// A difference below this that half a step does not lessen by [`FALL`] is rounding, and the step is accepted.
+const ROUNDING: f64 = 1e-8;
+/// Where it is not rounding, half a step lessens the difference by a factor of some thousands.
+const FALL: f64 = 16.0;
 /// Parts of the way below which a step is given up.
 const SHORTEST: f64 = 1e-7;
 
@@ -36,35 +40,51 @@ impl<const N: usize> Motion<N> {
     ///
     /// # Errors
     /// Those of the acceleration; [`StepError::NotConverged`] where the motion cannot be followed.
-    pub fn at(mut self, system: &impl Lagrangian<N>, end: f64) -> Result<Self, StepError> {
+    pub fn at(self, system: &impl Lagrangian<N>, end: f64) -> Result<Self, StepError> {
+        self.within(system, end, u32::MAX)
+    }
+
+    /// The same, given up after so many trial steps.
+    pub(super) fn within(mut self, system: &impl Lagrangian<N>, end: f64, mut trials: u32) -> Result<Self, StepError> {
         let way = end - self.t;
         let mut h = way;
         let mut arrived = way == 0.0;
+        // The difference of the trial step before from the same state, which was twice as long.
+        let mut before = f64::INFINITY;
         while !arrived {
             let last = (end - self.t).abs() <= h.abs();
             let step = if last { end - self.t } else { h };
-            let scale = self.q.amax().max(self.v.amax()).max(f64::MIN_POSITIVE);
             // A trial step that is too long may end anywhere, even where there is no acceleration.
-            let change = match self.extrapolated(system, step) {
-                Ok((change, error)) if error <= TOLERANCE * scale => change,
-                _ if h.abs() > SHORTEST * way.abs() => {
-                    h = step / 2.0;
-                    continue;
+            let trial = self.extrapolated(system, step);
+            let error = trial.as_ref().map_or(f64::NAN, |(_, error)| *error);
+            let is_accurate = error <= TOLERANCE || error <= ROUNDING && error * FALL >= before;
+            let goes_on = trials > 0 && (is_accurate || h.abs() > SHORTEST * way.abs());
+            trials = trials.saturating_sub(1);
+            match trial {
+                Ok((change, _)) if goes_on && is_accurate => {
+                    self =
+                        Self { t: if last { end } else { self.t + step }, q: self.q + change.0, v: self.v + change.1 };
+                    (arrived, before) = (last, f64::INFINITY);
+                    h *= 1.25;
                 }
-                Ok((_, residual)) => {
-                    let residuals = Residuals::new();
+                _ if goes_on => (h, before) = (step / 2.0, error),
+                Ok((_, error)) => {
+                    let (residual, residuals) = (error / f64::EPSILON, Residuals::new());
                     return Err(StepError::NotConverged { t: self.t, h, iterations: ROWS, residual, residuals });
                 }
                 Err(error) => return Err(error),
-            };
-            self = Self { t: if last { end } else { self.t + step }, q: self.q + change.0, v: self.v + change.1 };
-            arrived = last;
-            h *= 1.25;
+            }
         }
         Ok(self)
     }
 
-    /// The change over one step, and the difference of the last two columns.
+    /// A vector's `error` relative to the vector and its change.
+    fn relative(error: &SVector<f64, N>, vector: &SVector<f64, N>, change: &SVector<f64, N>) -> f64 {
+        let size = vector.amax().max(change.amax());
+        if error.amax() == 0.0 { 0.0 } else { error.amax() / size }
+    }
+
+    /// The change over one step, and the difference of the last two columns, relative to coordinates and velocities.
     fn extrapolated(&self, system: &impl Lagrangian<N>, h: f64) -> Result<(Change<N>, f64), StepError> {
         let mut row: Vec<Change<N>> = Vec::new();
         let mut error = f64::NAN;
@@ -75,7 +95,8 @@ impl<const N: usize> Motion<N> {
                 let ratio = f64::from(n) / f64::from(*before);
                 let gain = 1.0 / (ratio * ratio - 1.0);
                 let better = (entry.0 + (entry.0 - above.0) * gain, entry.1 + (entry.1 - above.1) * gain);
-                error = (better.0 - entry.0).amax().max((better.1 - entry.1).amax());
+                let error_q = Self::relative(&(better.0 - entry.0), &self.q, &better.0);
+                error = error_q.max(Self::relative(&(better.1 - entry.1), &self.v, &better.1));
                 *above = entry;
                 entry = better;
             }

@@ -10,13 +10,13 @@ pub struct Report {
     pub system: &'static str,
     /// The check.
     pub check: &'static str,
-    /// Numbers other than zero that were compared; of a slope, the points that it was fitted through.
+    /// Numbers above their rounding that were compared; of a slope, the points that it was fitted through.
     pub compared: usize,
     /// Where the difference was worst.
     pub what: String,
-    /// The worst difference, relative to the numbers that met there; of a slope, what it falls short by.
+    /// The worst difference, as a part of what rounding may do there; of a slope, what it falls short by.
     pub worst: f64,
-    /// What would have been allowed.
+    /// What would have been allowed: 1, or for a slope how much it may fall short by.
     pub tolerance: f64,
 }
 
@@ -36,9 +36,9 @@ pub enum CheckFailure {
         found: f64,
         /// As the check has it.
         wanted: f64,
-        /// Their difference, relative to the numbers that met there.
+        /// Their difference; of a slope, what it falls short by.
         difference: f64,
-        /// What would have been allowed.
+        /// What would have been allowed: the bound of the rounding of both.
         tolerance: f64,
     },
     /// Nothing was compared, or only zeros: this proves nothing.
@@ -48,6 +48,21 @@ pub enum CheckFailure {
         /// The check.
         check: &'static str,
         /// What was missing, and what to do.
+        why: String,
+    },
+    /// The step is so small that what the check is about is all rounding, and larger ones, which the check tried, did not
+    /// help. This proves nothing, so it is a failure.
+    StepTooSmall {
+        /// The system.
+        system: &'static str,
+        /// The check.
+        check: &'static str,
+        /// What is to be seen.
+        what: &'static str,
+        /// The step with which it would be, by extrapolation from the largest one tried, in units of time; `None` where that is
+        /// far beyond the time in which the system moves, and only another place will do.
+        needed: Option<f64>,
+        /// Which steps were tried, and what stood against larger ones.
         why: String,
     },
     /// The system has not the property that the check is about.
@@ -88,6 +103,13 @@ impl fmt::Display for CheckFailure {
                 "{system}, {check}: {what} is {found:e} instead of {wanted:e}, off by {difference:.1e} where {tolerance:.1e} is allowed"
             ),
             Self::Vacuous { system, check, why } => write!(f, "{system}, {check}: proves nothing, {why}"),
+            Self::StepTooSmall { system, check, what, needed, why } => {
+                write!(f, "{system}, {check}: h is too small to see {what} above rounding, {why}; ")?;
+                match needed {
+                    Some(h) => write!(f, "try h = {h:.0e}, or another place"),
+                    None => write!(f, "try another place"),
+                }
+            }
             Self::NotApplicable { system, check, why } => write!(f, "{system}, {check}: does not apply, {why}"),
             Self::Step { system, check, error } => write!(f, "{system}, {check}: {error}"),
         }

@@ -1,11 +1,15 @@
 //! Where formulas are compared: states about the motion from a place, with parameters about the given ones.
 //!
-//! In: a system and a [`Place`]. Out: samples of which no coordinate, velocity or parameter has a value that could hide a
-//! term, as zero and one can; and the extent of the motion, a distance for each coordinate and momentum.
+//! In: a system and a [`Place`]. Out: the [`Course`] of the motion, whose time scale is the system's and not that of the
+//! place's h; and samples about it, of which no coordinate, velocity or parameter has a value that could hide a term, as
+//! zero and one can. A formula holds for every h. At a step that is a part of the time scale its terms are of like size,
+//! however small the place's h is; with h itself a term of order h² would lie below the rounding of the others.
 
 use super::comparison::Comparison;
 use super::report::CheckFailure;
 use super::{Checked, Motion, Place, STEPS};
+use crate::linear::Matrix;
+use crate::{Interval, Node, State, StepError};
 use nalgebra::SVector;
 
 /// Samples of one place.
@@ -14,8 +18,18 @@ const SAMPLES: u32 = 8;
 const BESIDE: f64 = 0.5;
 /// Part of its value by which a parameter is varied.
 const VARIATION: f64 = 0.1;
-/// Part of the largest extent that a coordinate which moves less is given.
+/// Part of the largest extent, in the measure of kinetic energy, that a coordinate which moves less is given.
 const LEAST: f64 = 1e-2;
+/// Radians that the fastest coordinate goes through before the motion has turned.
+const TURN: f64 = 2.0;
+/// How often the time of the place's own steps is doubled for a motion that does not turn.
+const DOUBLINGS: u32 = 40;
+/// Trial steps from one state to the next after which a motion beyond the place's own steps is given up.
+const TRIALS: u32 = 256;
+/// Roundings of the time below which a step is lost in it.
+const LOST: f64 = 16.0;
+/// How often a sample that has no value is moved half way to the motion.
+const RETREATS: u32 = 6;
 
 /// A system with varied parameters at a state.
 pub(super) struct Sample<S, const N: usize> {
@@ -26,94 +40,185 @@ pub(super) struct Sample<S, const N: usize> {
     pub(super) h: f64,
 }
 
-/// How far coordinates, velocities and momenta move from a place.
-pub(super) struct Extent<const N: usize> {
-    pub(super) q: SVector<f64, N>,
-    pub(super) v: SVector<f64, N>,
-    pub(super) p: SVector<f64, N>,
+/// The motion from a place, until it has turned: at least over [`STEPS`] steps of the place's length, and as far beyond as
+/// it can be followed.
+pub(super) struct Course<const N: usize> {
+    /// States at equal times.
+    pub(super) states: Vec<Motion<N>>,
+    /// A step of which [`STEPS`] are all of it.
+    pub(super) h: f64,
 }
 
-/// The states of the motion from a place, at equal times over [`STEPS`] steps.
-fn motion<const N: usize, S: Checked<N>>(
-    system: &S,
-    place: &Place<N>,
-    check: &Comparison,
-) -> Result<Vec<Motion<N>>, CheckFailure> {
-    let mut now = Motion { t: place.t, q: place.q, v: place.v };
-    let mut states = vec![now];
-    for index in 1..SAMPLES {
-        let end = place.t + place.h * f64::from(STEPS) * f64::from(index) / f64::from(SAMPLES - 1);
-        now = now.at(system, end).map_err(|error| check.step(error))?;
-        states.push(now);
+impl<const N: usize> Course<N> {
+    /// The course of the motion from a place.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed over the place's own steps; [`CheckFailure::Vacuous`] where nothing moves.
+    pub(super) fn from<S: Checked<N>>(system: &S, place: &Place<N>, check: &Comparison) -> Result<Self, CheckFailure> {
+        let resolution = f64::EPSILON * place.t.abs();
+        if place.h < LOST * resolution {
+            let why = format!("t = {:.0e} is rounded by {resolution:.0e}", place.t);
+            return Err(check.too_small("steps", Some(LOST * LOST * resolution), why));
+        }
+        let mut course = Self::over(system, place, place.h, u32::MAX).map_err(|error| check.step(error))?;
+        for _ in 0..DOUBLINGS {
+            if course.has_turned(system).map_err(|error| check.step(error))? {
+                break;
+            }
+            // The place promises no more than its own steps.
+            match Self::over(system, place, 2.0 * course.h, TRIALS) {
+                Ok(longer) => course = longer,
+                Err(_) => break,
+            }
+        }
+        if course.range(|state| state.q).amax() == 0.0 {
+            return Err(check.vacuous("nothing moves from this place; choose another"));
+        }
+        Ok(course)
     }
-    Ok(states)
-}
 
-/// The extent of these states; each entry positive, unless nothing moves, which is a failure.
-fn extent_of<const N: usize, S: Checked<N>>(
-    system: &S,
-    states: &[Motion<N>],
-    check: &Comparison,
-) -> Result<Extent<N>, CheckFailure> {
-    let Some(first) = states.first() else { return Err(check.vacuous("no state")) };
-    let momentum = |state: &Motion<N>| system.momentum(state.t, &state.q, &state.v);
-    let largest = |distance: &dyn Fn(&Motion<N>) -> SVector<f64, N>| {
-        let each = states.iter().map(distance);
-        let range: SVector<f64, N> = each.fold(SVector::zeros(), |range, moved| range.sup(&moved.abs()));
-        range.map(|entry| entry.max(range.amax() * LEAST))
-    };
-    let extent = Extent {
-        q: largest(&|state| state.q - first.q),
-        v: largest(&|state| state.v - first.v),
-        p: largest(&|state| momentum(state) - momentum(first)),
-    };
-    if extent.q.amax() == 0.0 {
-        return Err(check.vacuous("nothing moves from this place; choose another"));
+    /// The motion over [`STEPS`] steps h, given up where it takes more trial steps from one state to the next.
+    pub(super) fn over<S: Checked<N>>(system: &S, place: &Place<N>, h: f64, trials: u32) -> Result<Self, StepError> {
+        let mut now = Motion { t: place.t, q: place.q, v: place.v };
+        let mut states = vec![now];
+        for index in 1..SAMPLES {
+            let end = place.t + h * f64::from(STEPS) * f64::from(index) / f64::from(SAMPLES - 1);
+            now = now.within(system, end, trials)?;
+            states.push(now);
+        }
+        Ok(Self { states, h })
     }
-    // A motion without acceleration is as long as its velocity says.
-    let (v, p) = (first.v.abs().amax(), momentum(first).abs().amax());
-    let positive = |entries: SVector<f64, N>, otherwise: f64| {
-        if entries.amax() > 0.0 { entries } else { SVector::repeat(otherwise) }
-    };
-    Ok(Extent { v: positive(extent.v, v), p: positive(extent.p, p), ..extent })
+
+    /// Whether a coordinate has gone through a good part of a turn, were its acceleration `−ω² q` but for a constant.
+    fn has_turned<S: Checked<N>>(&self, system: &S) -> Result<bool, StepError> {
+        let accelerations = self.states.iter().map(|state| system.acceleration(state.t, &state.q, &state.v));
+        let accelerations: Vec<_> = accelerations.collect::<Result<_, _>>()?;
+        let (acceleration, distance) = (range(accelerations.into_iter()), self.range(|state| state.q));
+        let squares = acceleration.zip_map(&distance, |a, q| if q > 0.0 { a / q } else { 0.0 });
+        Ok(squares.amax().sqrt() * self.h * f64::from(STEPS) >= TURN)
+    }
+
+    /// Whether a velocity changes.
+    pub(super) fn accelerates(&self) -> bool {
+        self.range(|state| state.v).amax() > 0.0
+    }
+
+    /// The largest distances from the value at the first state.
+    fn range(&self, of: impl Fn(&Motion<N>) -> SVector<f64, N>) -> SVector<f64, N> {
+        range(self.states.iter().map(of))
+    }
+
+    /// Distances for each coordinate and velocity, none zero: how far they move, or, where they hardly do, as far as makes
+    /// a part of the same kinetic energy.
+    fn extent<S: Checked<N>>(&self, system: &S) -> [SVector<f64, N>; 2] {
+        let Some(first) = self.states.first() else { return [SVector::zeros(); 2] };
+        let node = Node::new(State::at(system, first.t, first.q, first.v), 0.0);
+        let mass = system.momentum_equation(&node, 0.0, &first.v).jacobian.dense();
+        let weights = SVector::<f64, N>::from_fn(|row, _| match mass[(row, row)].abs().sqrt() {
+            weight if weight > 0.0 => weight,
+            _ => mass.row(row).amax().sqrt(),
+        });
+        let positive = |range: SVector<f64, N>, otherwise: SVector<f64, N>| {
+            let largest = |entries: &SVector<f64, N>| entries.component_mul(&weights).amax();
+            let largest = if range.amax() > 0.0 { largest(&range) } else { largest(&otherwise) };
+            range.zip_map(&weights, |entry, weight| entry.max(LEAST * largest / weight))
+        };
+        let speeds = |_: &Motion<N>| first.v.abs();
+        let [q, v] = [self.range(|state| state.q), self.range(|state| state.v)];
+        [positive(q, q), positive(v, speeds(first))]
+    }
+
+    /// The samples about this motion.
+    pub(super) fn samples<S: Checked<N>>(&self, system: &S) -> Vec<Sample<S, N>> {
+        let extent = self.extent(system);
+        let mut draw = Sequence(7);
+        let sample = |state: &Motion<N>| {
+            let drawn = draw;
+            let mut part = 1.0;
+            for _ in 0..RETREATS {
+                draw = drawn;
+                let sample = beside(system, state, self.h, &extent, part, &mut draw);
+                if sample.has_values() {
+                    return sample;
+                }
+                part /= 2.0;
+            }
+            beside(system, state, self.h, &extent, 0.0, &mut draw)
+        };
+        self.states.iter().map(sample).collect()
+    }
 }
 
-/// The extent of the motion from a place.
-pub(super) fn extent<const N: usize, S: Checked<N>>(
-    system: &S,
-    place: &Place<N>,
-    check: &Comparison,
-) -> Result<Extent<N>, CheckFailure> {
-    extent_of(system, &motion(system, place, check)?, check)
-}
-
-/// The samples about a place.
+/// The samples about the motion from a place.
+///
+/// # Errors
+/// Those of [`Course::from`].
 pub(super) fn samples<const N: usize, S: Checked<N>>(
     system: &S,
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    let states = motion(system, place, check)?;
-    let extent = extent_of(system, &states, check)?;
-    let mut draw = Sequence(7);
-    let sample = |state: Motion<N>| {
-        let mut beside = |entry: f64, extent: f64| entry + BESIDE * extent * draw.next();
-        let (q, v) = (state.q.zip_map(&extent.q, &mut beside), state.v.zip_map(&extent.v, &mut beside));
-        let mut varied = *system;
-        for name in S::PARAMETERS {
-            if let Some(parameter) = varied.parameter_mut(name) {
-                *parameter *= 1.0 + VARIATION * draw.next();
-            }
+    Ok(Course::from(system, place, check)?.samples(system))
+}
+
+/// The largest distances from the first of these vectors, entry by entry.
+fn range<const N: usize>(mut vectors: impl Iterator<Item = SVector<f64, N>>) -> SVector<f64, N> {
+    let Some(first) = vectors.next() else { return SVector::zeros() };
+    vectors.fold(SVector::zeros(), |range, vector| range.sup(&(vector - first).abs()))
+}
+
+/// The sample beside a state: part 1 of the way is as far as it may be, part 0 is the state itself.
+fn beside<const N: usize, S: Checked<N>>(
+    system: &S,
+    state: &Motion<N>,
+    h: f64,
+    [extent_q, extent_v]: &[SVector<f64, N>; 2],
+    part: f64,
+    draw: &mut Sequence,
+) -> Sample<S, N> {
+    let mut beside = |entry: f64, extent: f64| entry + BESIDE * part * extent * draw.next();
+    let (q, v) = (state.q.zip_map(extent_q, &mut beside), state.v.zip_map(extent_v, &mut beside));
+    let mut varied = *system;
+    for name in S::PARAMETERS {
+        if let Some(parameter) = varied.parameter_mut(name) {
+            *parameter *= 1.0 + VARIATION * part * draw.next();
         }
-        // An exponent, say, may allow no other value.
-        let values = |system: &S| system.lagrangian(state.t, &q, &v) + system.force(state.t, &q, &v).sum();
-        let system = if values(&varied).is_finite() { varied } else { *system };
-        Sample { system, t: state.t, q, v, h: place.h }
-    };
-    Ok(states.into_iter().map(sample).collect())
+    }
+    Sample { system: varied, t: state.t, q, v, h }
+}
+
+impl<S: Checked<N>, const N: usize> Sample<S, N> {
+    /// The interval that begins here, with the velocity of the sample.
+    pub(super) fn interval(&self) -> Interval<N> {
+        Interval { t0: self.t, q0: self.q, t1: self.t + self.h, q1: self.q + self.v * self.h }
+    }
+
+    /// The interval of which this is the middle, over a part of the step.
+    pub(super) fn about(&self, part: f64) -> Interval<N> {
+        let half = self.h * part / 2.0;
+        Interval { t0: self.t - half, q0: self.q - self.v * half, t1: self.t + half, q1: self.q + self.v * half }
+    }
+
+    /// A node from which `(v, h)` is no solution, so that the residuals are not zero.
+    pub(super) fn node(&self) -> Node<N> {
+        let Self { system, t, q, v, .. } = self;
+        let p = system.momentum(*t, q, &(v * 0.75));
+        Node::new(State { t: *t, q: *q, p }, system.energy(*t, q, &(v * 0.5)))
+    }
+
+    /// Whether the system is defined here and over the step: an exponent, say, may allow no other value.
+    fn has_values(&self) -> bool {
+        let Self { system, t, q, v, h } = self;
+        let Ok(acceleration) = system.acceleration(*t, q, v) else { return false };
+        let equations = system.extended_system(&self.node(), *h, v);
+        let sums = [acceleration, system.force(*t, q, v), equations.momentum.residual].map(|vector| vector.sum());
+        let numbers = [system.lagrangian(*t, q, v), system.ld(&self.interval()), equations.energy_residual];
+        sums.iter().chain(&numbers).all(|number| number.is_finite())
+    }
 }
 
 /// A fixed sequence in (−1, 1) that looks random: a linear congruence (Knuth and Lewis, Numerical Recipes, section 7.1).
+#[derive(Clone, Copy)]
 struct Sequence(u32);
 
 impl Sequence {

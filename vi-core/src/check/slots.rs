@@ -4,20 +4,26 @@
 //! D1 = ∂L_d/∂t0    D2 = ∂L_d/∂q0    D3 = ∂L_d/∂t1    D4 = ∂L_d/∂q1                by dual numbers
 //! L_d/h → L        (f_d⁻ + f_d⁺)/h → f        (g_d⁻ + g_d⁺)/h → −f·v              as h → 0
 //! ```
+//!
+//! Rounding: as in `derivatives`, that of both sides, carried along. The limits are approached from 1/64 of the samples'
+//! step, which is a part of the system's own time scale, about one middle.
 
-use super::comparison::{Comparison, ROUNDING, Scale};
-use super::derivatives::magnitude;
-use super::dual::{along, lift, unit};
+use super::bounded::{Bounded, vector_of};
+use super::comparison::Comparison;
+use super::derivatives::First;
+use super::dual::{along, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::{Checked, Dual, Place};
-use crate::{DiscreteLagrangian, Interval};
+use crate::{DiscreteLagrangian, Interval, Lagrangian, Real};
 use nalgebra::SVector;
 
-/// Part of the step with which a limit is approached.
-const PART: f64 = 0.25;
-/// By so much the distance from a limit has to fall: a rule of order one falls by [`PART`].
-const FALL: f64 = 0.4;
+/// Parts of the step from which a limit is approached: two, since the distance may happen to be zero at one.
+const FAR: [f64; 2] = [1.0 / 64.0, 1.0 / 128.0];
+/// The part with which it is approached.
+const NEAR: f64 = 1.0 / 1024.0;
+/// By so much the distance has to fall: that of a rule of order one falls to 1/16, and from the nearer part to 1/8.
+const FALL: f64 = 0.3;
 
 /// Slot derivatives against dual numbers; L_d, discrete forces and powers against what they stand for.
 ///
@@ -25,7 +31,7 @@ const FALL: f64 = 0.4;
 /// The first number that differs; [`CheckFailure::Vacuous`] where L_d, D2 or D4, or f_d of a forced system, is zero
 /// throughout.
 pub fn slots<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "slots", ROUNDING);
+    let mut check = Comparison::new(S::NAME, "slots");
     for sample in samples(system, place, &check)? {
         by_slot(&sample, &mut check)?;
         limits(&sample, &mut check)?;
@@ -33,74 +39,51 @@ pub fn slots<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
     check.finish(if S::FORCED { &["L_d", "D2", "D4", "f_d"] } else { &["L_d", "D2", "D4"] })
 }
 
-fn by_slot<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
-    let (system, dual, interval) = (&sample.system, sample.system.convert::<Dual<f64>>(), sample.interval(1.0));
+/// An interval in other numbers.
+pub(super) fn between<const N: usize, T: Real>(interval: &Interval<N>, number: impl Fn(f64) -> T) -> Interval<N, T> {
     let Interval { t0, q0, t1, q1 } = interval;
-    let still = Interval { t0: Dual::fixed(t0), q0: lift(&q0), t1: Dual::fixed(t1), q1: lift(&q1) };
-    let value = dual.ld(&still).value;
-    let Scale { size, slack } = sample.scale();
-    check.number("L_d", system.ld(&interval), value, Scale { size: sample.h * size, slack: sample.h * slack })?;
+    Interval { t0: number(*t0), q0: q0.map(&number), t1: number(*t1), q1: q1.map(&number) }
+}
+
+fn by_slot<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
+    let (system, interval) = (&sample.system, sample.interval());
+    let (bounded, dual) = (system.convert::<Bounded>(), system.convert::<First>());
+    let known = between(&interval, Bounded::exact);
+    let still = between(&interval, |number| Dual::fixed(Bounded::exact(number)));
+    let Interval { t0, q0, t1, q1 } = known;
+    check.number("L_d", bounded.ld(&known).of(system.ld(&interval)), dual.ld(&still).value)?;
     let d1 = dual.ld(&Interval { t0: Dual::variable(t0), ..still }).slope;
-    check.number("D1", system.d1_ld(&interval), d1, sample.scale())?;
+    check.number("D1", bounded.d1_ld(&known).of(system.d1_ld(&interval)), d1)?;
     let d3 = dual.ld(&Interval { t1: Dual::variable(t1), ..still }).slope;
-    check.number("D3", system.d3_ld(&interval), d3, sample.scale())?;
+    check.number("D3", bounded.d3_ld(&known).of(system.d3_ld(&interval)), d3)?;
     let d2 = SVector::from_fn(|i, _| dual.ld(&Interval { q0: along(&q0, &unit(i)), ..still }).slope);
-    check.vector("D2", &system.d2_ld(&interval), &d2, 0.0)?;
+    check.vector("D2", &vector_of(&system.d2_ld(&interval), &bounded.d2_ld(&known)), &d2)?;
     let d4 = SVector::from_fn(|i, _| dual.ld(&Interval { q1: along(&q1, &unit(i)), ..still }).slope);
-    check.vector("D4", &system.d4_ld(&interval), &d4, 0.0)
+    check.vector("D4", &vector_of(&system.d4_ld(&interval), &bounded.d4_ld(&known)), &d4)
 }
 
-/// What L_d, f_d and g_d are to a whole step and to a part of it: nearer to L and f by [`FALL`], or equal to rounding.
+/// What L_d, f_d and g_d are to a part of the step, and what to a smaller one: nearer to L, f and −f·v by [`FALL`], or equal
+/// to rounding.
 fn limits<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
-    let system = &sample.system;
-    let averages = |part: f64| {
-        let interval = sample.interval(part);
-        let h = interval.t1 - interval.t0;
-        let force = (system.fd_minus(&interval) + system.fd_plus(&interval)) / h;
-        (system.ld(&interval) / h, force, (system.gd_minus(&interval) + system.gd_plus(&interval)) / h)
-    };
-    let wanted = |part: f64| {
-        let (t, q, v) = sample.middle(part);
+    let system = sample.system.convert::<Bounded>();
+    let pairs = |part: f64| {
+        let interval = between(&sample.about(part), Bounded::exact);
+        let Interval { t0, q0, t1, q1 } = &interval;
+        let (h, half) = (*t1 - *t0, Bounded::exact(0.5));
+        let (t, q, v) = (*t0 + h * half, (q0 + q1) * half, (q1 - q0).map(|way| way / h));
         let force = system.force(t, &q, &v);
-        (system.lagrangian(t, &q, &v), force, -force.dot(&v))
+        let average = (system.fd_minus(&interval) + system.fd_plus(&interval)).map(|force| force / h);
+        let power = (system.gd_minus(&interval) + system.gd_plus(&interval)) / h;
+        let numbers =
+            [("L_d/h", system.ld(&interval) / h, system.lagrangian(t, &q, &v)), ("g_d", power, -force.dot(&v))];
+        let forces = average.iter().zip(force.iter()).map(|(average, force)| ("f_d", *average, *force));
+        numbers.into_iter().chain(forces).collect::<Vec<_>>()
     };
-    let ((ld, force, power), (ld_wanted, force_wanted, power_wanted)) = (averages(PART), wanted(PART));
-    let ((ld_far, force_far, power_far), (ld_goal, force_goal, power_goal)) = (averages(1.0), wanted(1.0));
-    // The distance from the whole step is allowed for, beside rounding.
-    let scale = |of: Scale, far: f64| Scale { slack: of.slack + far.abs() * FALL, ..of };
-    check.number("L_d/h", ld, ld_wanted, scale(sample.scale(), ld_far - ld_goal))?;
-    for index in 0..N {
-        let size = scale(force_wanted.amax().into(), force_far[index] - force_goal[index]);
-        check.number("f_d", force[index], force_wanted[index], size)?;
+    let far = FAR.map(pairs);
+    for (index, (what, found, wanted)) in pairs(NEAR).into_iter().enumerate() {
+        let distances = far.iter().filter_map(|pairs| pairs.get(index)).map(|(_, far, goal)| (*far - *goal).most());
+        let allowed = distances.fold(0.0, f64::max) * FALL;
+        check.number(what, found, Bounded { error: wanted.error + allowed, ..wanted })?;
     }
-    check.number("g_d", power, power_wanted, scale(magnitude(&force_wanted, &sample.v).into(), power_far - power_goal))
-}
-
-impl<const N: usize, S: Checked<N>> Sample<S, N> {
-    /// The interval that begins here, over a part of the step, with the velocity of the sample.
-    fn interval(&self, part: f64) -> Interval<N> {
-        let h = self.h * part;
-        Interval { t0: self.t, q0: self.q, t1: self.t + h, q1: self.q + self.v * h }
-    }
-
-    /// The middle of that interval, with the velocity that its ends say: what rounding takes from it is the same here and
-    /// in the slots.
-    fn middle(&self, part: f64) -> (f64, SVector<f64, N>, SVector<f64, N>) {
-        let Interval { t0, q0, t1, q1 } = self.interval(part);
-        let h = t1 - t0;
-        (t0 + h / 2.0, (q0 + q1) / 2.0, (q1 - q0) / h)
-    }
-
-    /// The terms of an energy, and what it loses where v is made of the ends of an interval.
-    pub(super) fn scale(&self) -> Scale {
-        let Self { system, t, q, v, h } = self;
-        let momentum = system.momentum(*t, q, v);
-        let size = magnitude(&momentum, v) + system.lagrangian(*t, q, v).abs();
-        Scale { size, slack: lost_velocity(q, v, *t, *h) * momentum.abs().sum() }
-    }
-}
-
-/// What rounding takes from v where it is made of the ends of an interval.
-pub(super) fn lost_velocity<const N: usize>(q: &SVector<f64, N>, v: &SVector<f64, N>, t: f64, h: f64) -> f64 {
-    4.0 * f64::EPSILON * (q.amax() + v.amax() * t.abs()) / h.abs()
+    Ok(())
 }

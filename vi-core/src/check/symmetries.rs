@@ -1,143 +1,141 @@
 //! What a fixed step keeps: momenta of cyclic coordinates, the symplectic form, and itself backwards.
+//!
+//! ```text
+//! p1 = p0                                       of a cyclic coordinate: every bit
+//! dq1 ∧ dp1 = dq0 ∧ dp0                         with p0 = −D2 L_d − f_d⁻ and q1 = q0 + h v: as functions of (q0, v)
+//! r(t1, q1, p1; −h, v) = 0,  p1 → p0            where r(t0, q0, p0; h, v) = 0 and p0 → p1
+//! ```
+//!
+//! p0 is made for (q0, v), so no equation is solved, and the derivatives of the second line are dual numbers, so nothing is
+//! differenced. Rounding: none in the first line; in the others that of both sides, carried along as in `derivatives`. h is
+//! that of the samples, a part of the system's own time scale.
 
+use super::bounded::{Bounded, exact};
 use super::comparison::Comparison;
+use super::derivatives::{First, carried};
+use super::dual::{along, lift, slopes, unit};
 use super::report::{CheckFailure, Report};
-use super::sample::{Extent, extent};
-use super::{Checked, Place, STEPS};
-use crate::{FixedStep, State};
+use super::sample::{Sample, samples};
+use super::{Checked, Dual, Place, STEPS};
+use crate::{FixedStep, Node, State, Stepping};
 use nalgebra::SVector;
 
-/// What a run forth and back again may be off by, relative to how far it went. Measured on the ready systems: 2.3e-16.
-const RETURN: f64 = 1e-9;
-/// What `MᵀJM − J` may be by differences, in the units of the motion. Measured on the ready systems: 4.6e-13.
-const SYMPLECTIC: f64 = 1e-8;
-/// Part of the extent of the motion by which a state is moved for a difference.
-const DISTANCE: f64 = 1e-3;
-
-/// The state after `steps` steps of length `h`.
-fn after<const N: usize, S: Checked<N>>(
-    system: &S,
-    start: State<N>,
-    h: f64,
-    steps: u32,
-    check: &Comparison,
-) -> Result<State<N>, CheckFailure> {
-    let mut run = FixedStep::new(system, start, h).map_err(|error| check.step(error))?;
-    for _ in 0..steps {
-        run.step().map_err(|error| check.step(error))?;
-    }
-    Ok(run.state())
-}
-
-/// Momenta of cyclic coordinates keep every bit over fixed steps.
+/// Momenta of cyclic coordinates keep every bit over fixed steps, and gain nothing in any step.
 ///
 /// # Errors
 /// A momentum that changes; [`CheckFailure::NotApplicable`] for a system without a cyclic coordinate;
 /// [`CheckFailure::Vacuous`] where such a momentum is zero or its coordinate stands still.
 pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "momenta", 0.0);
+    let mut check = Comparison::new(S::NAME, "momenta");
     if !S::CYCLIC.contains(&true) {
         return Err(check.not_applicable("no coordinate is cyclic"));
     }
+    let cyclic = || (0..N).filter(|index| S::CYCLIC[*index]);
     let start = State::at(system, place.t, place.q, place.v);
     let mut run = FixedStep::new(system, start, place.h).map_err(|error| check.step(error))?;
     for _ in 0..STEPS {
         let state = run.step().map_err(|error| check.step(error))?;
-        for index in (0..N).filter(|index| S::CYCLIC[*index]) {
-            check.number(S::COORDINATES[index], state.p[index], start.p[index], 0.0)?;
+        for index in cyclic() {
+            let [found, wanted] = [state.p[index], start.p[index]].map(Bounded::exact);
+            check.number(S::COORDINATES[index], found, wanted)?;
         }
     }
     let end = run.state();
-    for index in (0..N).filter(|index| S::CYCLIC[*index]) {
-        if start.p[index] == 0.0 || end.q[index] - start.q[index] == 0.0 {
+    for index in cyclic() {
+        let stands_still = place.v[index] == 0.0 && end.q[index] - start.q[index] == 0.0;
+        if start.p[index] == 0.0 || stands_still {
             let name = S::COORDINATES[index];
             let why = format!("`{name}` stands still or its momentum is zero; choose a velocity `dot({name})`");
             return Err(check.vacuous(why));
         }
     }
-    check.finish(&[])
-}
-
-/// Fixed steps −h lead back the way that fixed steps h led. For rules that are symmetric in the two ends of the interval;
-/// with forces too.
-///
-/// # Errors
-/// A coordinate or momentum that does not return; [`CheckFailure::Vacuous`] where nothing moves; a step that is not taken.
-pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "reversibility", RETURN);
-    let Extent { q, p, .. } = extent(system, place, &check)?;
-    let start = State::at(system, place.t, place.q, place.v);
-    let there = after(system, start, place.h, STEPS, &check)?;
-    let back = after(system, there, -place.h, STEPS, &check)?;
-    if there.q == start.q && there.p == start.p {
-        return Err(check.vacuous("nothing moves from this place; choose another"));
+    // What a momentum of moderate size would round away.
+    for Sample { system, t, q, v, h } in samples(system, place, &check)? {
+        let gain = system.momentum_residual(&Node::new(State::at(&system, t, q, v), 0.0), h, &v).increment;
+        for index in cyclic() {
+            check.number(S::COORDINATES[index], Bounded::exact(gain[index]), Bounded::exact(0.0))?;
+        }
     }
-    // Counted from the far end, so that zero stands for not having moved.
-    check.vector("way of the coordinates", &(back.q - there.q), &(start.q - there.q), q.amax())?;
-    check.vector("way of the momenta", &(back.p - there.p), &(start.p - there.p), p.amax())?;
     check.finish(&[])
 }
 
-/// The derivative M of one fixed step by the state before it keeps the symplectic form: `MᵀJM = J`. M is by central
-/// differences of fourth order.
+/// The fixed step −h leads back the way that the fixed step h led. For rules that are symmetric in the two ends of the
+/// interval; with forces too.
 ///
 /// # Errors
-/// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] where the
-/// step moves nothing; a step that is not taken.
+/// A number that differs; [`CheckFailure::Vacuous`] where nothing moves, or no momentum changes.
+pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
+    let mut check = Comparison::new(S::NAME, "reversibility");
+    for sample in samples(system, place, &check)? {
+        let system = sample.system.convert::<Bounded>();
+        let (h, v) = (Bounded::exact(sample.h), exact(&sample.v));
+        let start = carried(&bare(&sample), Bounded::exact);
+        let start = Node { p: system.momentum_equation(&start, h, &v).residual, ..start };
+        let gain = system.momentum_residual(&start, h, &v).increment;
+        let (t, q) = (start.t + h, start.q + v.map(|v| v * h));
+        let end = Node { t, q, p: SVector::zeros(), ..start };
+        check.vector("momentum at the end", &system.momentum_equation(&end, -h, &v).residual, &(start.p + gain))?;
+        check.vector("momentum lost on the way back", &-system.momentum_residual(&end, -h, &v).increment, &gain)?;
+    }
+    check.finish(&["momentum at the end"])
+}
+
+/// A fixed step keeps the symplectic form, `dq1 ∧ dp1 = dq0 ∧ dp0`.
+///
+/// # Errors
+/// An entry that differs; [`CheckFailure::NotApplicable`] for a system with a force; [`CheckFailure::Vacuous`] where
+/// nothing moves.
 pub fn symplecticity<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
-    let mut check = Comparison::new(S::NAME, "symplecticity", SYMPLECTIC);
+    let mut check = Comparison::new(S::NAME, "symplecticity");
     if S::FORCED {
         return Err(check.not_applicable("a force does not keep the symplectic form"));
     }
-    let extent = extent(system, place, &check)?;
-    let columns = derivative(system, place, &extent, &check)?;
-    // Areas in the units of the motion.
-    let unit = extent.q.component_mul(&extent.p).amax();
-    let mut moved = 0.0_f64;
-    for (i, (q, p)) in columns.iter().enumerate() {
-        for (j, (other_q, other_p)) in columns.iter().enumerate().skip(i + 1) {
-            let wanted = if i + N == j { extent.q[i] * extent.p[i] } else { 0.0 };
-            check.number("area of two columns", q.dot(other_p) - p.dot(other_q), wanted, unit)?;
+    for sample in samples(system, place, &check)? {
+        let columns: Vec<_> = (0..2 * N).map(|column| Column::of(&sample, column)).collect();
+        for (index, one) in columns.iter().enumerate() {
+            for other in columns.iter().skip(index + 1) {
+                check.number(
+                    "area of two columns",
+                    area(&one.after, &other.after),
+                    area(&one.before, &other.before),
+                )?;
+            }
         }
-        let kept = |index: usize, own: usize, distance: f64| if index == own { distance } else { 0.0 };
-        let own_q = SVector::<f64, N>::from_fn(|row, _| kept(i, row, extent.q[row]));
-        let own_p = SVector::<f64, N>::from_fn(|row, _| kept(i, row + N, extent.p[row]));
-        moved = moved.max((q - own_q).component_div(&extent.q).amax()).max((p - own_p).component_div(&extent.p).amax());
     }
-    if moved < SYMPLECTIC {
-        return Err(check.vacuous("the step moves nothing; choose a larger h or another place"));
-    }
-    check.finish(&[])
+    check.finish(&["area of two columns"])
+}
+
+/// The place of a sample, without a momentum: its momentum equation says which one it would need.
+fn bare<const N: usize, S: Checked<N>>(sample: &Sample<S, N>) -> Node<N> {
+    Node::new(State { t: sample.t, q: sample.q, p: SVector::zeros() }, 0.0)
 }
 
 /// Changes of coordinates and momenta.
-type Change<const N: usize> = (SVector<f64, N>, SVector<f64, N>);
+type Change<const N: usize> = (SVector<Bounded, N>, SVector<Bounded, N>);
 
-/// Columns of M, each times the extent of the coordinate or momentum that it is the derivative by: q first, then p.
-fn derivative<const N: usize, S: Checked<N>>(
-    system: &S,
-    place: &Place<N>,
-    extent: &Extent<N>,
-    check: &Comparison,
-) -> Result<Vec<Change<N>>, CheckFailure> {
-    let start = State::at(system, place.t, place.q, place.v);
-    let moved = |column: usize, times: f64| {
-        let mut state = start;
-        if column < N {
-            state.q[column] += times * DISTANCE * extent.q[column];
-        } else {
-            state.p[column - N] += times * DISTANCE * extent.p[column - N];
-        }
-        after(system, state, place.h, 1, check)
-    };
-    let difference = |column: usize, times: f64| -> Result<Change<N>, CheckFailure> {
-        let (more, less) = (moved(column, times)?, moved(column, -times)?);
-        Ok((more.q - less.q, more.p - less.p))
-    };
-    let column = |column: usize| {
-        let (near, far) = (difference(column, 1.0)?, difference(column, 2.0)?);
-        let divisor = 12.0 * DISTANCE;
-        Ok(((near.0 * 8.0 - far.0) / divisor, (near.1 * 8.0 - far.1) / divisor))
-    };
-    (0..2 * N).map(column).collect()
+/// What one entry of (q0, v) changes before the step and after it.
+struct Column<const N: usize> {
+    before: Change<N>,
+    after: Change<N>,
+}
+
+impl<const N: usize> Column<N> {
+    fn of<S: Checked<N>>(sample: &Sample<S, N>, column: usize) -> Self {
+        let system = sample.system.convert::<First>();
+        let h = Dual::fixed(Bounded::exact(sample.h));
+        let still = carried(&bare(sample), |number| Dual::fixed(Bounded::exact(number)));
+        let (q, v) = (exact(&sample.q), exact(&sample.v));
+        let direction = unit(column % N);
+        let (q, v) = if column < N { (along(&q, &direction), lift(&v)) } else { (lift(&q), along(&v, &direction)) };
+        let place = Node { q, ..still };
+        let start = Node { p: system.momentum_equation(&place, h, &v).residual, ..place };
+        let gain = system.momentum_residual(&start, h, &v).increment;
+        let way = v.map(|v| v * h);
+        Self { before: (slopes(&q), slopes(&start.p)), after: (slopes(&(q + way)), slopes(&(start.p + gain))) }
+    }
+}
+
+/// The symplectic form of two changes.
+fn area<const N: usize>(one: &Change<N>, other: &Change<N>) -> Bounded {
+    one.0.dot(&other.1) - one.1.dot(&other.0)
 }

@@ -1,4 +1,6 @@
-//! A right system with one function spoiled, as a wrong generator would print it: in every kind of number.
+//! A right system with one function spoiled, as a wrong generator would print it: in every kind of number. Each file uses its
+//! part of the faults.
+#![allow(dead_code)]
 
 use vi_core::check::Checked;
 use vi_core::linear::Matrix;
@@ -23,6 +25,8 @@ pub(crate) enum Fault {
     Acceleration,
     /// A term of the step density is missing.
     StepDensity,
+    /// The step density is a part in a thousand too large.
+    Density,
     /// The discrete Lagrangian is not the one of the slots.
     Ld,
     /// D1 has the wrong sign.
@@ -45,7 +49,7 @@ pub(crate) enum Fault {
     Damping,
     /// The rounding is too small.
     Rounding,
-    /// The last entry of the Jacobian lacks a term of order h².
+    /// The last entry of the Jacobian is a part in a million too large.
     Jacobian,
     /// ∂r/∂h has the wrong sign.
     ResidualDh,
@@ -55,6 +59,10 @@ pub(crate) enum Fault {
     EnergyDh,
     /// The last momentum gains a little.
     MomentumGain,
+    /// Every momentum gains a part in a thousand too much.
+    Gain,
+    /// Every momentum loses a part in a million of itself.
+    Loss,
     /// The first momentum gains what depends on the direction of time.
     DirectedGain,
     /// The energy gains.
@@ -121,7 +129,8 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
     }
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
         let right = self.system.step_density(t, q, v)?;
-        Ok(self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]))
+        let right = self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]);
+        Ok(self.unless(Fault::Density, right, |density| density * T::real(1.001)))
     }
 }
 
@@ -169,7 +178,7 @@ impl<S> Spoiled<S> {
         let mut jacobian = right.jacobian.dense();
         match self.fault {
             Fault::Damping => (0..N).for_each(|i| jacobian[(i, i)] += T::real(DAMPING) * h * T::real(0.5)),
-            Fault::Jacobian => jacobian[(N - 1, N - 1)] += T::real(1e-3) * h * h,
+            Fault::Jacobian => jacobian[(N - 1, N - 1)] *= T::real(1.0 + 1e-6),
             _ => {}
         }
         MomentumEquation { residual: self.spoil_residual(right.residual, node, h, v), jacobian }
@@ -196,10 +205,13 @@ impl<S> Spoiled<S> {
     fn spoil_increment<const N: usize, T: Real>(
         &self,
         mut increment: Increment<N, T>,
+        node: &Node<N, T>,
         h: T,
         v: &SVector<T, N>,
     ) -> Increment<N, T> {
         match self.fault {
+            Fault::Gain => increment.momentum *= T::real(1.001),
+            Fault::Loss => increment.momentum -= node.p * T::real(1e-6),
             Fault::MomentumGain => increment.momentum[N - 1] += T::real(1e-6) * h,
             Fault::Damping => increment.momentum -= v * (T::real(DAMPING) * h),
             Fault::DirectedGain => increment.momentum[0] += h * h,
@@ -240,7 +252,7 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
         MomentumResidual {
             residual: self.spoil_residual(right.residual, node, h, v),
             magnitude: right.magnitude,
-            increment: self.spoil_increment(increment, h, v).momentum,
+            increment: self.spoil_increment(increment, node, h, v).momentum,
         }
     }
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
@@ -251,7 +263,7 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
             magnitude: right.magnitude,
             energy_residual: spoilt,
             energy_magnitude: right.energy_magnitude,
-            increment: self.spoil_increment(right.increment, h, v),
+            increment: self.spoil_increment(right.increment, node, h, v),
         }
     }
     fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {

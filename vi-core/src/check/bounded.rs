@@ -1,0 +1,364 @@
+//! Numbers that know their rounding: a value, and a bound of how far it is from the exact result of its formula.
+//!
+//! In: a function that is generic over [`Real`]. Out: its value, the same bits as in `f64`, and the bound; each operation
+//! adds its own rounding to what it makes of those of its operands:
+//!
+//! ```text
+//! z = x + y    δz = δx + δy + ε |z|          z = x y    δz = |x| δy + |y| δx + δx δy + ε |z|
+//! z = x / y    δz = (δx + |z| δy) / (|y| − δy) + ε |z|          z = f(x)    δz = max |f'| δx + 2 ε |z|
+//! ```
+//!
+//! ε = 2⁻⁵² is twice what one operation of IEEE rounds off, and what a library's function may be off by. What cancels leaves
+//! its roundings behind, and they are seen. Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3
+//! (running error analysis).
+
+use crate::Real;
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use nalgebra::SVector;
+
+const EPSILON: f64 = f64::EPSILON;
+/// A constant that is a multiple of one over this, and not larger than it, stands in a formula as it is.
+const EXACT: f64 = 1_048_576.0;
+
+/// A value and the bound of its rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounded {
+    pub(super) value: f64,
+    /// Not negative; infinite, or not a number, where nothing is known.
+    pub(super) error: f64,
+}
+
+impl Bounded {
+    /// A number as it stands.
+    pub(super) fn exact(value: f64) -> Self {
+        Self { value, error: 0.0 }
+    }
+
+    /// A number that was rounded once, or twice.
+    pub(super) fn once(value: f64) -> Self {
+        Self { value, error: EPSILON * value.abs() }
+    }
+
+    /// The result of an operation or of a function, of which the bound `error` is due to its operands.
+    fn after(value: f64, error: f64, roundings: f64) -> Self {
+        Self { value, error: error + roundings * EPSILON * value.abs() }
+    }
+
+    /// f(self), with a bound of |f'| up to the bound.
+    fn chain(self, value: f64, slope: f64) -> Self {
+        // Else 0 · ∞ where f' has no bound.
+        let error = if self.error == 0.0 { 0.0 } else { slope * self.error };
+        Self::after(value, error, 2.0)
+    }
+
+    /// The smallest |x| up to the bound.
+    fn least(self) -> f64 {
+        (self.value.abs() - self.error).max(0.0)
+    }
+
+    /// The largest |x| up to the bound.
+    pub(super) fn most(self) -> f64 {
+        self.value.abs() + self.error
+    }
+
+    /// The number as it was computed elsewhere by the same formula.
+    pub(super) fn of(self, value: f64) -> Self {
+        Self { value, ..self }
+    }
+
+    /// Whether it is not zero, rounding apart.
+    pub(super) fn is_seen(self) -> bool {
+        self.value.abs() > self.error
+    }
+}
+
+/// A vector as it stands.
+pub(super) fn exact<const N: usize>(vector: &SVector<f64, N>) -> SVector<Bounded, N> {
+    vector.map(Bounded::exact)
+}
+
+/// The vector as it was computed elsewhere by the same formula.
+pub(super) fn vector_of<const N: usize>(value: &SVector<f64, N>, again: &SVector<Bounded, N>) -> SVector<Bounded, N> {
+    again.zip_map(value, Bounded::of)
+}
+
+/// A vector whose entries were rounded once, or twice.
+pub(super) fn once<const N: usize>(vector: &SVector<f64, N>) -> SVector<Bounded, N> {
+    vector.map(Bounded::once)
+}
+
+impl Add for Bounded {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        // The sum with zero is exact.
+        let roundings = if self.value == 0.0 || other.value == 0.0 { 0.0 } else { 1.0 };
+        Self::after(self.value + other.value, self.error + other.error, roundings)
+    }
+}
+
+impl Sub for Bounded {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Bounded {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let error = self.value.abs() * other.error + self.error * other.most();
+        Self::after(self.value * other.value, error, 1.0)
+    }
+}
+
+impl Div for Bounded {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        let error = (self.error + value.abs() * other.error) / other.least();
+        Self::after(value, error, 1.0)
+    }
+}
+
+impl Neg for Bounded {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { value: -self.value, error: self.error }
+    }
+}
+
+impl AddAssign for Bounded {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Bounded {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Bounded {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl num_traits::Zero for Bounded {
+    fn zero() -> Self {
+        Self::exact(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        self.most() == 0.0
+    }
+}
+
+impl num_traits::One for Bounded {
+    fn one() -> Self {
+        Self::exact(1.0)
+    }
+}
+
+impl Real for Bounded {
+    const EPSILON: f64 = EPSILON;
+
+    /// A constant of a formula: rounded once, unless it is a fraction that needs no rounding.
+    fn real(value: f64) -> Self {
+        let is_exact = value.abs() <= EXACT && (value * EXACT).fract() == 0.0;
+        if is_exact { Self::exact(value) } else { Self::once(value) }
+    }
+    fn recip(self) -> Self {
+        Self::exact(1.0) / self
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        if root == 0.0 { Self::after(root, self.error.sqrt(), 0.0) } else { self.chain(root, root.recip()) }
+    }
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        Self::after(value, value * self.error.exp_m1(), 2.0)
+    }
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), self.least().recip())
+    }
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Real::sin_cos(self.value);
+        // The reduced angle is rounded at a distance from zero.
+        let (error, reduced) = (self.error.min(2.0), EPSILON * EPSILON * self.value.abs());
+        let bound = |value: f64, slope: f64| Self::after(value, (slope.abs() + error) * error + reduced, 2.0);
+        (bound(sin, cos), bound(cos, sin))
+    }
+    fn tan(self) -> Self {
+        let (sin, cos) = self.sin_cos();
+        Self { value: self.value.tan(), error: (sin / cos).error }
+    }
+    fn asin(self) -> Self {
+        self.chain(self.value.asin(), (1.0 - self.most() * self.most()).max(0.0).sqrt().recip())
+    }
+    fn acos(self) -> Self {
+        self.chain(self.value.acos(), (1.0 - self.most() * self.most()).max(0.0).sqrt().recip())
+    }
+    fn atan(self) -> Self {
+        self.chain(self.value.atan(), (1.0 + self.least() * self.least()).recip())
+    }
+    fn atan2(self, other: Self) -> Self {
+        let distance = self.least() * self.least() + other.least() * other.least();
+        let across = self.error * other.most() + other.error * self.most();
+        // The negative axis, where the angle jumps by a turn, may be crossed.
+        let may_jump = self.error > 0.0 && self.least() == 0.0 && other.value <= other.error;
+        let error = if across == 0.0 { 0.0 } else { across / distance };
+        Self::after(self.value.atan2(other.value), if may_jump { core::f64::consts::TAU } else { error }, 2.0)
+    }
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.most().cosh())
+    }
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.most().sinh())
+    }
+    fn tanh(self) -> Self {
+        let least = self.least().tanh();
+        self.chain(self.value.tanh(), 1.0 - least * least)
+    }
+    fn abs(self) -> Self {
+        Self { value: self.value.abs(), error: self.error }
+    }
+    fn sign(self) -> Self {
+        Self { value: Real::sign(self.value), error: if self.is_seen() || self.error == 0.0 { 0.0 } else { 2.0 } }
+    }
+    fn hypot(self, other: Self) -> Self {
+        Self::after(self.value.hypot(other.value), self.error + other.error, 2.0)
+    }
+    fn pow(self, exponent: Self) -> Self {
+        let value = self.value.powf(exponent.value);
+        if self.value == 0.0 {
+            return Self { value, error: if self.error == 0.0 { 0.0 } else { self.error.powf(exponent.value) } };
+        }
+        // The bound of ln z = y ln x. An exponent that is exact needs no ln x, which a base below zero does not have.
+        let by_base = if self.error == 0.0 { 0.0 } else { exponent.most() * self.error / self.least() };
+        let by_exponent = if exponent.error == 0.0 { 0.0 } else { self.value.ln().abs() * exponent.error };
+        Self::after(value, value.abs() * (by_base + by_exponent).exp_m1(), 2.0)
+    }
+    fn max(self, other: Self) -> Self {
+        let larger = if self.value >= other.value { self } else { other };
+        Self { error: self.error.max(other.error), ..larger }
+    }
+    fn is_finite(self) -> bool {
+        self.value.is_finite()
+    }
+    fn is_positive(self) -> bool {
+        self.value > 0.0
+    }
+    fn is_at_most(self, bound: Self) -> bool {
+        self.value <= bound.value
+    }
+    fn to_f64(self) -> f64 {
+        self.value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A function of one number, in both kinds of numbers.
+    type Function = (&'static str, fn(f64) -> f64, fn(Bounded) -> Bounded);
+
+    const FUNCTIONS: [Function; 16] = [
+        ("recip", Real::recip, Real::recip),
+        ("sqrt", Real::sqrt, Real::sqrt),
+        ("exp", Real::exp, Real::exp),
+        ("ln", Real::ln, Real::ln),
+        ("sin", Real::sin, Real::sin),
+        ("cos", Real::cos, Real::cos),
+        ("tan", Real::tan, Real::tan),
+        ("asin", Real::asin, Real::asin),
+        ("acos", Real::acos, Real::acos),
+        ("atan", Real::atan, Real::atan),
+        ("sinh", Real::sinh, Real::sinh),
+        ("cosh", Real::cosh, Real::cosh),
+        ("tanh", Real::tanh, Real::tanh),
+        ("abs", Real::abs, Real::abs),
+        ("sign", Real::sign, Real::sign),
+        ("x^2.5", |x| Real::pow(x, 2.5), |x| x.pow(Bounded::real(2.5))),
+    ];
+
+    /// A function of two numbers.
+    type Pair = (&'static str, fn(f64, f64) -> f64, fn(Bounded, Bounded) -> Bounded);
+
+    const PAIRS: [Pair; 8] = [
+        ("+", |x, y| x + y, |x, y| x + y),
+        ("-", |x, y| x - y, |x, y| x - y),
+        ("*", |x, y| x * y, |x, y| x * y),
+        ("/", |x, y| x / y, |x, y| x / y),
+        ("atan2", Real::atan2, Real::atan2),
+        ("hypot", Real::hypot, Real::hypot),
+        ("pow", Real::pow, Real::pow),
+        ("max", Real::max, Real::max),
+    ];
+
+    /// The values to try, from where bounds are steep to where numbers are lost beside others.
+    const VALUES: [f64; 10] = [-30.0, -1.5, -0.75, -1e-6, 1e-9, 0.3, 0.999, 1.0, 2.6, 40.0];
+    /// Bounds of the operands.
+    const ERRORS: [f64; 4] = [0.0, 1e-6, 1e-3, 0.6];
+
+    /// Whether the bound holds where an operand lies anywhere within its own; where there is no value there is no bound.
+    fn holds(result: Bounded, values: impl Iterator<Item = f64>) -> bool {
+        values.filter(|value| !value.is_nan()).all(|value| {
+            let distance = (value - result.value).abs();
+            // A bound that is reached may be rounded itself, and so may the operand there.
+            distance <= result.error * (1.0 + 1e-7) || result.error.is_nan() || result.value.is_nan()
+        })
+    }
+
+    /// Operands within their bounds.
+    fn within(value: f64, error: f64) -> impl Iterator<Item = f64> + Clone {
+        [-1.0, -0.5, 0.0, 0.5, 1.0].into_iter().map(move |part| value + part * error)
+    }
+
+    #[test]
+    fn bounds_hold_wherever_the_operands_are() {
+        for (name, exact, rounded) in FUNCTIONS {
+            for (value, error) in VALUES.into_iter().flat_map(|value| ERRORS.map(|error| (value, error))) {
+                let result = rounded(Bounded { value, error });
+                assert_eq!(result.value.to_bits(), exact(value).to_bits(), "{name}({value}) = {result:?}");
+                assert!(holds(result, within(value, error).map(exact)), "{name}({value} ± {error}) = {result:?}");
+            }
+        }
+        for (name, exact, rounded) in PAIRS {
+            for (x, y) in VALUES.into_iter().flat_map(|x| VALUES.map(|y| (x, y))) {
+                for error in ERRORS {
+                    let result = rounded(Bounded { value: x, error }, Bounded { value: y, error });
+                    assert_eq!(result.value.to_bits(), exact(x, y).to_bits(), "{x} {name} {y} = {result:?}");
+                    let values = within(x, error).flat_map(|x| within(y, error).map(move |y| exact(x, y)));
+                    assert!(holds(result, values), "{x} {name} {y} ± {error} = {result:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_cancels_leaves_its_rounding() {
+        let (large, small) = (Bounded::exact(1e16), Bounded::exact(1.0));
+        let rest = large + small - large;
+        assert!((rest.value - 1.0).abs() <= rest.error && rest.error <= 4.0, "{rest:?}");
+        let tenth = Bounded::real(0.1);
+        let nothing = tenth * Bounded::real(3.0) - Bounded::real(0.3);
+        assert!(nothing.value != 0.0 && !nothing.is_seen(), "{nothing:?}");
+        assert!(Bounded::real(0.5).error == 0.0 && tenth.error > 0.0);
+    }
+
+    #[test]
+    fn nothing_is_known_where_a_denominator_may_be_zero() {
+        let doubtful = Bounded { value: 1e-3, error: 1e-3 };
+        for result in [doubtful.recip(), doubtful.ln(), Bounded::exact(1.0) / doubtful] {
+            assert!(!result.is_seen(), "{result:?}");
+        }
+    }
+}

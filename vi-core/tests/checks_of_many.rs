@@ -1,0 +1,119 @@
+//! The checks know their rounding: over steps from 1e-5, and 1e-5 of the largest sensible one, up to that, right systems of
+//! many kinds and units pass each, and spoiled ones fail each by numbers. Where rounding hides what a check is about, it
+//! says so.
+
+mod many;
+mod spoiled;
+
+use many::Case;
+use spoiled::{Fault, Spoiled};
+use vi_core::check::{self, CheckFailure, Checked, Place, Report};
+
+/// Places that are drawn about each.
+const DRAWS: u32 = 20;
+
+/// A check, as it is called by hand.
+type Check<S, const N: usize> = fn(&S, &Place<N>) -> Result<Report, CheckFailure>;
+
+fn second_order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
+    check::order(system, place, 2)
+}
+
+/// The checks that apply, with faults that each has to see.
+fn checks<const N: usize, S: Checked<N>>(is_midpoint: bool) -> Vec<(Check<S, N>, Vec<Fault>)> {
+    use Fault::{Acceleration, Density, EnergyResidual, Gain, Jacobian, Ld, Loss, Momentum, ResidualDh, Rounding};
+    let of_derivatives = vec![Momentum, Fault::Energy, Acceleration, Jacobian, ResidualDh, Rounding];
+    let each: [(bool, Check<S, N>, Vec<Fault>); 9] = [
+        (true, check::derivatives, of_derivatives),
+        (true, check::slots, vec![Ld, Fault::D1, Fault::D2, Fault::D4]),
+        (true, check::steps, vec![EnergyResidual, Gain, Loss]),
+        (true, second_order, vec![Gain, Loss, Acceleration]),
+        (S::CYCLIC.contains(&true), check::momenta, vec![Loss]),
+        (!S::FORCED, check::symplecticity, vec![Loss]),
+        (true, check::reversibility, vec![Gain, Loss]),
+        (is_midpoint, check::energy, vec![Fault::Energy]),
+        (is_midpoint && !S::FORCED, check::step_law, vec![Density]),
+    ];
+    each.into_iter().filter(|(applies, ..)| *applies).map(|(_, check, faults)| (check, faults)).collect()
+}
+
+/// Each check passes for the right system, and fails for each spoiled one by numbers, whatever the step.
+#[allow(clippy::needless_pass_by_value, reason = "as the other tests of each case")]
+fn seen_at_each_step<const N: usize, S: Checked<N>>(case: Case<S, N>) {
+    let Case { system, is_midpoint, .. } = case;
+    for place in case.places() {
+        for (check, faults) in checks(is_midpoint) {
+            let right = check(&Spoiled { system, fault: Fault::None }, &place);
+            let report = right.unwrap_or_else(|failure| panic!("h = {:e}: {failure}", place.h));
+            println!("h = {:.1e}: {report}", place.h);
+            assert!(report.compared > 0 && report.worst <= report.tolerance, "{report}");
+            for fault in faults {
+                let failure = check(&Spoiled { system, fault }, &place).expect_err("a fault that nothing sees");
+                assert!(matches!(failure, CheckFailure::Differs { .. }), "h = {:e}, {fault:?}: {failure}", place.h);
+            }
+        }
+    }
+}
+
+mod at_their_places {
+    super::many::each_case!(super::seen_at_each_step);
+}
+
+/// A fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
+fn sequence() -> impl FnMut() -> f64 {
+    let mut state = 1_u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(state >> 32).unwrap_or_default()) / 2_f64.powi(32)
+    }
+}
+
+/// No check fails by numbers for a right system about its place, with steps up to twice the largest sensible one. What is
+/// allowed: a motion or a step that does not exist from there, and a law below rounding.
+#[allow(clippy::needless_pass_by_value, reason = "as the other tests of each case")]
+fn not_red_at_others<const N: usize, S: Checked<N>>(case: Case<S, N>) {
+    let Case { system, place, is_midpoint } = case;
+    let (mut draw, mut passed, mut refused) = (sequence(), 0, 0);
+    for _ in 0..DRAWS {
+        let (t, h) = (place.t + 60.0 * place.h * draw(), 2.0 * place.h * 10_f64.powf(-6.0 * draw()));
+        let (q, v) = (place.q.map(|entry| entry * (0.5 + draw())), place.v.map(|entry| entry * (0.3 + 1.2 * draw())));
+        let place = Place { t, q, v, h };
+        for (check, _) in checks(is_midpoint) {
+            match check(&Spoiled { system, fault: Fault::None }, &place) {
+                Ok(_) => passed += 1,
+                Err(CheckFailure::Step { .. } | CheckFailure::StepTooSmall { .. }) => refused += 1,
+                Err(failure) => panic!("{failure}, at {place:?}"),
+            }
+        }
+    }
+    println!("{}: {passed} passed, {refused} refused", S::NAME);
+    assert!(passed > 9 * refused, "{}: {passed} passed, {refused} refused", S::NAME);
+}
+
+mod about_their_places {
+    super::many::each_case!(super::not_red_at_others);
+}
+
+/// Of the energy of a slow particle nearly all is that of its rest: what is left has six digits.
+#[test]
+fn what_rounding_hides_is_said() {
+    let Case { system, place, .. } = many::relativistic();
+    let system = many::Relativistic { c: 1e5, ..system };
+    for h in [1e-5, 1e-3, place.h] {
+        let place = Place { h, ..place };
+        let hidden: [(Check<_, 2>, &str); 2] =
+            [(check::energy, "the length of a step"), (check::step_law, "the step law")];
+        for (check, hidden) in hidden {
+            let failure = check(&system, &place).expect_err("a law below rounding");
+            println!("{failure}");
+            let CheckFailure::StepTooSmall { what, needed, .. } = &failure else { panic!("{failure}") };
+            assert_eq!(*what, hidden);
+            assert!(needed.is_none_or(|needed| needed > h), "{failure}");
+        }
+        second_order(&system, &place).unwrap_or_else(|failure| panic!("{failure}"));
+    }
+    let late = Place { t: 1e9, h: 1e-7, ..place };
+    let failure = check::steps(&system, &late).expect_err("a step that is lost in the time");
+    println!("{failure}");
+    assert!(failure.to_string().contains("too small to see steps above rounding"), "{failure}");
+}
