@@ -8,9 +8,14 @@
 /// * Autonomous; a force acts
 /// * `L = T(v) + U(t, q)` with a constant mass matrix
 /// * The step's equation in `v` is linear, and the whole step one constant matrix, computed once per run
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::fmt::Debug,
+    ::core::cmp::PartialEq
+)]
 #[allow(non_snake_case)]
-pub struct DampedOscillator<T = f64> {
+pub struct DampedOscillator<T = ::core::primitive::f64> {
     /// Mass.
     ///
     /// Parameter `m`, 1 by default.
@@ -25,522 +30,570 @@ pub struct DampedOscillator<T = f64> {
     pub c: T,
 }
 
-impl ::core::default::Default for DampedOscillator<f64> {
-    fn default() -> Self {
-        Self { m: 1.0, k: 4.0, c: 0.04 }
-    }
-}
+/// Every name that is bound below is one of a function first: a binding may shadow that, and no constant from around.
+#[allow(
+    clippy::all,
+    clippy::pedantic,
+    deprecated,
+    non_snake_case,
+    unused_imports,
+    unused_parens,
+    unused_variables
+)]
+const _: () = {
+    use ::core::convert::{identity as system, identity as name, identity as index};
+    use ::core::convert::{identity as t, identity as q, identity as v};
+    use ::core::convert::{identity as x_dot, identity as x, identity as real};
+    use ::core::convert::{identity as time, identity as mass, identity as applied};
+    use ::core::convert::{identity as x_ddot, identity as values, identity as value};
+    use ::core::convert::{identity as text, identity as interval, identity as h};
+    use ::core::convert::{identity as x0, identity as x1, identity as x_mid};
+    use ::core::convert::{identity as node, identity as x0_low, identity as p0_x};
+    use ::core::convert::{identity as p0_x_low, identity as s1, identity as energy0};
+    use ::core::convert::{identity as energy0_low, identity as s2, identity as s3};
+    use ::core::convert::{identity as s4, identity as s5, identity as s6};
+    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::primitive::{bool, f64, str, usize};
 
-impl<T: ::vi_core::Real> DampedOscillator<T> {
-    /// The same system in another kind of number, every parameter rounded to it.
-    #[allow(unused_variables)]
-    pub fn from_f64(system: &DampedOscillator<f64>) -> Self {
-        Self {
-            m: T::real(system.m),
-            k: T::real(system.k),
-            c: T::real(system.c),
+    impl ::core::default::Default for DampedOscillator<f64> {
+        fn default() -> Self {
+            Self { m: 1.0, k: 4.0, c: 0.04 }
         }
     }
 
-    /// The same system in another kind of number, every parameter rounded to it.
-    #[allow(dead_code)]
-    fn convert<U: ::vi_core::Real>(&self) -> DampedOscillator<U> {
-        DampedOscillator {
-            m: U::real(self.m.to_f64()),
-            k: U::real(self.k.to_f64()),
-            c: U::real(self.c.to_f64()),
+    impl<T: ::vi_core::Real> DampedOscillator<T> {
+        /// The same system in another kind of number, every parameter rounded to it.
+        pub fn from_f64(system: &DampedOscillator<f64>) -> Self {
+            Self {
+                m: T::real(system.m),
+                k: T::real(system.k),
+                c: T::real(system.c),
+            }
         }
-    }
-}
 
-impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DampedOscillator<T> {
-    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
-        match name {
-            "m" => Some(&mut self.m),
-            "k" => Some(&mut self.k),
-            "c" => Some(&mut self.c),
-            _ => None,
-        }
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
-    const NAME: &'static str = "DampedOscillator";
-    const COORDINATES: [&'static str; 1] = ["x"];
-    const AUTONOMOUS: bool = true;
-    const FORCED: bool = true;
-    const CYCLIC: [bool; 1] = [false];
-    const PARAMETERS: &'static [&'static str] = &["m", "k", "c"];
-    fn parameter(&self, index: usize) -> T {
-        [self.m, self.k, self.c][index]
-    }
-
-    /// `L = m*dot(x)^2/2 - k*x^2/2`
-    ///
-    /// 7 operations.
-    #[inline]
-    fn lagrangian(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> T {
-        let [x_dot]: [T; 1] = (*v).into();
-        let [x]: [T; 1] = (*q).into();
-        let real = T::real;
-        self.m * (x_dot * x_dot) * real(0.5) - self.k * (x * x) * real(0.5)
-    }
-
-    /// `v·L_v − L = m*dot(x)^2/2 + k*x^2/2`
-    ///
-    /// 7 operations.
-    #[inline]
-    fn energy(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> T {
-        let [x_dot]: [T; 1] = (*v).into();
-        let [x]: [T; 1] = (*q).into();
-        let real = T::real;
-        self.m * (x_dot * x_dot) * real(0.5) + self.k * (x * x) * real(0.5)
-    }
-
-    /// `p_x = m*dot(x)`
-    ///
-    /// 1 operation.
-    #[inline]
-    fn momentum(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::SVector<T, 1> {
-        let [x_dot]: [T; 1] = (*v).into();
-        ::vi_core::SVector::from([self.m * x_dot])
-    }
-
-    /// `f_x = -c*dot(x)`
-    ///
-    /// 2 operations.
-    #[inline]
-    fn force(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::SVector<T, 1> {
-        let [x_dot]: [T; 1] = (*v).into();
-        ::vi_core::SVector::from([-(self.c * x_dot)])
-    }
-
-    /// Solves `M a = L_q + f − L_vt − L_vq v`.
-    ///
-    /// 4 operations.
-    #[inline]
-    fn acceleration(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::core::result::Result<::vi_core::SVector<T, 1>, ::vi_core::StepError> {
-        let time = t;
-        let [x_dot]: [T; 1] = (*v).into();
-        let [x]: [T; 1] = (*q).into();
-        let mass: ::vi_core::SMatrix<T, 1, 1> = ::vi_core::SMatrix::from_row_slice(
-            &[self.m],
-        );
-        let applied: ::vi_core::SVector<T, 1> = ::vi_core::SVector::from([
-            -(self.c * x_dot + self.k * x),
-        ]);
-        ::vi_core::linear::acceleration(time, &mass, &applied)
-    }
-
-    /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
-    ///
-    /// 7 operations.
-    #[inline]
-    fn step_density(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::core::result::Result<T, ::vi_core::StepError> {
-        let [x_ddot]: [T; 1] = self.acceleration(t, q, v)?.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let [x]: [T; 1] = (*q).into();
-        Ok(self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot)
-    }
-
-    /// The first of what L and f are made of that is not finite here.
-    ///
-    /// 9 operations.
-    #[cold]
-    fn non_finite(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 1>,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::core::option::Option<&'static str> {
-        let [x_dot]: [T; 1] = (*v).into();
-        let [x]: [T; 1] = (*q).into();
-        let real = T::real;
-        let values = [
-            ("m", self.m),
-            ("k", self.k),
-            ("c", self.c),
-            ("dot(x)", x_dot),
-            ("x", x),
-            (
-                "m*dot(x)^2/2 - k*x^2/2",
-                self.m * (x_dot * x_dot) * real(0.5) - self.k * (x * x) * real(0.5),
-            ),
-            ("-c*dot(x)", -(self.c * x_dot)),
-        ];
-        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T> for DampedOscillator<T> {
-    /// `ld = h*L`
-    ///
-    /// 10 operations.
-    #[inline]
-    fn ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        h * (self.m * (x_dot * x_dot) * real(0.5) - self.k * (x_mid * x_mid) * real(0.5))
-    }
-
-    /// `d1_ld = L_v_x*v_x - L`
-    ///
-    /// 9 operations.
-    #[inline]
-    fn d1_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        self.m * (x_dot * x_dot) * real(0.5) + self.k * (x_mid * x_mid) * real(0.5)
-    }
-
-    /// `d2_ld_x = h*L_x/2 - L_v_x`
-    ///
-    /// 8 operations.
-    #[inline]
-    fn d2_ld(&self, interval: &::vi_core::Interval<1, T>) -> ::vi_core::SVector<T, 1> {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        ::vi_core::SVector::from([-(self.m * x_dot) - self.k * h * real(0.5) * x_mid])
-    }
-
-    /// `d3_ld = L - L_v_x*v_x`
-    ///
-    /// 10 operations.
-    #[inline]
-    fn d3_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        -(self.m * (x_dot * x_dot) * real(0.5) + self.k * (x_mid * x_mid) * real(0.5))
-    }
-
-    /// `d4_ld_x = L_v_x + h*L_x/2`
-    ///
-    /// 7 operations.
-    #[inline]
-    fn d4_ld(&self, interval: &::vi_core::Interval<1, T>) -> ::vi_core::SVector<T, 1> {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        ::vi_core::SVector::from([self.m * x_dot - self.k * h * real(0.5) * x_mid])
-    }
-
-    /// `fd_minus_x = h*f_x/2`
-    ///
-    /// 4 operations.
-    #[inline]
-    fn fd_minus(
-        &self,
-        interval: &::vi_core::Interval<1, T>,
-    ) -> ::vi_core::SVector<T, 1> {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
-    }
-
-    /// `fd_plus_x = h*f_x/2`
-    ///
-    /// 4 operations.
-    #[inline]
-    fn fd_plus(&self, interval: &::vi_core::Interval<1, T>) -> ::vi_core::SVector<T, 1> {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
-    }
-
-    /// `gd_minus = -h*f_x*v_x/2`
-    ///
-    /// 4 operations.
-    #[inline]
-    fn gd_minus(&self, interval: &::vi_core::Interval<1, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        self.c * h * real(0.5) * (x_dot * x_dot)
-    }
-
-    /// `gd_plus = -h*f_x*v_x/2`
-    ///
-    /// 4 operations.
-    #[inline]
-    fn gd_plus(&self, interval: &::vi_core::Interval<1, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0]: [T; 1] = interval.q0.into();
-        let [x1]: [T; 1] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let real = T::real;
-        self.c * h * real(0.5) * (x_dot * x_dot)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
-    type Jacobian = ::vi_core::SMatrix<T, 1, 1>;
-    const CONSTANT_JACOBIAN: bool = true;
-    const CLOSED_FORM: bool = true;
-    const INLINED: bool = true;
-
-    /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
-    ///
-    /// 19 operations.
-    #[inline(always)]
-    fn momentum_equation(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::MomentumEquation<1, T, Self::Jacobian> {
-        let [x0]: [T; 1] = node.q.into();
-        let [x0_low]: [T; 1] = node.q_low.into();
-        let [p0_x]: [T; 1] = node.p.into();
-        let [p0_x_low]: [T; 1] = node.p_low.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let real = T::real;
-        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
-        let s1 = self.c * real(0.5);
-        ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                self.m * x_dot - p0_x
-                    + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[self.m + (s1 + self.k * h * real(0.25)) * h],
-            ),
+        /// The same system in another kind of number, every parameter rounded to it.
+        fn convert<U: ::vi_core::Real>(&self) -> DampedOscillator<U> {
+            DampedOscillator {
+                m: U::real(self.m.to_f64()),
+                k: U::real(self.k.to_f64()),
+                c: U::real(self.c.to_f64()),
+            }
         }
     }
 
-    /// The residual, its magnitude, and
-    ///
-    /// `p1 − p0_x = h*f_x + h*L_x`
-    ///
-    /// 32 operations.
-    #[inline(always)]
-    fn momentum_residual(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::MomentumResidual<1, T> {
-        let [x0]: [T; 1] = node.q.into();
-        let [x0_low]: [T; 1] = node.q_low.into();
-        let [p0_x]: [T; 1] = node.p.into();
-        let [p0_x_low]: [T; 1] = node.p_low.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let real = T::real;
-        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
-        let s1 = self.m * x_dot;
-        ::vi_core::MomentumResidual {
-            residual: ::vi_core::SVector::from([
-                s1 - p0_x
-                    + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
-                        - p0_x_low),
-            ]),
-            magnitude: ::vi_core::SVector::from([
-                p0_x.abs() + s1.abs() + (self.c * h * x_dot).abs() * real(0.5)
-                    + (self.k * h * x_mid).abs() * real(0.5),
-            ]),
-            increment: ::vi_core::SVector::from([
-                -((self.k * x_mid + self.c * x_dot) * h),
-            ]),
+    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DampedOscillator<T> {
+        fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+            match name {
+                "m" => ::core::option::Option::Some(&mut self.m),
+                "k" => ::core::option::Option::Some(&mut self.k),
+                "c" => ::core::option::Option::Some(&mut self.c),
+                _ => ::core::option::Option::None,
+            }
         }
     }
 
-    /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
-    ///
-    /// 40 operations.
-    #[inline(always)]
-    fn extended_system(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::ExtendedSystem<1, T, Self::Jacobian> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [x0]: [T; 1] = node.q.into();
-        let [x0_low]: [T; 1] = node.q_low.into();
-        let [p0_x]: [T; 1] = node.p.into();
-        let [p0_x_low]: [T; 1] = node.p_low.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let x_mid = x0 + (s1 * x_dot + x0_low);
-        let s2 = self.k * h * real(0.25);
-        let s3 = self.m * x_dot;
-        let s4 = self.k * x_mid;
-        let s5 = s4 * real(0.5) + self.c * x_dot * real(0.5);
-        let s6 = s2 * x_dot;
-        ::vi_core::ExtendedSystem {
-            momentum: ::vi_core::MomentumEquation {
-                residual: ::vi_core::SVector::from([s3 - p0_x + (s5 * h - p0_x_low)]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[self.m + (self.c * real(0.5) + s2) * h],
+    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
+        const NAME: &'static str = "DampedOscillator";
+        const COORDINATES: [&'static str; 1] = ["x"];
+        const AUTONOMOUS: bool = true;
+        const FORCED: bool = true;
+        const CYCLIC: [bool; 1] = [false];
+        const PARAMETERS: &'static [&'static str] = &["m", "k", "c"];
+        fn parameter(&self, index: usize) -> T {
+            [self.m, self.k, self.c][index]
+        }
+
+        /// `L = m*dot(x)^2/2 - k*x^2/2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn lagrangian(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> T {
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            let real = T::real;
+            self.m * (x_dot * x_dot) * real(0.5) - self.k * (x * x) * real(0.5)
+        }
+
+        /// `v·L_v − L = m*dot(x)^2/2 + k*x^2/2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn energy(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> T {
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            let real = T::real;
+            self.m * (x_dot * x_dot) * real(0.5) + self.k * (x * x) * real(0.5)
+        }
+
+        /// `p_x = m*dot(x)`
+        ///
+        /// 1 operation.
+        #[inline]
+        fn momentum(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::SVector<T, 1> {
+            let [x_dot]: [T; 1] = (*v).into();
+            ::vi_core::SVector::from([self.m * x_dot])
+        }
+
+        /// `f_x = -c*dot(x)`
+        ///
+        /// 2 operations.
+        #[inline]
+        fn force(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::SVector<T, 1> {
+            let [x_dot]: [T; 1] = (*v).into();
+            ::vi_core::SVector::from([-(self.c * x_dot)])
+        }
+
+        /// Solves `M a = L_q + f − L_vt − L_vq v`.
+        ///
+        /// 4 operations.
+        #[inline]
+        fn acceleration(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::core::result::Result<::vi_core::SVector<T, 1>, ::vi_core::StepError> {
+            let time = t;
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            let mass: ::vi_core::SMatrix<T, 1, 1> = ::vi_core::SMatrix::from_row_slice(
+                &[self.m],
+            );
+            let applied: ::vi_core::SVector<T, 1> = ::vi_core::SVector::from([
+                -(self.c * x_dot + self.k * x),
+            ]);
+            ::vi_core::linear::acceleration(time, &mass, &applied)
+        }
+
+        /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let [x_ddot]: [T; 1] = self.acceleration(t, q, v)?.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            ::core::result::Result::Ok(
+                self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
+            )
+        }
+
+        /// The first of what L and f are made of that is not finite here.
+        ///
+        /// 9 operations.
+        #[cold]
+        fn non_finite(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::core::option::Option<&'static str> {
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            let real = T::real;
+            let values = [
+                ("m", self.m),
+                ("k", self.k),
+                ("c", self.c),
+                ("dot(x)", x_dot),
+                ("x", x),
+                (
+                    "m*dot(x)^2/2 - k*x^2/2",
+                    self.m * (x_dot * x_dot) * real(0.5) - self.k * (x * x) * real(0.5),
                 ),
-            },
-            residual_dh: ::vi_core::SVector::from([s5 + s6]),
-            energy_residual: self.k * (x_mid * x_mid) * real(0.5) - energy0
-                + (p0_x - s3 * real(0.5)) * x_dot
-                + ((p0_x_low - s4 * s1) * x_dot - energy0_low),
-            energy_dv: ::vi_core::SVector::from([s5 - s6]),
-            energy_dh: -(self.k * (x_dot * x_dot) * real(0.25)),
+                ("-c*dot(x)", -(self.c * x_dot)),
+            ];
+            values
+                .into_iter()
+                .find(|(_, value)| !value.is_finite())
+                .map(|(text, _)| text)
         }
     }
 
-    /// Both residuals, their magnitudes, and
-    ///
-    /// `E1 − E0 = h*f_x*v_x`
-    ///
-    /// 65 operations.
-    #[inline(always)]
-    fn extended_residual(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::ExtendedResidual<1, T> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [x0]: [T; 1] = node.q.into();
-        let [x0_low]: [T; 1] = node.q_low.into();
-        let [p0_x]: [T; 1] = node.p.into();
-        let [p0_x_low]: [T; 1] = node.p_low.into();
-        let [x_dot]: [T; 1] = (*v).into();
-        let real = T::real;
-        let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
-        let s1 = self.m * x_dot;
-        let s2 = self.c * h;
-        let s3 = x_dot * x_dot;
-        let s4 = self.k * (x_mid * x_mid);
-        let s5 = self.k * h;
-        let s6 = energy0.abs() + (x_dot * p0_x).abs() + (self.m * s3).abs() * real(0.5)
-            + s4.abs() * real(0.5);
-        ::vi_core::ExtendedResidual {
-            residual: ::vi_core::SVector::from([
-                s1 - p0_x
-                    + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
-                        - p0_x_low),
-            ]),
-            magnitude: ::vi_core::SVector::from([
-                p0_x.abs() + s1.abs() + (s2 * x_dot).abs() * real(0.5)
-                    + (s5 * x_mid).abs() * real(0.5),
-            ]),
-            energy_residual: s4 * real(0.5) - energy0 + (p0_x - s1 * real(0.5)) * x_dot
-                + ((p0_x_low - s5 * real(0.5) * x_mid) * x_dot - energy0_low),
-            energy_magnitude: s6 + (s5 * x_dot * x_mid).abs() * real(0.5),
-            increment: ::vi_core::Increment {
-                momentum: ::vi_core::SVector::from([
+    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T>
+    for DampedOscillator<T> {
+        /// `ld = h*L`
+        ///
+        /// 10 operations.
+        #[inline]
+        fn ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            h
+                * (self.m * (x_dot * x_dot) * real(0.5)
+                    - self.k * (x_mid * x_mid) * real(0.5))
+        }
+
+        /// `d1_ld = L_v_x*v_x - L`
+        ///
+        /// 9 operations.
+        #[inline]
+        fn d1_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            self.m * (x_dot * x_dot) * real(0.5) + self.k * (x_mid * x_mid) * real(0.5)
+        }
+
+        /// `d2_ld_x = h*L_x/2 - L_v_x`
+        ///
+        /// 8 operations.
+        #[inline]
+        fn d2_ld(
+            &self,
+            interval: &::vi_core::Interval<1, T>,
+        ) -> ::vi_core::SVector<T, 1> {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            ::vi_core::SVector::from([
+                -(self.m * x_dot) - self.k * h * real(0.5) * x_mid,
+            ])
+        }
+
+        /// `d3_ld = L - L_v_x*v_x`
+        ///
+        /// 10 operations.
+        #[inline]
+        fn d3_ld(&self, interval: &::vi_core::Interval<1, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            -(self.m * (x_dot * x_dot) * real(0.5)
+                + self.k * (x_mid * x_mid) * real(0.5))
+        }
+
+        /// `d4_ld_x = L_v_x + h*L_x/2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn d4_ld(
+            &self,
+            interval: &::vi_core::Interval<1, T>,
+        ) -> ::vi_core::SVector<T, 1> {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            ::vi_core::SVector::from([self.m * x_dot - self.k * h * real(0.5) * x_mid])
+        }
+
+        /// `fd_minus_x = h*f_x/2`
+        ///
+        /// 4 operations.
+        #[inline]
+        fn fd_minus(
+            &self,
+            interval: &::vi_core::Interval<1, T>,
+        ) -> ::vi_core::SVector<T, 1> {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
+        }
+
+        /// `fd_plus_x = h*f_x/2`
+        ///
+        /// 4 operations.
+        #[inline]
+        fn fd_plus(
+            &self,
+            interval: &::vi_core::Interval<1, T>,
+        ) -> ::vi_core::SVector<T, 1> {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
+        }
+
+        /// `gd_minus = -h*f_x*v_x/2`
+        ///
+        /// 4 operations.
+        #[inline]
+        fn gd_minus(&self, interval: &::vi_core::Interval<1, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            self.c * h * real(0.5) * (x_dot * x_dot)
+        }
+
+        /// `gd_plus = -h*f_x*v_x/2`
+        ///
+        /// 4 operations.
+        #[inline]
+        fn gd_plus(&self, interval: &::vi_core::Interval<1, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0]: [T; 1] = interval.q0.into();
+            let [x1]: [T; 1] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let real = T::real;
+            self.c * h * real(0.5) * (x_dot * x_dot)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
+        type Jacobian = ::vi_core::SMatrix<T, 1, 1>;
+        const CONSTANT_JACOBIAN: bool = true;
+        const CLOSED_FORM: bool = true;
+        const INLINED: bool = true;
+
+        /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
+        ///
+        /// 19 operations.
+        #[inline(always)]
+        fn momentum_equation(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::MomentumEquation<1, T, Self::Jacobian> {
+            let [x0]: [T; 1] = node.q.into();
+            let [x0_low]: [T; 1] = node.q_low.into();
+            let [p0_x]: [T; 1] = node.p.into();
+            let [p0_x_low]: [T; 1] = node.p_low.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let real = T::real;
+            let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+            let s1 = self.c * real(0.5);
+            ::vi_core::MomentumEquation {
+                residual: ::vi_core::SVector::from([
+                    self.m * x_dot - p0_x
+                        + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
+                ]),
+                jacobian: ::vi_core::SMatrix::from_row_slice(
+                    &[self.m + (s1 + self.k * h * real(0.25)) * h],
+                ),
+            }
+        }
+
+        /// The residual, its magnitude, and
+        ///
+        /// `p1 − p0_x = h*f_x + h*L_x`
+        ///
+        /// 32 operations.
+        #[inline(always)]
+        fn momentum_residual(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::MomentumResidual<1, T> {
+            let [x0]: [T; 1] = node.q.into();
+            let [x0_low]: [T; 1] = node.q_low.into();
+            let [p0_x]: [T; 1] = node.p.into();
+            let [p0_x_low]: [T; 1] = node.p_low.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let real = T::real;
+            let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+            let s1 = self.m * x_dot;
+            ::vi_core::MomentumResidual {
+                residual: ::vi_core::SVector::from([
+                    s1 - p0_x
+                        + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
+                            - p0_x_low),
+                ]),
+                magnitude: ::vi_core::SVector::from([
+                    p0_x.abs() + s1.abs() + (self.c * h * x_dot).abs() * real(0.5)
+                        + (self.k * h * x_mid).abs() * real(0.5),
+                ]),
+                increment: ::vi_core::SVector::from([
                     -((self.k * x_mid + self.c * x_dot) * h),
                 ]),
-                energy: -(s2 * s3),
-            },
+            }
+        }
+
+        /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
+        ///
+        /// 40 operations.
+        #[inline(always)]
+        fn extended_system(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::ExtendedSystem<1, T, Self::Jacobian> {
+            let energy0 = node.energy;
+            let energy0_low = node.energy_low;
+            let [x0]: [T; 1] = node.q.into();
+            let [x0_low]: [T; 1] = node.q_low.into();
+            let [p0_x]: [T; 1] = node.p.into();
+            let [p0_x_low]: [T; 1] = node.p_low.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let s2 = self.k * h * real(0.25);
+            let s3 = self.m * x_dot;
+            let s4 = self.k * x_mid;
+            let s5 = s4 * real(0.5) + self.c * x_dot * real(0.5);
+            let s6 = s2 * x_dot;
+            ::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        s3 - p0_x + (s5 * h - p0_x_low),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[self.m + (self.c * real(0.5) + s2) * h],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s5 + s6]),
+                energy_residual: self.k * (x_mid * x_mid) * real(0.5) - energy0
+                    + (p0_x - s3 * real(0.5)) * x_dot
+                    + ((p0_x_low - s4 * s1) * x_dot - energy0_low),
+                energy_dv: ::vi_core::SVector::from([s5 - s6]),
+                energy_dh: -(self.k * (x_dot * x_dot) * real(0.25)),
+            }
+        }
+
+        /// Both residuals, their magnitudes, and
+        ///
+        /// `E1 − E0 = h*f_x*v_x`
+        ///
+        /// 65 operations.
+        #[inline(always)]
+        fn extended_residual(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::ExtendedResidual<1, T> {
+            let energy0 = node.energy;
+            let energy0_low = node.energy_low;
+            let [x0]: [T; 1] = node.q.into();
+            let [x0_low]: [T; 1] = node.q_low.into();
+            let [p0_x]: [T; 1] = node.p.into();
+            let [p0_x_low]: [T; 1] = node.p_low.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let real = T::real;
+            let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+            let s1 = self.m * x_dot;
+            let s2 = self.c * h;
+            let s3 = x_dot * x_dot;
+            let s4 = self.k * (x_mid * x_mid);
+            let s5 = self.k * h;
+            let s6 = energy0.abs() + (x_dot * p0_x).abs()
+                + (self.m * s3).abs() * real(0.5) + s4.abs() * real(0.5);
+            ::vi_core::ExtendedResidual {
+                residual: ::vi_core::SVector::from([
+                    s1 - p0_x
+                        + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
+                            - p0_x_low),
+                ]),
+                magnitude: ::vi_core::SVector::from([
+                    p0_x.abs() + s1.abs() + (s2 * x_dot).abs() * real(0.5)
+                        + (s5 * x_mid).abs() * real(0.5),
+                ]),
+                energy_residual: s4 * real(0.5) - energy0
+                    + (p0_x - s1 * real(0.5)) * x_dot
+                    + ((p0_x_low - s5 * real(0.5) * x_mid) * x_dot - energy0_low),
+                energy_magnitude: s6 + (s5 * x_dot * x_mid).abs() * real(0.5),
+                increment: ::vi_core::Increment {
+                    momentum: ::vi_core::SVector::from([
+                        -((self.k * x_mid + self.c * x_dot) * h),
+                    ]),
+                    energy: -(s2 * s3),
+                },
+            }
+        }
+
+        /// What the rounding of both residuals is measured in, by running error analysis.
+        #[cold]
+        fn rounding(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::Rounding<1, T> {
+            ::vi_core::Rounding::of(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
         }
     }
 
-    /// What the rounding of both residuals is measured in, by running error analysis.
-    #[cold]
-    fn rounding(
-        &self,
-        node: &::vi_core::Node<1, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 1>,
-    ) -> ::vi_core::Rounding<1, T> {
-        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
-    }
-}
+    impl ::vi_core::Batch<1> for DampedOscillator<f64> {
+        type Rows<const W: usize> = DampedOscillator<[f64; W]>;
+        type In<T: ::vi_core::Real> = DampedOscillator<T>;
+        fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+            DampedOscillator {
+                m: ::core::array::from_fn(|index| systems[index].m),
+                k: ::core::array::from_fn(|index| systems[index].k),
+                c: ::core::array::from_fn(|index| systems[index].c),
+            }
+        }
 
-#[allow(clippy::all, clippy::pedantic, unused_variables)]
-impl ::vi_core::Batch<1> for DampedOscillator<f64> {
-    type Rows<const W: usize> = DampedOscillator<[f64; W]>;
-    type In<T: ::vi_core::Real> = DampedOscillator<T>;
-    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
-        DampedOscillator {
-            m: ::core::array::from_fn(|index| systems[index].m),
-            k: ::core::array::from_fn(|index| systems[index].k),
-            c: ::core::array::from_fn(|index| systems[index].c),
+        #[inline(always)]
+        fn pick<T: ::vi_core::Real, const W: usize>(
+            rows: &Self::Rows<W>,
+            index: usize,
+        ) -> Self::In<T> {
+            DampedOscillator {
+                m: T::real(rows.m[index]),
+                k: T::real(rows.k[index]),
+                c: T::real(rows.c[index]),
+            }
         }
     }
 
-    #[inline(always)]
-    fn pick<T: ::vi_core::Real, const W: usize>(
-        rows: &Self::Rows<W>,
-        index: usize,
-    ) -> Self::In<T> {
-        DampedOscillator {
-            m: T::real(rows.m[index]),
-            k: T::real(rows.k[index]),
-            c: T::real(rows.c[index]),
+    impl ::vi_core::check::Checked<1> for DampedOscillator<f64> {
+        type In<T: ::vi_core::Real> = DampedOscillator<T>;
+        fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
+            DampedOscillator::from_f64(self)
         }
     }
-}
-
-impl ::vi_core::check::Checked<1> for DampedOscillator<f64> {
-    type In<T: ::vi_core::Real> = DampedOscillator<T>;
-    fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
-        DampedOscillator::from_f64(self)
-    }
-}
+};
 
 /// Checks of [`DampedOscillator`](super::DampedOscillator) at the place that it names.
 #[cfg(test)]
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(clippy::all, clippy::pedantic, deprecated)]
 mod damped_oscillator_checks {
     fn place() -> ::vi_core::check::Place<1> {
         ::vi_core::check::Place {

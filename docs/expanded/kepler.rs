@@ -10,626 +10,680 @@
 /// * `L = T(v) + U(t, q)` with a constant mass matrix
 /// * The step's equation in `v` is nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step
 /// * `A` is dense, symmetric; solved in closed form
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::fmt::Debug,
+    ::core::cmp::PartialEq
+)]
 #[allow(non_snake_case)]
-pub struct Kepler<T = f64> {
+pub struct Kepler<T = ::core::primitive::f64> {
     /// Gravitational parameter.
     ///
     /// Parameter `mu`, 1 by default.
     pub mu: T,
 }
 
-impl ::core::default::Default for Kepler<f64> {
-    fn default() -> Self {
-        Self { mu: 1.0 }
-    }
-}
+/// Every name that is bound below is one of a function first: a binding may shadow that, and no constant from around.
+#[allow(
+    clippy::all,
+    clippy::pedantic,
+    deprecated,
+    non_snake_case,
+    unused_imports,
+    unused_parens,
+    unused_variables
+)]
+const _: () = {
+    use ::core::convert::{identity as system, identity as name, identity as index};
+    use ::core::convert::{identity as t, identity as q, identity as v};
+    use ::core::convert::{identity as x_dot, identity as y_dot, identity as x};
+    use ::core::convert::{identity as y, identity as real, identity as s1};
+    use ::core::convert::{identity as time, identity as s2, identity as s3};
+    use ::core::convert::{identity as mass, identity as applied, identity as x_ddot};
+    use ::core::convert::{identity as y_ddot, identity as s4, identity as s5};
+    use ::core::convert::{identity as s6, identity as s7, identity as s8};
+    use ::core::convert::{identity as s9, identity as s10, identity as s11};
+    use ::core::convert::{identity as s12, identity as values, identity as value};
+    use ::core::convert::{identity as text, identity as interval, identity as h};
+    use ::core::convert::{identity as x0, identity as y0, identity as x1};
+    use ::core::convert::{identity as y1, identity as x_mid, identity as y_mid};
+    use ::core::convert::{identity as node, identity as x0_low, identity as y0_low};
+    use ::core::convert::{identity as p0_x, identity as p0_y, identity as p0_x_low};
+    use ::core::convert::{identity as p0_y_low, identity as s13, identity as energy0};
+    use ::core::convert::{identity as energy0_low, identity as s14, identity as s15};
+    use ::core::convert::{identity as s16, identity as s17, identity as s18};
+    use ::core::convert::{identity as s19, identity as s20, identity as s21};
+    use ::core::convert::{identity as s22, identity as s23, identity as s24};
+    use ::core::convert::{identity as s25, identity as systems, identity as rows};
+    use ::core::primitive::{bool, f64, str, usize};
 
-impl<T: ::vi_core::Real> Kepler<T> {
-    /// The same system in another kind of number, every parameter rounded to it.
-    #[allow(unused_variables)]
-    pub fn from_f64(system: &Kepler<f64>) -> Self {
-        Self { mu: T::real(system.mu) }
-    }
-
-    /// The same system in another kind of number, every parameter rounded to it.
-    #[allow(dead_code)]
-    fn convert<U: ::vi_core::Real>(&self) -> Kepler<U> {
-        Kepler {
-            mu: U::real(self.mu.to_f64()),
-        }
-    }
-}
-
-impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Kepler<T> {
-    fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
-        match name {
-            "mu" => Some(&mut self.mu),
-            _ => None,
-        }
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
-    const NAME: &'static str = "Kepler";
-    const COORDINATES: [&'static str; 2] = ["x", "y"];
-    const AUTONOMOUS: bool = true;
-    const FORCED: bool = false;
-    const CYCLIC: [bool; 2] = [false, false];
-    const PARAMETERS: &'static [&'static str] = &["mu"];
-    fn parameter(&self, index: usize) -> T {
-        [self.mu][index]
-    }
-
-    /// `L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)`
-    ///
-    /// 13 operations.
-    #[inline]
-    fn lagrangian(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> T {
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let [x, y]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = x * x + y * y;
-        x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            + self.mu * (s1.recip() * s1.sqrt())
-    }
-
-    /// `v·L_v − L = dot(x)^2/2 + dot(y)^2/2 - mu/sqrt(x^2 + y^2)`
-    ///
-    /// 13 operations.
-    #[inline]
-    fn energy(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> T {
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let [x, y]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = x * x + y * y;
-        x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            - self.mu * (s1.recip() * s1.sqrt())
-    }
-
-    /// `p_x = dot(x)`
-    ///
-    /// `p_y = dot(y)`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn momentum(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        ::vi_core::SVector::from([x_dot, y_dot])
-    }
-
-    /// `f_x = 0`
-    ///
-    /// `f_y = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn force(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let real = T::real;
-        ::vi_core::SVector::from([real(0.0), real(0.0)])
-    }
-
-    /// Solves `M a = L_q + f − L_vt − L_vq v`.
-    ///
-    /// 13 operations.
-    #[inline]
-    fn acceleration(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
-        let time = t;
-        let [x, y]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = x * x + y * y;
-        let s2 = s1.recip();
-        let s3 = s2 * s2 * s1.sqrt();
-        let mass: ::vi_core::linear::Banded<2, 1, T> = ::vi_core::linear::Banded {
-            rows: [[real(1.0)], [real(1.0)]],
-        };
-        let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
-            -(self.mu * x * s3),
-            -(self.mu * y * s3),
-        ]);
-        ::vi_core::linear::acceleration(time, &mass, &applied)
-    }
-
-    /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
-    ///
-    /// 39 operations.
-    #[inline]
-    fn step_density(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::core::result::Result<T, ::vi_core::StepError> {
-        let [x_ddot, y_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let [x, y]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = x * x;
-        let s2 = y * y;
-        let s3 = s1 + s2;
-        let s4 = s3.recip();
-        let s5 = s4 * s4;
-        let s6 = s3.sqrt();
-        let s7 = s5 * s6;
-        let s8 = s5 * s4 * s6;
-        let s9 = self.mu * x;
-        let s10 = s9 * y * s8;
-        let s11 = s9 * s7 * x_ddot
-            + x_dot
-                * (self.mu * x_dot * (s1 * s8 * real(3.0) - s7)
-                    + s10 * y_dot * real(3.0));
-        let s12 = s11 + self.mu * y * s7 * y_ddot
-            + y_dot
-                * (s10 * x_dot * real(3.0)
-                    + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
-        Ok(-s12)
-    }
-
-    /// The first of what L and f are made of that is not finite here.
-    ///
-    /// 13 operations.
-    #[cold]
-    fn non_finite(
-        &self,
-        t: T,
-        q: &::vi_core::SVector<T, 2>,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::core::option::Option<&'static str> {
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let [x, y]: [T; 2] = (*q).into();
-        let real = T::real;
-        let s1 = x * x + y * y;
-        let s2 = self.mu * (s1.recip() * s1.sqrt());
-        let values = [
-            ("mu", self.mu),
-            ("x", x),
-            ("y", y),
-            ("dot(x)", x_dot),
-            ("dot(y)", y_dot),
-            ("mu/sqrt(x^2 + y^2)", s2),
-            (
-                "dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)",
-                x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + s2,
-            ),
-        ];
-        values.into_iter().find(|(_, value)| !value.is_finite()).map(|(text, _)| text)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
-    /// `ld = h*L`
-    ///
-    /// 18 operations.
-    #[inline]
-    fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0, y0]: [T; 2] = interval.q0.into();
-        let [x1, y1]: [T; 2] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let y_dot = (y1 - y0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        let y_mid = (y0 + y1) * real(0.5);
-        let s1 = x_mid * x_mid + y_mid * y_mid;
-        h
-            * (x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-                + self.mu * (s1.recip() * s1.sqrt()))
-    }
-
-    /// `d1_ld = L_v_x*v_x - L + L_v_y*v_y`
-    ///
-    /// 17 operations.
-    #[inline]
-    fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0, y0]: [T; 2] = interval.q0.into();
-        let [x1, y1]: [T; 2] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let y_dot = (y1 - y0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        let y_mid = (y0 + y1) * real(0.5);
-        let s1 = x_mid * x_mid + y_mid * y_mid;
-        x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
-            - self.mu * (s1.recip() * s1.sqrt())
-    }
-
-    /// `d2_ld_x = h*L_x/2 - L_v_x`
-    ///
-    /// `d2_ld_y = h*L_y/2 - L_v_y`
-    ///
-    /// 21 operations.
-    #[inline]
-    fn d2_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
-        let h = interval.t1 - interval.t0;
-        let [x0, y0]: [T; 2] = interval.q0.into();
-        let [x1, y1]: [T; 2] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let y_dot = (y1 - y0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        let y_mid = (y0 + y1) * real(0.5);
-        let s1 = x_mid * x_mid + y_mid * y_mid;
-        let s2 = s1.recip();
-        let s3 = s2 * s2 * s1.sqrt();
-        let s4 = self.mu * h * real(0.5);
-        ::vi_core::SVector::from([-x_dot - s4 * x_mid * s3, -y_dot - s4 * y_mid * s3])
-    }
-
-    /// `d3_ld = L - L_v_x*v_x - L_v_y*v_y`
-    ///
-    /// 17 operations.
-    #[inline]
-    fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let h = interval.t1 - interval.t0;
-        let [x0, y0]: [T; 2] = interval.q0.into();
-        let [x1, y1]: [T; 2] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let y_dot = (y1 - y0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        let y_mid = (y0 + y1) * real(0.5);
-        let s1 = x_mid * x_mid + y_mid * y_mid;
-        self.mu * (s1.recip() * s1.sqrt()) - x_dot * x_dot * real(0.5)
-            - y_dot * y_dot * real(0.5)
-    }
-
-    /// `d4_ld_x = L_v_x + h*L_x/2`
-    ///
-    /// `d4_ld_y = L_v_y + h*L_y/2`
-    ///
-    /// 19 operations.
-    #[inline]
-    fn d4_ld(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
-        let h = interval.t1 - interval.t0;
-        let [x0, y0]: [T; 2] = interval.q0.into();
-        let [x1, y1]: [T; 2] = interval.q1.into();
-        let x_dot = (x1 - x0) / h;
-        let y_dot = (y1 - y0) / h;
-        let real = T::real;
-        let x_mid = (x0 + x1) * real(0.5);
-        let y_mid = (y0 + y1) * real(0.5);
-        let s1 = x_mid * x_mid + y_mid * y_mid;
-        let s2 = s1.recip();
-        let s3 = s2 * s2 * s1.sqrt();
-        let s4 = self.mu * h * real(0.5);
-        ::vi_core::SVector::from([x_dot - s4 * x_mid * s3, y_dot - s4 * y_mid * s3])
-    }
-
-    /// `fd_minus_x = 0`
-    ///
-    /// `fd_minus_y = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn fd_minus(
-        &self,
-        interval: &::vi_core::Interval<2, T>,
-    ) -> ::vi_core::SVector<T, 2> {
-        let real = T::real;
-        ::vi_core::SVector::from([real(0.0), real(0.0)])
-    }
-
-    /// `fd_plus_x = 0`
-    ///
-    /// `fd_plus_y = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn fd_plus(&self, interval: &::vi_core::Interval<2, T>) -> ::vi_core::SVector<T, 2> {
-        let real = T::real;
-        ::vi_core::SVector::from([real(0.0), real(0.0)])
-    }
-
-    /// `gd_minus = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let real = T::real;
-        real(0.0)
-    }
-
-    /// `gd_plus = 0`
-    ///
-    /// 0 operations.
-    #[inline]
-    fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
-        let real = T::real;
-        real(0.0)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, non_snake_case, unused_variables, unused_parens)]
-impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
-    type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
-    const CONSTANT_JACOBIAN: bool = false;
-    const INLINED: bool = true;
-
-    /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
-    ///
-    /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
-    ///
-    /// 46 operations.
-    #[inline(always)]
-    fn momentum_equation(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
-        let [x0, y0]: [T; 2] = node.q.into();
-        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let x_mid = x0 + (s1 * x_dot + x0_low);
-        let y_mid = y0 + (s1 * y_dot + y0_low);
-        let s2 = x_mid * x_mid;
-        let s3 = y_mid * y_mid;
-        let s4 = s2 + s3;
-        let s5 = s4.recip();
-        let s6 = s5 * s5;
-        let s7 = s4.sqrt();
-        let s8 = s6 * s7;
-        let s9 = self.mu * h * real(0.5);
-        let s10 = s6 * s5 * s7;
-        let s11 = self.mu * (h * h);
-        let s12 = s11 * real(0.25);
-        let s13 = -(s11 * real(0.75) * x_mid * y_mid * s10);
-        ::vi_core::MomentumEquation {
-            residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s9 * x_mid * s8 - p0_x_low),
-                y_dot - p0_y + (s9 * y_mid * s8 - p0_y_low),
-            ]),
-            jacobian: ::vi_core::SMatrix::from_row_slice(
-                &[
-                    real(1.0) - s12 * (s2 * s10 * real(3.0) - s8),
-                    s13,
-                    s13,
-                    real(1.0) - s12 * (s3 * s10 * real(3.0) - s8),
-                ],
-            ),
+    impl ::core::default::Default for Kepler<f64> {
+        fn default() -> Self {
+            Self { mu: 1.0 }
         }
     }
 
-    /// The residual, its magnitude, and
-    ///
-    /// `p1 − p0_x = h*L_x`
-    ///
-    /// `p1 − p0_y = h*L_y`
-    ///
-    /// 44 operations.
-    #[inline(always)]
-    fn momentum_residual(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::MomentumResidual<2, T> {
-        let [x0, y0]: [T; 2] = node.q.into();
-        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let x_mid = x0 + (s1 * x_dot + x0_low);
-        let y_mid = y0 + (s1 * y_dot + y0_low);
-        let s2 = x_mid * x_mid + y_mid * y_mid;
-        let s3 = s2.recip();
-        let s4 = s3 * s3 * s2.sqrt();
-        let s5 = self.mu * h;
-        let s6 = s5 * x_mid * s4;
-        let s7 = s5 * y_mid * s4;
-        let s8 = s5 * real(0.5);
-        ::vi_core::MomentumResidual {
-            residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s8 * x_mid * s4 - p0_x_low),
-                y_dot - p0_y + (s8 * y_mid * s4 - p0_y_low),
-            ]),
-            magnitude: ::vi_core::SVector::from([
-                x_dot.abs() + p0_x.abs() + s6.abs() * real(0.5),
-                y_dot.abs() + p0_y.abs() + s7.abs() * real(0.5),
-            ]),
-            increment: ::vi_core::SVector::from([-s6, -s7]),
+    impl<T: ::vi_core::Real> Kepler<T> {
+        /// The same system in another kind of number, every parameter rounded to it.
+        pub fn from_f64(system: &Kepler<f64>) -> Self {
+            Self { mu: T::real(system.mu) }
+        }
+
+        /// The same system in another kind of number, every parameter rounded to it.
+        fn convert<U: ::vi_core::Real>(&self) -> Kepler<U> {
+            Kepler {
+                mu: U::real(self.mu.to_f64()),
+            }
         }
     }
 
-    /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
-    ///
-    /// 107 operations.
-    #[inline(always)]
-    fn extended_system(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [x0, y0]: [T; 2] = node.q.into();
-        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let x_mid = x0 + (s1 * x_dot + x0_low);
-        let y_mid = y0 + (s1 * y_dot + y0_low);
-        let s2 = x_mid * x_mid;
-        let s3 = y_mid * y_mid;
-        let s4 = s2 + s3;
-        let s5 = s4.recip();
-        let s6 = s4.sqrt();
-        let s7 = s5 * s5;
-        let s8 = s7 * s6;
-        let s9 = self.mu * x_mid * s8;
-        let s10 = self.mu * y_mid * s8;
-        let s11 = (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + self.mu * (s5 * s6))
-            + (p0_x - x_dot * real(0.5)) * x_dot;
-        let s12 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - self.mu * real(0.5) * h * (x_dot * x_mid * s8 + y_dot * y_mid * s8);
-        let s13 = s7 * s5 * s6;
-        let s14 = s2 * s13 * real(3.0) - s8;
-        let s15 = self.mu * (h * h);
-        let s16 = s15 * real(0.25);
-        let s17 = -(s15 * real(0.75) * x_mid * y_mid * s13);
-        let s18 = s3 * s13 * real(3.0) - s8;
-        let s19 = s9 * real(0.5);
-        let s20 = self.mu * real(0.75);
-        let s21 = self.mu * real(0.25);
-        let s22 = s21 * x_dot * s14;
-        let s23 = (s20 * y_dot * x_mid * y_mid * s13 + s22) * h;
-        let s24 = s10 * real(0.5);
-        let s25 = (s20 * x_dot * x_mid * y_mid * s13 + s21 * y_dot * s18) * h;
-        ::vi_core::ExtendedSystem {
-            momentum: ::vi_core::MomentumEquation {
+    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Kepler<T> {
+        fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
+            match name {
+                "mu" => ::core::option::Option::Some(&mut self.mu),
+                _ => ::core::option::Option::None,
+            }
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
+        const NAME: &'static str = "Kepler";
+        const COORDINATES: [&'static str; 2] = ["x", "y"];
+        const AUTONOMOUS: bool = true;
+        const FORCED: bool = false;
+        const CYCLIC: [bool; 2] = [false, false];
+        const PARAMETERS: &'static [&'static str] = &["mu"];
+        fn parameter(&self, index: usize) -> T {
+            [self.mu][index]
+        }
+
+        /// `L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)`
+        ///
+        /// 13 operations.
+        #[inline]
+        fn lagrangian(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x + y * y;
+            x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                + self.mu * (s1.recip() * s1.sqrt())
+        }
+
+        /// `v·L_v − L = dot(x)^2/2 + dot(y)^2/2 - mu/sqrt(x^2 + y^2)`
+        ///
+        /// 13 operations.
+        #[inline]
+        fn energy(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x + y * y;
+            x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                - self.mu * (s1.recip() * s1.sqrt())
+        }
+
+        /// `p_x = dot(x)`
+        ///
+        /// `p_y = dot(y)`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn momentum(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            ::vi_core::SVector::from([x_dot, y_dot])
+        }
+
+        /// `f_x = 0`
+        ///
+        /// `f_y = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn force(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let real = T::real;
+            ::vi_core::SVector::from([real(0.0), real(0.0)])
+        }
+
+        /// Solves `M a = L_q + f − L_vt − L_vq v`.
+        ///
+        /// 13 operations.
+        #[inline]
+        fn acceleration(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<::vi_core::SVector<T, 2>, ::vi_core::StepError> {
+            let time = t;
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x + y * y;
+            let s2 = s1.recip();
+            let s3 = s2 * s2 * s1.sqrt();
+            let mass: ::vi_core::linear::Banded<2, 1, T> = ::vi_core::linear::Banded {
+                rows: [[real(1.0)], [real(1.0)]],
+            };
+            let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
+                -(self.mu * x * s3),
+                -(self.mu * y * s3),
+            ]);
+            ::vi_core::linear::acceleration(time, &mass, &applied)
+        }
+
+        /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
+        ///
+        /// 39 operations.
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let [x_ddot, y_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x;
+            let s2 = y * y;
+            let s3 = s1 + s2;
+            let s4 = s3.recip();
+            let s5 = s4 * s4;
+            let s6 = s3.sqrt();
+            let s7 = s5 * s6;
+            let s8 = s5 * s4 * s6;
+            let s9 = self.mu * x;
+            let s10 = s9 * y * s8;
+            let s11 = s9 * s7 * x_ddot
+                + x_dot
+                    * (self.mu * x_dot * (s1 * s8 * real(3.0) - s7)
+                        + s10 * y_dot * real(3.0));
+            let s12 = s11 + self.mu * y * s7 * y_ddot
+                + y_dot
+                    * (s10 * x_dot * real(3.0)
+                        + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
+            ::core::result::Result::Ok(-s12)
+        }
+
+        /// The first of what L and f are made of that is not finite here.
+        ///
+        /// 13 operations.
+        #[cold]
+        fn non_finite(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::core::option::Option<&'static str> {
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x + y * y;
+            let s2 = self.mu * (s1.recip() * s1.sqrt());
+            let values = [
+                ("mu", self.mu),
+                ("x", x),
+                ("y", y),
+                ("dot(x)", x_dot),
+                ("dot(y)", y_dot),
+                ("mu/sqrt(x^2 + y^2)", s2),
+                (
+                    "dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)",
+                    x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + s2,
+                ),
+            ];
+            values
+                .into_iter()
+                .find(|(_, value)| !value.is_finite())
+                .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
+        /// `ld = h*L`
+        ///
+        /// 18 operations.
+        #[inline]
+        fn ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0, y0]: [T; 2] = interval.q0.into();
+            let [x1, y1]: [T; 2] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let y_dot = (y1 - y0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            let y_mid = (y0 + y1) * real(0.5);
+            let s1 = x_mid * x_mid + y_mid * y_mid;
+            h
+                * (x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                    + self.mu * (s1.recip() * s1.sqrt()))
+        }
+
+        /// `d1_ld = L_v_x*v_x - L + L_v_y*v_y`
+        ///
+        /// 17 operations.
+        #[inline]
+        fn d1_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0, y0]: [T; 2] = interval.q0.into();
+            let [x1, y1]: [T; 2] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let y_dot = (y1 - y0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            let y_mid = (y0 + y1) * real(0.5);
+            let s1 = x_mid * x_mid + y_mid * y_mid;
+            x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                - self.mu * (s1.recip() * s1.sqrt())
+        }
+
+        /// `d2_ld_x = h*L_x/2 - L_v_x`
+        ///
+        /// `d2_ld_y = h*L_y/2 - L_v_y`
+        ///
+        /// 21 operations.
+        #[inline]
+        fn d2_ld(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let h = interval.t1 - interval.t0;
+            let [x0, y0]: [T; 2] = interval.q0.into();
+            let [x1, y1]: [T; 2] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let y_dot = (y1 - y0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            let y_mid = (y0 + y1) * real(0.5);
+            let s1 = x_mid * x_mid + y_mid * y_mid;
+            let s2 = s1.recip();
+            let s3 = s2 * s2 * s1.sqrt();
+            let s4 = self.mu * h * real(0.5);
+            ::vi_core::SVector::from([
+                -x_dot - s4 * x_mid * s3,
+                -y_dot - s4 * y_mid * s3,
+            ])
+        }
+
+        /// `d3_ld = L - L_v_x*v_x - L_v_y*v_y`
+        ///
+        /// 17 operations.
+        #[inline]
+        fn d3_ld(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let h = interval.t1 - interval.t0;
+            let [x0, y0]: [T; 2] = interval.q0.into();
+            let [x1, y1]: [T; 2] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let y_dot = (y1 - y0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            let y_mid = (y0 + y1) * real(0.5);
+            let s1 = x_mid * x_mid + y_mid * y_mid;
+            self.mu * (s1.recip() * s1.sqrt()) - x_dot * x_dot * real(0.5)
+                - y_dot * y_dot * real(0.5)
+        }
+
+        /// `d4_ld_x = L_v_x + h*L_x/2`
+        ///
+        /// `d4_ld_y = L_v_y + h*L_y/2`
+        ///
+        /// 19 operations.
+        #[inline]
+        fn d4_ld(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let h = interval.t1 - interval.t0;
+            let [x0, y0]: [T; 2] = interval.q0.into();
+            let [x1, y1]: [T; 2] = interval.q1.into();
+            let x_dot = (x1 - x0) / h;
+            let y_dot = (y1 - y0) / h;
+            let real = T::real;
+            let x_mid = (x0 + x1) * real(0.5);
+            let y_mid = (y0 + y1) * real(0.5);
+            let s1 = x_mid * x_mid + y_mid * y_mid;
+            let s2 = s1.recip();
+            let s3 = s2 * s2 * s1.sqrt();
+            let s4 = self.mu * h * real(0.5);
+            ::vi_core::SVector::from([x_dot - s4 * x_mid * s3, y_dot - s4 * y_mid * s3])
+        }
+
+        /// `fd_minus_x = 0`
+        ///
+        /// `fd_minus_y = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn fd_minus(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let real = T::real;
+            ::vi_core::SVector::from([real(0.0), real(0.0)])
+        }
+
+        /// `fd_plus_x = 0`
+        ///
+        /// `fd_plus_y = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn fd_plus(
+            &self,
+            interval: &::vi_core::Interval<2, T>,
+        ) -> ::vi_core::SVector<T, 2> {
+            let real = T::real;
+            ::vi_core::SVector::from([real(0.0), real(0.0)])
+        }
+
+        /// `gd_minus = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn gd_minus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let real = T::real;
+            real(0.0)
+        }
+
+        /// `gd_plus = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn gd_plus(&self, interval: &::vi_core::Interval<2, T>) -> T {
+            let real = T::real;
+            real(0.0)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
+        type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+        const CONSTANT_JACOBIAN: bool = false;
+        const INLINED: bool = true;
+
+        /// `residual_x = L_v_x - h*L_x/2 - p0_x_low - p0_x`
+        ///
+        /// `residual_y = L_v_y - h*L_y/2 - p0_y_low - p0_y`
+        ///
+        /// 46 operations.
+        #[inline(always)]
+        fn momentum_equation(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [p0_x, p0_y]: [T; 2] = node.p.into();
+            let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid;
+            let s3 = y_mid * y_mid;
+            let s4 = s2 + s3;
+            let s5 = s4.recip();
+            let s6 = s5 * s5;
+            let s7 = s4.sqrt();
+            let s8 = s6 * s7;
+            let s9 = self.mu * h * real(0.5);
+            let s10 = s6 * s5 * s7;
+            let s11 = self.mu * (h * h);
+            let s12 = s11 * real(0.25);
+            let s13 = -(s11 * real(0.75) * x_mid * y_mid * s10);
+            ::vi_core::MomentumEquation {
                 residual: ::vi_core::SVector::from([
-                    x_dot - p0_x + (s9 * s1 - p0_x_low),
-                    y_dot - p0_y + (s10 * s1 - p0_y_low),
+                    x_dot - p0_x + (s9 * x_mid * s8 - p0_x_low),
+                    y_dot - p0_y + (s9 * y_mid * s8 - p0_y_low),
                 ]),
                 jacobian: ::vi_core::SMatrix::from_row_slice(
-                    &[real(1.0) - s16 * s14, s17, s17, real(1.0) - s16 * s18],
+                    &[
+                        real(1.0) - s12 * (s2 * s10 * real(3.0) - s8),
+                        s13,
+                        s13,
+                        real(1.0) - s12 * (s3 * s10 * real(3.0) - s8),
+                    ],
                 ),
-            },
-            residual_dh: ::vi_core::SVector::from([s19 - s23, s24 - s25]),
-            energy_residual: s11 + s12,
-            energy_dv: ::vi_core::SVector::from([s19 + s23, s24 + s25]),
-            energy_dh: self.mu * (y_dot * y_dot) * s18 * real(0.25)
-                + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s13 + s22) * x_dot,
+            }
+        }
+
+        /// The residual, its magnitude, and
+        ///
+        /// `p1 − p0_x = h*L_x`
+        ///
+        /// `p1 − p0_y = h*L_y`
+        ///
+        /// 44 operations.
+        #[inline(always)]
+        fn momentum_residual(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::MomentumResidual<2, T> {
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [p0_x, p0_y]: [T; 2] = node.p.into();
+            let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid + y_mid * y_mid;
+            let s3 = s2.recip();
+            let s4 = s3 * s3 * s2.sqrt();
+            let s5 = self.mu * h;
+            let s6 = s5 * x_mid * s4;
+            let s7 = s5 * y_mid * s4;
+            let s8 = s5 * real(0.5);
+            ::vi_core::MomentumResidual {
+                residual: ::vi_core::SVector::from([
+                    x_dot - p0_x + (s8 * x_mid * s4 - p0_x_low),
+                    y_dot - p0_y + (s8 * y_mid * s4 - p0_y_low),
+                ]),
+                magnitude: ::vi_core::SVector::from([
+                    x_dot.abs() + p0_x.abs() + s6.abs() * real(0.5),
+                    y_dot.abs() + p0_y.abs() + s7.abs() * real(0.5),
+                ]),
+                increment: ::vi_core::SVector::from([-s6, -s7]),
+            }
+        }
+
+        /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
+        ///
+        /// 107 operations.
+        #[inline(always)]
+        fn extended_system(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
+            let energy0 = node.energy;
+            let energy0_low = node.energy_low;
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [p0_x, p0_y]: [T; 2] = node.p.into();
+            let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid;
+            let s3 = y_mid * y_mid;
+            let s4 = s2 + s3;
+            let s5 = s4.recip();
+            let s6 = s4.sqrt();
+            let s7 = s5 * s5;
+            let s8 = s7 * s6;
+            let s9 = self.mu * x_mid * s8;
+            let s10 = self.mu * y_mid * s8;
+            let s11 = (p0_y - y_dot * real(0.5)) * y_dot
+                - (energy0 + self.mu * (s5 * s6)) + (p0_x - x_dot * real(0.5)) * x_dot;
+            let s12 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+                - self.mu * real(0.5) * h * (x_dot * x_mid * s8 + y_dot * y_mid * s8);
+            let s13 = s7 * s5 * s6;
+            let s14 = s2 * s13 * real(3.0) - s8;
+            let s15 = self.mu * (h * h);
+            let s16 = s15 * real(0.25);
+            let s17 = -(s15 * real(0.75) * x_mid * y_mid * s13);
+            let s18 = s3 * s13 * real(3.0) - s8;
+            let s19 = s9 * real(0.5);
+            let s20 = self.mu * real(0.75);
+            let s21 = self.mu * real(0.25);
+            let s22 = s21 * x_dot * s14;
+            let s23 = (s20 * y_dot * x_mid * y_mid * s13 + s22) * h;
+            let s24 = s10 * real(0.5);
+            let s25 = (s20 * x_dot * x_mid * y_mid * s13 + s21 * y_dot * s18) * h;
+            ::vi_core::ExtendedSystem {
+                momentum: ::vi_core::MomentumEquation {
+                    residual: ::vi_core::SVector::from([
+                        x_dot - p0_x + (s9 * s1 - p0_x_low),
+                        y_dot - p0_y + (s10 * s1 - p0_y_low),
+                    ]),
+                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                        &[real(1.0) - s16 * s14, s17, s17, real(1.0) - s16 * s18],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s19 - s23, s24 - s25]),
+                energy_residual: s11 + s12,
+                energy_dv: ::vi_core::SVector::from([s19 + s23, s24 + s25]),
+                energy_dh: self.mu * (y_dot * y_dot) * s18 * real(0.25)
+                    + (self.mu * real(1.5) * y_dot * x_mid * y_mid * s13 + s22) * x_dot,
+            }
+        }
+
+        /// Both residuals, their magnitudes, and
+        ///
+        /// `E1 − E0 = 0`
+        ///
+        /// 96 operations.
+        #[inline(always)]
+        fn extended_residual(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::ExtendedResidual<2, T> {
+            let energy0 = node.energy;
+            let energy0_low = node.energy_low;
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [p0_x, p0_y]: [T; 2] = node.p.into();
+            let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid + y_mid * y_mid;
+            let s3 = s2.recip();
+            let s4 = s2.sqrt();
+            let s5 = self.mu * (s3 * s4);
+            let s6 = s3 * s3 * s4;
+            let s7 = self.mu * h;
+            let s8 = s7 * x_mid * s6;
+            let s9 = s7 * y_mid * s6;
+            let s10 = s7 * real(0.5);
+            let s11 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
+                - self.mu * real(0.5) * h * (x_dot * x_mid * s6 + y_dot * y_mid * s6);
+            let s12 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                + energy0.abs() + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
+            ::vi_core::ExtendedResidual {
+                residual: ::vi_core::SVector::from([
+                    x_dot - p0_x + (s10 * x_mid * s6 - p0_x_low),
+                    y_dot - p0_y + (s10 * y_mid * s6 - p0_y_low),
+                ]),
+                magnitude: ::vi_core::SVector::from([
+                    x_dot.abs() + p0_x.abs() + s8.abs() * real(0.5),
+                    y_dot.abs() + p0_y.abs() + s9.abs() * real(0.5),
+                ]),
+                energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s5)
+                    + (p0_x - x_dot * real(0.5)) * x_dot + s11,
+                energy_magnitude: s12 + s5.abs()
+                    + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
+                    + (s7 * y_dot * y_mid * s6).abs() * real(0.5),
+                increment: ::vi_core::Increment {
+                    momentum: ::vi_core::SVector::from([-s8, -s9]),
+                    energy: real(0.0),
+                },
+            }
+        }
+
+        /// What the rounding of both residuals is measured in, by running error analysis.
+        #[cold]
+        fn rounding(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::Rounding<2, T> {
+            ::vi_core::Rounding::of(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
         }
     }
 
-    /// Both residuals, their magnitudes, and
-    ///
-    /// `E1 − E0 = 0`
-    ///
-    /// 96 operations.
-    #[inline(always)]
-    fn extended_residual(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::ExtendedResidual<2, T> {
-        let energy0 = node.energy;
-        let energy0_low = node.energy_low;
-        let [x0, y0]: [T; 2] = node.q.into();
-        let [x0_low, y0_low]: [T; 2] = node.q_low.into();
-        let [p0_x, p0_y]: [T; 2] = node.p.into();
-        let [p0_x_low, p0_y_low]: [T; 2] = node.p_low.into();
-        let [x_dot, y_dot]: [T; 2] = (*v).into();
-        let real = T::real;
-        let s1 = h * real(0.5);
-        let x_mid = x0 + (s1 * x_dot + x0_low);
-        let y_mid = y0 + (s1 * y_dot + y0_low);
-        let s2 = x_mid * x_mid + y_mid * y_mid;
-        let s3 = s2.recip();
-        let s4 = s2.sqrt();
-        let s5 = self.mu * (s3 * s4);
-        let s6 = s3 * s3 * s4;
-        let s7 = self.mu * h;
-        let s8 = s7 * x_mid * s6;
-        let s9 = s7 * y_mid * s6;
-        let s10 = s7 * real(0.5);
-        let s11 = x_dot * p0_x_low + y_dot * p0_y_low - energy0_low
-            - self.mu * real(0.5) * h * (x_dot * x_mid * s6 + y_dot * y_mid * s6);
-        let s12 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5) + energy0.abs()
-            + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
-        ::vi_core::ExtendedResidual {
-            residual: ::vi_core::SVector::from([
-                x_dot - p0_x + (s10 * x_mid * s6 - p0_x_low),
-                y_dot - p0_y + (s10 * y_mid * s6 - p0_y_low),
-            ]),
-            magnitude: ::vi_core::SVector::from([
-                x_dot.abs() + p0_x.abs() + s8.abs() * real(0.5),
-                y_dot.abs() + p0_y.abs() + s9.abs() * real(0.5),
-            ]),
-            energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s5)
-                + (p0_x - x_dot * real(0.5)) * x_dot + s11,
-            energy_magnitude: s12 + s5.abs()
-                + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
-                + (s7 * y_dot * y_mid * s6).abs() * real(0.5),
-            increment: ::vi_core::Increment {
-                momentum: ::vi_core::SVector::from([-s8, -s9]),
-                energy: real(0.0),
-            },
+    impl ::vi_core::Batch<2> for Kepler<f64> {
+        type Rows<const W: usize> = Kepler<[f64; W]>;
+        type In<T: ::vi_core::Real> = Kepler<T>;
+        fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+            Kepler {
+                mu: ::core::array::from_fn(|index| systems[index].mu),
+            }
+        }
+
+        #[inline(always)]
+        fn pick<T: ::vi_core::Real, const W: usize>(
+            rows: &Self::Rows<W>,
+            index: usize,
+        ) -> Self::In<T> {
+            Kepler {
+                mu: T::real(rows.mu[index]),
+            }
         }
     }
 
-    /// What the rounding of both residuals is measured in, by running error analysis.
-    #[cold]
-    fn rounding(
-        &self,
-        node: &::vi_core::Node<2, T>,
-        h: T,
-        v: &::vi_core::SVector<T, 2>,
-    ) -> ::vi_core::Rounding<2, T> {
-        ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
-    }
-}
-
-#[allow(clippy::all, clippy::pedantic, unused_variables)]
-impl ::vi_core::Batch<2> for Kepler<f64> {
-    type Rows<const W: usize> = Kepler<[f64; W]>;
-    type In<T: ::vi_core::Real> = Kepler<T>;
-    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
-        Kepler {
-            mu: ::core::array::from_fn(|index| systems[index].mu),
+    impl ::vi_core::check::Checked<2> for Kepler<f64> {
+        type In<T: ::vi_core::Real> = Kepler<T>;
+        fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
+            Kepler::from_f64(self)
         }
     }
-
-    #[inline(always)]
-    fn pick<T: ::vi_core::Real, const W: usize>(
-        rows: &Self::Rows<W>,
-        index: usize,
-    ) -> Self::In<T> {
-        Kepler {
-            mu: T::real(rows.mu[index]),
-        }
-    }
-}
-
-impl ::vi_core::check::Checked<2> for Kepler<f64> {
-    type In<T: ::vi_core::Real> = Kepler<T>;
-    fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
-        Kepler::from_f64(self)
-    }
-}
+};
 
 /// Checks of [`Kepler`](super::Kepler) at the place that it names.
 #[cfg(test)]
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(clippy::all, clippy::pedantic, deprecated)]
 mod kepler_checks {
     fn place() -> ::vi_core::check::Place<2> {
         ::vi_core::check::Place {
