@@ -20,6 +20,7 @@ use crate::called::Called;
 use crate::fixed_step::{Branch, check_step};
 use crate::momentum::{Steps, Way};
 use crate::{Node, Real, Scalar, State, StepError, Stepping};
+use nalgebra::SVector;
 
 /// A symmetric composition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,6 +148,17 @@ where
     /// The state reached last.
     pub fn state(&self) -> State<N, T> {
         self.node.state()
+    }
+
+    /// The node reached last: the state with the low parts of its sums. Its energy has no meaning.
+    pub fn node(&self) -> &Node<N, T> {
+        &self.node
+    }
+
+    /// Velocities of the substeps of the last whole step, one after the other; before the first step the velocity that belongs to
+    /// the momenta.
+    pub fn velocities(&self) -> impl Iterator<Item = SVector<T, N>> + '_ {
+        self.substeps.iter().map(Steps::v)
     }
 
     /// Largest residual of the substeps of the last whole step, measured at the velocities that were taken, in roundings; see

@@ -169,7 +169,7 @@ pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
     for iterations in 0..=ITERATIONS {
         let equations = system.extended_system(node, trial.h, &trial.v);
         let elimination = Elimination::finite(&equations).ok_or(Failure::NoRoot)?;
-        let rows = Rows::of(system, node, &equations, &trial);
+        let rows = Rows::of(system, node, &trial);
         observe(momentum::worse(rows.momentum, rows.energy));
         let density = elimination.density().ok_or(Failure::NoRoot)?;
         if rows.are_at_floor(&before) {
@@ -198,13 +198,13 @@ impl Rows {
     fn of<const N: usize, T: Scalar, S: Stepping<N, T>>(
         system: &S,
         node: &Node<N, T>,
-        equations: &ExtendedSystem<N, T, S::Jacobian>,
         trial: &Trial<N, T>,
     ) -> Self {
-        let rounding = system.rounding(node, trial.h, &trial.v);
+        let (at, rounding) =
+            (system.extended_residual(node, trial.h, &trial.v), system.rounding(node, trial.h, &trial.v));
         Self {
-            momentum: momentum::worst(&equations.momentum.residual, &rounding.residual),
-            energy: momentum::roundings(equations.energy_residual, rounding.energy_residual),
+            momentum: momentum::worst(&at.residual, &rounding.residual),
+            energy: momentum::roundings(at.energy_residual, rounding.energy_residual),
         }
     }
 

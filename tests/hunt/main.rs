@@ -1,0 +1,209 @@
+//! A hunt for steps that are taken and not solved, where motions change suddenly.
+//!
+//! In: the systems of `sudden` and those of the catalogue, from random starts with random steps. The residual of each step
+//! is computed here, from the node before it and the velocity that was taken, and must be at the floor, row by row:
+//!
+//! ```text
+//! |r_i| ≤ 4 ε s_i        s_i the largest of |p0_i| + |p1_i − p0_i|, the sum of the absolute values of the terms of r_i,
+//!                        and what rounding moves r_i by at most, by running error analysis
+//! ```
+//!
+//! and what the integrator says of it must be that number. That the residual is the one of the slots is for `check::steps` to say,
+//! which runs here first. A motion may end with a typed error; then another one begins.
+
+mod sudden;
+#[path = "../support/mod.rs"]
+mod support;
+
+use support::Sequence;
+use support::ending::assert_typed;
+use support::scenes::Scene;
+use vi_core::check::{self, Checked, Place};
+use vi_core::composition::Scheme;
+use vi_core::{Composition, EnergyPreserving, FixedStep, Node, SVector, State, Stepping};
+
+/// Steps of each system by each integrator.
+const STEPS: usize = 40_000;
+/// Motions of each system by each integrator, at least.
+const MOTIONS: usize = 16;
+/// Motions at most: some starts have no step.
+const MOST_MOTIONS: usize = 2_000;
+/// Roundings that a solved row may leave. Measured: 3.995, where it is what a step is accepted at.
+const FLOOR: f64 = 4.0;
+
+/// What was found of one system and integrator.
+#[derive(Debug, Default)]
+struct Found {
+    steps: usize,
+    motions: usize,
+    /// Steps whose residual is above the floor of the first two scales: what rounding does is larger there.
+    by_analysis: usize,
+    worst: f64,
+}
+
+impl Found {
+    fn add(&mut self, row: &Row) {
+        self.by_analysis += usize::from(row.plain > FLOOR);
+        self.worst = self.worst.max(row.worst);
+    }
+
+    fn finish(&self, name: &str, integrator: &str) {
+        println!("{name}, {integrator}: {self:?}");
+        assert!(self.worst <= FLOOR, "{name}, {integrator}: {self:?}");
+        // Something was hunted, and a residual of zero throughout is not one.
+        assert!(self.steps >= STEPS / 10 && self.worst > 0.1, "{name}, {integrator}: {self:?}");
+    }
+}
+
+/// The largest residual of a step in roundings.
+#[derive(Debug)]
+struct Row {
+    /// By each of the three scales.
+    by: [f64; 3],
+    /// By the larger of the first two in each row.
+    plain: f64,
+    /// By the largest in each row.
+    worst: f64,
+}
+
+impl Row {
+    fn new(rows: impl Iterator<Item = (f64, [f64; 3])>) -> Self {
+        let mut row = Self { by: [0.0; 3], plain: 0.0, worst: 0.0 };
+        for (residual, scales) in rows {
+            let by = scales.map(|scale| if residual == 0.0 { 0.0 } else { residual.abs() / (f64::EPSILON * scale) });
+            assert!(by.iter().all(|roundings| !roundings.is_nan()), "{residual:e} by {scales:?}");
+            row.by = core::array::from_fn(|scale| row.by[scale].max(by[scale]));
+            row.plain = row.plain.max(by[0].min(by[1]));
+            row.worst = row.worst.max(by[0].min(by[1]).min(by[2]));
+        }
+        row
+    }
+
+    /// The momentum rows of the step of length h with velocity v from a node.
+    fn of_momentum<const N: usize, S: Stepping<N>>(system: &S, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Self {
+        let at = system.momentum_residual(node, h, v);
+        let analysis = system.rounding(node, h, v);
+        Self::new((0..N).map(|i| {
+            let own = node.p[i].abs() + at.increment[i].abs();
+            (at.residual[i], [own, at.magnitude[i], analysis.residual[i]])
+        }))
+    }
+
+    /// All rows of an energy-preserving step.
+    fn of_both<const N: usize, S: Stepping<N>>(system: &S, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Self {
+        let at = system.extended_residual(node, h, v);
+        let analysis = system.rounding(node, h, v);
+        let momentum = (0..N).map(|i| {
+            let own = node.p[i].abs() + at.increment.momentum[i].abs();
+            (at.residual[i], [own, at.magnitude[i], analysis.residual[i]])
+        });
+        let own = node.energy.abs() + at.increment.energy.abs() + v.component_mul(&node.p).abs().sum();
+        let energy = (at.energy_residual, [own, at.energy_magnitude, analysis.energy_residual]);
+        Self::new(momentum.chain([energy]))
+    }
+
+    /// Whether the reported residual is this one.
+    fn is(&self, reported: f64) -> bool {
+        self.by.iter().any(|roundings| (roundings - reported).abs() <= 1e-12 * reported)
+    }
+}
+
+/// A start near the scene, and a step.
+fn start<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>, draw: &mut Sequence) -> (State<N>, f64) {
+    let mut near = |values: [f64; N]| SVector::from(values.map(|value| value * draw.within(0.7, 1.3)));
+    let (q, v) = (near(scene.q), near(scene.v));
+    let h = scene.h * 10_f64.powf(draw.within(-1.0, 0.5));
+    (State::at(&scene.system, 0.0, q, v), h)
+}
+
+/// Takes motions of an integrator until there are so many steps; `motion` takes one and gives what was found of each step.
+fn hunted<const N: usize, S: Stepping<N>>(
+    scene: &Scene<S, N>,
+    limit: usize,
+    mut motion: impl FnMut(State<N>, f64, usize, &mut Found),
+) -> Found {
+    let (mut found, mut draw) = (Found::default(), Sequence::new(5));
+    while found.steps < limit && found.motions < MOST_MOTIONS {
+        let (state, h) = start(scene, &mut draw);
+        motion(state, h, limit / MOTIONS, &mut found);
+        found.motions += 1;
+    }
+    found
+}
+
+fn by_fixed_steps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
+    let found = hunted(scene, STEPS, |state, h, steps, found| {
+        let Ok(mut run) = FixedStep::new(scene.system, state, h).map_err(assert_typed) else { return };
+        for _ in 0..steps {
+            let before = *run.node();
+            if let Err(error) = run.step() {
+                return assert_typed(error);
+            }
+            let row = Row::of_momentum(&scene.system, &before, h, &run.v());
+            assert!(row.is(run.residual()), "{}: {} reported, {row:?}", S::NAME, run.residual());
+            found.add(&row);
+            found.steps += 1;
+        }
+    });
+    found.finish(S::NAME, "fixed steps");
+}
+
+fn by_energy_preserving_steps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
+    let found = hunted(scene, STEPS, |State { t, q, p }, h, steps, found| {
+        let Ok(v) = (State { t, q, p }).velocity(&scene.system).map_err(assert_typed) else { return };
+        let run = EnergyPreserving::from_midpoint(scene.system, t, q, v, h);
+        let Ok(mut run) = run.map_err(assert_typed) else { return };
+        for _ in 0..steps {
+            let before = *run.node();
+            let step = match run.step() {
+                Ok(step) => step,
+                Err(error) => return assert_typed(error),
+            };
+            let row = Row::of_both(&scene.system, &before, run.h(), &run.v());
+            assert!(row.is(step.residual), "{}: {} reported, {row:?} {step:?}", S::NAME, step.residual);
+            found.add(&row);
+            found.steps += 1;
+        }
+    });
+    found.finish(S::NAME, "energy-preserving steps");
+}
+
+fn by_substeps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
+    for scheme in [Scheme::TRIPLE_JUMP_4, Scheme::KAHAN_LI_8] {
+        let found = hunted(scene, STEPS / scheme.weights.len(), |state, h, steps, found| {
+            let run = Composition::new(scene.system, scheme, state, h);
+            let Ok(mut run) = run.map_err(assert_typed) else { return };
+            for _ in 0..steps {
+                let mut node = *run.node();
+                if let Err(error) = run.step() {
+                    return assert_typed(error);
+                }
+                for (weight, v) in scheme.weights.iter().zip(run.velocities()) {
+                    let h = h * weight;
+                    found.add(&Row::of_momentum(&scene.system, &node, h, &v));
+                    let increment = scene.system.momentum_residual(&node, h, &v).increment;
+                    node.advance(h, &(v * h), &increment);
+                }
+                // The substeps are those that were taken.
+                assert_eq!(node.state(), run.state());
+                found.steps += 1;
+            }
+        });
+        let found = Found { steps: found.steps * scheme.weights.len(), ..found };
+        found.finish(S::NAME, scheme.name);
+    }
+}
+
+fn hunt<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
+    let place = Place { t: 0.0, q: scene.q.into(), v: scene.v.into(), h: scene.h / 10.0 };
+    check::steps(&scene.system, &place).unwrap_or_else(|failure| panic!("{failure}"));
+    by_fixed_steps(&scene);
+    by_energy_preserving_steps(&scene);
+    by_substeps(&scene);
+}
+
+sudden::each_sudden!(hunt);
+
+mod catalogue {
+    crate::support::scenes::each_system!(super::hunt);
+}
