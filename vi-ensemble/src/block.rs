@@ -103,8 +103,14 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         self.ended[number].map_or_else(|| Ok(self.node(number).state()), Err)
     }
 
+    /// The velocity of the last step of a trajectory; before the first one that which belongs to its momenta.
+    #[cfg(test)]
+    pub(crate) fn velocity(&self, number: usize) -> SVector<f64, N> {
+        self.velocities[0].get(LaneIndex::of(number))
+    }
+
     /// The last node of a trajectory.
-    fn node(&self, number: usize) -> Node<N> {
+    pub(crate) fn node(&self, number: usize) -> Node<N> {
         let lane = LaneIndex::of(number);
         self.nodes[0].get(lane, self.fixed.t.get(lane) + self.elapsed())
     }

@@ -26,6 +26,8 @@ mod dispatch;
 mod ended;
 pub mod ensemble;
 mod group;
+#[cfg(test)]
+mod hunt;
 mod lane;
 mod layout;
 mod sweep;

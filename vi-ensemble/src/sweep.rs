@@ -7,10 +7,11 @@
 //! ```text
 //! correct    v = v0 − A⁻¹ r(v0)
 //! measure    r(v) and p1 − p0, by one evaluation at v
-//! accept     where each row is at most ε times the sum of the absolute values of its terms
+//! accept     where each row, with what is carried to it, is at most ε times the sum of the absolute values of its terms
 //! ```
 //!
-//! What is left of a row is carried to the next step.
+//! What is left of a row then is carried to the next step. So a row itself is at most ε times this sum and that of the step before;
+//! where the sums shrink, that it is at most [`FLOOR`] ε times its own is asked too.
 
 use crate::dispatch::Loop;
 use crate::lane::Lane;
@@ -18,6 +19,9 @@ use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
 use vi_core::linear::Matrix;
 use vi_core::{Batch, MomentumResidual, Node, Stepping};
+
+/// Roundings that a row may leave.
+const FLOOR: f64 = 4.0;
 
 /// What does not change during a run.
 #[derive(Clone, Debug)]
@@ -67,6 +71,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
             // A scale that overflows proves nothing.
             let rounding = (magnitude[k] * Lane::new(f64::EPSILON)).get();
             accepted &= remainder[k].get().abs() <= rounding && rounding < f64::MAX * f64::EPSILON;
+            accepted &= residual[k].get().abs() <= FLOOR * rounding;
         }
         Step { v, increment, remainder, accepted }
     }
@@ -84,10 +89,13 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
         let kept = AGAIN && verdict.refused.get(lane) == 0;
         let mut node = self.node;
         node.advance(self.h, &(step.v * self.h), &step.increment);
+        // A sum, not a number where one of its terms is not: what solves the equations need not lead anywhere.
+        let sum = (0..N).fold(0.0, |sum, k| sum + (node.q[k].get() * 0.0 + node.p[k].get() * 0.0));
+        let accepted = step.accepted && sum == 0.0;
         after.set_unless(kept, lane, &node);
         after.remainder.set_unless(kept, lane, &step.remainder);
         velocity.set_unless(kept, lane, &step.v);
-        let refused = if step.accepted || kept { 0 } else { u64::MAX };
+        let refused = if accepted || kept { 0 } else { u64::MAX };
         verdict.refused.set(lane, refused);
         refused & verdict.running.get(lane)
     }
