@@ -165,8 +165,8 @@ fn sudden_motions_are_those_of_the_fixed_step() -> Result<(), StepError> {
         let starts: Vec<_> =
             spread(70, 40.0, 60.0).map(|k| (wall(k), State::at(&wall(k), 0.0, [1.0], [0.0]))).collect();
         let [alone, converged] = differences(&starts, h, steps)?;
-        println!("h = {h}: {alone:e} {converged:e}");
-        assert!(alone < 5e-13 && converged < 5e-13, "{alone:e} {converged:e}");
+        // Measured: 5.8e-14 after 5000 steps.
+        assert!(alone < 1e-13 && converged < 1e-13, "{alone:e}, {converged:e}");
     }
     Ok(())
 }

@@ -195,11 +195,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn of<const N: usize, T: Scalar, S: Stepping<N, T>>(
-        system: &S,
-        node: &Node<N, T>,
-        trial: &Trial<N, T>,
-    ) -> Self {
+    fn of<const N: usize, T: Scalar, S: Stepping<N, T>>(system: &S, node: &Node<N, T>, trial: &Trial<N, T>) -> Self {
         let (at, rounding) =
             (system.extended_residual(node, trial.h, &trial.v), system.rounding(node, trial.h, &trial.v));
         Self {
