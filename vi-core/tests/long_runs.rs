@@ -138,12 +138,14 @@ fn single_precision_runs_as_well() {
     let energy = integrator.energy();
     let mut fixed = FixedStep::new(&system, State::at(&system, 0.0_f32, [0.74], [0.0]), 0.1)
         .unwrap_or_else(|error| panic!("{error}"));
+    let mut worst = 0.0_f32;
     for _ in 0..10_000 {
         let (t, q, v) = integrator.step().unwrap_or_else(|error| panic!("{error}")).midpoint;
-        // Measured: at most 6.0e-8.
-        assert!((system.energy(t, &q, &v) - energy).abs() < 1.2e-7);
+        worst = worst.max((system.energy(t, &q, &v) - energy).abs());
         fixed.step().unwrap_or_else(|error| panic!("{error}"));
     }
+    // Measured: 1.3e-7. Solved to half a rounding, the energy at the middle has the roundings of the momentum rows besides.
+    assert!(worst < 2e-7, "{worst:e}");
     // Started on H, not on E: the discrete energy is h² D/8 = 6.2e-6 below it, but for its oscillation of 7e-7. Measured: 5.6e-6.
     let bias = energy - fixed.discrete_energy().unwrap_or(f32::NAN);
     assert!((bias - 6.2e-6).abs() < 1e-6, "{bias:e}");
