@@ -44,11 +44,12 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
     /// A state from which no step can be taken is a trajectory that ended before its first step.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an h that is zero or not finite, and where there are not as many systems as states.
+    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, and where there are not as many systems as states.
     #[allow(clippy::needless_pass_by_value, clippy::cast_precision_loss)]
     pub fn new(systems: Vec<S>, states: Vec<State<N>>, h: f64) -> Result<Self, StepError> {
-        if !h.is_finite() || h == 0.0 {
-            return Err(StepError::InvalidInput { input: "the step h", allowed: "finite and not zero", value: h });
+        if !h.is_normal() {
+            let (input, allowed) = ("the step h", "finite, not zero and not subnormal");
+            return Err(StepError::InvalidInput { input, allowed, value: h });
         }
         if systems.len() != states.len() {
             let value = systems.len() as f64;

@@ -273,11 +273,62 @@ fn angles_of_many_turns_are_taken_alone() -> Result<(), StepError> {
     Ok(())
 }
 
+lagrangian! {
+    /// A linear chain: its matrix is inverted once.
+    pub struct Springs {
+        param m = 1.2, k = 1.7;
+        coord q[6];
+        L = sum(i in 0..6, m * dot(q[i])^2 / 2 - k * q[i]^2 / 8) - k * sum(i in 0..5, (q[i + 1] - q[i])^2) / 2;
+        discretize midpoint;
+    }
+}
+
+/// The results of 300 steps, taken at once or a few at a time.
+fn in_parts<S: Batch<N>, const N: usize>(
+    starts: &[Start<S, N>],
+    h: f64,
+    part: u64,
+) -> Result<Vec<Outcome<N>>, StepError> {
+    let (systems, states) = starts.iter().copied().unzip();
+    let mut ensemble = Ensemble::new(systems, states, h)?;
+    ensemble.run_observed(300, part, |_| ());
+    assert_eq!(ensemble.steps(), 300);
+    Ok(ensemble.results().collect())
+}
+
+#[test]
+fn how_a_run_is_split_changes_no_bit() -> Result<(), StepError> {
+    let springs = Springs::default();
+    let chains: Vec<_> = spread(5, 0.2, 1.0).map(|x| (springs, State::at(&springs, 0.0, [x; 6], [-x; 6]))).collect();
+    let linear = HarmonicOscillator::default();
+    let linear: Vec<_> = spread(70, 0.2, 1.0).map(|x| (linear, State::at(&linear, 0.0, [x], [0.3]))).collect();
+    for h in [0.1, 10.0] {
+        for part in [1, 7] {
+            assert_eq!(in_parts(&chains, h, part)?, in_parts(&chains, h, 300)?);
+            assert_eq!(in_parts(&linear, h, part)?, in_parts(&linear, h, 300)?);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn more_steps_than_can_be_counted_are_counted_as_the_most() -> Result<(), StepError> {
+    let kepler = Kepler::default();
+    // At the sun: every trajectory has ended.
+    let starts = vec![State { t: 0.0, q: [0.0, 0.0].into(), p: [0.0, 0.0].into() }; 130];
+    let mut ensemble = Ensemble::new(vec![kepler; 130], starts, 0.01)?;
+    for steps in [1 << 58, u64::MAX, 1] {
+        ensemble.run(steps);
+    }
+    assert_eq!((ensemble.running(), ensemble.steps()), (0, u64::MAX));
+    Ok(())
+}
+
 #[test]
 fn what_cannot_be_run_is_refused() {
     let well = DoubleWell::default();
     let start = State::at(&well, 0.0, [0.7], [0.0]);
-    for (systems, states, h) in [(1, 1, 0.0), (1, 1, f64::NAN), (1, 2, 0.1), (2, 1, 0.1)] {
+    for (systems, states, h) in [(1, 1, 0.0), (1, 1, 1e-310), (1, 1, f64::NAN), (1, 2, 0.1), (2, 1, 0.1)] {
         let refused = Ensemble::new(vec![well; systems], vec![start; states], h);
         assert!(matches!(refused, Err(StepError::InvalidInput { .. })));
     }
