@@ -188,7 +188,7 @@ impl fmt::Display for StepError {
                 "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"
             ),
             Self::NotConverged { h, .. } if *h == 0.0 => {
-                f.write_str("; `State::at` gives momenta that have a velocity")
+                f.write_str("; start from momenta of `State::at`, or take shorter steps")
             }
             Self::NotConverged { h, .. } => write!(
                 f,

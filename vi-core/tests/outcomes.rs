@@ -156,5 +156,5 @@ fn momenta_without_a_velocity_are_refused_as_such() {
         error.to_string().starts_with("no velocity found for the momenta at t = 0.000000000: residual "),
         "{error}"
     );
-    assert!(error.to_string().ends_with("; `State::at` gives momenta that have a velocity"), "{error}");
+    assert!(error.to_string().ends_with("; start from momenta of `State::at`, or take shorter steps"), "{error}");
 }
