@@ -1,7 +1,7 @@
 //! A system that counts how often its equations are evaluated.
 //!
 //! In: a system. Out: the same system, and a count of the calls that an integrator pays for: a residual with its
-//! Jacobian, with or without the gain, the gain of a step, an acceleration; each counts one. Everything else is passed on uncounted.
+//! Jacobian, a residual with the gain of the step, an acceleration; each counts one. Everything else is passed on uncounted.
 
 use core::cell::Cell;
 use vi_core::{
@@ -107,6 +107,7 @@ impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const CLOSED_FORM: bool = S::CLOSED_FORM;
+    const INLINED: bool = S::INLINED;
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N, f64, S::Jacobian> {
         self.counted().momentum_equation(node, h, v)
