@@ -101,6 +101,7 @@ pub enum StepError {
 
 impl StepError {
     /// What the error says, with its numbers, but without what to do: for a program that gives its own users other advice.
+    #[must_use]
     pub fn reason(&self) -> impl fmt::Display + '_ {
         Reason(self)
     }
