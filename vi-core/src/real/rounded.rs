@@ -16,7 +16,8 @@
 use super::Real;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number with a bound of its rounding; see the [module](self).
+/// A number with a bound of its rounding, by running error analysis (Higham, Accuracy and Stability of Numerical Algorithms,
+/// section 3.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded {
     value: f64,
