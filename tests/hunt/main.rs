@@ -1,7 +1,8 @@
 //! A hunt for steps that are taken and not solved, where motions change suddenly.
 //!
-//! In: the systems of `sudden` and those of the catalogue, from random starts with random steps. The residual of each step
-//! is computed here, from the node before it and the velocity that was taken, and must be at the floor, row by row:
+//! In: the systems of `sudden` and those of the catalogue of up to three coordinates, from random starts with random steps. The
+//! residual of each step is computed here, from the node before it and the velocity that was taken, and must be at the floor, row
+//! by row:
 //!
 //! ```text
 //! |r_i| ≤ 4 ε s_i        s_i the largest of |p0_i| + |p1_i − p0_i|, the sum of the absolute values of the terms of r_i,

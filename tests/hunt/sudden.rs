@@ -1,4 +1,4 @@
-//! Systems whose motion changes suddenly: a step is then unlike the steps before it, and what those have taught is wrong.
+//! Systems whose motion changes suddenly: a step is then unlike the steps before it, and their guess of it is wrong.
 
 use crate::support::scenes::Scene;
 use vi_core::lagrangian;

@@ -29,6 +29,7 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Called<S> {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const CLOSED_FORM: bool = S::CLOSED_FORM;
+    const INLINED: bool = S::INLINED;
 
     #[inline(never)]
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, S::Jacobian> {

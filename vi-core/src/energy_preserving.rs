@@ -14,14 +14,15 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `starts` | the node and the interval that the first step follows |
-//! | `predicted` | the root by one or a few Newton steps from v and h extrapolated over the last steps |
+//! | `predicted` | the root by one or a few Newton steps from v and h extrapolated over the last steps, measured |
 //! | `guess` | else: v by extrapolation, h by the step law `h D^(1/3) = constant` |
 //! | `newton` | the n + 1 equations to the rounding floor |
 //! | `bracket` | where that fails: the smallest h > 0 that solves them, or the proof that there is none |
 //! | `fallback` | what is done then: an error, or fixed steps until a step exists again |
 //! | `checkpoint` | what a run carries, to be stored and resumed bit for bit |
 //!
-//! AFTER A STEP both residuals were measured at the (v, h) that was taken, and are at the rounding floor. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! AFTER A STEP both residuals were measured at the (v, h) that was taken, and are at the rounding floor. AFTER AN ERROR the
+//! integrator holds the last good state and keeps returning that error.
 
 mod bracket;
 mod checkpoint;

@@ -1,4 +1,4 @@
-//! Every way in which a step can fail, with its numbers.
+//! Every way in which a step can fail, with its numbers, and what to do about it.
 
 use crate::{Lagrangian, Node, Scalar};
 use core::fmt;
@@ -100,7 +100,13 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// With the expression that is not finite where the step `(v, h)` from `node` was sought, if that is the error and the
+    /// What the error says, with its numbers, but without what to do: for a program that gives its own users other advice.
+    #[must_use]
+    pub fn reason(&self) -> impl fmt::Display + '_ {
+        Reason(self)
+    }
+
+    /// With the expression that is not finite where the step `(v, h)` from `node` was tried, if that is the error and the
     /// system says so.
     #[cold]
     pub(crate) fn explained<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
@@ -119,47 +125,80 @@ impl StepError {
     }
 }
 
-impl fmt::Display for StepError {
+/// What a [`StepError`] says without what to do about it; see [`StepError::reason`].
+struct Reason<'a>(&'a StepError);
+
+impl fmt::Display for Reason<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoForwardStep { t, h, excess, density } => write!(
+        match self.0 {
+            StepError::NoForwardStep { t, h, excess, density } => write!(
                 f,
                 "no energy-preserving step leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e})"
             ),
-            Self::DegenerateStep { t, h, density } => write!(
+            StepError::DegenerateStep { t, h, density } => write!(
                 f,
                 "the step length is not determined at t = {t:.9} (last h = {h:.3e}, step density D = {density:.3e})"
             ),
-            Self::StepRatio { t, previous, found } => write!(
+            StepError::StepRatio { t, previous, found } => write!(
                 f,
                 "the forward step from t = {t:.9} has h = {found:.3e} after {previous:.3e}, beyond the allowed factor of 3"
             ),
-            Self::StepBounds { t, found, h_min, h_max } => write!(
+            StepError::StepBounds { t, found, h_min, h_max } => write!(
                 f,
                 "the forward step from t = {t:.9} has h = {found:.3e}, outside the bounds {h_min:.3e} to {h_max:.3e}"
             ),
-            Self::NotConverged { t, h, iterations, residual, residuals } => write!(
-                f,
-                "no solution found from t = {t:.9} with h = {h:.3e}: residual {residual:.3e} roundings after {iterations} iterations{residuals}"
-            ),
-            Self::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
-            Self::NonFinite { t, quantity, expression: None } => {
+            StepError::NotConverged { t, h, iterations, residual, residuals } => {
+                if *h == 0.0 {
+                    write!(f, "no velocity found for the momenta at t = {t:.9}")?;
+                } else {
+                    write!(f, "no solution found from t = {t:.9} with h = {h:.3e}")?;
+                }
+                write!(f, ": residual {residual:.3e} roundings after {iterations} iterations{residuals}")
+            }
+            StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
+            StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
             }
-            Self::NonFinite { t, quantity, expression: Some(expression) } => {
+            StepError::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
-            Self::OtherSystem { system, parameter: None, .. } => {
-                write!(
-                    f,
-                    "the checkpoint is of another system than `{system}`; restart the system that it was taken of"
-                )
+            StepError::OtherSystem { system, parameter: None, .. } => {
+                write!(f, "the checkpoint is of another system than `{system}`")
             }
-            Self::OtherSystem { system, parameter: Some(parameter), stored, given } => write!(
+            StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
+                write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
+            }
+            StepError::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value}"),
+        }
+    }
+}
+
+impl fmt::Display for StepError {
+    /// The reason, and what to do where something can be done.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.reason().fmt(f)?;
+        match self {
+            Self::NoForwardStep { .. } | Self::DegenerateStep { .. } => {
+                f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on")
+            }
+            Self::StepRatio { .. } => {
+                f.write_str("; `with_fallback(Fallback::FixedSteps)` goes on, a smaller first h comes further")
+            }
+            Self::StepBounds { found, .. } => write!(
                 f,
-                "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}; restart with the parameters that it was taken with"
+                "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"
             ),
-            Self::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value}"),
+            Self::NotConverged { h, .. } if *h == 0.0 => {
+                f.write_str("; start from momenta of `State::at`, or take shorter steps")
+            }
+            Self::NotConverged { h, .. } => write!(
+                f,
+                "; take steps shorter than {:.3e}, or with `EnergyPreserving` go on by `with_fallback(Fallback::FixedSteps)`",
+                h.abs()
+            ),
+            Self::OtherSystem { parameter: None, .. } => f.write_str("; restart the system that it was taken of"),
+            Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
+            Self::Singular { .. } | Self::NonFinite { .. } | Self::InvalidInput { .. } => Ok(()),
         }
     }
 }

@@ -93,8 +93,8 @@ pub trait Stepping<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// Whether v and what a step adds to p are a constant matrix times (q, p), but for a constant: A is constant, the momenta
     /// gain what is linear in the state, and nothing depends on the time. Worth it for a few coordinates only.
     const CLOSED_FORM: bool = false;
-    /// Whether the functions of a step are so short that they are always inlined: a loop over trajectories becomes vector
-    /// instructions then.
+    /// Whether the functions of a momentum step are short. Then they are inlined, the magnitudes of their terms are computed only
+    /// where they are asked for, and a loop over trajectories becomes vector instructions.
     const INLINED: bool = false;
 
     /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the

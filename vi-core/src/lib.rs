@@ -1,7 +1,8 @@
 //! Run time of generated variational integrators.
 //!
 //! In: a system that `lagrangian!` generated, an initial state, a step length.
-//! Out: an iterator of states, each solved to the rounding floor, or a typed [`StepError`].
+//! Out: an iterator of states, or a typed [`StepError`]. AFTER A STEP its residual was measured at the very unknowns that were taken,
+//! row by row, and is at the rounding floor (`docs/mathematics.md`, section 8).
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -17,6 +18,10 @@
 //! | [`checkpoint`] | a run between two steps, with the system that it is of |
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
+//! | `momentum` | steps of a given length: predicted, corrected, measured; else searched |
+//! | `predictor` | the guess of a step, by a polynomial through the last ones |
+//! | `called` | a system whose functions are calls, for rare code |
+//! | `compensated` | sums that keep what rounding takes from them |
 //!
 //! Nothing here panics, allocates in a step, or prints.
 

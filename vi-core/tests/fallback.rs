@@ -141,15 +141,15 @@ fn bounds_must_be_bounds() {
 }
 
 #[test]
-fn the_next_step_is_foretold() {
-    // By the step law; and nothing is foretold where D is about to change its sign.
+fn the_length_of_the_next_step_is_predicted() {
+    // By the step law; and nothing is predicted where D is about to change its sign.
     let mut integrator = kepler(0.6, 0.005);
     integrator.step().unwrap_or_else(|error| panic!("{error}"));
     let mut worst = 0.0_f64;
     for _ in 0..5000 {
-        let foretold = integrator.step().map_or(None, |step| step.h_next()).unwrap_or(f64::NAN);
+        let predicted = integrator.step().map_or(None, |step| step.h_next()).unwrap_or(f64::NAN);
         let h = integrator.clone().step().map_or(f64::NAN, |step| step.h);
-        worst = worst.max((foretold / h - 1.0).abs());
+        worst = worst.max((predicted / h - 1.0).abs());
     }
     // Measured: 1.3e-2.
     assert!(worst < 0.03, "{worst}");

@@ -79,7 +79,14 @@ fn an_iteration_that_does_not_converge_shows_its_residuals() {
     assert!((1..=Residuals::KEPT).contains(&list.len()) && list.iter().all(|r| r.is_finite() && *r > 1.0), "{list:?}");
     assert!(residual > 1.0);
     let newest = list.last().map_or(String::new(), |newest| format!("{newest:.1e}"));
-    assert!(error.to_string().ends_with(&newest) && error.to_string().contains("residuals up to there"), "{error}");
+    let reason = error.reason().to_string();
+    assert!(reason.ends_with(&newest) && reason.contains("residuals up to there"), "{error}");
+    assert_eq!(
+        error.to_string().strip_prefix(&reason),
+        Some(
+            "; take steps shorter than 1.000e0, or with `EnergyPreserving` go on by `with_fallback(Fallback::FixedSteps)`"
+        )
+    );
 }
 
 lagrangian! {
@@ -107,4 +114,47 @@ fn a_value_that_is_lost_is_named() {
     assert!(matches!(start, Err(StepError::NonFinite { expression: Some(_), .. })), "{start:?}");
     // The system itself: a finite L has no such part.
     assert_eq!(Wire::default().non_finite(0.0, &[0.5].into(), &[0.0].into()), None::<&str>);
+}
+
+#[test]
+fn an_error_ends_in_what_to_do() {
+    let no_step = StepError::NoForwardStep { t: 1.0, h: 0.5, excess: 2.0, density: -3.0 };
+    let degenerate = StepError::DegenerateStep { t: 1.0, h: 0.5, density: 0.0 };
+    let ratio = StepError::StepRatio { t: 1.0, previous: 0.5, found: 2.0 };
+    let bounds = StepError::StepBounds { t: 1.0, found: 0.25, h_min: 0.5, h_max: 1.0 };
+    let all = [
+        (no_step, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
+        (degenerate, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
+        (ratio, "; `with_fallback(Fallback::FixedSteps)` goes on, a smaller first h comes further"),
+        (
+            bounds,
+            "; allow 2.500e-1 by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
+        ),
+    ];
+    for (error, advice) in all {
+        assert_eq!(error.to_string().strip_prefix(&error.reason().to_string()), Some(advice));
+    }
+}
+
+lagrangian! {
+    /// A mass whose momentum is at most 1, however fast it is.
+    pub(crate) struct Bounded {
+        coord x;
+        L = ln(1 + dot(x)^2);
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn momenta_without_a_velocity_are_refused_as_such() {
+    let state = State { t: 0.0, q: [0.0].into(), p: [1.5].into() };
+    let error = state.velocity(&Bounded::default()).map_or_else(|error| error, |v| panic!("{v}"));
+    println!("{error}");
+    let StepError::NotConverged { h, .. } = error else { panic!("{error}") };
+    assert!(h == 0.0, "{h}");
+    assert!(
+        error.to_string().starts_with("no velocity found for the momenta at t = 0.000000000: residual "),
+        "{error}"
+    );
+    assert!(error.to_string().ends_with("; start from momenta of `State::at`, or take shorter steps"), "{error}");
 }

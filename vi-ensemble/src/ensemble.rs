@@ -13,7 +13,8 @@ use vi_core::{Batch, State, StepError};
 /// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
 const WORTHWHILE: u64 = 1 << 14;
 
-/// Many trajectories of one system, each with its own parameters and state, with one step.
+/// Many trajectories of one system, each with its own parameters and state, with one step. The [crate] says which systems gain from
+/// vector lanes, and which from threads alone.
 ///
 /// ```
 /// use vi_core::State;

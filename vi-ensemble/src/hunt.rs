@@ -63,7 +63,8 @@ fn hunt<S: Batch<N> + Default, const N: usize>(h: f64, q: [f64; N], v: [f64; N])
 
 fn hunt_by<S: Batch<N> + Default, const N: usize>(instructions: Instructions, h: f64, q: [f64; N], v: [f64; N]) {
     let system = S::default();
-    let part = |number: usize| 1.0 + f64::from(u32::try_from(number).unwrap_or(0)) / WIDTH as f64;
+    let count = |number: usize| f64::from(u32::try_from(number).unwrap_or(0));
+    let part = |number: usize| 1.0 + count(number) / count(WIDTH);
     let start = |number| State::at(&system, 0.0, q.map(|q| q * part(number)), v.map(|v| v * part(number)));
     let starts: Vec<_> = (0..WIDTH).map(|number| (system, start(number))).collect();
     let mut block: Block<S, N> = Block::new(&starts, h, instructions);

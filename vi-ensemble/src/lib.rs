@@ -1,7 +1,12 @@
 //! Many trajectories of one system, each with its own parameters and its own start.
 //!
 //! In: systems of one kind, a state for each, one step h. Out: for each trajectory the state reached, or the typed error
-//! that it ended with and the step at which it did. The equations of a step are those of [`vi_core::FixedStep`].
+//! that it ended with and the step at which it did. The equations of a step are those of [`vi_core::FixedStep`]. AFTER A STEP the
+//! residual of each trajectory was measured at the velocity that was taken, and is at the rounding floor.
+//!
+//! Systems of up to three degrees of freedom whose functions are short ([`Stepping::INLINED`](vi_core::Stepping::INLINED)) go side by
+//! side in vector lanes, 64 trajectories a thread at a time. All others are one `FixedStep` a trajectory, shared among threads: on
+//! one core that costs what single runs cost.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -12,6 +17,7 @@
 //! | `dispatch` | copies of a loop for the instruction sets of a processor, chosen at run time |
 //! | `layout` | nodes and velocities of a block, one row per coordinate |
 //! | `lane` | the number that the loops compute with: products are added in one instruction |
+//! | `ended` | how a trajectory ended |
 //!
 //! A trajectory depends neither on its neighbours nor on the number of threads, bit for bit; on processors with and
 //! without fused multiply-add it differs by rounding.

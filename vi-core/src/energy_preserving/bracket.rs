@@ -37,7 +37,7 @@ struct Point<const N: usize, T> {
 }
 
 impl<const N: usize, T: Scalar> Point<N, T> {
-    /// The point at `h`, v sought from `guess`.
+    /// The point at `h`, v by Newton's iteration from `guess`.
     fn at<S: Stepping<N, T>>(
         system: &S,
         node: &Node<N, T>,

@@ -1,4 +1,4 @@
-//! Where Newton's iteration starts when the step was not foretold.
+//! Where the search for a step starts, when prediction has not solved it.
 //!
 //! In: a node and the interval that led to it. Out: a trial `(v, h)`: v extrapolated and improved by one Newton step on the
 //! momentum equation at the last h; then h by the step law, `h = h_last (D_last/D)^(1/3)`, within the factor allowed;

@@ -51,7 +51,7 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
 }
 
 /// The X with `matrix · X = rhs`; `None` where it is not finite. Where elimination without pivoting loses a matrix that is
-/// regular, or digits of X, pivots are sought.
+/// regular, or digits of X, elimination with pivoting gives X.
 #[inline]
 #[must_use]
 pub fn solve<T: Real, const N: usize, const M: usize>(

@@ -4,7 +4,7 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `steps` | steps of one length: predicted, corrected once or twice, measured |
+//! | `steps` | steps of one length: predicted, corrected, measured |
 //! | `closed_form` | a linear step as one matrix |
 //! | `newton` | Newton's iteration to the rounding floor |
 //! | `continuation` | the root followed from h = 0 |

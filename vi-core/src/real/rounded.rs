@@ -8,7 +8,7 @@
 //! ```
 //!
 //! so that what cancels inside a formula stays in the bound: a residual below it is zero as far as the arithmetic can tell.
-//! Library functions are trusted to an ulp. A kink or a jump (`abs`, `sign`) is taken where the value is.
+//! Library functions are taken to be right to an ulp. A kink or a jump (`abs`, `sign`) is taken where the value is.
 //! It runs on rare paths, and each operation is a call: the formulas of a system stay short in the program.
 //!
 //! Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3.
@@ -16,7 +16,8 @@
 use super::Real;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number with a bound of its rounding; see the [module](self).
+/// A number with a bound of its rounding, by running error analysis (Higham, Accuracy and Stability of Numerical Algorithms,
+/// section 3.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounded {
     value: f64,

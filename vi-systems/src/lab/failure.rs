@@ -154,7 +154,8 @@ impl fmt::Display for Failure {
         match self {
             Self::Input(message) => f.write_str(message),
             Self::Step { error, before, method } => {
-                write!(f, "{error}\nlast good state: {before}")?;
+                // The advice of the library is for those who call it.
+                write!(f, "{}\nlast good state: {before}", error.reason())?;
                 let advice = method.and_then(|method| advice(error, method));
                 advice.map_or(Ok(()), |advice| write!(f, "\nwhat to do: {advice}"))
             }

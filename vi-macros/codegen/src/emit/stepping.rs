@@ -10,7 +10,7 @@ use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// Operations up to which a function is always inlined.
+/// Operations up to which the functions of a momentum step are short: `Stepping::INLINED`.
 const INLINED: usize = 250;
 
 /// The implementation of `Stepping`.

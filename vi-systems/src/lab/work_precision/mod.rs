@@ -125,8 +125,8 @@ fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure
     )?;
     report.figure(
         &found.evaluations(name).figure(),
-        "The same runs by a measure that repeats exactly. One evaluation is one residual with its Jacobian (and the gain of the step where it is carried), one gain of a \
-         step, or one acceleration: an acceleration is the cheapest of them with few degrees of freedom, and with many has \
+        "The same runs by a measure that repeats exactly. One evaluation is one residual with its Jacobian, one \
+         residual with the gain of the step, or one acceleration: an acceleration is the cheapest of them with few degrees of freedom, and with many has \
          a linear system to solve too.",
     )
 }

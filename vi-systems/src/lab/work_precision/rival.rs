@@ -34,7 +34,7 @@ pub(super) enum Ended {
 impl fmt::Display for Ended {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Step(error) => error.fmt(f),
+            Self::Step(error) => error.reason().fmt(f),
             Self::Rival(t, reason) => write!(f, "{reason} at t = {t:.9}"),
             Self::Short(t) => write!(f, "more than ten times the steps were taken up to t = {t:.9}"),
             Self::NonFinite => f.write_str("a number is not finite at the end"),

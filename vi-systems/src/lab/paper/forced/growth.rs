@@ -146,7 +146,7 @@ fn table(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
             last.to_string(),
             format!("{predicted:.0}"),
             run.samples.last().map_or_else(String::new, |sample| scientific(sample.h)),
-            run.end.map_or_else(|| "it does not".to_owned(), |error| error.to_string()),
+            run.end.map_or_else(|| "it does not".to_owned(), |error| error.reason().to_string()),
         ]);
     }
     book.table(&table, "Step growth, the law, and the end of each run.")?;
