@@ -1,6 +1,6 @@
 //! A hunt for steps that are taken and not solved, where motions change suddenly.
 //!
-//! In: the systems of `sudden` and those of the catalogue of up to three coordinates, from random starts with random steps. The
+//! In: the systems of `sudden` and those of the catalogue, from random starts with random steps. The
 //! residual of each step is computed here, from the node before it and the velocity that was taken, and must be at the floor, row
 //! by row:
 //!

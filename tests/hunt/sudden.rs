@@ -201,11 +201,24 @@ pub(crate) fn stops() -> Scene<Stops, 5> {
     scene(Stops::default(), [0.1, 0.5, -0.3, 0.2, 0.4], [1.0, -0.7, 0.4, 0.9, -0.5], 0.01)
 }
 
+/// Four links that turn over: its functions are too long to be inlined.
+pub(crate) fn links() -> Scene<vi_systems::NPendulum, 4> {
+    scene(vi_systems::NPendulum::default(), [2.0, 1.5, 2.5, -1.0], [0.0, 3.0, -2.0, 5.0], 0.005)
+}
+
+/// Sixteen masses and strong springs: the matrix is tridiagonal.
+pub(crate) fn chain() -> Scene<vi_systems::FpuChain, 16> {
+    let system = vi_systems::FpuChain { beta: 4.0, ..vi_systems::FpuChain::default() };
+    let first = |value: f64| core::array::from_fn(|i| if i == 0 { value } else { value * 1e-3 });
+    scene(system, first(1.0), first(2.0), 0.05)
+}
+
 /// One test for every sudden system: `check` is called with its scene.
 macro_rules! each_sudden {
     ($check:path) => {
         $crate::sudden::each_sudden! { $check:
             wall rough_wall hard_core valley bump ball spring_pendulum near_pole puddle hit dry relativistic atoms stops
+            links chain
         }
     };
     ($check:path: $($system:ident)*) => {$(

@@ -34,9 +34,7 @@ impl<R, T: Scalar> Checkpoint<R, T> {
         }
         for (index, (name, (_, stored))) in S::PARAMETERS.iter().zip(&self.parameters).enumerate() {
             let given = system.parameter(index);
-            // A value that is no number is stored as itself.
-            let same = *stored == given || (stored.to_f64().is_nan() && given.to_f64().is_nan());
-            if !same {
+            if *stored != given {
                 return Err(other(Some(name), stored.to_f64(), given.to_f64()));
             }
         }
