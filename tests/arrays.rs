@@ -1,9 +1,7 @@
 //! The systems made of arrays against what is known of them: the chain's force and frequencies by hand, the N-pendulum
 //! of two links against the double pendulum, order 2, and the energy of both integrators.
 
-mod support;
-
-use support::exact::Motion;
+use crate::support::exact::Motion;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, Stepping, lagrangian};
 use vi_systems::{DoublePendulum, FpuChain, NPendulum};
 

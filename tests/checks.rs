@@ -1,8 +1,6 @@
 //! The checks, called by hand on every system with parameters away from 1: what they measure.
 
-mod support;
-
-use support::scenes::{Scene, each_system};
+use crate::support::scenes::{Scene, each_system};
 use vi_core::check::{self, Checked, Place, Report};
 
 /// The reports of all checks that apply, in the order of the table of `vi_core::check`.

@@ -1,10 +1,8 @@
 //! Compositions: against 50-digit references, of their order by slope, and unstable where damping meets negative substeps.
 
-mod support;
-
-use support::exact::Motion;
-use support::reference::{file, number, steps, vector};
-use support::slope;
+use crate::support::exact::Motion;
+use crate::support::reference::{file, number, steps, vector};
+use crate::support::slope;
 use vi_core::{Composition, Scheme, State, StepError, Stepping};
 use vi_systems::{DampedOscillator, DoublePendulum, HardDuffing, Kepler, ParametricPendulum, Pendulum};
 

@@ -1,8 +1,6 @@
 //! What each system says of itself: name, coordinates, and what the generator found out about it.
 
-mod support;
-
-use support::scenes::{self, Scene};
+use crate::support::scenes::{self, Scene};
 use vi_core::{Lagrangian, Parameters};
 use vi_systems::HardDuffing;
 

@@ -3,9 +3,7 @@
 //!
 //! States, intervals and parameters are drawn, parameters away from 1, so that no term hides behind another.
 
-mod support;
-
-use support::Sequence;
+use crate::support::Sequence;
 use vi_core::check::{self, Checked, Dual, Place};
 use vi_core::linear::Matrix;
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, Parameters, SVector, Stepping};

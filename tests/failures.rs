@@ -3,10 +3,8 @@
 //!
 //! The places belong to the paper's start for the double well and the oscillator, to the midpoint start for the others.
 
-mod support;
-
-use support::ending::{self, Ending};
-use support::exact::Motion;
+use crate::support::ending::{self, Ending};
+use crate::support::exact::Motion;
 use vi_core::{EnergyPreserving, FixedStep, State, StepError, Stepping, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, HarmonicOscillator, Kepler, ParametricPendulum,

@@ -1,7 +1,6 @@
 //! Every form that the Jacobian A can have, stepped as it is and as the dense matrix that it stands for.
 
-mod support;
-
+use crate::support;
 use core::any::type_name;
 use vi_core::linear::Matrix;
 use vi_core::{

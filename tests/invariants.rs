@@ -1,13 +1,11 @@
 //! What stays: the energy of the energy-preserving integrator, momenta of cyclic coordinates, angular momentum; and the
 //! sizes of what does not, against the table of `docs/mathematics.md`. Runs of a million steps.
 
-mod support;
-
+use crate::support::exact::Motion;
+use crate::support::reference::{file, number, vector};
+use crate::support::scenes::{self, Scene};
 use core::ops::RangeInclusive;
 use serde_json::Value;
-use support::exact::Motion;
-use support::reference::{file, number, vector};
-use support::scenes::{self, Scene};
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, Step, Stepping};
 use vi_systems::{DampedOscillator, DoubleWell, Kepler};
 

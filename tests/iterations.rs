@@ -1,8 +1,6 @@
 //! The effort of a step, and that it is the forward one: long runs of every system.
 
-mod support;
-
-use support::scenes::{Scene, each_system};
+use crate::support::scenes::{Scene, each_system};
 use vi_core::{EnergyPreserving, FixedStep, State, Stepping};
 
 const STEPS: u32 = 100_000;

@@ -4,12 +4,10 @@
 //! integrator is part of its solution. The order is the slope of log(error) over log(h), fitted over a ladder of
 //! steps; points near the round-off plateau are dropped, and at least three have to be left.
 
-mod support;
-
-use support::exact::Motion;
-use support::reference::{file, number};
-use support::scenes::{Scene, each_system};
-use support::slope;
+use crate::support::exact::Motion;
+use crate::support::reference::{file, number};
+use crate::support::scenes::{Scene, each_system};
+use crate::support::slope;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError, Stepping};
 use vi_systems::{DoublePendulum, HardDuffing, Kepler, Pendulum};
 

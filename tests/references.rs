@@ -3,10 +3,8 @@
 //! After 1000 steps these are far inside what is asked of plain `f64`, 5e-14 with fixed steps and 5e-9 with the
 //! energy-preserving ones, whose length is a second-order quantity (`docs/mathematics.md`).
 
-mod support;
-
+use crate::support::reference::{file, number, steps, vector};
 use serde_json::Value;
-use support::reference::{file, number, steps, vector};
 use vi_core::{EnergyPreserving, FixedStep, State, Stepping};
 use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, Kepler, Pendulum};
 

@@ -3,11 +3,9 @@
 //! States, steps and parameters are drawn over many magnitudes, with zeros, infinities and values that are no numbers
 //! among them. The sequence is fixed.
 
-mod support;
-
-use support::Sequence;
-use support::ending::{self, assert_typed};
-use support::scenes::{Scene, each_system};
+use crate::support::Sequence;
+use crate::support::ending::{self, assert_typed};
+use crate::support::scenes::{Scene, each_system};
 use vi_core::{EnergyPreserving, Fallback, FixedStep, Parameters, SVector, State, StepError, Stepping};
 
 /// Draws for each system, each from four starts.

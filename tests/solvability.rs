@@ -1,9 +1,7 @@
 //! Where a fixed step of the midpoint rule exists, and where it is the only one.
 
-mod support;
-
-use support::Sequence;
-use support::ending;
+use crate::support::Sequence;
+use crate::support::ending;
 use vi_core::{FixedStep, Node, SVector, State, StepError, Stepping};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 

@@ -1,9 +1,7 @@
 //! The step law of the energy-preserving integrator: `h D^(1/3)` is constant up to O(h²) without force,
 //! `h √D` exactly for the damped oscillator. D is the density of the continuous system at the middle of the step.
 
-mod support;
-
-use support::scenes::{Scene, damped_oscillator, each_system};
+use crate::support::scenes::{Scene, damped_oscillator, each_system};
 use vi_core::{EnergyPreserving, SVector, Stepping};
 
 /// Largest relative deviation of `h |D|^exponent` from its value at the first step, over the time `span`.

@@ -1,8 +1,6 @@
 //! What the fixed step is as a map: its own inverse under h → −h, and symplectic where there is no force.
 
-mod support;
-
-use support::scenes::{Scene, damped_oscillator, each_system};
+use crate::support::scenes::{Scene, damped_oscillator, each_system};
 use vi_core::{FixedStep, SVector, State, Stepping};
 
 /// The state after `steps` steps of length `h`.

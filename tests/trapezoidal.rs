@@ -1,9 +1,7 @@
 //! The trapezoidal rule: Störmer–Verlet where L is separable, order 2 elsewhere, slots against dual numbers; and the
 //! midpoint rule written out, which is the named one bit for bit.
 
-mod support;
-
-use support::exact::Motion;
+use crate::support::exact::Motion;
 use vi_core::check::Dual;
 use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, Stepping, lagrangian};
 

@@ -216,7 +216,7 @@ pub(crate) fn chain() -> Scene<vi_systems::FpuChain, 16> {
 /// One test for every sudden system: `check` is called with its scene.
 macro_rules! each_sudden {
     ($check:path) => {
-        $crate::sudden::each_sudden! { $check:
+        $crate::hunt::sudden::each_sudden! { $check:
             wall rough_wall hard_core valley bump ball spring_pendulum near_pole puddle hit dry relativistic atoms stops
             links chain
         }
@@ -224,7 +224,7 @@ macro_rules! each_sudden {
     ($check:path: $($system:ident)*) => {$(
         #[test]
         fn $system() {
-            $check($crate::sudden::$system());
+            $check($crate::hunt::sudden::$system());
         }
     )*};
 }

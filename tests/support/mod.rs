@@ -1,5 +1,4 @@
-//! What the tests of several files share. Each file uses its part of it.
-#![allow(dead_code, unused_macros, unused_imports)]
+//! What the tests of several files share.
 // Step numbers and drawn mantissas are far below 2^53.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 

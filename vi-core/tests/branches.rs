@@ -1,9 +1,7 @@
 //! Which root of the momentum equation a fixed step takes, where there are several: beyond `h = 2/√(−V''_min/m)`, 2 for the
 //! double well.
 
-mod systems;
-
-use systems::{DoubleWell, UnitMass};
+use crate::systems::{DoubleWell, UnitMass};
 use vi_core::fixed_step::{Branch, FixedStep};
 use vi_core::{Node, SVector, State, StepError, Stepping};
 

@@ -1,8 +1,6 @@
 //! A run that is stored and resumed goes on bit for bit; and what holds over very long runs.
 
-mod systems;
-
-use systems::{DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
+use crate::systems::{DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
 use vi_core::{EnergyPreserving, Fallback, FixedStep, State, Step, StepError, energy_preserving, fixed_step};
 
 /// Through the text of a file and back.

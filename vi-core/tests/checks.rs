@@ -1,9 +1,7 @@
 //! Each check passes for a right system, and each can fail: for a system spoiled in one function, as a wrong generator
 //! would print it, for a place that proves nothing, and for a system that it is not about.
 
-mod spoiled;
-
-use spoiled::{Fault, Spoiled};
+use crate::spoiled::{Fault, Spoiled};
 use vi_core::check::{self, CheckFailure, Checked, Place, Report};
 use vi_core::lagrangian;
 

@@ -2,11 +2,9 @@
 //! many kinds and units pass each, and spoiled ones fail each by numbers. Where rounding hides what a check is about, it
 //! says so.
 
-mod many;
-mod spoiled;
-
-use many::Case;
-use spoiled::{Fault, Spoiled};
+use crate::many;
+use crate::many::Case;
+use crate::spoiled::{Fault, Spoiled};
 use vi_core::check::{self, CheckFailure, Checked, Place, Report};
 
 /// Places that are drawn about each.

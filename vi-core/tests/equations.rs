@@ -1,8 +1,6 @@
 //! The systems written by hand: their equations against the slot derivatives, their derivatives against differences.
 
-mod systems;
-
-use systems::{DampedOscillator, ForcedDuffing, Kepler, PumpedPendulum, Steppable, UnitMass};
+use crate::systems::{DampedOscillator, ForcedDuffing, Kepler, PumpedPendulum, Steppable, UnitMass};
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, SVector, State, Stepping};
 
 /// Largest difference between the derivatives of `system` and central differences, and between its equations and the slot

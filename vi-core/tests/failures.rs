@@ -1,9 +1,7 @@
 //! Where there is no step: a typed error, the last good state, the same error again. Never a value that is not a number,
 //! never a hang.
 
-mod systems;
-
-use systems::{DoubleWell, FreeParticle, Kepler, UnitMass, point_after};
+use crate::systems::{DoubleWell, FreeParticle, Kepler, UnitMass, point_after};
 use vi_core::{EnergyPreserving, FixedStep, SVector, State, Step, StepError};
 
 type DoubleWellRun<'a> = EnergyPreserving<&'a UnitMass<DoubleWell>, 1>;

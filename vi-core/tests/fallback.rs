@@ -1,9 +1,7 @@
 //! Where no energy-preserving step exists, or none within the bounds: fixed steps until one does, counted, with the energy
 //! they cost.
 
-mod systems;
-
-use systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass};
+use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass};
 use vi_core::{EnergyPreserving, Fallback, Lagrangian, Method, StepError, Switches};
 
 fn kepler(e: f64, h0: f64) -> EnergyPreserving<UnitMass<Kepler>, 2> {

@@ -1,8 +1,6 @@
 //! What holds over long runs: the energy, the step law, the effort.
 
-mod systems;
-
-use systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass, point_after};
+use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass, point_after};
 use vi_core::condition::Condition;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError};
 

@@ -1,8 +1,6 @@
 //! What the errors say, and that it is so: looked up independently of the solver.
 
-mod systems;
-
-use systems::{DampedOscillator, Kepler, Steppable, UnitMass};
+use crate::systems::{DampedOscillator, Kepler, Steppable, UnitMass};
 use vi_core::{
     EnergyPreserving, FixedStep, Lagrangian, Node, Residuals, SVector, State, StepError, Stepping, lagrangian,
 };

@@ -1,9 +1,7 @@
 //! The steppers against trajectories computed in 50-digit arithmetic (`tests/reference` at the root of the project).
 
-mod systems;
-
+use crate::systems::{DampedOscillator, DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
 use serde_json::Value;
-use systems::{DampedOscillator, DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
 use vi_core::{EnergyPreserving, FixedStep, SVector, State};
 
 /// Bounds on the difference after 1000 steps, absolute, in t, q and p.

@@ -1,6 +1,5 @@
 //! A right system with one function spoiled, as a wrong generator would print it: in every kind of number. Each file uses its
 //! part of the faults.
-#![allow(dead_code)]
 
 use vi_core::check::Checked;
 use vi_core::linear::Matrix;

@@ -10,7 +10,6 @@
 //!     energy_dv = (V_q − f)/2 − (h/4)(V_tq + V_qq v)
 //!     energy_dh = −(V_tt + 2 v·V_tq + v·V_qq v)/4
 //!     D = |V_q − f|² + v·V_qq v + 2 v·V_tq + V_tt          for f = 0
-#![allow(dead_code, reason = "each test file takes the systems it needs")]
 
 use vi_core::real::Rounded;
 use vi_core::{

@@ -1,8 +1,7 @@
 //! Systems that grow fast: refused when so much was done, not after minutes or gigabytes. What is done is counted, so that the same
 //! system always ends in the same way.
 
-mod families;
-
+use crate::families;
 use vi_codegen::syntax;
 
 /// What the compiler says of a system with these clauses.

@@ -1,7 +1,6 @@
 //! The form of the Jacobian A and of the mass matrix M: what is found about a system, and the types that are emitted.
 
-mod families;
-
+use crate::families;
 use vi_codegen::found::Pattern::{self, Banded, Blocks, Dense, Diagonal, Scalar, Tridiagonal};
 use vi_codegen::{derive, items, syntax::parse};
 

@@ -1,9 +1,8 @@
 //! How many operations the generated functions have, over two families: the numbers are pinned, so that a change of any
 //! stage shows here. The chain grows with its length, the pendulum with the square of its links or a little more.
 
-mod families;
-
-use families::{LENGTHS, LINKS};
+use crate::families;
+use crate::families::{LENGTHS, LINKS};
 use vi_codegen::program::{Operation, OperationId, Program};
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{discrete, model, program, syntax};

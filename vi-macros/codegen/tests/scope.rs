@@ -1,7 +1,6 @@
 //! Whatever emitted code binds is first the name of a function, so that no constant around it turns a binding into a pattern.
 
-mod families;
-
+use crate::families;
 use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
 use syn::{File, Item, ItemConst, PatIdent, UseRename};

@@ -1,6 +1,5 @@
 //! Two families of systems that grow: a chain, whose parts meet only their neighbours, and a pendulum of many links,
 //! whose parts all meet. Each file uses its part of it.
-#![allow(dead_code)]
 
 /// A chain of `length` masses on springs as those of Fermi, Pasta, Ulam and Tsingou, its first one fixed to a wall.
 pub(crate) fn chain(length: usize) -> String {

@@ -13,12 +13,10 @@
 //! which runs here first. A motion may end with a typed error; then another one begins.
 
 mod sudden;
-#[path = "../support/mod.rs"]
-mod support;
 
-use support::Sequence;
-use support::ending::assert_typed;
-use support::scenes::Scene;
+use crate::support::Sequence;
+use crate::support::ending::assert_typed;
+use crate::support::scenes::Scene;
 use vi_core::check::{self, Checked, Place};
 use vi_core::composition::Scheme;
 use vi_core::{Composition, EnergyPreserving, FixedStep, Node, SVector, State, Stepping};

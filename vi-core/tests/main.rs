@@ -1,0 +1,15 @@
+//! The tests of the run time with systems by hand, one program: what they share is compiled once.
+
+mod branches;
+mod checkpoints;
+mod checks;
+mod checks_of_many;
+mod equations;
+mod failures;
+mod fallback;
+mod long_runs;
+mod many;
+mod outcomes;
+mod references;
+mod spoiled;
+mod systems;
