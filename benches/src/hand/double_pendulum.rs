@@ -10,7 +10,7 @@
 //!     [ c cos d − s c (u + v) sin d − s² w           b + s² (w + G2 cos y)              ]
 //! ```
 
-use super::{History, ITERATIONS, Sum, bordered, mul_add, not_converged, sine::sin_cos};
+use super::{CORRECTIONS, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged, sine::sin_cos};
 use crate::run::Stepper;
 use core::array::from_fn;
 use vi_systems::systems::DoublePendulum;
@@ -81,11 +81,36 @@ impl Middle {
         [mul_add(turn, v, -self.force[0]), mul_add(turn, u, -self.force[1])]
     }
 
-    /// The change of L_q where the velocities change by `dv` and the angles by `dq`.
+    /// The sums of the absolute values of the terms of r, the two of L_q less what they have in common.
     #[inline]
-    fn carried(&self, [u, v]: [f64; 2], dv: [f64; 2], dq: [f64; 2]) -> [f64; 2] {
-        let pull = mul_add(self.sine, mul_add(v, dv[0], u * dv[1]), self.w * (dq[0] - dq[1]));
-        [-mul_add(self.upright[0], dq[0], pull), mul_add(-self.upright[1], dq[1], pull)]
+    fn terms<S: Sum>(&self, constants: &Constants, p: &[S; 2], [u, v]: [f64; 2], gain: [f64; 2]) -> [f64; 2] {
+        let momentum =
+            [(constants.a * u).abs() + (v * self.cosine).abs(), (constants.b * v).abs() + (u * self.cosine).abs()];
+        from_fn(|i| p[i].value().abs() + momentum[i] + gain[i].abs())
+    }
+
+    /// The sum of the absolute values of the terms of V.
+    #[inline]
+    fn weight(&self) -> f64 {
+        self.upright[0].abs() + self.upright[1].abs()
+    }
+
+    /// `L_qq v`.
+    #[inline]
+    fn bent(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let pull = self.w * (u - v);
+        [-mul_add(self.upright[0], u, pull), mul_add(-self.upright[1], v, pull)]
+    }
+
+    /// The Newton step in v and s that the residuals r and c ask for.
+    #[inline]
+    fn newton(&self, constants: &Constants, v: [f64; 2], s: f64, r: [f64; 2], c: f64) -> ([f64; 2], f64) {
+        let (bent, steady) = (self.bent(v), self.steady(v));
+        let k = mul_add(v[0], bent[0], v[1] * bent[1]);
+        let (diagonal, off) = self.derivative(constants, s, v);
+        let across = from_fn(|i| mul_add(-s, bent[i], steady[i]));
+        let along = from_fn(|i| mul_add(s, bent[i], steady[i]));
+        bordered([diagonal, across, along], off, k, r, c / s)
     }
 }
 
@@ -94,66 +119,51 @@ impl Middle {
 pub struct Fixed<S> {
     constants: Constants,
     h: f64,
-    tolerance: f64,
     t: S,
     q: [S; 2],
     p: [S; 2],
     history: [History<7>; 2],
-    /// Where the next step starts: velocities, and angles there.
-    trial: [[f64; 2]; 2],
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From angles `q` and velocities `v` at t = 0. A Newton step of `tolerance` is the last one.
-    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+    /// From angles `q` and velocities `v` at t = 0.
+    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let constants = Constants::of(system);
-        let start = Middle::at(&constants, q, v);
-        Self {
-            constants,
-            h,
-            tolerance,
-            t: S::new(0.0),
-            q: q.map(S::new),
-            p: start.momentum.map(S::new),
-            history: v.map(History::constant),
-            trial: [v, from_fn(|i| q[i] + h / 2.0 * v[i])],
-        }
+        let p = Middle::at(&constants, q, v).momentum.map(S::new);
+        Self { constants, h, t: S::new(0.0), q: q.map(S::new), p, history: v.map(History::constant) }
+    }
+
+    /// −r and the middle of the step at v.
+    #[inline]
+    fn at(&self, v: [f64; 2]) -> ([f64; 2], Middle) {
+        let s = self.h / 2.0;
+        let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+        (from_fn(|i| self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i]))), middle)
     }
 }
 
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let (h, s) = (self.h, self.h / 2.0);
-        let [mut v, mut q] = self.trial;
-        let known = self.history.map(|v| v.known());
-        for _ in 0..ITERATIONS {
-            // The next guess were there no Newton step.
-            let next: [f64; 2] = from_fn(|i| mul_add(7.0, v[i], known[i]));
-            let next_q: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, v[i], s * next[i])));
-            let middle = Middle::at(&self.constants, q, v);
-            let r: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
-            let (diagonal, off) = middle.derivative(&self.constants, s, v);
+        let h = self.h;
+        let mut v: [f64; 2] = from_fn(|i| self.history[i].next());
+        let (mut missing, mut middle) = self.at(v);
+        for _ in 0..CORRECTIONS {
+            let (diagonal, off) = middle.derivative(&self.constants, h / 2.0, v);
             let over = 1.0 / mul_add(diagonal[0], diagonal[1], -(off[0] * off[1]));
-            let newton = [
-                mul_add(diagonal[1], r[0], -(off[0] * r[1])) * over,
-                mul_add(diagonal[0], r[1], -(off[1] * r[0])) * over,
-            ];
-            let before = v;
-            v = from_fn(|i| v[i] + newton[i]);
-            if newton[0].abs().max(newton[1].abs()) <= self.tolerance {
-                let carried = middle.carried(before, newton, newton.map(|d| s * d));
+            v[0] += mul_add(diagonal[1], missing[0], -(off[0] * missing[1])) * over;
+            v[1] += mul_add(diagonal[0], missing[1], -(off[1] * missing[0])) * over;
+            (missing, middle) = self.at(v);
+            let gain = middle.force.map(|force| h * force);
+            if is_solved(missing, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain)) {
                 for i in 0..2 {
-                    self.trial[0][i] = mul_add(7.0, newton[i], next[i]);
-                    self.trial[1][i] = mul_add(4.5 * h, newton[i], next_q[i]);
                     self.history[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, middle.force[i] + carried[i]);
+                    self.p[i].grow(h, middle.force[i]);
                 }
                 self.t.grow(h, 1.0);
                 return;
             }
-            q = from_fn(|i| self.q[i].plus(s * v[i]));
         }
         not_converged()
     }
@@ -169,7 +179,6 @@ impl<S: Sum> Stepper for Fixed<S> {
 pub struct EnergyPreserving<S> {
     constants: Constants,
     energy: f64,
-    tolerance: f64,
     t: S,
     q: [S; 2],
     p: [S; 2],
@@ -179,10 +188,9 @@ pub struct EnergyPreserving<S> {
 }
 
 impl<S: Sum> EnergyPreserving<S> {
-    /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
-    /// relative in h, is the last one.
+    /// From the middle `(q, v)` of the first interval, of length h, at t = 0.
     #[must_use]
-    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let (constants, half) = (Constants::of(system), h / 2.0);
         let middle = Middle::at(&constants, q, v);
         let (mass, [coupling, _]) = middle.derivative(&constants, 0.0, v);
@@ -195,7 +203,6 @@ impl<S: Sum> EnergyPreserving<S> {
         Self {
             constants,
             energy: energy(&middle, v),
-            tolerance,
             t: S::new(half),
             q: from_fn(|i| S::new(q[i] + half * v[i])),
             p: from_fn(|i| S::new(middle.momentum[i] + half * middle.force[i])),
@@ -203,6 +210,15 @@ impl<S: Sum> EnergyPreserving<S> {
             v: from_fn(|i| History::line(v[i], h * acceleration[i])),
             s: History::constant(half),
         }
+    }
+
+    /// r, c and the middle of the step at v and s.
+    #[inline]
+    fn at(&self, v: [f64; 2], s: f64) -> ([f64; 2], f64, Middle) {
+        let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+        let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
+        let c = energy(&middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1]);
+        (r, c, middle)
     }
 }
 
@@ -217,28 +233,20 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
     #[inline]
     fn step(&mut self) {
         let (mut v, mut s) = (self.v.map(|v| v.next()), self.s.next());
-        for _ in 0..ITERATIONS {
-            let over = 1.0 / s;
-            let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
-            let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
-            let c = (energy(&middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1])) * over;
-            // L_qq v, and what L_v and L_q gain while the angles move on.
-            let bent = middle.carried(v, [0.0; 2], v);
-            let k = mul_add(v[0], bent[0], v[1] * bent[1]);
-            let steady = middle.steady(v);
-            let (diagonal, off) = middle.derivative(&self.constants, s, v);
-            let across = from_fn(|i| mul_add(-s, bent[i], steady[i]));
-            let along = from_fn(|i| mul_add(s, bent[i], steady[i]));
-            let (dv, ds) = bordered([diagonal, across, along], off, k, r, c);
-            let before = v;
+        let (mut r, mut c, mut middle) = self.at(v, s);
+        for corrections in 1..=CORRECTIONS {
+            let (dv, ds) = middle.newton(&self.constants, v, s, r, c);
             (v, s) = (from_fn(|i| v[i] + dv[i]), s + ds);
-            if dv[0].abs().max(dv[1].abs()) <= self.tolerance && ds.abs() <= self.tolerance * s {
-                let h = 2.0 * s;
-                let carried = middle.carried(before, dv, from_fn(|i| mul_add(s, dv[i], before[i] * ds)));
+            (r, c, middle) = self.at(v, s);
+            let h = 2.0 * s;
+            let gain = middle.force.map(|force| h * force);
+            if is_solved(r, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain))
+                & is_energy_kept(c, self.energy.abs() + middle.weight(), &self.p, v, corrections)
+            {
                 for i in 0..2 {
                     self.v[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, middle.force[i] + carried[i]);
+                    self.p[i].grow(h, middle.force[i]);
                 }
                 self.s.push(s);
                 self.t.grow(h, 1.0);
