@@ -10,7 +10,9 @@
 //!     [ c cos d − s c (u + v) sin d − s² w           b + s² (w + G2 cos y)              ]
 //! ```
 
-use super::{CORRECTIONS, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged, sine::sin_cos};
+use super::{
+    CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged, sine::sin_cos,
+};
 use crate::run::Stepper;
 use core::array::from_fn;
 use vi_systems::systems::DoublePendulum;
@@ -95,17 +97,18 @@ impl Middle {
         self.upright[0].abs() + self.upright[1].abs()
     }
 
-    /// `L_qq v`.
+    /// The change of L_q where the velocities change by `dv` and the angles by `dq`.
     #[inline]
-    fn bent(&self, [u, v]: [f64; 2]) -> [f64; 2] {
-        let pull = self.w * (u - v);
-        [-mul_add(self.upright[0], u, pull), mul_add(-self.upright[1], v, pull)]
+    fn carried(&self, [u, v]: [f64; 2], dv: [f64; 2], dq: [f64; 2]) -> [f64; 2] {
+        let pull = mul_add(self.sine, mul_add(v, dv[0], u * dv[1]), self.w * (dq[0] - dq[1]));
+        [-mul_add(self.upright[0], dq[0], pull), mul_add(-self.upright[1], dq[1], pull)]
     }
 
     /// The Newton step in v and s that the residuals r and c ask for.
     #[inline]
     fn newton(&self, constants: &Constants, v: [f64; 2], s: f64, r: [f64; 2], c: f64) -> ([f64; 2], f64) {
-        let (bent, steady) = (self.bent(v), self.steady(v));
+        // L_qq v, and what L_v and L_q gain while the angles move on.
+        let (bent, steady) = (self.carried(v, [0.0; 2], v), self.steady(v));
         let k = mul_add(v[0], bent[0], v[1] * bent[1]);
         let (diagonal, off) = self.derivative(constants, s, v);
         let across = from_fn(|i| mul_add(-s, bent[i], steady[i]));
@@ -123,47 +126,58 @@ pub struct Fixed<S> {
     q: [S; 2],
     p: [S; 2],
     history: [History<7>; 2],
+    guess: Guess,
 }
 
 impl<S: Sum> Fixed<S> {
     /// From angles `q` and velocities `v` at t = 0.
     pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let constants = Constants::of(system);
-        let p = Middle::at(&constants, q, v).momentum.map(S::new);
-        Self { constants, h, t: S::new(0.0), q: q.map(S::new), p, history: v.map(History::constant) }
-    }
-
-    /// −r and the middle of the step at v.
-    #[inline]
-    fn at(&self, v: [f64; 2]) -> ([f64; 2], Middle) {
-        let s = self.h / 2.0;
-        let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
-        (from_fn(|i| self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i]))), middle)
+        let p = Middle::at(&constants, q, v).momentum;
+        let guess = Guess { v, x: from_fn(|i| q[i] + h / 2.0 * v[i]), p };
+        let history = v.map(History::constant);
+        Self { constants, h, t: S::new(0.0), q: q.map(S::new), p: p.map(S::new), history, guess }
     }
 }
 
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let h = self.h;
-        let mut v: [f64; 2] = from_fn(|i| self.history[i].next());
-        let (mut missing, mut middle) = self.at(v);
+        let Self { constants, h, guess, .. } = *self;
+        let s = h / 2.0;
+        // The next guess were there no Newton step.
+        let next: [f64; 2] = from_fn(|i| mul_add(7.0, guess.v[i], self.history[i].known()));
+        let next_x: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, guess.v[i], s * next[i])));
+        let middle = Middle::at(&constants, guess.x, guess.v);
+        let (diagonal, off) = middle.derivative(&constants, s, guess.v);
+        let over = 1.0 / mul_add(diagonal[0], diagonal[1], -(off[0] * off[1]));
+        let solve = |missing: [f64; 2]| {
+            [
+                mul_add(diagonal[1], missing[0], -(off[0] * missing[1])) * over,
+                mul_add(diagonal[0], missing[1], -(off[1] * missing[0])) * over,
+            ]
+        };
+        let mut newton = solve(from_fn(|i| mul_add(s, middle.force[i], guess.p[i] - middle.momentum[i])));
         for _ in 0..CORRECTIONS {
-            let (diagonal, off) = middle.derivative(&self.constants, h / 2.0, v);
-            let over = 1.0 / mul_add(diagonal[0], diagonal[1], -(off[0] * off[1]));
-            v[0] += mul_add(diagonal[1], missing[0], -(off[0] * missing[1])) * over;
-            v[1] += mul_add(diagonal[0], missing[1], -(off[1] * missing[0])) * over;
-            (missing, middle) = self.at(v);
-            let gain = middle.force.map(|force| h * force);
-            if is_solved(missing, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain)) {
+            let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
+            let measured = Middle::at(&constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+            let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured.force[i], -measured.momentum[i])));
+            let gain = measured.force.map(|force| h * force);
+            if is_solved(missing, &self.p, gain, || measured.terms(&constants, &self.p, v, gain)) {
+                let carried = middle.carried(guess.v, newton, newton.map(|d| s * d));
                 for i in 0..2 {
+                    self.guess.v[i] = mul_add(7.0, newton[i], next[i]);
+                    self.guess.x[i] = mul_add(4.5 * h, newton[i], next_x[i]);
+                    self.guess.p[i] = self.p[i].plus(h * (middle.force[i] + carried[i]));
                     self.history[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, middle.force[i]);
+                    self.p[i].grow(h, measured.force[i]);
                 }
                 self.t.grow(h, 1.0);
                 return;
             }
+            let more = solve(missing);
+            newton = from_fn(|i| newton[i] + more[i]);
         }
         not_converged()
     }

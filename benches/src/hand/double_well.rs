@@ -36,42 +36,56 @@ pub struct Fixed<S> {
     q: S,
     p: S,
     history: History,
+    guess: Guess,
+}
+
+/// v, x and p0 of a step, which depend on the one before by its Newton step alone.
+#[derive(Clone, Copy, Debug)]
+struct Guess {
+    v: f64,
+    x: f64,
+    p: f64,
 }
 
 impl<S: Sum> Fixed<S> {
     /// From `(q, p)` at t = 0.
     #[must_use]
     pub fn new(system: &DoubleWell, (q, p): (f64, f64), h: f64) -> Self {
-        let (m, t, history) = (system.m, S::new(0.0), History::constant(p / system.m));
-        Self { m, h, t, q: S::new(q), p: S::new(p), history }
-    }
-
-    /// −r, F and F' at v.
-    #[inline]
-    fn at(&self, v: f64) -> (f64, f64, f64) {
-        let s = self.h / 2.0;
-        let (force, slope) = field(self.q.plus(s * v));
-        (self.p.plus(mul_add(s, force, -(self.m * v))), force, slope)
+        let (m, v) = (system.m, p / system.m);
+        let (history, guess) = (History::constant(v), Guess { v, x: q + h / 2.0 * v, p });
+        Self { m, h, t: S::new(0.0), q: S::new(q), p: S::new(p), history, guess }
     }
 }
 
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let Self { m, h, .. } = *self;
-        let square = h * h / 4.0;
-        let mut v = self.history.next();
-        let (mut missing, mut force, mut slope) = self.at(v);
+        let Self { m, h, guess, .. } = *self;
+        let (s, over) = (h / 2.0, 1.0 / m);
+        // The next guess were there no Newton step.
+        let next = mul_add(5.0, guess.v, self.history.known());
+        let next_x = self.q.plus(mul_add(h, guess.v, s * next));
+        let (force, slope) = field(guess.x);
+        // A⁻¹ = (1 + s² F'/m + …)/m: the next term is a billionth.
+        let inverse = over * mul_add(s * s * over, slope, 1.0);
+        let mut newton = mul_add(s, force, mul_add(-m, guess.v, guess.p)) * inverse;
         for _ in 0..CORRECTIONS {
-            v += missing / mul_add(-square, slope, m);
-            (missing, force, slope) = self.at(v);
-            if is_solved([missing], &[self.p], [h * force], || terms(m, self.p, v, h / 2.0, self.q.plus(h / 2.0 * v))) {
+            let v = guess.v + newton;
+            let x = self.q.plus(s * v);
+            let (measured, _) = field(x);
+            let missing = self.p.plus(mul_add(s, measured, -(m * v)));
+            if is_solved([missing], &[self.p], [h * measured], || terms(m, self.p, v, s, x)) {
+                let carried = mul_add(s * slope, newton, force);
+                self.guess.v = mul_add(5.0, newton, next);
+                self.guess.x = mul_add(3.5 * h, newton, next_x);
+                self.guess.p = self.p.plus(h * carried);
                 self.history.push(v);
                 self.q.grow(h, v);
-                self.p.grow(h, force);
+                self.p.grow(h, measured);
                 self.t.grow(h, 1.0);
                 return;
             }
+            newton = mul_add(missing, inverse, newton);
         }
         not_converged()
     }

@@ -6,7 +6,7 @@
 //! r = v − s F − p0 = 0          A = ∂r/∂v = 1 − s² F'        q1 = q0 + h v      p1 = p0 + h F
 //! ```
 
-use super::{CORRECTIONS, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged};
+use super::{CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged};
 use crate::run::Stepper;
 use core::array::from_fn;
 use vi_systems::systems::Kepler;
@@ -61,46 +61,53 @@ pub struct Fixed<S> {
     q: [S; 2],
     p: [S; 2],
     history: [History; 2],
+    guess: Guess,
 }
 
 impl<S: Sum> Fixed<S> {
     /// From `(q, p)` at t = 0.
     pub fn new(system: &Kepler, (q, p): ([f64; 2], [f64; 2]), h: f64) -> Self {
-        let history = p.map(History::constant);
-        Self { mu: system.mu, h, t: S::new(0.0), q: q.map(S::new), p: p.map(S::new), history }
-    }
-
-    /// −r and the field at v.
-    #[inline]
-    fn at(&self, v: [f64; 2]) -> ([f64; 2], Field) {
-        let s = self.h / 2.0;
-        let field = Field::at(self.mu, from_fn(|i| self.q[i].plus(s * v[i])));
-        (from_fn(|i| self.p[i].plus(mul_add(s, field.force[i], -v[i]))), field)
+        let guess = Guess { v: p, x: from_fn(|i| q[i] + h / 2.0 * p[i]), p };
+        let (mu, history) = (system.mu, p.map(History::constant));
+        Self { mu, h, t: S::new(0.0), q: q.map(S::new), p: p.map(S::new), history, guess }
     }
 }
 
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let h = self.h;
-        let mut v: [f64; 2] = from_fn(|i| self.history[i].next());
-        let (mut missing, mut field) = self.at(v);
+        let Self { mu, h, guess, .. } = *self;
+        let s = h / 2.0;
+        // The next guess were there no Newton step.
+        let next: [f64; 2] = from_fn(|i| mul_add(5.0, guess.v[i], self.history[i].known()));
+        let next_x: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, guess.v[i], s * next[i])));
+        let Field { force, slope, .. } = Field::at(mu, guess.x);
+        // A⁻¹ = 1 + s² F' + …: the next term is less than a millionth.
+        let solve = |missing: [f64; 2]| -> [f64; 2] {
+            let bent = times(slope, missing);
+            from_fn(|i| mul_add(s * s, bent[i], missing[i]))
+        };
+        let mut newton = solve(from_fn(|i| mul_add(s, force[i], guess.p[i] - guess.v[i])));
         for _ in 0..CORRECTIONS {
-            let [xx, xy, yy] = field.derivative(h * h / 4.0);
-            let over = 1.0 / mul_add(xx, yy, -(xy * xy));
-            let newton = times([yy * over, -xy * over, xx * over], missing);
-            v = from_fn(|i| v[i] + newton[i]);
-            (missing, field) = self.at(v);
-            let gain = field.force.map(|force| h * force);
+            let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
+            let measured = Field::at(mu, from_fn(|i| self.q[i].plus(s * v[i]))).force;
+            let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured[i], -v[i])));
+            let gain = measured.map(|force| h * force);
             if is_solved(missing, &self.p, gain, || terms(&self.p, v, gain)) {
+                let bent = times(slope, newton);
                 for i in 0..2 {
+                    self.guess.v[i] = mul_add(5.0, newton[i], next[i]);
+                    self.guess.x[i] = mul_add(3.5 * h, newton[i], next_x[i]);
+                    self.guess.p[i] = self.p[i].plus(h * mul_add(s, bent[i], force[i]));
                     self.history[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, field.force[i]);
+                    self.p[i].grow(h, measured[i]);
                 }
                 self.t.grow(h, 1.0);
                 return;
             }
+            let more = solve(missing);
+            newton = from_fn(|i| newton[i] + more[i]);
         }
         not_converged()
     }

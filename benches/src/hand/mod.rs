@@ -165,6 +165,15 @@ fn not_converged() -> ! {
     panic!("{CORRECTIONS} corrections have not solved the step");
 }
 
+/// v, the middle x and p0 of a step of fixed length, as the Newton step of the one before gives them: what the next one waits for.
+/// The sums of q and p, in which a step is measured, are off this path.
+#[derive(Clone, Copy, Debug)]
+struct Guess<const N: usize = 2> {
+    v: [f64; N],
+    x: [f64; N],
+    p: [f64; N],
+}
+
 /// Whether a step from momenta `p` that gain `gain` leaves no more than rounding of its momentum rows, whose terms have the
 /// sums `terms` of absolute values: where the momenta vanish, what they are sums of need not.
 #[inline]
