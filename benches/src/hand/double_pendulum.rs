@@ -11,7 +11,7 @@
 //! ```
 
 use super::{
-    CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged, sine::sin_cos,
+    CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged, sine::Angle,
 };
 use crate::run::Stepper;
 use core::array::from_fn;
@@ -35,6 +35,7 @@ impl Constants {
 
 /// What L says at the middle of a step.
 struct Middle {
+    angles: [Angle; 2],
     momentum: [f64; 2],
     force: [f64; 2],
     /// `c sin d` and `c cos d`.
@@ -47,13 +48,25 @@ struct Middle {
 
 impl Middle {
     #[inline]
-    fn at(constants: &Constants, q: [f64; 2], [u, v]: [f64; 2]) -> Self {
+    fn at(constants: &Constants, q: [f64; 2], v: [f64; 2]) -> Self {
+        Self::of(constants, q.map(Angle::at), v)
+    }
+
+    /// At angles next to these ones.
+    #[inline]
+    fn near(&self, constants: &Constants, q: [f64; 2], v: [f64; 2]) -> Self {
+        Self::of(constants, from_fn(|i| self.angles[i].near(q[i])), v)
+    }
+
+    #[inline]
+    fn of(constants: &Constants, angles: [Angle; 2], [u, v]: [f64; 2]) -> Self {
         let Constants { a, b, c, weight } = *constants;
-        let [(sin_x, cos_x), (sin_y, cos_y)] = q.map(sin_cos);
+        let [Angle { sine: sin_x, cosine: cos_x, .. }, Angle { sine: sin_y, cosine: cos_y, .. }] = angles;
         let sine = c * mul_add(sin_x, cos_y, -(cos_x * sin_y));
         let cosine = c * mul_add(cos_x, cos_y, sin_x * sin_y);
         let (w, pull) = (u * v * cosine, u * v * sine);
         Self {
+            angles,
             momentum: [mul_add(a, u, v * cosine), mul_add(b, v, u * cosine)],
             force: [-mul_add(weight[0], sin_x, pull), mul_add(-weight[1], sin_y, pull)],
             sine,
@@ -91,10 +104,11 @@ impl Middle {
         from_fn(|i| p[i].value().abs() + momentum[i] + gain[i].abs())
     }
 
-    /// The sum of the absolute values of the terms of V.
+    /// The sum of the absolute values of the terms of the energy.
     #[inline]
-    fn weight(&self) -> f64 {
-        self.upright[0].abs() + self.upright[1].abs()
+    fn energies(&self, v: [f64; 2]) -> f64 {
+        let kinetic = (v[0] * self.momentum[0]).abs() + (v[1] * self.momentum[1]).abs();
+        mul_add(0.5, kinetic, self.upright[0].abs() + self.upright[1].abs())
     }
 
     /// The change of L_q where the velocities change by `dv` and the angles by `dq`.
@@ -160,7 +174,7 @@ impl<S: Sum> Stepper for Fixed<S> {
         let mut newton = solve(from_fn(|i| mul_add(s, middle.force[i], guess.p[i] - middle.momentum[i])));
         for _ in 0..CORRECTIONS {
             let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
-            let measured = Middle::at(&constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+            let measured = middle.near(&constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
             let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured.force[i], -measured.momentum[i])));
             let gain = measured.force.map(|force| h * force);
             if is_solved(missing, &self.p, gain, || measured.terms(&constants, &self.p, v, gain)) {
@@ -226,13 +240,17 @@ impl<S: Sum> EnergyPreserving<S> {
         }
     }
 
-    /// r, c and the middle of the step at v and s.
+    /// The angles at v and s.
     #[inline]
-    fn at(&self, v: [f64; 2], s: f64) -> ([f64; 2], f64, Middle) {
-        let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+    fn angles(&self, v: [f64; 2], s: f64) -> [f64; 2] {
+        from_fn(|i| self.q[i].plus(s * v[i]))
+    }
+
+    /// r and c.
+    #[inline]
+    fn residuals(&self, middle: &Middle, v: [f64; 2], s: f64) -> ([f64; 2], f64) {
         let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
-        let c = energy(&middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1]);
-        (r, c, middle)
+        (r, energy(middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1]))
     }
 }
 
@@ -247,15 +265,17 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
     #[inline]
     fn step(&mut self) {
         let (mut v, mut s) = (self.v.map(|v| v.next()), self.s.next());
-        let (mut r, mut c, mut middle) = self.at(v, s);
+        let mut middle = Middle::at(&self.constants, self.angles(v, s), v);
+        let (mut r, mut c) = self.residuals(&middle, v, s);
         for corrections in 1..=CORRECTIONS {
             let (dv, ds) = middle.newton(&self.constants, v, s, r, c);
             (v, s) = (from_fn(|i| v[i] + dv[i]), s + ds);
-            (r, c, middle) = self.at(v, s);
+            middle = middle.near(&self.constants, self.angles(v, s), v);
+            (r, c) = self.residuals(&middle, v, s);
             let h = 2.0 * s;
             let gain = middle.force.map(|force| h * force);
             if is_solved(r, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain))
-                & is_energy_kept(c, self.energy.abs() + middle.weight(), &self.p, v, corrections)
+                & is_energy_kept(c, self.energy.abs() + middle.energies(v), &self.p, v, corrections)
             {
                 for i in 0..2 {
                     self.v[i].push(v[i]);

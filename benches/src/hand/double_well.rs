@@ -112,7 +112,7 @@ struct Rows {
     /// −r and c.
     missing: f64,
     energy: f64,
-    /// |E0| and the terms of V.
+    /// |E0| and the absolute values of the terms of the energy.
     terms: f64,
     force: f64,
     slope: f64,
@@ -137,8 +137,9 @@ impl<S: Sum> EnergyPreserving<S> {
         let (force, slope) = field(x);
         let missing = self.p.plus(mul_add(s, force, -(self.m * v)));
         let x2 = x * x;
-        let e = mul_add(0.5 * x2, x2 - 1.0, mul_add(0.5 * self.m * v, v, -self.energy));
-        let terms = mul_add(0.5 * x2, x2 + 1.0, self.energy.abs());
+        let kinetic = 0.5 * self.m * v * v;
+        let e = mul_add(0.5 * x2, x2 - 1.0, kinetic - self.energy);
+        let terms = mul_add(0.5 * x2, x2 + 1.0, kinetic + self.energy.abs());
         Rows { missing, energy: mul_add(v, missing, e), terms, force, slope }
     }
 }

@@ -118,6 +118,11 @@ impl<S: Sum> Stepper for Fixed<S> {
     }
 }
 
+#[inline]
+fn kinetic(v: [f64; 2]) -> f64 {
+    0.5 * mul_add(v[0], v[0], v[1] * v[1])
+}
+
 /// Energy-preserving steps.
 #[derive(Clone, Debug)]
 pub struct EnergyPreserving<S> {
@@ -139,7 +144,7 @@ impl<S: Sum> EnergyPreserving<S> {
         let Field { force, potential, .. } = Field::at(mu, q);
         Self {
             mu,
-            energy: f64::midpoint(v[0] * v[0], v[1] * v[1]) + potential,
+            energy: kinetic(v) + potential,
             t: S::new(half),
             q: from_fn(|i| S::new(q[i] + half * v[i])),
             p: from_fn(|i| S::new(v[i] + half * force[i])),
@@ -154,7 +159,7 @@ impl<S: Sum> EnergyPreserving<S> {
     fn at(&self, v: [f64; 2], s: f64) -> ([f64; 2], f64, Field) {
         let field = Field::at(self.mu, from_fn(|i| self.q[i].plus(s * v[i])));
         let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, field.force[i], -v[i])));
-        let e = mul_add(0.5 * v[0], v[0], mul_add(0.5 * v[1], v[1], field.potential - self.energy));
+        let e = kinetic(v) + (field.potential - self.energy);
         (r, e - mul_add(v[0], r[0], v[1] * r[1]), field)
     }
 }
@@ -176,7 +181,7 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
             let h = 2.0 * s;
             let gain = field.force.map(|force| h * force);
             if is_solved(r, &self.p, gain, || terms(&self.p, v, gain))
-                & is_energy_kept(c, self.energy.abs() - field.potential, &self.p, v, corrections)
+                & is_energy_kept(c, self.energy.abs() - field.potential + kinetic(v), &self.p, v, corrections)
             {
                 for i in 0..2 {
                     self.v[i].push(v[i]);

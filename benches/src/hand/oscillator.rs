@@ -118,9 +118,10 @@ impl<S: Sum> Stepper for Newton<S> {
         let Self { equation, q, p, .. } = *self;
         let Equation { m, k, h, .. } = equation;
         let mut v = self.history.next();
-        let (mut missing, mut force) = equation.at(q, p, v);
+        let (mut missing, _) = equation.at(q, p, v);
         for _ in 0..CORRECTIONS {
             v += missing / mul_add(h * h / 4.0, k, m);
+            let force;
             (missing, force) = equation.at(q, p, v);
             if is_solved([missing], &[p], [h * force], || equation.terms(q, p, v)) {
                 self.history.push(v);
