@@ -273,14 +273,15 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
             middle = middle.near(&self.constants, self.angles(v, s), v);
             (r, c) = self.residuals(&middle, v, s);
             let h = 2.0 * s;
-            let gain = middle.force.map(|force| h * force);
+            let force = middle.force;
+            let gain = force.map(|force| h * force);
             if is_solved(r, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain))
                 & is_energy_kept(c, self.energy.abs() + middle.energies(v), &self.p, v, corrections)
             {
                 for i in 0..2 {
                     self.v[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, middle.force[i]);
+                    self.p[i].grow(h, force[i]);
                 }
                 self.s.push(s);
                 self.t.grow(h, 1.0);

@@ -179,14 +179,15 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
             (v, s) = (from_fn(|i| v[i] + dv[i]), s + ds);
             (r, c, field) = self.at(v, s);
             let h = 2.0 * s;
-            let gain = field.force.map(|force| h * force);
+            let force = field.force;
+            let gain = force.map(|force| h * force);
             if is_solved(r, &self.p, gain, || terms(&self.p, v, gain))
                 & is_energy_kept(c, self.energy.abs() - field.potential + kinetic(v), &self.p, v, corrections)
             {
                 for i in 0..2 {
                     self.v[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, field.force[i]);
+                    self.p[i].grow(h, force[i]);
                 }
                 self.s.push(s);
                 self.t.grow(h, 1.0);
