@@ -6,7 +6,7 @@
 //! ```
 //!
 //! every term of which is a loop without a recurrence, so that the compiler makes vectors of it. What is left of the series
-//! is a millionth of a correction, and shows in the residual.
+//! is a billionth of a correction, and shows in the residual.
 
 use super::{CORRECTIONS, Sum, is_solved, mul_add, not_converged};
 use crate::chain::{Springs, stretches};

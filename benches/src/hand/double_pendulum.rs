@@ -96,7 +96,7 @@ impl Middle {
         [mul_add(turn, v, -self.force[0]), mul_add(turn, u, -self.force[1])]
     }
 
-    /// The sums of the absolute values of the terms of r, the two of L_q less what they have in common.
+    /// The sums of the absolute values of p0, of the terms of L_v and of what the momenta gain.
     #[inline]
     fn terms<S: Sum>(&self, constants: &Constants, p: &[S; 2], [u, v]: [f64; 2], gain: [f64; 2]) -> [f64; 2] {
         let momentum =

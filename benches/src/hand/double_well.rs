@@ -66,7 +66,7 @@ impl<S: Sum> Stepper for Fixed<S> {
         let next = mul_add(5.0, guess.v, self.history.known());
         let next_x = self.q.plus(mul_add(h, guess.v, s * next));
         let (force, slope) = field(guess.x);
-        // A⁻¹ = (1 + s² F'/m + …)/m: the next term is a billionth.
+        // A⁻¹ = (1 + s² F'/m + …)/m: the next term is less than 1e-8 of it.
         let inverse = over * mul_add(s * s * over, slope, 1.0);
         let mut newton = mul_add(s, force, mul_add(-m, guess.v, guess.p)) * inverse;
         for _ in 0..CORRECTIONS {

@@ -82,7 +82,7 @@ impl<S: Sum> Stepper for Fixed<S> {
         let next: [f64; 2] = from_fn(|i| mul_add(5.0, guess.v[i], self.history[i].known()));
         let next_x: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, guess.v[i], s * next[i])));
         let Field { force, slope, .. } = Field::at(mu, guess.x);
-        // A⁻¹ = 1 + s² F' + …: the next term is less than a millionth.
+        // A⁻¹ = 1 + s² F' + …: the next term is about 1e-8 of it.
         let solve = |missing: [f64; 2]| -> [f64; 2] {
             let bent = times(slope, missing);
             from_fn(|i| mul_add(s * s, bent[i], missing[i]))

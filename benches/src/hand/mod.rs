@@ -7,7 +7,7 @@
 //! measure    r(v) and p1 − p0, by one evaluation at the new v
 //! accept     where each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms,
 //!            and the energy row |c| ≤ (ε/2) (|E0| + Σ |terms of E| + Σ_i |v_i p0_i|)
-//! else       correct again, by the derivative there
+//! else       correct again
 //! ```
 //!
 //! Generic over [`Sum`]: plain sums, or those that keep what rounding takes from them, as the generated steppers do.
@@ -221,7 +221,7 @@ fn bordered([a, b, g]: [[f64; 2]; 3], off: [f64; 2], k: f64, r: [f64; 2], c: f64
 
 #[cfg(test)]
 mod tests {
-    use super::{Compensated, History, Plain, Sum};
+    use super::{Compensated, History, PATIENCE, Plain, Sum, is_energy_kept, is_solved};
 
     #[test]
     fn extrapolation_is_exact_for_polynomials() {
@@ -237,6 +237,21 @@ mod tests {
             history.push(value(7.0));
             history.next().to_bits()
         });
+    }
+
+    #[test]
+    fn a_step_is_solved_at_four_roundings_of_every_row() {
+        let (p, gain, rounding) = ([1.0, 1e-3].map(Plain::new), [1.0, -1e-3], f64::EPSILON * 2.0);
+        let solved = |roundings: [f64; 2], terms: [f64; 2]| {
+            is_solved([roundings[0] * rounding, roundings[1] * 1e-3 * rounding], &p, gain, || terms)
+        };
+        assert!(solved([3.9, -3.9], [0.0; 2]) && !solved([4.1, 0.0], [0.0; 2]) && !solved([0.0, -4.1], [0.0; 2]));
+        // Where the terms of the second row are larger than the momentum that they make.
+        assert!(solved([0.0, 40.0], [2.0, 2e-2]) && !solved([0.0, 41.0], [2.0, 2e-2]));
+        assert!(!solved([f64::NAN, 0.0], [2.0; 2]));
+        let kept =
+            |residual: f64, corrections| is_energy_kept(residual * f64::EPSILON, 1.0, &p, [1.0, 0.0], corrections);
+        assert!(kept(0.9, 1) && !kept(1.1, 1) && kept(7.9, PATIENCE) && !kept(8.1, PATIENCE));
     }
 
     #[test]

@@ -76,15 +76,17 @@ mod tests {
 
     #[test]
     fn angles_are_turned_to_rounding() {
+        let mut worst = 0.0_f64;
         for i in 0..100_000 {
             let x = f64::from(i) * 1e-3;
             for turn in [3.9e-6, -1e-7, 1e-2] {
                 let angle = Angle::at(x).near(x + turn);
                 let (sine, cosine) = (x + turn).sin_cos();
-                // Measured: 3.4e-16.
-                assert!((angle.sine - sine).abs().max((angle.cosine - cosine).abs()) < 4e-16);
+                worst = worst.max((angle.sine - sine).abs()).max((angle.cosine - cosine).abs());
             }
         }
+        // Measured: 2.3e-16.
+        assert!(worst < 3e-16);
     }
 
     #[test]
