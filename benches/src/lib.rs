@@ -8,6 +8,7 @@ pub mod dense;
 pub mod document;
 pub mod hand;
 pub mod newton;
+pub mod pendulum;
 pub mod problem;
 pub mod run;
 pub mod time;

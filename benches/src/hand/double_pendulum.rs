@@ -10,7 +10,9 @@
 //!     [ c cos d − s c (u + v) sin d − s² w           b + s² (w + G2 cos y)              ]
 //! ```
 
-use super::{History, ITERATIONS, Sum, bordered, mul_add, not_converged, sine::sin_cos};
+use super::{
+    CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged, sine::Angle,
+};
 use crate::run::Stepper;
 use core::array::from_fn;
 use vi_systems::systems::DoublePendulum;
@@ -33,6 +35,7 @@ impl Constants {
 
 /// What L says at the middle of a step.
 struct Middle {
+    angles: [Angle; 2],
     momentum: [f64; 2],
     force: [f64; 2],
     /// `c sin d` and `c cos d`.
@@ -45,13 +48,25 @@ struct Middle {
 
 impl Middle {
     #[inline]
-    fn at(constants: &Constants, q: [f64; 2], [u, v]: [f64; 2]) -> Self {
+    fn at(constants: &Constants, q: [f64; 2], v: [f64; 2]) -> Self {
+        Self::of(constants, q.map(Angle::at), v)
+    }
+
+    /// At angles next to these ones.
+    #[inline]
+    fn near(&self, constants: &Constants, q: [f64; 2], v: [f64; 2]) -> Self {
+        Self::of(constants, from_fn(|i| self.angles[i].near(q[i])), v)
+    }
+
+    #[inline]
+    fn of(constants: &Constants, angles: [Angle; 2], [u, v]: [f64; 2]) -> Self {
         let Constants { a, b, c, weight } = *constants;
-        let [(sin_x, cos_x), (sin_y, cos_y)] = q.map(sin_cos);
+        let [Angle { sine: sin_x, cosine: cos_x, .. }, Angle { sine: sin_y, cosine: cos_y, .. }] = angles;
         let sine = c * mul_add(sin_x, cos_y, -(cos_x * sin_y));
         let cosine = c * mul_add(cos_x, cos_y, sin_x * sin_y);
         let (w, pull) = (u * v * cosine, u * v * sine);
         Self {
+            angles,
             momentum: [mul_add(a, u, v * cosine), mul_add(b, v, u * cosine)],
             force: [-mul_add(weight[0], sin_x, pull), mul_add(-weight[1], sin_y, pull)],
             sine,
@@ -81,11 +96,38 @@ impl Middle {
         [mul_add(turn, v, -self.force[0]), mul_add(turn, u, -self.force[1])]
     }
 
+    /// The sums of the absolute values of p0, of the terms of L_v and of what the momenta gain.
+    #[inline]
+    fn terms<S: Sum>(&self, constants: &Constants, p: &[S; 2], [u, v]: [f64; 2], gain: [f64; 2]) -> [f64; 2] {
+        let momentum =
+            [(constants.a * u).abs() + (v * self.cosine).abs(), (constants.b * v).abs() + (u * self.cosine).abs()];
+        from_fn(|i| p[i].value().abs() + momentum[i] + gain[i].abs())
+    }
+
+    /// The sum of the absolute values of the terms of the energy.
+    #[inline]
+    fn energies(&self, v: [f64; 2]) -> f64 {
+        let kinetic = (v[0] * self.momentum[0]).abs() + (v[1] * self.momentum[1]).abs();
+        mul_add(0.5, kinetic, self.upright[0].abs() + self.upright[1].abs())
+    }
+
     /// The change of L_q where the velocities change by `dv` and the angles by `dq`.
     #[inline]
     fn carried(&self, [u, v]: [f64; 2], dv: [f64; 2], dq: [f64; 2]) -> [f64; 2] {
         let pull = mul_add(self.sine, mul_add(v, dv[0], u * dv[1]), self.w * (dq[0] - dq[1]));
         [-mul_add(self.upright[0], dq[0], pull), mul_add(-self.upright[1], dq[1], pull)]
+    }
+
+    /// The Newton step in v and s that the residuals r and c ask for.
+    #[inline]
+    fn newton(&self, constants: &Constants, v: [f64; 2], s: f64, r: [f64; 2], c: f64) -> ([f64; 2], f64) {
+        // L_qq v, and what L_v and L_q gain while the angles move on.
+        let (bent, steady) = (self.carried(v, [0.0; 2], v), self.steady(v));
+        let k = mul_add(v[0], bent[0], v[1] * bent[1]);
+        let (diagonal, off) = self.derivative(constants, s, v);
+        let across = from_fn(|i| mul_add(-s, bent[i], steady[i]));
+        let along = from_fn(|i| mul_add(s, bent[i], steady[i]));
+        bordered([diagonal, across, along], off, k, r, c / s)
     }
 }
 
@@ -94,66 +136,62 @@ impl Middle {
 pub struct Fixed<S> {
     constants: Constants,
     h: f64,
-    tolerance: f64,
     t: S,
     q: [S; 2],
     p: [S; 2],
     history: [History<7>; 2],
-    /// Where the next step starts: velocities, and angles there.
-    trial: [[f64; 2]; 2],
+    guess: Guess,
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From angles `q` and velocities `v` at t = 0. A Newton step of `tolerance` is the last one.
-    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+    /// From angles `q` and velocities `v` at t = 0.
+    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let constants = Constants::of(system);
-        let start = Middle::at(&constants, q, v);
-        Self {
-            constants,
-            h,
-            tolerance,
-            t: S::new(0.0),
-            q: q.map(S::new),
-            p: start.momentum.map(S::new),
-            history: v.map(History::constant),
-            trial: [v, from_fn(|i| q[i] + h / 2.0 * v[i])],
-        }
+        let p = Middle::at(&constants, q, v).momentum;
+        let guess = Guess { v, x: from_fn(|i| q[i] + h / 2.0 * v[i]), p };
+        let history = v.map(History::constant);
+        Self { constants, h, t: S::new(0.0), q: q.map(S::new), p: p.map(S::new), history, guess }
     }
 }
 
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let (h, s) = (self.h, self.h / 2.0);
-        let [mut v, mut q] = self.trial;
-        let known = self.history.map(|v| v.known());
-        for _ in 0..ITERATIONS {
-            // The next guess were there no Newton step.
-            let next: [f64; 2] = from_fn(|i| mul_add(7.0, v[i], known[i]));
-            let next_q: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, v[i], s * next[i])));
-            let middle = Middle::at(&self.constants, q, v);
-            let r: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
-            let (diagonal, off) = middle.derivative(&self.constants, s, v);
-            let over = 1.0 / mul_add(diagonal[0], diagonal[1], -(off[0] * off[1]));
-            let newton = [
-                mul_add(diagonal[1], r[0], -(off[0] * r[1])) * over,
-                mul_add(diagonal[0], r[1], -(off[1] * r[0])) * over,
-            ];
-            let before = v;
-            v = from_fn(|i| v[i] + newton[i]);
-            if newton[0].abs().max(newton[1].abs()) <= self.tolerance {
-                let carried = middle.carried(before, newton, newton.map(|d| s * d));
+        let Self { constants, h, guess, .. } = *self;
+        let s = h / 2.0;
+        // The next guess were there no Newton step.
+        let next: [f64; 2] = from_fn(|i| mul_add(7.0, guess.v[i], self.history[i].known()));
+        let next_x: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, guess.v[i], s * next[i])));
+        let middle = Middle::at(&constants, guess.x, guess.v);
+        let (diagonal, off) = middle.derivative(&constants, s, guess.v);
+        let over = 1.0 / mul_add(diagonal[0], diagonal[1], -(off[0] * off[1]));
+        let solve = |missing: [f64; 2]| {
+            [
+                mul_add(diagonal[1], missing[0], -(off[0] * missing[1])) * over,
+                mul_add(diagonal[0], missing[1], -(off[1] * missing[0])) * over,
+            ]
+        };
+        let mut newton = solve(from_fn(|i| mul_add(s, middle.force[i], guess.p[i] - middle.momentum[i])));
+        for _ in 0..CORRECTIONS {
+            let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
+            let measured = middle.near(&constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
+            let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured.force[i], -measured.momentum[i])));
+            let gain = measured.force.map(|force| h * force);
+            if is_solved(missing, &self.p, gain, || measured.terms(&constants, &self.p, v, gain)) {
+                let carried = middle.carried(guess.v, newton, newton.map(|d| s * d));
                 for i in 0..2 {
-                    self.trial[0][i] = mul_add(7.0, newton[i], next[i]);
-                    self.trial[1][i] = mul_add(4.5 * h, newton[i], next_q[i]);
+                    self.guess.v[i] = mul_add(7.0, newton[i], next[i]);
+                    self.guess.x[i] = mul_add(4.5 * h, newton[i], next_x[i]);
+                    self.guess.p[i] = self.p[i].plus(h * (middle.force[i] + carried[i]));
                     self.history[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, middle.force[i] + carried[i]);
+                    self.p[i].grow(h, measured.force[i]);
                 }
                 self.t.grow(h, 1.0);
                 return;
             }
-            q = from_fn(|i| self.q[i].plus(s * v[i]));
+            let more = solve(missing);
+            newton = from_fn(|i| newton[i] + more[i]);
         }
         not_converged()
     }
@@ -169,7 +207,6 @@ impl<S: Sum> Stepper for Fixed<S> {
 pub struct EnergyPreserving<S> {
     constants: Constants,
     energy: f64,
-    tolerance: f64,
     t: S,
     q: [S; 2],
     p: [S; 2],
@@ -179,10 +216,9 @@ pub struct EnergyPreserving<S> {
 }
 
 impl<S: Sum> EnergyPreserving<S> {
-    /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
-    /// relative in h, is the last one.
+    /// From the middle `(q, v)` of the first interval, of length h, at t = 0.
     #[must_use]
-    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+    pub fn new(system: &DoublePendulum, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let (constants, half) = (Constants::of(system), h / 2.0);
         let middle = Middle::at(&constants, q, v);
         let (mass, [coupling, _]) = middle.derivative(&constants, 0.0, v);
@@ -195,7 +231,6 @@ impl<S: Sum> EnergyPreserving<S> {
         Self {
             constants,
             energy: energy(&middle, v),
-            tolerance,
             t: S::new(half),
             q: from_fn(|i| S::new(q[i] + half * v[i])),
             p: from_fn(|i| S::new(middle.momentum[i] + half * middle.force[i])),
@@ -203,6 +238,19 @@ impl<S: Sum> EnergyPreserving<S> {
             v: from_fn(|i| History::line(v[i], h * acceleration[i])),
             s: History::constant(half),
         }
+    }
+
+    /// The angles at v and s.
+    #[inline]
+    fn angles(&self, v: [f64; 2], s: f64) -> [f64; 2] {
+        from_fn(|i| self.q[i].plus(s * v[i]))
+    }
+
+    /// r and c.
+    #[inline]
+    fn residuals(&self, middle: &Middle, v: [f64; 2], s: f64) -> ([f64; 2], f64) {
+        let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
+        (r, energy(middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1]))
     }
 }
 
@@ -217,28 +265,23 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
     #[inline]
     fn step(&mut self) {
         let (mut v, mut s) = (self.v.map(|v| v.next()), self.s.next());
-        for _ in 0..ITERATIONS {
-            let over = 1.0 / s;
-            let middle = Middle::at(&self.constants, from_fn(|i| self.q[i].plus(s * v[i])), v);
-            let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, middle.force[i], -middle.momentum[i])));
-            let c = (energy(&middle, v) - self.energy - mul_add(v[0], r[0], v[1] * r[1])) * over;
-            // L_qq v, and what L_v and L_q gain while the angles move on.
-            let bent = middle.carried(v, [0.0; 2], v);
-            let k = mul_add(v[0], bent[0], v[1] * bent[1]);
-            let steady = middle.steady(v);
-            let (diagonal, off) = middle.derivative(&self.constants, s, v);
-            let across = from_fn(|i| mul_add(-s, bent[i], steady[i]));
-            let along = from_fn(|i| mul_add(s, bent[i], steady[i]));
-            let (dv, ds) = bordered([diagonal, across, along], off, k, r, c);
-            let before = v;
+        let mut middle = Middle::at(&self.constants, self.angles(v, s), v);
+        let (mut r, mut c) = self.residuals(&middle, v, s);
+        for corrections in 1..=CORRECTIONS {
+            let (dv, ds) = middle.newton(&self.constants, v, s, r, c);
             (v, s) = (from_fn(|i| v[i] + dv[i]), s + ds);
-            if dv[0].abs().max(dv[1].abs()) <= self.tolerance && ds.abs() <= self.tolerance * s {
-                let h = 2.0 * s;
-                let carried = middle.carried(before, dv, from_fn(|i| mul_add(s, dv[i], before[i] * ds)));
+            middle = middle.near(&self.constants, self.angles(v, s), v);
+            (r, c) = self.residuals(&middle, v, s);
+            let h = 2.0 * s;
+            let force = middle.force;
+            let gain = force.map(|force| h * force);
+            if is_solved(r, &self.p, gain, || middle.terms(&self.constants, &self.p, v, gain))
+                & is_energy_kept(c, self.energy.abs() + middle.energies(v), &self.p, v, corrections)
+            {
                 for i in 0..2 {
                     self.v[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, middle.force[i] + carried[i]);
+                    self.p[i].grow(h, force[i]);
                 }
                 self.s.push(s);
                 self.t.grow(h, 1.0);

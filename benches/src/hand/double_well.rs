@@ -9,69 +9,83 @@
 //! [ −F + s F' v    F' v²      ] [ δs ] = − [ c/s ]           determinant m F' v² − F²
 //! ```
 
-use super::{History, ITERATIONS, Lagged, Sum, mul_add, not_converged};
+use super::{CORRECTIONS, History, Sum, is_energy_kept, is_solved, mul_add, not_converged};
 use crate::run::Stepper;
 use vi_systems::systems::DoubleWell;
+
+/// F and F' at x.
+#[inline]
+fn field(x: f64) -> (f64, f64) {
+    let square = x * x;
+    (x * mul_add(-2.0, square, 1.0), mul_add(-6.0, square, 1.0))
+}
+
+/// The sum of the absolute values of the terms of r; F changes its sign at ±√½.
+#[inline]
+fn terms<S: Sum>(m: f64, p: S, v: f64, s: f64, x: f64) -> [f64; 1] {
+    let force = x.abs() * mul_add(2.0, x * x, 1.0);
+    [p.value().abs() + (m * v).abs() + s * force]
+}
 
 /// Fixed steps.
 #[derive(Clone, Debug)]
 pub struct Fixed<S> {
     m: f64,
     h: f64,
-    half: f64,
-    square: f64,
-    tolerance: f64,
     t: S,
     q: S,
     p: S,
     history: History,
-    /// Where the next step starts: v, and x there.
-    trial: (f64, f64),
-    /// 1/A at the last three steps.
-    inverse: Lagged,
+    guess: Guess,
+}
+
+/// v, x and p0 of a step, which depend on the one before by its Newton step alone.
+#[derive(Clone, Copy, Debug)]
+struct Guess {
+    v: f64,
+    x: f64,
+    p: f64,
 }
 
 impl<S: Sum> Fixed<S> {
-    /// From `(q, p)` at t = 0. A Newton step of `tolerance` is the last one.
+    /// From `(q, p)` at t = 0.
     #[must_use]
-    pub fn new(system: &DoubleWell, (q, p): (f64, f64), h: f64, tolerance: f64) -> Self {
-        let (m, half) = (system.m, h / 2.0);
-        let v = p / m;
-        let (t, history, trial) = (S::new(0.0), History::constant(v), (v, q + half * v));
-        let (square, inverse) = (half * half, Lagged::constant(1.0 / m));
-        Self { m, h, half, square, tolerance, t, q: S::new(q), p: S::new(p), history, trial, inverse }
+    pub fn new(system: &DoubleWell, (q, p): (f64, f64), h: f64) -> Self {
+        let (m, v) = (system.m, p / system.m);
+        let (history, guess) = (History::constant(v), Guess { v, x: q + h / 2.0 * v, p });
+        Self { m, h, t: S::new(0.0), q: S::new(q), p: S::new(p), history, guess }
     }
 }
 
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let Self { m, h, half, square, .. } = *self;
-        let (mut v, mut x) = self.trial;
-        let mut inverse = self.inverse.next();
-        let known = self.history.known();
-        for _ in 0..ITERATIONS {
-            // The next guess were there no Newton step.
-            let next = mul_add(5.0, v, known);
-            let next_x = self.q.plus(mul_add(h, v, half * next));
-            let x2 = x * x;
-            let slope = mul_add(-6.0, x2, 1.0);
-            let force = x * mul_add(-2.0, x2, 1.0);
-            let here = 1.0 / mul_add(-square, slope, m);
-            let residual = self.p.plus(mul_add(half, force, -(m * v)));
-            let newton = residual * inverse;
-            v += newton;
-            if newton.abs() <= self.tolerance {
-                self.trial = (mul_add(5.0, newton, next), mul_add(3.5 * h, newton, next_x));
-                self.inverse.push(here);
+        let Self { m, h, guess, .. } = *self;
+        let (s, over) = (h / 2.0, 1.0 / m);
+        // The next guess were there no Newton step.
+        let next = mul_add(5.0, guess.v, self.history.known());
+        let next_x = self.q.plus(mul_add(h, guess.v, s * next));
+        let (force, slope) = field(guess.x);
+        // A⁻¹ = (1 + s² F'/m + …)/m: the next term is less than 1e-8 of it.
+        let inverse = over * mul_add(s * s * over, slope, 1.0);
+        let mut newton = mul_add(s, force, mul_add(-m, guess.v, guess.p)) * inverse;
+        for _ in 0..CORRECTIONS {
+            let v = guess.v + newton;
+            let x = self.q.plus(s * v);
+            let (measured, _) = field(x);
+            let missing = self.p.plus(mul_add(s, measured, -(m * v)));
+            if is_solved([missing], &[self.p], [h * measured], || terms(m, self.p, v, s, x)) {
+                let carried = mul_add(s * slope, newton, force);
+                self.guess.v = mul_add(5.0, newton, next);
+                self.guess.x = mul_add(3.5 * h, newton, next_x);
+                self.guess.p = self.p.plus(h * carried);
                 self.history.push(v);
                 self.q.grow(h, v);
-                self.p.grow(h, mul_add(half * slope, newton, force));
+                self.p.grow(h, measured);
                 self.t.grow(h, 1.0);
                 return;
             }
-            x = self.q.plus(half * v);
-            inverse = 1.0 / mul_add(-square, mul_add(-6.0, x * x, 1.0), m);
+            newton = mul_add(missing, inverse, newton);
         }
         not_converged()
     }
@@ -86,66 +100,85 @@ impl<S: Sum> Stepper for Fixed<S> {
 pub struct EnergyPreserving<S> {
     m: f64,
     energy: f64,
-    tolerance: f64,
     t: S,
     q: S,
     p: S,
     /// Of v and of h/2.
-    history: [History; 2],
-    /// 1/determinant at the last three steps.
-    inverse: Lagged,
+    history: [History<7>; 2],
+}
+
+/// The two rows at some v and s.
+struct Rows {
+    /// −r and c.
+    missing: f64,
+    energy: f64,
+    /// |E0| and the absolute values of the terms of the energy.
+    terms: f64,
+    force: f64,
+    slope: f64,
 }
 
 impl<S: Sum> EnergyPreserving<S> {
-    /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
-    /// relative in h, is the last one.
+    /// From the middle `(q, v)` of the first interval, of length h, at t = 0.
     #[must_use]
-    pub fn new(system: &DoubleWell, (q, v): (f64, f64), h: f64, tolerance: f64) -> Self {
+    pub fn new(system: &DoubleWell, (q, v): (f64, f64), h: f64) -> Self {
         let (m, half) = (system.m, h / 2.0);
-        let force = q * (1.0 - 2.0 * q * q);
+        let (force, _) = field(q);
         let (t, end, p) = (S::new(half), S::new(q + half * v), S::new(m * v + half * force));
         let energy = m * v * v / 2.0 + (q * q - 1.0) * q * q / 2.0;
-        let slope = 1.0 - 6.0 * q * q;
         // From v alone Newton's iteration would find the step back, (v, −h).
         let history = [History::line(v, h * force / m), History::constant(half)];
-        let inverse = Lagged::constant(1.0 / (m * slope * v * v - force * force));
-        Self { m, energy, tolerance, t, q: end, p, history, inverse }
+        Self { m, energy, t, q: end, p, history }
+    }
+
+    #[inline]
+    fn at(&self, v: f64, s: f64) -> Rows {
+        let x = self.q.plus(s * v);
+        let (force, slope) = field(x);
+        let missing = self.p.plus(mul_add(s, force, -(self.m * v)));
+        let x2 = x * x;
+        let kinetic = 0.5 * self.m * v * v;
+        let e = mul_add(0.5 * x2, x2 - 1.0, kinetic - self.energy);
+        let terms = mul_add(0.5 * x2, x2 + 1.0, kinetic + self.energy.abs());
+        Rows { missing, energy: mul_add(v, missing, e), terms, force, slope }
+    }
+}
+
+impl Rows {
+    /// What v and s lack.
+    #[inline]
+    fn newton(&self, m: f64, v: f64, s: f64) -> (f64, f64) {
+        let Self { missing: r, energy, force, slope, .. } = *self;
+        let (sv, vv) = (s * slope * v, slope * v * v);
+        // One quotient: c/s and 1/determinant.
+        let determinant = mul_add(m, vv, -(force * force));
+        let over = 1.0 / (s * determinant);
+        let (c, r) = (energy * over, r * (s * over));
+        (mul_add(r, vv, -c * (force + sv)), -mul_add(c, mul_add(-s * s, slope, m), r * (sv - force)))
     }
 }
 
 impl<S: Sum> Stepper for EnergyPreserving<S> {
     #[inline]
     fn step(&mut self) {
-        let m = self.m;
         let [mut v, mut s] = [self.history[0].next(), self.history[1].next()];
-        let mut inverse = self.inverse.next();
-        for _ in 0..ITERATIONS {
-            let over = 1.0 / s;
-            let x = self.q.plus(s * v);
-            let x2 = x * x;
-            let slope = mul_add(-6.0, x2, 1.0);
-            let force = x * mul_add(-2.0, x2, 1.0);
-            let r = self.p.plus(mul_add(s, force, -(m * v)));
-            let e = mul_add(0.5 * x2, x2 - 1.0, mul_add(0.5 * m * v, v, -self.energy));
-            let c = mul_add(v, r, e) * over;
-            let (sv, vv) = (s * slope * v, slope * v * v);
-            let determinant = mul_add(m, vv, -(force * force));
-            let dv = mul_add(r, vv, -c * (force + sv)) * inverse;
-            let ds = -mul_add(c, mul_add(-s * s, slope, m), r * (sv - force)) * inverse;
+        let mut rows = self.at(v, s);
+        for corrections in 1..=CORRECTIONS {
+            let (dv, ds) = rows.newton(self.m, v, s);
             (v, s) = (v + dv, s + ds);
-            if dv.abs() <= self.tolerance && ds.abs() <= self.tolerance * s {
-                let h = 2.0 * s;
+            rows = self.at(v, s);
+            let h = 2.0 * s;
+            let p = [self.p];
+            if is_solved([rows.missing], &p, [h * rows.force], || terms(self.m, self.p, v, s, self.q.plus(s * v)))
+                & is_energy_kept(rows.energy, rows.terms, &p, [v], corrections)
+            {
                 self.history[0].push(v);
                 self.history[1].push(s);
-                self.inverse.push(1.0 / determinant);
-                // x has moved by s δv + v δs, but for a product of both.
-                let force = mul_add(slope, mul_add(s, dv, v * ds), force);
                 self.q.grow(h, v);
-                self.p.grow(h, force);
+                self.p.grow(h, rows.force);
                 self.t.grow(h, 1.0);
                 return;
             }
-            inverse = 1.0 / determinant;
         }
         not_converged()
     }

@@ -6,48 +6,10 @@
 //! r = v − s F − p0 = 0          A = ∂r/∂v = 1 − s² F'        q1 = q0 + h v      p1 = p0 + h F
 //! ```
 
-use super::{History, ITERATIONS, Lagged, Sum, bordered, mul_add, not_converged};
+use super::{CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged};
 use crate::run::Stepper;
 use core::array::from_fn;
 use vi_systems::systems::Kepler;
-
-/// Fixed steps.
-#[derive(Clone, Debug)]
-pub struct Fixed<S> {
-    mu: f64,
-    h: f64,
-    half: f64,
-    square: f64,
-    tolerance: f64,
-    t: S,
-    q: [S; 2],
-    p: [S; 2],
-    history: [History; 2],
-    /// Where the next step starts: v, and x there.
-    trial: [[f64; 2]; 2],
-    /// A⁻¹ at the last three steps: xx, xy, yy.
-    inverse: [Lagged; 3],
-}
-
-impl<S: Sum> Fixed<S> {
-    /// From `(q, p)` at t = 0. A Newton step of `tolerance` is the last one.
-    pub fn new(system: &Kepler, (q, p): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
-        let half = h / 2.0;
-        Self {
-            mu: system.mu,
-            h,
-            half,
-            square: half * half,
-            tolerance,
-            t: S::new(0.0),
-            q: q.map(S::new),
-            p: p.map(S::new),
-            history: p.map(History::constant),
-            trial: [p, [q[0] + half * p[0], q[1] + half * p[1]]],
-            inverse: [1.0, 0.0, 1.0].map(Lagged::constant),
-        }
-    }
-}
 
 /// The force, its derivative (xx, xy, yy) and the potential at a place.
 struct Field {
@@ -76,14 +38,6 @@ impl Field {
         let [xx, xy, yy] = self.slope;
         [mul_add(-square, xx, 1.0), -square * xy, mul_add(-square, yy, 1.0)]
     }
-
-    /// A⁻¹.
-    #[inline]
-    fn inverse(&self, square: f64) -> [f64; 3] {
-        let [xx, xy, yy] = self.derivative(square);
-        let over = 1.0 / mul_add(xx, yy, -(xy * xy));
-        [yy * over, -xy * over, xx * over]
-    }
 }
 
 /// The symmetric matrix times the vector.
@@ -92,47 +46,81 @@ fn times([xx, xy, yy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
     [mul_add(xx, x, xy * y), mul_add(xy, x, yy * y)]
 }
 
+/// The sums of the absolute values of the terms of r.
+#[inline]
+fn terms<S: Sum>(p: &[S; 2], v: [f64; 2], gain: [f64; 2]) -> [f64; 2] {
+    from_fn(|i| p[i].value().abs() + v[i].abs() + 0.5 * gain[i].abs())
+}
+
+/// Fixed steps.
+#[derive(Clone, Debug)]
+pub struct Fixed<S> {
+    mu: f64,
+    h: f64,
+    t: S,
+    q: [S; 2],
+    p: [S; 2],
+    history: [History; 2],
+    guess: Guess,
+}
+
+impl<S: Sum> Fixed<S> {
+    /// From `(q, p)` at t = 0.
+    pub fn new(system: &Kepler, (q, p): ([f64; 2], [f64; 2]), h: f64) -> Self {
+        let guess = Guess { v: p, x: from_fn(|i| q[i] + h / 2.0 * p[i]), p };
+        let (mu, history) = (system.mu, p.map(History::constant));
+        Self { mu, h, t: S::new(0.0), q: q.map(S::new), p: p.map(S::new), history, guess }
+    }
+}
+
 impl<S: Sum> Stepper for Fixed<S> {
     #[inline]
     fn step(&mut self) {
-        let Self { mu, h, half, square, .. } = *self;
-        let [mut v, mut x] = self.trial;
-        let mut inverse: [f64; 3] = self.inverse.map(|entry| entry.next());
-        let known: [f64; 2] = from_fn(|i| self.history[i].known());
-        for _ in 0..ITERATIONS {
-            // The next guess were there no Newton step.
-            let next: [f64; 2] = from_fn(|i| mul_add(5.0, v[i], known[i]));
-            let next_x: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, v[i], half * next[i])));
-            let field = Field::at(mu, x);
-            let residual: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(half, field.force[i], -v[i])));
-            let newton = times(inverse, residual);
-            v = from_fn(|i| v[i] + newton[i]);
-            if newton[0].abs().max(newton[1].abs()) <= self.tolerance {
-                let carried = times(field.slope, newton);
+        let Self { mu, h, guess, .. } = *self;
+        let s = h / 2.0;
+        // The next guess were there no Newton step.
+        let next: [f64; 2] = from_fn(|i| mul_add(5.0, guess.v[i], self.history[i].known()));
+        let next_x: [f64; 2] = from_fn(|i| self.q[i].plus(mul_add(h, guess.v[i], s * next[i])));
+        let Field { force, slope, .. } = Field::at(mu, guess.x);
+        // A⁻¹ = 1 + s² F' + …: the next term is about 1e-8 of it.
+        let solve = |missing: [f64; 2]| -> [f64; 2] {
+            let bent = times(slope, missing);
+            from_fn(|i| mul_add(s * s, bent[i], missing[i]))
+        };
+        let mut newton = solve(from_fn(|i| mul_add(s, force[i], guess.p[i] - guess.v[i])));
+        for _ in 0..CORRECTIONS {
+            let v: [f64; 2] = from_fn(|i| guess.v[i] + newton[i]);
+            let measured = Field::at(mu, from_fn(|i| self.q[i].plus(s * v[i]))).force;
+            let missing: [f64; 2] = from_fn(|i| self.p[i].plus(mul_add(s, measured[i], -v[i])));
+            let gain = measured.map(|force| h * force);
+            if is_solved(missing, &self.p, gain, || terms(&self.p, v, gain)) {
+                let bent = times(slope, newton);
                 for i in 0..2 {
-                    self.trial[0][i] = mul_add(5.0, newton[i], next[i]);
-                    self.trial[1][i] = mul_add(3.5 * h, newton[i], next_x[i]);
+                    self.guess.v[i] = mul_add(5.0, newton[i], next[i]);
+                    self.guess.x[i] = mul_add(3.5 * h, newton[i], next_x[i]);
+                    self.guess.p[i] = self.p[i].plus(h * mul_add(s, bent[i], force[i]));
                     self.history[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, mul_add(half, carried[i], field.force[i]));
-                }
-                for (lagged, entry) in self.inverse.iter_mut().zip(field.inverse(square)) {
-                    lagged.push(entry);
+                    self.p[i].grow(h, measured[i]);
                 }
                 self.t.grow(h, 1.0);
                 return;
             }
-            x = from_fn(|i| self.q[i].plus(half * v[i]));
-            inverse = Field::at(mu, x).inverse(square);
+            let more = solve(missing);
+            newton = from_fn(|i| newton[i] + more[i]);
         }
         not_converged()
     }
 
     fn state(&self) -> Vec<f64> {
-        let [x, y] = self.q.map(S::value);
-        let [px, py] = self.p.map(S::value);
+        let ([x, y], [px, py]) = (self.q.map(S::value), self.p.map(S::value));
         vec![self.t.value(), x, y, px, py]
     }
+}
+
+#[inline]
+fn kinetic(v: [f64; 2]) -> f64 {
+    0.5 * mul_add(v[0], v[0], v[1] * v[1])
 }
 
 /// Energy-preserving steps.
@@ -140,26 +128,23 @@ impl<S: Sum> Stepper for Fixed<S> {
 pub struct EnergyPreserving<S> {
     mu: f64,
     energy: f64,
-    tolerance: f64,
     t: S,
     q: [S; 2],
     p: [S; 2],
-    v: [History; 2],
+    v: [History<7>; 2],
     /// Half of h.
-    s: History,
+    s: History<7>,
 }
 
 impl<S: Sum> EnergyPreserving<S> {
-    /// From the middle `(q, v)` of the first interval, of length h, at t = 0. A Newton step of `tolerance` in v, and
-    /// relative in h, is the last one.
+    /// From the middle `(q, v)` of the first interval, of length h, at t = 0.
     #[must_use]
-    pub fn new(system: &Kepler, (q, v): ([f64; 2], [f64; 2]), h: f64, tolerance: f64) -> Self {
+    pub fn new(system: &Kepler, (q, v): ([f64; 2], [f64; 2]), h: f64) -> Self {
         let (mu, half) = (system.mu, h / 2.0);
         let Field { force, potential, .. } = Field::at(mu, q);
         Self {
             mu,
-            energy: f64::midpoint(v[0] * v[0], v[1] * v[1]) + potential,
-            tolerance,
+            energy: kinetic(v) + potential,
             t: S::new(half),
             q: from_fn(|i| S::new(q[i] + half * v[i])),
             p: from_fn(|i| S::new(v[i] + half * force[i])),
@@ -168,32 +153,41 @@ impl<S: Sum> EnergyPreserving<S> {
             s: History::constant(half),
         }
     }
+
+    /// r, c and the field at v and s.
+    #[inline]
+    fn at(&self, v: [f64; 2], s: f64) -> ([f64; 2], f64, Field) {
+        let field = Field::at(self.mu, from_fn(|i| self.q[i].plus(s * v[i])));
+        let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, field.force[i], -v[i])));
+        let e = kinetic(v) + (field.potential - self.energy);
+        (r, e - mul_add(v[0], r[0], v[1] * r[1]), field)
+    }
 }
 
 impl<S: Sum> Stepper for EnergyPreserving<S> {
     #[inline]
     fn step(&mut self) {
         let (mut v, mut s) = (self.v.map(|v| v.next()), self.s.next());
-        for _ in 0..ITERATIONS {
-            let over = 1.0 / s;
-            let Field { force, slope, potential } = Field::at(self.mu, from_fn(|i| self.q[i].plus(s * v[i])));
-            let r: [f64; 2] = from_fn(|i| -self.p[i].plus(mul_add(s, force[i], -v[i])));
-            let e = mul_add(0.5 * v[0], v[0], mul_add(0.5 * v[1], v[1], potential - self.energy));
-            let c = (e - mul_add(v[0], r[0], v[1] * r[1])) * over;
-            let bent = times(slope, v);
+        let (mut r, mut c, mut field) = self.at(v, s);
+        for corrections in 1..=CORRECTIONS {
+            let bent = times(field.slope, v);
             let k = mul_add(v[0], bent[0], v[1] * bent[1]);
-            let [xx, xy, yy] = (Field { force, slope, potential }).derivative(s * s);
-            let across = from_fn(|i| -mul_add(s, bent[i], force[i]));
-            let along = from_fn(|i| mul_add(s, bent[i], -force[i]));
-            let (dv, ds) = bordered([[xx, yy], across, along], [xy; 2], k, r, c);
+            let [xx, xy, yy] = field.derivative(s * s);
+            let across = from_fn(|i| -mul_add(s, bent[i], field.force[i]));
+            let along = from_fn(|i| mul_add(s, bent[i], -field.force[i]));
+            let (dv, ds) = bordered([[xx, yy], across, along], [xy; 2], k, r, c / s);
             (v, s) = (from_fn(|i| v[i] + dv[i]), s + ds);
-            if dv[0].abs().max(dv[1].abs()) <= self.tolerance && ds.abs() <= self.tolerance * s {
-                let h = 2.0 * s;
-                let moved = times(slope, from_fn(|i| mul_add(s, dv[i], v[i] * ds)));
+            (r, c, field) = self.at(v, s);
+            let h = 2.0 * s;
+            let force = field.force;
+            let gain = force.map(|force| h * force);
+            if is_solved(r, &self.p, gain, || terms(&self.p, v, gain))
+                & is_energy_kept(c, self.energy.abs() - field.potential + kinetic(v), &self.p, v, corrections)
+            {
                 for i in 0..2 {
                     self.v[i].push(v[i]);
                     self.q[i].grow(h, v[i]);
-                    self.p[i].grow(h, force[i] + moved[i]);
+                    self.p[i].grow(h, force[i]);
                 }
                 self.s.push(s);
                 self.t.grow(h, 1.0);
@@ -204,8 +198,7 @@ impl<S: Sum> Stepper for EnergyPreserving<S> {
     }
 
     fn state(&self) -> Vec<f64> {
-        let [x, y] = self.q.map(S::value);
-        let [px, py] = self.p.map(S::value);
+        let ([x, y], [px, py]) = (self.q.map(S::value), self.p.map(S::value));
         vec![self.t.value(), x, y, px, py]
     }
 }

@@ -1,9 +1,16 @@
 //! Steppers written by hand, each for one system: what an expert would write who knows all that the generator knows.
 //!
-//! All solve for v (and h) by Newton's iteration from a guess extrapolated with order 4 or 6 over the last steps, and stop by the
-//! length of a Newton step: the convergence is quadratic, and the constant is tuned to the system and its h. The force at
-//! the solution is carried there by its derivative, and so are the next guess and its place. Generic over [`Sum`]: plain sums, or those that keep what rounding takes
-//! from them, as the generated steppers do.
+//! All solve for v (and h) from a guess extrapolated with order 4 or 6 over the last steps, as the generated steppers do:
+//!
+//! ```text
+//! correct    v ← v − A⁻¹ r(v)
+//! measure    r(v) and p1 − p0, by one evaluation at the new v
+//! accept     where each row has |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|), or 4 ε times the sum of the absolute values of its terms,
+//!            and the energy row |c| ≤ (ε/2) (|E0| + Σ |terms of E| + Σ_i |v_i p0_i|)
+//! else       correct again
+//! ```
+//!
+//! Generic over [`Sum`]: plain sums, or those that keep what rounding takes from them, as the generated steppers do.
 
 pub mod chain;
 pub mod double_pendulum;
@@ -12,10 +19,17 @@ pub mod kepler;
 pub mod oscillator;
 mod sine;
 
+use core::array::from_fn;
 use core::fmt::Debug;
 
-/// Newton iterations after which a step is given up.
-const ITERATIONS: usize = 20;
+/// Corrections after which a step is given up.
+const CORRECTIONS: usize = 20;
+/// Part of its scale that an accepted step may leave of a momentum row: four roundings.
+const FLOOR: f64 = 4.0 * f64::EPSILON;
+/// The same of the energy row: half a rounding.
+const ENERGY_FLOOR: f64 = 0.5 * f64::EPSILON;
+/// Corrections after which the energy row may have four as well.
+const PATIENCE: usize = 3;
 
 /// A number that grows by increments: t, q or p.
 pub trait Sum: Copy + Debug {
@@ -142,36 +156,53 @@ impl<const K: usize> History<K> {
 
     #[inline]
     fn push(&mut self, value: f64) {
-        self.0 = core::array::from_fn(|age| if age == 0 { value } else { self.0[age - 1] });
+        self.0 = from_fn(|age| if age == 0 { value } else { self.0[age - 1] });
     }
 }
 
 #[cold]
 fn not_converged() -> ! {
-    panic!("Newton's iteration has not converged in {ITERATIONS} iterations");
+    panic!("{CORRECTIONS} corrections have not solved the step");
 }
 
-/// A slowly varying quantity over the last three steps, the newest first, extrapolated with order 2: the inverse of a
-/// derivative, which Newton's iteration needs less exactly than the residual, and before its quotient could be there.
+/// v, the middle x and p0 of a step of fixed length, as the Newton step of the one before gives them: what the next one waits for.
+/// The sums of q and p, in which a step is measured, are off this path.
 #[derive(Clone, Copy, Debug)]
-struct Lagged([f64; 3]);
+struct Guess<const N: usize = 2> {
+    v: [f64; N],
+    x: [f64; N],
+    p: [f64; N],
+}
 
-impl Lagged {
-    fn constant(value: f64) -> Self {
-        Self([value; 3])
-    }
+/// Whether a step from momenta `p` that gain `gain` leaves no more than rounding of its momentum rows, whose terms have the
+/// sums `terms` of absolute values: where the momenta vanish, what they are sums of need not.
+#[inline]
+fn is_solved<S: Sum, const N: usize>(
+    residual: [f64; N],
+    p: &[S; N],
+    gain: [f64; N],
+    terms: impl FnOnce() -> [f64; N],
+) -> bool {
+    let is_below = |scale: [f64; N]| {
+        // A mask: a loop over booleans does not become vector instructions.
+        let below = |i: usize| residual[i].abs() <= FLOOR * scale[i];
+        (0..N).fold(0, |above, i| above | if below(i) { 0 } else { u64::MAX }) == 0
+    };
+    is_below(from_fn(|i| p[i].value().abs() + gain[i].abs())) || is_below(terms())
+}
 
-    #[inline]
-    fn next(&self) -> f64 {
-        let [a, b, c] = self.0;
-        mul_add(3.0, a - b, c)
-    }
-
-    #[inline]
-    fn push(&mut self, value: f64) {
-        let [a, b, _] = self.0;
-        self.0 = [value, a, b];
-    }
+/// The same of the energy row, at velocities `v`, whose other terms have the sum `terms`: the energy is a difference. Now and then
+/// rounding lets no v and h near the root leave so little; after [`PATIENCE`] corrections as much may be left as of a momentum row.
+#[inline]
+fn is_energy_kept<S: Sum, const N: usize>(
+    residual: f64,
+    terms: f64,
+    p: &[S; N],
+    v: [f64; N],
+    corrections: usize,
+) -> bool {
+    let scale = (0..N).fold(terms, |sum, i| sum + (v[i] * p[i].value()).abs());
+    residual.abs() <= if corrections < PATIENCE { ENERGY_FLOOR } else { FLOOR } * scale
 }
 
 /// A Newton step on two momentum rows and the energy row, bordered: `A δv + b δs = −r`, `g·δv + k δs = −c`. One quotient.
@@ -190,7 +221,7 @@ fn bordered([a, b, g]: [[f64; 2]; 3], off: [f64; 2], k: f64, r: [f64; 2], c: f64
 
 #[cfg(test)]
 mod tests {
-    use super::{Compensated, History, Plain, Sum};
+    use super::{Compensated, History, PATIENCE, Plain, Sum, is_energy_kept, is_solved};
 
     #[test]
     fn extrapolation_is_exact_for_polynomials() {
@@ -206,6 +237,21 @@ mod tests {
             history.push(value(7.0));
             history.next().to_bits()
         });
+    }
+
+    #[test]
+    fn a_step_is_solved_at_four_roundings_of_every_row() {
+        let (p, gain, rounding) = ([1.0, 1e-3].map(Plain::new), [1.0, -1e-3], f64::EPSILON * 2.0);
+        let solved = |roundings: [f64; 2], terms: [f64; 2]| {
+            is_solved([roundings[0] * rounding, roundings[1] * 1e-3 * rounding], &p, gain, || terms)
+        };
+        assert!(solved([3.9, -3.9], [0.0; 2]) && !solved([4.1, 0.0], [0.0; 2]) && !solved([0.0, -4.1], [0.0; 2]));
+        // Where the terms of the second row are larger than the momentum that they make.
+        assert!(solved([0.0, 40.0], [2.0, 2e-2]) && !solved([0.0, 41.0], [2.0, 2e-2]));
+        assert!(!solved([f64::NAN, 0.0], [2.0; 2]));
+        let kept =
+            |residual: f64, corrections| is_energy_kept(residual * f64::EPSILON, 1.0, &p, [1.0, 0.0], corrections);
+        assert!(kept(0.9, 1) && !kept(1.1, 1) && kept(7.9, PATIENCE) && !kept(8.1, PATIENCE));
     }
 
     #[test]
