@@ -63,7 +63,8 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     #[inline(always)]
     fn step(&self, v: &SVector<Lane<FUSED>, N>) -> Step<N, FUSED> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
-        let v = v - equation.jacobian.solve(&(equation.residual + self.remainder));
+        let (numerators, determinant) = equation.jacobian.quotient(&(equation.residual + self.remainder));
+        let v = v - numerators * determinant.recip();
         let MomentumResidual { residual, magnitude, increment } = self.system.momentum_residual(&self.node, self.h, &v);
         let remainder = residual + self.remainder;
         let mut accepted = true;

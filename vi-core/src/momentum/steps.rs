@@ -60,7 +60,10 @@ impl<J: Matrix<N, T>, const N: usize, T: Scalar> Way<J, N, T> {
     fn correction(&self, jacobian: &J, residual: &SVector<T, N>) -> SVector<T, N> {
         match self {
             Self::ClosedForm(_, inverse) | Self::Inverse(inverse) => J::apply(inverse, residual),
-            Self::Newton => jacobian.solve(residual),
+            Self::Newton => {
+                let (numerators, determinant) = jacobian.quotient(residual);
+                numerators * determinant.recip()
+            }
         }
     }
 }
