@@ -1,6 +1,6 @@
 //! States and parameters at the ends of what numbers can tell: each gives a step, or an error that names what is wrong.
 
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError, lagrangian};
+use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, State, StepError, energy_preserving, lagrangian};
 use vi_systems::{HarmonicOscillator, Pendulum};
 
 #[test]
@@ -110,4 +110,89 @@ fn masses_of_any_units_make_a_regular_system() {
         // Measured: 1.2e-4, where v²/x² adds its part.
         assert!((v / wanted - 1.0).abs() < 2e-4, "{v:e}, {wanted:e}");
     }
+}
+
+lagrangian! {
+    /// A ball on an elastic floor (Hertz): in free flight the root of the depth is that of zero.
+    struct Hertz {
+        param m = 1.0, g = 1.0, k = 1e4;
+        coord x;
+        let depth = (abs(x) - x) / 2;
+        L = m * dot(x)^2 / 2 - m * g * x - k * depth^(5/2);
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn the_root_of_zero_is_no_obstacle() {
+    let system = Hertz::default();
+    let start = State::at(&system, 0.0, [0.3], [0.0]);
+    let energy = start.energy(&system).expect("a velocity");
+    let mut run = FixedStep::new(system, start, 1e-3).expect("a velocity");
+    let (mut contacts, mut worst) = (0, 0.0_f64);
+    for _ in 0..20_000 {
+        let state = run.step().expect("a step");
+        contacts += usize::from(state.q[0] < 0.0);
+        worst = worst.max((state.energy(&system).expect("a velocity") - energy).abs());
+    }
+    // It bounces, and the steps resolve a contact. Measured: 1.7e-3 of 0.3.
+    assert!((500..2000).contains(&contacts) && worst < 3e-3, "{contacts} contacts, {worst:e}");
+}
+
+lagrangian! {
+    /// Between two walls that are logarithms: their forces are finite beyond them.
+    struct Walls {
+        coord x;
+        L = dot(x)^2 / 2 + 1e-3 * ln(x) + 1e-3 * ln(1 - x);
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn where_the_forces_are_finite_and_the_energy_is_not_no_energy_is_told() {
+    let system = Walls::default();
+    let beyond = State::at(&system, 0.0, [1.5], [0.0]).energy(&system);
+    assert!(matches!(beyond, Err(StepError::NonFinite { quantity: "energy", expression: Some(_), .. })), "{beyond:?}");
+
+    let run = EnergyPreserving::from_midpoint(system, 0.0, [0.5], [1.0], 0.05).expect("a start");
+    let mut run = run.with_fallback(Fallback::FixedSteps);
+    let mut last = run.state();
+    let error = loop {
+        match run.step() {
+            Ok(step) => {
+                assert!(step.energy.is_finite() && run.energy().is_finite(), "{step:?}");
+                last = run.state();
+            }
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, StepError::NonFinite { quantity: "energy", .. }), "{error:?}");
+    assert_eq!(run.state(), last);
+    let text = serde_json::to_string(&run.checkpoint()).expect("numbers");
+    let stored: energy_preserving::Checkpoint<1> = serde_json::from_str(&text).expect("finite numbers");
+    assert!(EnergyPreserving::restart(system, stored).is_ok());
+
+    // Fixed steps need forces only, and go on; their energy is not told.
+    let mut run = FixedStep::new(system, State::at(&system, 0.0, [0.99], [1.0]), 0.05).expect("a start");
+    run.step().expect("a step");
+    assert!(run.state().q[0] > 1.0 && run.discrete_energy().is_none());
+}
+
+lagrangian! {
+    /// A drag whose slope has no value at rest, so far as its formula goes.
+    struct Drag {
+        param c = 0.3;
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2;
+        force x = -c * abs(dot(x))^(1/2) * dot(x);
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn a_slope_that_is_no_number_is_not_a_singular_mass() {
+    let system = Drag::default();
+    assert!(FixedStep::new(system, State::at(&system, 0.0, [1.0], [0.1]), 0.01).is_ok());
+    let at_rest = FixedStep::new(system, State::at(&system, 0.0, [1.0], [0.0]), 0.01).map(|run| run.state());
+    assert!(matches!(at_rest, Err(StepError::NonFinite { .. })), "{at_rest:?}");
 }

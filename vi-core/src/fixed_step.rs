@@ -199,17 +199,19 @@ where
         self.run.iterations
     }
 
-    /// Discrete energy of the last interval, `E1 = −D3 L_d − g_d⁺`; `None` before the first step.
+    /// Discrete energy of the last interval, `E1 = −D3 L_d − g_d⁺`; `None` before the first step, and where it is not finite: forces
+    /// may be finite where L is not.
     ///
     /// Evaluated from v inside the interval: from the stored nodes it would carry the cancellation of `(q1 − q0)/h`.
     pub fn discrete_energy(&self) -> Option<T> {
         let v = self.v();
-        (!self.run.steps.is_new()).then(|| {
+        let energy = (!self.run.steps.is_new()).then(|| {
             let mut start = self.run.node;
             start.shift(-self.run.steps.h, &(v * -self.run.steps.h));
             let start = start.leaving(&self.system, self.run.steps.h, &v);
             start.energy + self.system.extended_residual(&start, self.run.steps.h, &v).increment.energy
-        })
+        });
+        energy.filter(|energy| energy.is_finite())
     }
 }
 

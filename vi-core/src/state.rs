@@ -48,10 +48,15 @@ impl<const N: usize, T: Scalar> State<N, T> {
     /// an interval, which the integrators report, is another number.
     ///
     /// # Errors
-    /// Those of [`State::velocity`].
+    /// Those of [`State::velocity`]; [`StepError::NonFinite`] where L is not finite, though its forces may be.
     pub fn energy<S: Stepping<N, T>>(&self, system: &S) -> Result<T, StepError> {
         let v = self.velocity(system)?;
-        Ok(system.energy(self.t, &self.q, &v))
+        let energy = system.energy(self.t, &self.q, &v);
+        if energy.is_finite() {
+            return Ok(energy);
+        }
+        let failure = StepError::NonFinite { t: self.t.to_f64(), quantity: "energy", expression: None };
+        Err(failure.explained(system, &Node::new(*self, T::zero()), T::zero(), &v))
     }
 }
 

@@ -13,7 +13,7 @@
 use crate::dispatch::Instructions;
 use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
-use crate::sweep::{Extrapolate, Fixed, Sweep, Verdict};
+use crate::sweep::{Elapsed, Extrapolate, Fixed, Sweep, Verdict};
 use nalgebra::SVector;
 use vi_core::support::step_alone;
 use vi_core::{Batch, FixedStep, Node, State, StepError};
@@ -112,13 +112,11 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
     /// The last node of a trajectory.
     pub(crate) fn node(&self, number: usize) -> Node<N> {
         let lane = LaneIndex::of(number);
-        self.nodes[0].get(lane, self.fixed.t.get(lane) + self.elapsed())
+        self.nodes[0].get(lane, self.elapsed().since(self.fixed.t.get(lane)))
     }
 
-    /// Time since the start.
-    #[allow(clippy::cast_precision_loss)]
-    fn elapsed(&self) -> f64 {
-        self.steps as f64 * self.fixed.h
+    fn elapsed(&self) -> Elapsed {
+        Elapsed::after(self.steps, self.fixed.h)
     }
 
     /// Takes `steps` steps, or as many as there are trajectories for.

@@ -120,11 +120,16 @@ impl<const N: usize> Nodes<N> {
         Self { q: zeros(), q_low: zeros(), p: zeros(), p_low: zeros(), remainder: zeros() }
     }
 
-    /// The node of one trajectory, at the time t. Its energy has no meaning.
+    /// The node of one trajectory, at the time t with its low part. Its energy has no meaning.
     #[inline(always)]
-    pub(crate) fn get<T: Real>(&self, lane: LaneIndex, t: f64) -> Node<N, T> {
+    pub(crate) fn get<T: Real>(&self, lane: LaneIndex, (t, t_low): (f64, f64)) -> Node<N, T> {
         let state = State { t: T::real(t), q: self.q.get(lane), p: self.p.get(lane) };
-        Node { q_low: self.q_low.get(lane), p_low: self.p_low.get(lane), ..Node::new(state, T::zero()) }
+        Node {
+            t_low: T::real(t_low),
+            q_low: self.q_low.get(lane),
+            p_low: self.p_low.get(lane),
+            ..Node::new(state, T::zero())
+        }
     }
 
     /// Sets the node of one trajectory.

@@ -18,7 +18,7 @@ use crate::lane::Lane;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
 use vi_core::linear::Matrix;
-use vi_core::{Batch, MomentumResidual, Node, Stepping};
+use vi_core::{Batch, MomentumResidual, Node, Real, Stepping};
 
 /// Roundings that a row may leave.
 const FLOOR: f64 = 4.0;
@@ -31,6 +31,31 @@ pub(crate) struct Fixed<B> {
     /// Its time at the start.
     pub(crate) t: Row,
     pub(crate) h: f64,
+}
+
+/// Time since the start, with what rounding took from it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Elapsed {
+    pub(crate) t: f64,
+    pub(crate) t_low: f64,
+}
+
+impl Elapsed {
+    /// After so many steps of length h.
+    #[allow(clippy::cast_precision_loss)]
+    pub(crate) fn after(steps: u64, h: f64) -> Self {
+        let t = steps as f64 * h;
+        Self { t, t_low: (steps as f64).mul_add(h, -t) }
+    }
+
+    /// The time of a trajectory that began at `start`, and what rounding took from it.
+    #[inline(always)]
+    pub(crate) fn since(self, start: f64) -> (f64, f64) {
+        let t = start + self.t;
+        let taken = t - start;
+        let low = (start - (t - taken)) + (self.t - taken);
+        (t, low + self.t_low)
+    }
 }
 
 /// Which trajectories a sweep refuses.
@@ -64,7 +89,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     fn step(&self, v: &SVector<Lane<FUSED>, N>) -> Step<N, FUSED> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
         let (numerators, determinant) = equation.jacobian.quotient(&(equation.residual + self.remainder));
-        let v = v - numerators * determinant.recip();
+        let v = v - numerators * Real::recip(determinant);
         let MomentumResidual { residual, magnitude, increment } = self.system.momentum_residual(&self.node, self.h, &v);
         let remainder = residual + self.remainder;
         let mut accepted = true;
@@ -106,7 +131,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
 /// from where they came, while the others stay as they are. Whether a running trajectory was refused.
 pub(crate) struct Sweep<'a, S: Batch<N>, const N: usize, const AGAIN: bool> {
     pub(crate) fixed: &'a Fixed<[S::Rows<HALF>; 2]>,
-    pub(crate) elapsed: f64,
+    pub(crate) elapsed: Elapsed,
     pub(crate) before: &'a Nodes<N>,
     pub(crate) after: &'a mut Nodes<N>,
     pub(crate) velocity: &'a mut Rows<N>,
@@ -129,7 +154,7 @@ impl<S: Batch<N>, const N: usize, const AGAIN: bool> Loop for Sweep<'_, S, N, AG
 #[inline(always)]
 fn sweep<S: Batch<N>, const N: usize, const FUSED: bool, const AGAIN: bool>(
     fixed: &Fixed<[S::Rows<HALF>; 2]>,
-    elapsed: f64,
+    elapsed: Elapsed,
     before: &Nodes<N>,
     after: &mut Nodes<N>,
     velocity: &mut Rows<N>,
@@ -152,13 +177,13 @@ fn sweep<S: Batch<N>, const N: usize, const FUSED: bool, const AGAIN: bool>(
 #[inline(always)]
 fn trajectory<S: Batch<N>, const N: usize, const FUSED: bool>(
     fixed: &Fixed<[S::Rows<HALF>; 2]>,
-    elapsed: f64,
+    elapsed: Elapsed,
     before: &Nodes<N>,
     lane: LaneIndex,
 ) -> Trajectory<N, FUSED, S::In<Lane<FUSED>>> {
     Trajectory {
         system: S::pick::<Lane<FUSED>, HALF>(&fixed.systems[lane.half], lane.index),
-        node: before.get(lane, fixed.t.get(lane) + elapsed),
+        node: before.get(lane, elapsed.since(fixed.t.get(lane))),
         h: Lane::new(fixed.h),
         remainder: before.remainder.get(lane),
     }

@@ -32,7 +32,8 @@ impl<T: Real> Dual<T> {
 
     /// f(self), with f' at self.
     fn chain(self, value: T, derivative: T) -> Self {
-        Self { value, slope: derivative * self.slope }
+        // What does not change has no slope, not even by a function whose own slope is infinite there.
+        Self { value, slope: if self.slope.is_zero() { T::zero() } else { derivative * self.slope } }
     }
 }
 

@@ -51,10 +51,10 @@ impl<const N: usize, T: Scalar> Run<N, T> {
 
     /// Whether a step can follow: what a file says may be anything.
     fn check(&self) -> Result<(), StepError> {
-        let Self { node, last, predictors, bounds, phase, .. } = self;
+        let Self { node, last, predictors, bounds, phase, switches, .. } = self;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
         node.check_finite(t)?;
-        let numbers = [last.density, last.previous];
+        let numbers = [last.density, last.previous, switches.energy_change, switches.energy_cost];
         let mut numbers = numbers.iter().chain(last.v.iter()).chain(last.change.iter());
         if !numbers.all(|number| number.is_finite()) || !predictors.is_finite() {
             return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last interval", expression: None });

@@ -128,7 +128,15 @@ pub(super) struct Phase<T> {
 impl<T: Scalar> Phase<T> {
     pub(super) fn check(&self) -> Result<(), StepError> {
         super::starts::check_step("the fixed step h", self.h)?;
-        super::starts::check_step("the last energy-preserving step h", self.law_h)
+        super::starts::check_step("the last energy-preserving step h", self.law_h)?;
+        let numbers = [self.law_density, self.density_next, self.gap];
+        match numbers.iter().find(|number| !number.is_finite()) {
+            Some(number) => {
+                let (input, allowed) = ("a number of the fixed steps under way", "finite");
+                Err(StepError::InvalidInput { input, allowed, value: number.to_f64() })
+            }
+            None => Ok(()),
+        }
     }
 
     /// Discrete energy of the node that the last fixed step reached.
@@ -259,6 +267,10 @@ where
         let residual = momentum::residual(system, &start, h, &v);
         // The energy row e = c + v·r is what the energy carried lacks of the discrete energy of this interval.
         let gap = equations.energy_residual + v.dot(&equations.momentum.residual);
+        // Forces may be finite where L is not: there is no energy to go on with.
+        if !gap.is_finite() {
+            return Err(StepError::NonFinite { t, quantity: "energy", expression: None });
+        }
         let root = super::Root { v, h, density, iterations, residual };
         let step = self.take(start, root, Method::FixedStep)?;
         let phase = Phase { gap, density_next: step.density_next, ..phase };

@@ -94,6 +94,13 @@ impl<const N: usize, T: Scalar, J: Matrix<N, T>> Trial<N, T, J> {
         linear::solve(&self.equation.jacobian, residual)
     }
 
+    /// Why there is none.
+    #[cold]
+    fn without_step(&self) -> Failure {
+        let is_finite = self.equation.jacobian.dense().iter().all(|entry| entry.is_finite());
+        if is_finite { Failure::Singular } else { Failure::NonFinite }
+    }
+
     /// The same with pivoting.
     #[cold]
     fn pivoted(&self, residual: &SVector<T, N>) -> Option<SVector<T, N>> {
@@ -138,7 +145,7 @@ pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
         if !residual.is_finite() {
             return Err(Failure::NonFinite);
         }
-        let mut step = last.step(&last.equation.residual).ok_or(Failure::Singular)?;
+        let mut step = last.step(&last.equation.residual).ok_or_else(|| last.without_step())?;
         if residual <= 1.0 {
             return Ok(Solution { v, iterations });
         }

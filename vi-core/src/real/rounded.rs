@@ -57,10 +57,14 @@ impl Rounded {
     }
 }
 
-/// `a b`, and 0 where an error is zero: an infinite slope does not matter then.
+/// `a b`, and 0 where one of them is: an infinite slope does not matter where there is no error, nor does any error of a factor
+/// beside zero.
 fn product(a: f64, b: f64) -> f64 {
-    if b == 0.0 { 0.0 } else { a * b }
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
+
+/// Half an ulp of 1.
+const UNIT: f64 = 0.5 * f64::EPSILON;
 
 impl Add for Rounded {
     type Output = Self;
@@ -138,9 +142,11 @@ impl Real for Rounded {
     fn recip(self) -> Self {
         Self::exact(1.0) / self
     }
+    /// Its slope is infinite at zero, how far it changes is not: `√(x + e) − √x = e/(√(x + e) + √x)`.
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
-        self.function(root, 0.5 / root)
+        let farthest = (self.value + UNIT * self.error).sqrt();
+        Self::rounding(root, product((root + farthest).recip(), self.error), 2.0)
     }
     fn exp(self) -> Self {
         let value = self.value.exp();
@@ -194,12 +200,15 @@ impl Real for Rounded {
         Self::exact(Real::sign(self.value))
     }
     fn hypot(self, other: Self) -> Self {
-        let value = self.value.hypot(other.value);
-        let carried = product(self.value.abs(), self.error) + product(other.value.abs(), other.error);
-        Self::rounding(value, product(value.recip(), carried), 2.0)
+        Self::rounding(self.value.hypot(other.value), self.error + other.error, 2.0)
     }
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.powf(exponent.value);
+        if self.value == 0.0 {
+            // There is no slope, but a farthest value.
+            let farthest = (UNIT * self.error).powf(exponent.value);
+            return Self::rounding(value, if self.error == 0.0 { 0.0 } else { farthest / UNIT }, 2.0);
+        }
         let by_base = product((exponent.value / self.value * value).abs(), self.error);
         let by_exponent = product((self.value.ln() * value).abs(), exponent.error);
         Self::rounding(value, by_base + by_exponent, 2.0)

@@ -63,7 +63,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             (Function::Sign, Some((_, term))) => (Rational::one(), term),
             _ => (Rational::one(), argument),
         };
-        let value = self.exact_value(function, argument);
+        let value = self.exact_value(function, argument).or_else(|| self.value_at_quarter_turns(function, argument));
         let value = value.unwrap_or_else(|| self.intern(Node::Call(function, vec![argument])));
         self.scale(value, &(sign * factor))
     }
@@ -84,6 +84,32 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             {
                 Some(Expr::ZERO)
             }
+            _ => None,
+        }
+    }
+
+    /// The sine, cosine or tangent of a whole number of quarter turns.
+    fn value_at_quarter_turns(&mut self, function: Function, argument: Expr) -> Option<Expr> {
+        let half_turns = match self.node(argument) {
+            Node::Pi => Rational::one(),
+            Node::Sum(sum) => {
+                let (factor, _) = sum.as_multiple().filter(|(_, term)| matches!(self.node(*term), Node::Pi))?;
+                factor.clone()
+            }
+            _ => return None,
+        };
+        let quarters = &half_turns + &half_turns;
+        if !quarters.is_integer() {
+            return None;
+        }
+        let four = Rational::from_integer(4.into());
+        let quarters = &quarters - (&quarters / &four).floor() * &four;
+        let at = |k: i32| quarters == Rational::from_integer(k.into());
+        let signed = |one: i32, minus_one: i32| i32::from(at(one)) - i32::from(at(minus_one));
+        match function {
+            Function::Sin => Some(self.number(Rational::from_integer(signed(1, 3).into()))),
+            Function::Cos => Some(self.number(Rational::from_integer(signed(0, 2).into()))),
+            Function::Tan => Some(if at(0) || at(2) { Expr::ZERO } else { Expr::UNDEFINED }),
             _ => None,
         }
     }

@@ -127,6 +127,9 @@ fn functions() {
         "exp(0) => 1
          ln(1) => 0
          sin(0) + tan(0) + asin(0) + atan(0) + sinh(0) + tanh(0) => 0
+         sin(pi) + sin(3*pi/2) + sin(x)*tan(2*pi) - sin(-5*pi/2) => 0
+         cos(pi)*x + cos(pi/2) - cos(4*pi) => -x - 1
+         sin(pi/3) - tan(pi/4) => sin(pi/3) - tan(pi/4)
          cos(0) + cosh(0) => 2
          acos(1) => 0
          sign(0) => 0
