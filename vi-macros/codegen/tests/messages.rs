@@ -336,6 +336,10 @@ fn names_and_attributes_of_a_struct() {
     // Reserved words of one edition or another.
     assert!(said(&format!("struct gen {{ {REST} }}"))[0].1.starts_with("the name `gen` is reserved"));
     assert!(said(&format!("struct r#match {{ {REST} }}"))[0].1.starts_with("the name `r#match` is reserved"));
+    for word in ["type", "async", "dyn", "_"] {
+        let text = format!("param «{word}» = 1.0; coord x; L = dot(x)^2; discretize midpoint;");
+        case(&text, &format!("the name `{word}` is reserved\nhelp: choose another name"));
+    }
     case("coord «gen»; L = dot(gen)^2; discretize midpoint;", "the name `gen` is reserved\nhelp: choose another name");
     case(&format!("param «r#gen» = 1; {REST}"), "the name `r#gen` is reserved");
 

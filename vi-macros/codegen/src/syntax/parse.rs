@@ -358,10 +358,11 @@ fn coordinate(input: ParseStream) -> Result<Coordinate> {
 
 fn name(input: ParseStream) -> Result<Ident> {
     let span = input.span();
-    let name = input.parse::<Ident>().map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
+    let name = input.call(Ident::parse_any).map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
     let text = name.to_string();
-    // Reserved since the edition of 2024; the tokens do not say of which edition they are.
-    if text.starts_with("r#") || text == "gen" {
+    let is_keyword = syn::parse_str::<Ident>(&text).is_err();
+    // `gen` is reserved since the edition of 2024; the tokens do not say of which edition they are.
+    if is_keyword || text.starts_with("r#") || text == "gen" {
         return Err(error(span, &Message::Reserved { name: text }));
     }
     Ok(name)
