@@ -42,7 +42,7 @@ fn what_is_below_an_ulp_is_not_lost() {
     for _ in 1..1000 {
         run.step().expect("a step");
     }
-    assert_eq!(run.state().q[0], q);
+    assert_eq!(run.state().q[0].to_bits(), q.to_bits());
     // A thousand products were rounded, and as many sums of them.
     let low = run.node().q_low[0];
     assert!((low - 10.0_f64).abs() < 1e-11, "{low}");
