@@ -50,9 +50,9 @@ pub enum StepError {
     },
     /// Newton's iteration ended above the rounding floor.
     NotConverged {
-        /// Time of the last good node.
+        /// Time at which the step begins; of a composition, its substep.
         t: f64,
-        /// Length of the trial step.
+        /// Length of the trial step; of a composition, of its substep.
         h: f64,
         /// Iterations spent.
         iterations: u32,
@@ -168,7 +168,7 @@ impl fmt::Display for Reason<'_> {
             StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
                 write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
             }
-            StepError::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value}"),
+            StepError::InvalidInput { input, allowed, value } => write!(f, "{input} must be {allowed}, not {value:?}"),
         }
     }
 }
@@ -181,9 +181,7 @@ impl fmt::Display for StepError {
             Self::NoForwardStep { .. } | Self::DegenerateStep { .. } => {
                 f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on")
             }
-            Self::StepRatio { .. } => {
-                f.write_str("; `with_fallback(Fallback::FixedSteps)` goes on, a smaller first h comes further")
-            }
+            Self::StepRatio { .. } => f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
             Self::StepBounds { found, .. } => write!(
                 f,
                 "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"

@@ -123,7 +123,7 @@ fn an_error_ends_in_what_to_do() {
     let all = [
         (no_step, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
         (degenerate, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
-        (ratio, "; `with_fallback(Fallback::FixedSteps)` goes on, a smaller first h comes further"),
+        (ratio, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
         (
             bounds,
             "; allow 2.500e-1 by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`",

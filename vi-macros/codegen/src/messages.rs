@@ -215,7 +215,7 @@ impl Message {
                     .to_owned()
             }
             Self::Unknown { near, .. } => {
-                did_you_mean(near.as_ref(), "declare it above with `param`, `const`, `coord` or `let`")
+                did_you_mean(near.as_ref(), "declare it with `param`, `const` or `coord`, or above with `let`")
             }
             Self::UnknownFunction { near, .. } => did_you_mean(
                 near.as_ref(),
