@@ -101,6 +101,7 @@ fn constants() {
         "the value of `b` is not finite",
     );
     case("coord x; L = dot(x)^2 * sin(«asin»(2)); discretize midpoint;", "this expression has no value");
+    case("coord x; L = dot(x)^2 - x * «tan»(pi / 2); discretize midpoint;", "this expression has no value");
     case("const a = 1 / «0»; coord x; L = dot(x)^2; discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 / («x» - x); discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "this expression has no value");
