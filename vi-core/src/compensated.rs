@@ -7,8 +7,8 @@ use crate::Real;
 use nalgebra::SVector;
 
 /// `a + b` as (rounded sum, what rounding took from it).
-#[inline]
-fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
+#[inline(always)]
+pub fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let b_seen = sum - a;
     (sum, (a - (sum - b_seen)) + (b - b_seen))

@@ -274,7 +274,11 @@ where
 }
 
 /// A step must lead somewhere: a subnormal h has no quotients.
-pub(crate) fn check_step<T: Scalar>(h: T) -> Result<(), StepError> {
+///
+/// # Errors
+/// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite.
+#[doc(hidden)]
+pub fn check_step<T: Scalar>(h: T) -> Result<(), StepError> {
     let value = h.to_f64();
     if value.is_normal() {
         Ok(())

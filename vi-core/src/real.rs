@@ -4,6 +4,21 @@
 //! [`Real`] holds what a formula needs and nothing that a lane of several numbers could not answer;
 //! [`Scalar`] adds what the control flow of a stepper needs: order.
 
+/// The assigning operators of a number, by those that do not assign.
+macro_rules! assignments {
+    ($number:ty) => {
+        $crate::real::assignments! { $number: AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign * }
+    };
+    ($number:ty: $($operator:ident $function:ident $operation:tt),*) => {$(
+        impl core::ops::$operator for $number {
+            fn $function(&mut self, other: Self) {
+                *self = *self $operation other;
+            }
+        }
+    )*};
+}
+pub(crate) use assignments;
+
 mod rounded;
 pub mod sine;
 

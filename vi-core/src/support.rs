@@ -1,5 +1,8 @@
 //! What the other crates of this project need, and no one else: it may change with any version.
 
+pub use crate::compensated::two_sum;
+pub use crate::fixed_step::check_step;
+
 use crate::called::Called;
 use crate::fixed_step::Branch;
 use crate::momentum::Steps;

@@ -8,6 +8,7 @@ use crate::ended::Ended;
 use crate::group::Group;
 use crate::layout::WIDTH;
 use rayon::prelude::*;
+use vi_core::support::check_step;
 use vi_core::{Batch, State, StepError};
 
 /// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
@@ -48,10 +49,7 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
     /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, and where there are not as many systems as states.
     #[allow(clippy::needless_pass_by_value, clippy::cast_precision_loss)]
     pub fn new(systems: Vec<S>, states: Vec<State<N>>, h: f64) -> Result<Self, StepError> {
-        if !h.is_normal() {
-            let (input, allowed) = ("the step h", "finite, not zero and not subnormal");
-            return Err(StepError::InvalidInput { input, allowed, value: h });
-        }
+        check_step(h)?;
         if systems.len() != states.len() {
             let value = systems.len() as f64;
             let (input, allowed) = ("the number of systems", "that of the states");

@@ -18,7 +18,8 @@ use crate::lane::Lane;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
 use vi_core::linear::Matrix;
-use vi_core::{Batch, MomentumResidual, Node, Real, Stepping};
+use vi_core::support::two_sum;
+use vi_core::{Batch, MomentumResidual, Node, Stepping};
 
 /// Roundings that a row may leave.
 const FLOOR: f64 = 4.0;
@@ -51,9 +52,7 @@ impl Elapsed {
     /// The time of a trajectory that began at `start`, and what rounding took from it.
     #[inline(always)]
     pub(crate) fn since(self, start: f64) -> (f64, f64) {
-        let t = start + self.t;
-        let taken = t - start;
-        let low = (start - (t - taken)) + (self.t - taken);
+        let (t, low) = two_sum(start, self.t);
         (t, low + self.t_low)
     }
 }
@@ -88,8 +87,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     #[inline(always)]
     fn step(&self, v: &SVector<Lane<FUSED>, N>) -> Step<N, FUSED> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
-        let (numerators, determinant) = equation.jacobian.quotient(&(equation.residual + self.remainder));
-        let v = v - numerators * Real::recip(determinant);
+        let v = v - equation.jacobian.solve_unchecked(&(equation.residual + self.remainder));
         let MomentumResidual { residual, magnitude, increment } = self.system.momentum_residual(&self.node, self.h, &v);
         let remainder = residual + self.remainder;
         let mut accepted = true;

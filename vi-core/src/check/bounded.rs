@@ -13,7 +13,8 @@
 //! (running error analysis).
 
 use crate::Real;
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use crate::real::assignments;
+use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
 
 const EPSILON: f64 = f64::EPSILON;
@@ -127,23 +128,7 @@ impl Neg for Bounded {
     }
 }
 
-impl AddAssign for Bounded {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl SubAssign for Bounded {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
-impl MulAssign for Bounded {
-    fn mul_assign(&mut self, other: Self) {
-        *self = *self * other;
-    }
-}
+assignments!(Bounded);
 
 impl num_traits::Zero for Bounded {
     fn zero() -> Self {

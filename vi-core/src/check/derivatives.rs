@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Left: what the system says. Right: L, and the residuals r and c of a step, differentiated operation by operation.
-//! Rounding: both sides are evaluated in numbers that carry the bound of theirs (`rounded`), and may differ by the sum of
+//! Rounding: both sides are evaluated in numbers that carry the bound of theirs (`bounded`), and may differ by the sum of
 //! the two bounds. h is that of the samples, a part of the system's own time scale: the place's h does not enter.
 
 use super::bounded::{Bounded, exact, vector_of};

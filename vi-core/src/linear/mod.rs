@@ -42,6 +42,13 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn quotient<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> (SMatrix<T, N, M>, T) {
         (self.solve(rhs), T::one())
     }
+    /// The X with `A X = rhs` for a caller who measures what it leaves: where A is singular, or its determinant out of range, X is
+    /// anything.
+    #[inline(always)]
+    fn solve_unchecked<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
+        let (numerators, determinant) = self.quotient(rhs);
+        numerators * determinant.recip()
+    }
     /// A, ready to solve with many times.
     fn inverse(&self) -> Self::Inverse;
     /// The x with `A x = rhs`, from the inverse of A.

@@ -60,10 +60,7 @@ impl<J: Matrix<N, T>, const N: usize, T: Scalar> Way<J, N, T> {
     fn correction(&self, jacobian: &J, residual: &SVector<T, N>) -> SVector<T, N> {
         match self {
             Self::ClosedForm(_, inverse) | Self::Inverse(inverse) => J::apply(inverse, residual),
-            Self::Newton => {
-                let (numerators, determinant) = jacobian.quotient(residual);
-                numerators * determinant.recip()
-            }
+            Self::Newton => jacobian.solve_unchecked(residual),
         }
     }
 }

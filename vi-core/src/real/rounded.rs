@@ -14,7 +14,7 @@
 //! Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3.
 
 use super::Real;
-use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number with a bound of its rounding, by running error analysis (Higham, Accuracy and Stability of Numerical Algorithms,
 /// section 3.3).
@@ -107,15 +107,7 @@ impl Neg for Rounded {
     }
 }
 
-macro_rules! assignments {
-    ($($operator:ident $function:ident $operation:ident),*) => {$(
-        impl $operator for Rounded {
-            fn $function(&mut self, other: Self) { *self = (*self).$operation(other); }
-        }
-    )*};
-}
-
-assignments!(AddAssign add_assign add, SubAssign sub_assign sub, MulAssign mul_assign mul);
+assignments!(Rounded);
 
 impl num_traits::Zero for Rounded {
     fn zero() -> Self {

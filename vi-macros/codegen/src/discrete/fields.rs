@@ -209,9 +209,7 @@ impl Arguments {
     /// Those of each point.
     pub(super) fn of(pool: &Pool<Symbol>, points: &[Point]) -> Vec<Self> {
         let of_point = |point: &Point| {
-            let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
-            let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
-            let arguments = [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities);
+            let arguments = point.arguments();
             Self(arguments.map(|(variable, argument)| (variable, argument, pool.symbols(argument))).collect())
         };
         points.iter().map(of_point).collect()

@@ -92,3 +92,12 @@ pub struct Point {
     /// Velocities.
     pub velocities: Vec<Expr>,
 }
+
+impl Point {
+    /// The arguments of L and f there: the time, the coordinates, the velocities.
+    pub(crate) fn arguments(&self) -> impl Iterator<Item = (Variable, Expr)> + '_ {
+        let coordinates = self.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
+        let velocities = self.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
+        [(Variable::Time, self.time)].into_iter().chain(coordinates).chain(velocities)
+    }
+}

@@ -6,7 +6,7 @@ use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
 use crate::discrete::Point;
-use crate::symbol::{Symbol, Variable};
+use crate::symbol::Symbol;
 
 /// Points, slots, equations of a step.
 pub(super) fn sections(derived: &Derived) -> Vec<Section> {
@@ -24,10 +24,8 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
 
 /// The arguments of L and f at a point of the rule.
 fn at(derived: &Derived, index: usize, point: &Point) -> Vec<Line> {
-    let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
-    let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
-    let arguments = [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities);
-    arguments
+    point
+        .arguments()
         .map(|(variable, argument)| {
             let symbol = Symbol::AtPoint(index, variable);
             let text = derived.system.spell(&derived.model, &symbol);

@@ -62,10 +62,7 @@ impl<'a> Assembly<'a> {
     fn new(pool: &'a mut Pool<Symbol>, system: &'a DiscreteSystem, points: &[Point]) -> Self {
         let mut arguments = BTreeMap::new();
         for (index, point) in points.iter().enumerate() {
-            let coordinates = point.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
-            let velocities = point.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
-            for (variable, argument) in [(Variable::Time, point.time)].into_iter().chain(coordinates).chain(velocities)
-            {
+            for (variable, argument) in point.arguments() {
                 arguments.insert((index, variable), step_velocity(pool, argument).unwrap_or(argument));
             }
         }
