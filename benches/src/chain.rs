@@ -4,7 +4,7 @@
 //! the wall. With the stretches `r_i = x_i − x_{i−1}`, tensions `T = k r + α r² + β r³` and stiffnesses `K = T'`, mass i is
 //! pulled by `T_{i+1} − T_i`.
 
-use vi_systems::systems::FpuChain;
+use vi_systems::FpuChain;
 
 /// The chain of 64 masses, as its neighbour of 16 is declared in `vi-systems`.
 mod long {

@@ -14,7 +14,7 @@ use core::array::from_fn;
 use std::hint::black_box;
 use vi_core::{Batch, EnergyPreserving, FixedStep, SVector, State, Stepping};
 use vi_ensemble::Ensemble;
-use vi_systems::systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
+use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
 
 const BY_HAND: &str = "by hand, sums compensated";
 const BY_HAND_PLAIN: &str = "by hand, plain sums";

@@ -1,7 +1,7 @@
 //! Systems as their Lagrangians alone: what the rivals that differentiate at run time are given.
 
 use num_dual::DualNumCopy;
-use vi_systems::systems::{DoublePendulum, DoubleWell, HarmonicOscillator, Kepler};
+use vi_systems::{DoublePendulum, DoubleWell, HarmonicOscillator, Kepler};
 
 /// A system of N coordinates.
 pub trait Problem<const N: usize>: Clone {

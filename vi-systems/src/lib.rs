@@ -1,10 +1,69 @@
-//! Ready mechanical systems, and the command `vi-lab` that runs and charts them.
+//! Ready mechanical systems, each a few lines of the language of `lagrangian!`.
 //!
-//! Each system is a few lines of the language of `lagrangian!`; its documentation holds its physics and its source.
+//! Every system is a struct whose public fields are its parameters; its documentation holds its physics and where it comes
+//! from, and `Default` the parameters that the source uses. Each file declares one system. [`SOURCES`] holds the text of these
+//! files, so that tools can show how a system is declared.
+//!
+//! ```
+//! use vi_core::{FixedStep, State};
+//! use vi_systems::Kepler;
+//!
+//! let planet = Kepler::default();
+//! let start = State::at(&planet, 0.0, [0.4, 0.0], [0.0, 2.0]);
+//! let energy = start.energy(&planet)?;
+//! for state in FixedStep::new(&planet, start, 0.005)?.take(1000) {
+//!     assert!((state?.energy(&planet)? - energy).abs() < 1e-3);
+//! }
+//! # Ok::<(), vi_core::StepError>(())
+//! ```
 
-pub mod systems;
+mod charged_particle;
+mod damped_oscillator;
+mod double_pendulum;
+mod double_well;
+mod double_well_duffing;
+mod fpu_chain;
+mod hard_duffing;
+mod harmonic_oscillator;
+mod henon_heiles;
+mod kepler;
+mod n_pendulum;
+mod parametric_pendulum;
+mod pendulum;
+mod rotating_hoop;
+mod spherical_pendulum;
 
-pub use systems::{
-    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
-    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
-};
+pub use charged_particle::ChargedParticle;
+pub use damped_oscillator::DampedOscillator;
+pub use double_pendulum::DoublePendulum;
+pub use double_well::DoubleWell;
+pub use double_well_duffing::DoubleWellDuffing;
+pub use fpu_chain::FpuChain;
+pub use hard_duffing::HardDuffing;
+pub use harmonic_oscillator::HarmonicOscillator;
+pub use henon_heiles::HenonHeiles;
+pub use kepler::Kepler;
+pub use n_pendulum::NPendulum;
+pub use parametric_pendulum::ParametricPendulum;
+pub use pendulum::Pendulum;
+pub use rotating_hoop::RotatingHoop;
+pub use spherical_pendulum::SphericalPendulum;
+
+/// The declaration of every system, as the text of the file that holds it.
+pub const SOURCES: [&str; 15] = [
+    include_str!("charged_particle.rs"),
+    include_str!("damped_oscillator.rs"),
+    include_str!("double_pendulum.rs"),
+    include_str!("double_well.rs"),
+    include_str!("double_well_duffing.rs"),
+    include_str!("fpu_chain.rs"),
+    include_str!("hard_duffing.rs"),
+    include_str!("harmonic_oscillator.rs"),
+    include_str!("henon_heiles.rs"),
+    include_str!("kepler.rs"),
+    include_str!("n_pendulum.rs"),
+    include_str!("parametric_pendulum.rs"),
+    include_str!("pendulum.rs"),
+    include_str!("rotating_hoop.rs"),
+    include_str!("spherical_pendulum.rs"),
+];

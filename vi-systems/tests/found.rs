@@ -14,7 +14,7 @@ use vi_core::{Node, SMatrix, SVector, State, Stepping};
 
 /// The findings of a ready system.
 fn findings(file: &str) -> Findings {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/systems").join(file).with_extension("rs");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(file).with_extension("rs");
     let text = fs::read_to_string(path).expect("the declaration");
     let tokens = source::declarations(&text).expect("Rust").remove(0);
     derive(parse::system(tokens).expect("a system")).map(|derived| derived.findings).expect("a right system")

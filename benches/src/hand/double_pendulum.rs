@@ -15,7 +15,7 @@ use super::{
 };
 use crate::run::Stepper;
 use core::array::from_fn;
-use vi_systems::systems::DoublePendulum;
+use vi_systems::DoublePendulum;
 
 #[derive(Clone, Copy, Debug)]
 struct Constants {

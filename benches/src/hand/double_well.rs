@@ -11,7 +11,7 @@
 
 use super::{CORRECTIONS, History, Sum, is_energy_kept, is_solved, mul_add, not_converged};
 use crate::run::Stepper;
-use vi_systems::systems::DoubleWell;
+use vi_systems::DoubleWell;
 
 /// F and F' at x.
 #[inline]

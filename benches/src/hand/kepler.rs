@@ -9,7 +9,7 @@
 use super::{CORRECTIONS, Guess, History, Sum, bordered, is_energy_kept, is_solved, mul_add, not_converged};
 use crate::run::Stepper;
 use core::array::from_fn;
-use vi_systems::systems::Kepler;
+use vi_systems::Kepler;
 
 /// The force, its derivative (xx, xy, yy) and the potential at a place.
 struct Field {

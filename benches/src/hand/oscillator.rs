@@ -9,7 +9,7 @@
 
 use super::{CORRECTIONS, History, Sum, is_solved, mul_add, not_converged};
 use crate::run::Stepper;
-use vi_systems::systems::HarmonicOscillator;
+use vi_systems::HarmonicOscillator;
 
 /// The momentum equation of an oscillator over steps of one length.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,241 @@
+//! The systems that the command knows by name, each with a place to start from.
+//!
+//! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
+
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::simulation::{self, Plan, Simulation};
+use crate::table::Table;
+use crate::work_precision::{self, Findings, Study};
+use vi_core::{Parameters, SVector, StepError, Stepping};
+use vi_systems::{
+    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
+    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
+};
+
+/// A system with its parameters, its number of degrees of freedom erased.
+pub(crate) trait System: Send + Sync {
+    /// Name of the type.
+    fn name(&self) -> &'static str;
+    /// Names of the coordinates.
+    fn coordinates(&self) -> Vec<&'static str>;
+    /// Names and values of the parameters.
+    fn parameters(&self) -> Vec<(&'static str, f64)>;
+    /// Sets a parameter; false where there is none of this name.
+    fn set(&mut self, name: &str, value: f64) -> bool;
+    /// A system of the same type with the same parameters.
+    fn copy(&self) -> Box<dyn System>;
+    /// Step density D at t = 0; none where it has no value.
+    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
+    /// Starts a run.
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
+    /// Error against work of every method; an error says why there is no reference.
+    fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String>;
+}
+
+/// A system in the catalogue.
+pub(crate) struct Entry {
+    /// The system, with the default parameters.
+    pub(crate) system: Box<dyn System>,
+    /// What it is.
+    pub(crate) about: &'static str,
+    /// Default initial coordinates.
+    pub(crate) q: Vec<f64>,
+    /// Default initial velocities.
+    pub(crate) v: Vec<f64>,
+    /// Default step.
+    pub(crate) h: f64,
+}
+
+/// A system of a known type.
+struct Registered<S, const N: usize>(S);
+
+impl<S, const N: usize> System for Registered<S, N>
+where
+    S: Stepping<N> + Parameters + Clone + Send + Sync + 'static,
+{
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn coordinates(&self) -> Vec<&'static str> {
+        S::COORDINATES.to_vec()
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        let mut system = self.0;
+        S::PARAMETERS.iter().filter_map(|name| Some((*name, *system.parameter_mut(name)?))).collect()
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> bool {
+        self.0.parameter_mut(name).map(|parameter| *parameter = value).is_some()
+    }
+
+    fn copy(&self) -> Box<dyn System> {
+        Box::new(Self(self.0))
+    }
+
+    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
+        let sized = q.len() == N && v.len() == N;
+        let density = || self.0.step_density(0.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v)).ok();
+        sized.then(density).flatten().filter(|density| density.is_finite())
+    }
+
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
+        simulation::begin(self.0, plan)
+    }
+
+    fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String> {
+        work_precision::findings(&self.0, study, progress)
+    }
+}
+
+fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
+where
+    S: Stepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+{
+    Entry { system: Box::new(Registered::<S, N>(S::default())), about, q: q.to_vec(), v: v.to_vec(), h }
+}
+
+/// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
+const LOWEST_MODE: [f64; 16] =
+    [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996, 0.996, 0.962, 0.895, 0.798, 0.674, 0.526, 0.361, 0.184];
+
+/// All systems, in the order in which they are listed.
+pub(crate) fn entries() -> Vec<Entry> {
+    let rest = [0.0];
+    let inclined = [0.8, 0.0];
+    vec![
+        entry::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
+        entry::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
+        entry::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
+        entry::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        entry::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),
+        entry::<DoubleWellDuffing, 1>("driven double well: chaos", [0.8], rest, 0.01),
+        entry::<ParametricPendulum, 1>("pendulum with a modulated gravity", [0.5], rest, 0.01),
+        entry::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
+        entry::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
+        entry::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
+        entry::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
+        entry::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
+        entry::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
+        entry::<NPendulum, 4>("four pendula, each hanging from the one above", [0.6, 0.4, 0.2, 0.1], [0.0; 4], 0.005),
+        entry::<FpuChain, 16>("sixteen masses on nonlinear springs, in their lowest mode", LOWEST_MODE, [0.0; 16], 0.1),
+    ]
+}
+
+/// The entry of this name.
+pub(crate) fn find(name: &str) -> Result<Entry, Failure> {
+    let wanted = plain(name);
+    let mut entries = entries();
+    if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
+        return Ok(entries.swap_remove(index));
+    }
+    let near = entries
+        .iter()
+        .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|(one, _), (other, _)| one.total_cmp(other));
+    let hint = match near {
+        Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
+        None if name.contains(['/', '\\', '.']) => "the name of a scene file ends in .toml".to_owned(),
+        None => "`vi-lab list` names them all".to_owned(),
+    };
+    Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
+}
+
+/// The catalogue as a table.
+pub(crate) fn table() -> Table {
+    let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
+    for Entry { system, about, q, v, h } in entries() {
+        let parameters: Vec<String> =
+            system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
+        let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
+        table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
+    }
+    table
+}
+
+fn list(values: &[f64]) -> String {
+    shortened(values.iter().map(f64::to_string).collect())
+}
+
+/// A list that fits in a table: of more than four entries the first two and the last.
+fn shortened(mut entries: Vec<String>) -> String {
+    if entries.len() > 4 {
+        entries.splice(2..entries.len() - 1, ["…".to_owned()]);
+    }
+    entries.join(", ")
+}
+
+/// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.
+pub(crate) fn kebab(name: &str) -> String {
+    let mut kebab = String::new();
+    for (index, letter) in name.chars().enumerate() {
+        if letter.is_uppercase() && index > 0 {
+            kebab.push('-');
+        }
+        kebab.extend(letter.to_lowercase());
+    }
+    kebab
+}
+
+/// A name without case, hyphens and underscores.
+fn plain(name: &str) -> String {
+    name.chars().filter(|letter| !matches!(letter, '-' | '_' | ' ')).flat_map(char::to_lowercase).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_in_any_spelling() {
+        for name in ["double-well", "DoubleWell", "double_well", "DOUBLEWELL"] {
+            assert!(find(name).is_ok_and(|entry| entry.system.name() == "DoubleWell"), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_near_name_is_offered() {
+        let message = |name: &str| find(name).err().map(|failure| failure.to_string());
+        assert_eq!(
+            message("double-wel").as_deref(),
+            Some("there is no system `double-wel`; did you mean `double-well`?")
+        );
+        assert_eq!(
+            message("folder/xyz.yml").as_deref(),
+            Some("there is no system `folder/xyz.yml`; the name of a scene file ends in .toml")
+        );
+        assert_eq!(message("xyz").as_deref(), Some("there is no system `xyz`; `vi-lab list` names them all"));
+    }
+
+    #[test]
+    fn every_entry_starts_and_keeps_its_parameters() {
+        for mut entry in entries() {
+            let (size, name) = (entry.system.coordinates().len(), entry.system.name());
+            assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
+            for method in [simulation::Method::Fixed, simulation::Method::Energy] {
+                let plan = Plan {
+                    method,
+                    start: simulation::Start::Midpoint,
+                    h: entry.h,
+                    t: 0.0,
+                    q: entry.q.clone(),
+                    v: entry.v.clone(),
+                };
+                let mut run = entry.system.begin(&plan).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let first = run.t();
+                for _ in 0..10 {
+                    run.advance().unwrap_or_else(|error| panic!("{name}, {method:?}: {error}"));
+                }
+                assert!(run.t() > first, "{name}");
+            }
+            for (parameter, value) in entry.system.parameters() {
+                assert!(entry.system.set(parameter, value + 1.0), "{name}: {parameter}");
+            }
+            assert!(!entry.system.set("no such parameter", 1.0));
+        }
+    }
+}

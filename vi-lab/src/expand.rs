@@ -1,0 +1,76 @@
+//! `vi-lab expand`: what the systems in a file become.
+//!
+//! In: a file of Rust. Out: the product of one stage for each `lagrangian!` in it. Mistakes in a system are shown at their
+//! places, and the systems after it are expanded all the same.
+
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use proc_macro2::TokenStream;
+use std::fs;
+use std::path::{Path, PathBuf};
+use vi_codegen::inspect::{self, report, source};
+
+/// The command line of `vi-lab expand`.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// A file of Rust that declares systems with `lagrangian!`
+    #[arg(value_name = "FILE.rs")]
+    file: PathBuf,
+    /// How far to go
+    #[arg(long, value_enum, default_value_t = Stage::Rust)]
+    stage: Stage,
+}
+
+/// The stages of the compiler.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Stage {
+    /// The clauses as parsed
+    Syntax,
+    /// L and f with all names resolved
+    Model,
+    /// `L_d`, its slot derivatives, the equations of a step
+    Discrete,
+    /// The functions as operations
+    Program,
+    /// The items that the macro emits
+    Rust,
+}
+
+impl From<Stage> for inspect::Stage {
+    fn from(stage: Stage) -> Self {
+        match stage {
+            Stage::Syntax => Self::Syntax,
+            Stage::Model => Self::Model,
+            Stage::Discrete => Self::Discrete,
+            Stage::Program => Self::Program,
+            Stage::Rust => Self::Rust,
+        }
+    }
+}
+
+/// Expands every system of a file.
+pub(crate) fn expand(arguments: &Arguments) -> Result<String, Failure> {
+    each(&arguments.file, |tokens| inspect::stage(tokens, arguments.stage.into()))
+}
+
+/// Makes a text of every system in a file.
+pub(super) fn each(file: &Path, mut show: impl FnMut(TokenStream) -> syn::Result<String>) -> Result<String, Failure> {
+    let name = file.display().to_string();
+    let text = fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    let declarations = source::declarations(&text).map_err(|error| {
+        let place = error.span().start();
+        Failure::Input(format!("{name}:{}:{}: {error}", place.line, place.column + 1))
+    })?;
+    if declarations.is_empty() {
+        return Err(Failure::Input(format!("{name} declares no system with `lagrangian!`")));
+    }
+    let (mut shown, mut wrong) = (Vec::new(), Vec::new());
+    for tokens in declarations {
+        match show(tokens) {
+            Ok(text) => shown.push(text.trim_end().to_owned()),
+            Err(error) => wrong.push(report::report(&name, &text, &error)),
+        }
+    }
+    let shown = shown.join("\n\n");
+    if wrong.is_empty() { Ok(shown) } else { Err(Failure::System { shown, wrong: wrong.join("\n") }) }
+}

@@ -1,0 +1,122 @@
+//! The command `vi-lab`: runs, and the paper's study as a page.
+//!
+//! In: the command line. Out: files, text on standard output, and an exit status: 0, 1 where a step or a file failed,
+//! 2 where the input is wrong, 130 or 143 where a signal ended a run, 141 where nobody reads standard output any more.
+//! Progress and errors go to standard error.
+//!
+//! | module | what it makes |
+//! |---|---|
+//! | [`catalogue`] | the systems by name, each with a place to start from |
+//! | [`simulation`] | one run of any system, as rows |
+//! | [`run`] | `vi-lab run`: rows as CSV or NPY |
+//! | [`paper`] | `vi-lab paper`: figures, tables and the page |
+//! | [`stability`] | `vi-lab stability`: where methods fail, as maps |
+//! | [`work_precision`] | `vi-lab work-precision`: error against time, for every method |
+//! | [`expand`], [`explain`] | what a system becomes, stage by stage; its mathematics |
+//! | [`chart`], [`table`], [`report`] | figures, tables, and the page that holds them |
+//! | [`input`], [`numbers`] | numbers as users write them, and as pages and messages do |
+//! | [`progress`], [`machine`], [`failure`] | bars, versions, errors |
+
+mod catalogue;
+mod chart;
+mod expand;
+mod explain;
+mod failure;
+mod input;
+mod machine;
+mod numbers;
+mod paper;
+mod progress;
+mod report;
+mod run;
+mod simulation;
+mod stability;
+mod start;
+mod table;
+mod work_precision;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Variational integrators at work: simulate a system, or reproduce the paper.
+#[derive(Debug, Parser)]
+#[command(name = "vi-lab", version, max_term_width = 100)]
+struct Command {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Make every figure and table of the paper's numerical study, with this project's numbers beside the paper's
+    Paper {
+        /// Folder for the page, its figures (SVG) and their data (CSV)
+        #[arg(long, value_name = "DIR", default_value = "paper")]
+        out: PathBuf,
+        /// Length of the long runs
+        #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = paper::steps)]
+        steps: u32,
+    },
+    /// Simulate one system, and write its states
+    Run(run::Arguments),
+    /// Chart where methods fail: the whole page, or the map of one system
+    Stability(stability::Arguments),
+    /// Chart error against time, evaluations and step for every method on one system
+    WorkPrecision(work_precision::Arguments),
+    /// Show what the systems in a file become, stage by stage
+    Expand(expand::Arguments),
+    /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
+    Explain(explain::Arguments),
+    /// List the systems, their parameters and where they start
+    List,
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let outcome = match Command::try_parse() {
+        Ok(Command { action }) => act(action),
+        Err(error) if !error.use_stderr() => {
+            // Help or the version was asked for.
+            error.print().map_err(Failure::standard_output)
+        }
+        Err(error) => Err(Failure::usage(&error)),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure @ Failure::Unread) => ExitCode::from(failure.exit_status()),
+        Err(Failure::System { shown, wrong }) => {
+            // What is right is shown first; where nobody reads it, the mistakes are still told.
+            let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
+            let _ = write!(io::stderr(), "{wrong}");
+            ExitCode::FAILURE
+        }
+        Err(failure) => {
+            // Standard error may be closed; the exit status says the same.
+            let _ = writeln!(io::stderr(), "error: {failure}");
+            ExitCode::from(failure.exit_status())
+        }
+    }
+}
+
+fn act(action: Action) -> Result<(), Failure> {
+    match action {
+        Action::Paper { out, steps } => {
+            let summary = paper::write(&out, paper::Study { steps })?;
+            print(&summary)
+        }
+        Action::Run(arguments) => run::run(&arguments),
+        Action::Stability(arguments) => print(&stability::write(&arguments)?),
+        Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments)?),
+        Action::Expand(arguments) => print(&expand::expand(&arguments)?),
+        Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
+        Action::List => print(&catalogue::table().text()),
+    }
+}
+
+/// Writes a text and a line end to standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    writeln!(io::stdout(), "{text}").map_err(Failure::standard_output)
+}

@@ -1,0 +1,136 @@
+//! Rows as CSV: comment lines that say what made the file, the names of the columns, one line per node.
+//!
+//! Numbers are the shortest that read back to the same bits; an entry that has no value is empty. AFTER A BLOCK IS
+//! WRITTEN the file consists of whole lines, whatever ends the run.
+
+use super::{BLOCK, ENERGIES, Request, Sink};
+use crate::failure::Failure;
+use crate::machine::{VERSION, command_line};
+use crate::numbers::short;
+use crate::simulation::Row;
+use crate::table::csv_field;
+use core::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A CSV file, or standard output.
+pub(super) struct Csv {
+    target: Target,
+    /// Whole lines that are to be written.
+    block: String,
+}
+
+/// Where lines go.
+enum Target {
+    StandardOutput,
+    /// A file with the length of its whole lines.
+    File {
+        path: PathBuf,
+        file: File,
+        length: u64,
+    },
+}
+
+impl Csv {
+    /// CSV on standard output.
+    pub(super) fn standard_output(request: &Request) -> Self {
+        Self { target: Target::StandardOutput, block: head(request) }
+    }
+
+    /// A CSV file.
+    pub(super) fn create(path: &Path, request: &Request) -> Result<Self, Failure> {
+        let file = File::create(path).map_err(|error| Failure::file(path, error))?;
+        Ok(Self { target: Target::File { path: path.to_owned(), file, length: 0 }, block: head(request) })
+    }
+
+    /// Writes the block.
+    fn flush(&mut self) -> Result<(), Failure> {
+        let block = core::mem::take(&mut self.block);
+        self.target.put(block.as_bytes())?;
+        self.block = block;
+        self.block.clear();
+        Ok(())
+    }
+}
+
+impl Target {
+    fn put(&mut self, lines: &[u8]) -> Result<(), Failure> {
+        match self {
+            Self::StandardOutput => {
+                let mut output = io::stdout().lock();
+                output.write_all(lines).and_then(|()| output.flush()).map_err(Failure::standard_output)
+            }
+            Self::File { path, file, length } => {
+                if let Err(error) = file.write_all(lines) {
+                    // Half a number reads as another number. A pipe cannot be cut, and what reads it sees its end.
+                    let _ = file.set_len(*length);
+                    return Err(Failure::file(path, error));
+                }
+                *length += u64::try_from(lines.len()).unwrap_or(u64::MAX);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// What made the file, in comment lines, and the names of the columns.
+fn head(request: &Request) -> String {
+    let Request { system, plan, every, .. } = request;
+    let parameters: Vec<String> =
+        system.parameters().iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
+    let columns: Vec<String> = request.columns().iter().map(|column| csv_field(column)).collect();
+    let rows = if *every == 1 { "every node".to_owned() } else { format!("one node in {every}, and the last") };
+    format!(
+        "# vi-lab {VERSION}\n# command: {}\n# system: {}\n# parameters: {}\n# method: {}, h = {}, t = {}, q = {:?}, v = {:?}\n\
+         # rows: {rows}\n# {ENERGIES}\n{}\n",
+        command_line(),
+        system.name(),
+        parameters.join(", "),
+        plan.method_name(),
+        short(plan.h),
+        short(plan.t),
+        plan.q,
+        plan.v,
+        columns.join(","),
+    )
+}
+
+impl Sink for Csv {
+    fn write(&mut self, row: &Row) -> Result<(), Failure> {
+        line(&mut self.block, row);
+        if self.block.len() < BLOCK { Ok(()) } else { self.flush() }
+    }
+
+    fn finish(&mut self) -> Result<(), Failure> {
+        self.flush()
+    }
+}
+
+/// Adds the line of a row.
+fn line(block: &mut String, row: &Row) {
+    for (index, entry) in row.entries().enumerate() {
+        if index > 0 {
+            block.push(',');
+        }
+        if let Some(value) = entry {
+            // Writing to a string cannot fail.
+            let _ = write!(block, "{value:?}");
+        }
+    }
+    block.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_without_a_value_is_empty() {
+        let mut block = String::new();
+        let row = Row { t: 0.0, q: vec![1.0], p: vec![-2.5], energy: Some(1e-300), discrete_energy: None, h: 0.01 };
+        line(&mut block, &row);
+        line(&mut block, &Row { energy: None, discrete_energy: Some(3.0), ..row });
+        assert_eq!(block, "0.0,1.0,-2.5,1e-300,,0.01\n0.0,1.0,-2.5,,3.0,0.01\n");
+    }
+}

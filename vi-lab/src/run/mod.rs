@@ -1,0 +1,320 @@
+//! `vi-lab run`: one system simulated, its nodes written as CSV or NPY.
+//!
+//! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`, where
+//! H is the energy at the node and E the discrete energy of the interval that ends there. AFTER A RUN THAT ENDS EARLY, by
+//! a step that fails or a signal, the output holds every row up to there, and the last node whatever `--every` says.
+//!
+//! | module | part of a run |
+//! |---|---|
+//! | [`request`], [`scene`] | what is to be done: command line and scene, checked |
+//! | [`resolution`], [`extent`] | what is refused: steps that rounding swallows, outputs of gigabytes |
+//! | [`csv`], [`npy`] | where rows go |
+//! | [`interrupt`] | signals that end a run |
+
+mod csv;
+mod extent;
+mod interrupt;
+mod npy;
+mod request;
+mod resolution;
+mod scene;
+
+pub(crate) use interrupt::Signal;
+
+use crate::failure::Failure;
+use crate::input::{count, number};
+use crate::numbers::short;
+use crate::progress::Progress;
+use crate::simulation::{Method, Row, Simulation, Start};
+use clap::Args;
+use extent::Extent;
+use interrupt::Interrupt;
+use request::{Output, Request};
+use std::path::PathBuf;
+
+/// Bytes of whole rows that are written at once.
+const BLOCK: usize = 1 << 16;
+
+/// What the two columns of energies are, for the files that hold them.
+const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interval that ends there, none before the first \
+                        fixed step";
+
+/// Arguments of `vi-lab run`.
+#[derive(Clone, Debug, Default, Args)]
+#[command(after_help = "\
+Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the \
+discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
+term of order h². H and E differ by h²D/8 to leading order, D the step density. A run of fixed steps has no interval \
+before its first row: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
+length of the step that led to the node.
+
+Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial \
+state is the middle of the first interval, and that node lies half a step later. The node reached last is always written.
+
+Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
+(SIGINT, SIGTERM); 141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there \
+are whole; only a second signal ends the command at once.")]
+pub(crate) struct Arguments {
+    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml
+    #[arg(value_name = "SYSTEM|SCENE.toml")]
+    pub(crate) target: String,
+    /// Integrator [default: fixed]
+    #[arg(long)]
+    pub(crate) method: Option<Method>,
+    /// First interval of the energy-preserving integrator [default: midpoint]
+    #[arg(long)]
+    pub(crate) start: Option<Start>,
+    /// Step, or first step [default: the system's]
+    #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
+    pub(crate) h: Option<f64>,
+    /// Number of steps, such as 1000 or 1e6
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
+    pub(crate) steps: Option<u64>,
+    /// Steps until this time is reached
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = number)]
+    pub(crate) until: Option<f64>,
+    /// Sets a parameter; may be given once for each
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Initial time [default: 0]
+    #[arg(long, value_name = "T0", allow_hyphen_values = true, value_parser = number)]
+    pub(crate) t: Option<f64>,
+    /// Initial coordinates, separated by commas [default: the system's]
+    #[arg(long, value_name = "Q,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
+    pub(crate) q: Option<Vec<f64>>,
+    /// Initial velocities, separated by commas [default: the system's]
+    #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
+    pub(crate) v: Option<Vec<f64>>,
+    /// Writes every Nth node, and the last [default: 1]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
+    pub(crate) every: Option<u64>,
+    /// File to write, .csv or .npy, an existing one anew; without it CSV goes to standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Allows an output of more than a gigabyte
+    #[arg(long)]
+    pub(crate) large_output: bool,
+}
+
+/// Where rows go.
+trait Sink {
+    /// Takes a row; rows are written in blocks.
+    fn write(&mut self, row: &Row) -> Result<(), Failure>;
+    /// Writes what has been taken.
+    fn finish(&mut self) -> Result<(), Failure>;
+}
+
+/// Simulates what the arguments ask for.
+///
+/// # Errors
+/// Wrong input, a failed step, a file that cannot be written, a signal.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let request = Request::of(arguments)?;
+    resolution::check_times(&request)?;
+    let extent = Extent::of(&request)?;
+    let mut simulation = request.system.begin(&request.plan).map_err(|error| Failure::start(error, &request.plan))?;
+    resolution::check_state(&request)?;
+    let mut sink = sink(&request)?;
+    let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
+    let mut course = Course { request: &request, extent, sink: sink.as_mut(), steps: 0, rows: 0, written: 0 };
+    let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
+    match outcome {
+        // What was written before is whole, and nothing more can be written.
+        Err(failure @ (Failure::File { .. } | Failure::Unread)) => Err(failure),
+        Err(failure) => Err(match sink.finish() {
+            Ok(()) => failure,
+            Err(second) => Failure::both(failure, second),
+        }),
+        Ok(()) => sink.finish(),
+    }
+}
+
+/// The sink that the request names.
+fn sink(request: &Request) -> Result<Box<dyn Sink>, Failure> {
+    Ok(match &request.output {
+        Output::Standard => Box::new(csv::Csv::standard_output(request)),
+        Output::Csv(path) => Box::new(csv::Csv::create(path, request)?),
+        Output::Npy(path) => Box::new(npy::Npy::create(path, request)?),
+    })
+}
+
+/// A run under way: what was asked for, and how far it came.
+struct Course<'a> {
+    request: &'a Request,
+    extent: Extent,
+    sink: &'a mut dyn Sink,
+    steps: u64,
+    rows: u64,
+    /// The number of steps that led to the row written last.
+    written: u64,
+}
+
+impl Course<'_> {
+    /// Steps to the end, and writes the nodes that are asked for, and the last.
+    fn follow(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
+        let Request { plan, length, every, .. } = self.request;
+        let mut progress = Progress::new(Progress::FINENESS);
+        self.write(simulation)?;
+        let outcome = loop {
+            if length.is_reached(simulation.t(), simulation.h(), self.steps) {
+                break Ok(());
+            }
+            if let Err(failure) = self.advance(simulation, signal) {
+                break Err(failure);
+            }
+            if self.steps.is_multiple_of(*every) {
+                self.write(simulation)?;
+            }
+            progress.reach(length.part(plan, simulation.t(), self.steps));
+        };
+        if self.written < self.steps {
+            self.write(simulation)?;
+        }
+        outcome
+    }
+
+    /// Takes one step; an error says why the run ends here.
+    fn advance(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
+        let (t, method) = (simulation.t(), self.request.plan.method);
+        if let Some(signal) = signal() {
+            return Err(Failure::Interrupted { signal, reached: format!("{} steps at t = {}", self.steps, short(t)) });
+        }
+        simulation.advance().map_err(|error| Failure::Step {
+            error,
+            before: describe(&simulation.row(), self.steps),
+            method: Some(method),
+        })?;
+        self.steps += 1;
+        let ended = |why| Failure::Ended { why, before: describe(&simulation.row(), self.steps) };
+        #[allow(clippy::float_cmp)] // exactly
+        if simulation.t() == t {
+            let why =
+                "the step does not change t in double precision any more; end the run before, with --until or --steps";
+            return Err(ended(why.to_owned()));
+        }
+        self.extent.check(self.rows).map_err(ended)
+    }
+
+    /// Writes the node reached last.
+    fn write(&mut self, simulation: &dyn Simulation) -> Result<(), Failure> {
+        self.rows += 1;
+        self.written = self.steps;
+        self.sink.write(&simulation.row())
+    }
+}
+
+/// A node in words.
+fn describe(row: &Row, steps: u64) -> String {
+    let Row { t, q, p, energy, discrete_energy, h } = row;
+    let energies: String = [("H", energy), ("E", discrete_energy)]
+        .into_iter()
+        .filter_map(|(name, energy)| energy.map(|energy| format!(", {name} = {}", short(energy))))
+        .collect();
+    format!("t = {}, q = {q:?}, p = {p:?}{energies}, h = {}, after {steps} steps", short(*t), short(*h))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::cell::Cell;
+    use vi_core::StepError;
+
+    /// A run that cannot go on after three steps, at t = 1.5.
+    struct Ending {
+        t: f64,
+        /// What the fourth step does.
+        fourth: Result<(), StepError>,
+    }
+
+    impl Simulation for Ending {
+        fn t(&self) -> f64 {
+            self.t
+        }
+
+        fn q(&self) -> Vec<f64> {
+            vec![self.t]
+        }
+
+        fn h(&self) -> f64 {
+            0.5
+        }
+
+        fn row(&self) -> Row {
+            Row { t: self.t, q: self.q(), p: vec![0.0], energy: Some(1.0), discrete_energy: None, h: 0.5 }
+        }
+
+        fn advance(&mut self) -> Result<(), StepError> {
+            if self.t < 1.5 {
+                self.t += 0.5;
+                return Ok(());
+            }
+            self.fourth
+        }
+    }
+
+    /// Keeps the rows.
+    #[derive(Default)]
+    struct Kept(Vec<Row>);
+
+    impl Sink for Kept {
+        fn write(&mut self, row: &Row) -> Result<(), Failure> {
+            self.0.push(row.clone());
+            Ok(())
+        }
+
+        fn finish(&mut self) -> Result<(), Failure> {
+            Ok(())
+        }
+    }
+
+    /// Why the run ends, and the times of its rows.
+    fn followed(every: u64, fourth: Result<(), StepError>, signal: &dyn Fn() -> Option<Signal>) -> (Failure, Vec<f64>) {
+        let target = "double-well".to_owned();
+        let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
+        let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
+        let mut sink = Kept::default();
+        let mut course = Course { request: &request, extent, sink: &mut sink, steps: 0, rows: 0, written: 0 };
+        let failure = course.follow(&mut Ending { t: 0.0, fourth }, signal).expect_err("the run ends early");
+        (failure, sink.0.iter().map(|row| row.t).collect())
+    }
+
+    #[test]
+    fn a_singular_matrix_on_the_way_leaves_the_rows_so_far_and_status_1() {
+        let singular = StepError::Singular { t: 1.5, matrix: "mass matrix" };
+        for (every, times) in [(1, vec![0.0, 0.5, 1.0, 1.5]), (2, vec![0.0, 1.0, 1.5]), (3, vec![0.0, 1.5])] {
+            let (failure, written) = followed(every, Err(singular), &|| None);
+            assert_eq!((failure.exit_status(), written), (1, times), "every {every}");
+            assert_eq!(
+                failure.to_string(),
+                "the mass matrix is singular at t = 1.500000000\n\
+                 last good state: t = 1.5, q = [1.5], p = [0.0], H = 1, h = 0.5, after 3 steps"
+            );
+        }
+    }
+
+    #[test]
+    fn a_step_that_does_not_change_the_time_ends_the_run() {
+        let (failure, written) = followed(1, Ok(()), &|| None);
+        assert_eq!((failure.exit_status(), written), (1, vec![0.0, 0.5, 1.0, 1.5, 1.5]));
+        let message = failure.to_string();
+        assert!(message.starts_with("the step does not change t in double precision any more; "), "{message}");
+        assert!(message.ends_with("t = 1.5, q = [1.5], p = [0.0], H = 1, h = 0.5, after 4 steps"), "{message}");
+    }
+
+    #[test]
+    fn a_signal_ends_a_run_after_the_node_reached_last() {
+        for (signal, status) in interrupt::SIGNALS.into_iter().zip([130, 143]) {
+            let looks = Cell::new(0);
+            let third_look = || {
+                looks.set(looks.get() + 1);
+                (looks.get() > 2).then_some(signal)
+            };
+            let (failure, written) = followed(5, Ok(()), &third_look);
+            assert_eq!((failure.exit_status(), written), (status, vec![0.0, 1.0]));
+            let expected =
+                format!("interrupted by {} after 2 steps at t = 1; the output up to there is whole", signal.name);
+            assert_eq!(failure.to_string(), expected);
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Rows as NPY, the array format of `NumPy`: float64, one row per node, row by row; beside it `FILE.npy.json`, which
+//! says what made the file and what the columns are. An entry that has no value is NaN.
+//!
+//! Source: the format's version 1.0. AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
+//! the file, whatever ends the run.
+
+use super::{BLOCK, ENERGIES, Request, Sink};
+use crate::failure::Failure;
+use crate::machine::{VERSION, command_line};
+use crate::simulation::Row;
+use serde_json::json;
+use std::fs::{self, File};
+use std::io::{self, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// Bytes before the numbers: magic, version, length of the head, head; a multiple of 64.
+const ROOM: usize = 128;
+
+/// An NPY file.
+pub(super) struct Npy {
+    path: PathBuf,
+    file: File,
+    columns: usize,
+    /// Rows in the file.
+    rows: u64,
+    /// Whole rows that are to be written.
+    block: Vec<u8>,
+}
+
+impl Npy {
+    /// An NPY file, and the JSON file beside it.
+    pub(super) fn create(path: &Path, request: &Request) -> Result<Self, Failure> {
+        let file = File::create(path).map_err(|error| Failure::file(path, error))?;
+        let mut npy =
+            Self { path: path.to_owned(), file, columns: request.columns().len(), rows: 0, block: Vec::new() };
+        npy.flush()?;
+        let mut beside = path.as_os_str().to_owned();
+        beside.push(".json");
+        fs::write(&beside, format!("{:#}\n", description(request))).map_err(|error| Failure::file(&beside, error))?;
+        Ok(npy)
+    }
+
+    /// Writes the block, and then the number of rows into the head.
+    fn flush(&mut self) -> Result<(), Failure> {
+        let width = wide(8 * self.columns);
+        let (end, rows) = (wide(ROOM) + self.rows * width, self.rows + wide(self.block.len()) / width);
+        let written = put(&mut self.file, end, &self.block);
+        if let Err(error) = written.and_then(|()| put(&mut self.file, 0, &head(rows, self.columns))) {
+            // The head counts the rows up to here; half a row after them is cut off, or does no harm.
+            let _ = self.file.set_len(end);
+            return Err(Failure::file(&self.path, error));
+        }
+        self.rows = rows;
+        self.block.clear();
+        Ok(())
+    }
+}
+
+/// A number of bytes of the memory as one of a file.
+fn wide(bytes: usize) -> u64 {
+    u64::try_from(bytes).unwrap_or(u64::MAX)
+}
+
+/// Writes bytes at a place of a file.
+fn put(file: &mut File, place: u64, bytes: &[u8]) -> io::Result<()> {
+    file.seek(SeekFrom::Start(place))?;
+    file.write_all(bytes)
+}
+
+/// What made the file, and what is in it.
+fn description(request: &Request) -> serde_json::Value {
+    let Request { system, plan, every, .. } = request;
+    let parameters: serde_json::Map<String, serde_json::Value> =
+        system.parameters().into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
+    json!({
+        "version": VERSION, "command": command_line(), "system": system.name(), "parameters": parameters,
+        "method": plan.method_name(), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "every": every,
+        "columns": request.columns(), "energies": ENERGIES,
+    })
+}
+
+impl Sink for Npy {
+    fn write(&mut self, row: &Row) -> Result<(), Failure> {
+        self.block.extend(row.entries().flat_map(|entry| entry.unwrap_or(f64::NAN).to_le_bytes()));
+        if self.block.len() < BLOCK { Ok(()) } else { self.flush() }
+    }
+
+    fn finish(&mut self) -> Result<(), Failure> {
+        self.flush()
+    }
+}
+
+/// Magic, version 1.0, length of the description, description padded with blanks to the fixed room.
+fn head(rows: u64, columns: usize) -> Vec<u8> {
+    let description = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
+    // Ten bytes come before the description, and a line end closes it: its length is 118, which two bytes hold.
+    let mut head = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    head.extend(description.as_bytes());
+    head.resize(ROOM - 1, b' ');
+    head.push(b'\n');
+    head
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_head_fills_its_room_for_any_number_of_rows() {
+        for rows in [0, 1000, u64::MAX] {
+            let head = head(rows, 1024);
+            assert_eq!(head.len(), ROOM);
+            assert_eq!(usize::from(head[8]) + 256 * usize::from(head[9]) + 10, ROOM);
+            assert_eq!(head.last(), Some(&b'\n'));
+            let text = String::from_utf8_lossy(&head[10..]);
+            assert!(text.contains(&format!("'shape': ({rows}, 1024), }}")), "{text}");
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! What a run is to do: the command line over the scene over the system's defaults, every input checked.
+
+use super::Arguments;
+use super::scene::Scene;
+use crate::catalogue::{self, System};
+use crate::failure::Failure;
+use crate::input::number;
+use crate::numbers::short;
+use crate::simulation::{Method, Plan, Row, Start};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A run, ready to begin.
+pub(super) struct Request {
+    /// The system, with its parameters set.
+    pub(super) system: Box<dyn System>,
+    /// Integrator, step and initial state.
+    pub(super) plan: Plan,
+    /// How long.
+    pub(super) length: Length,
+    /// Every so many nodes one is written.
+    pub(super) every: u64,
+    /// Where to.
+    pub(super) output: Output,
+    /// Whether the output may have more than a gigabyte.
+    pub(super) large_output: bool,
+}
+
+/// When a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Length {
+    /// After this many steps.
+    Steps(u64),
+    /// At the first node at or after this time.
+    Until(f64),
+}
+
+impl Length {
+    /// Whether a run is at its end.
+    pub(super) fn is_reached(self, t: f64, h: f64, steps: u64) -> bool {
+        match self {
+            Self::Steps(wanted) => steps >= wanted,
+            // A billionth of a step forgives the rounding of a sum of fixed steps.
+            Self::Until(end) => (end - t) * h.signum() <= 1e-9 * h.abs(),
+        }
+    }
+
+    /// The part of a run that is done, between 0 and 1.
+    #[allow(clippy::cast_precision_loss)] // an estimate
+    pub(super) fn part(self, plan: &Plan, t: f64, steps: u64) -> f64 {
+        match self {
+            Self::Steps(wanted) => steps as f64 / wanted as f64,
+            Self::Until(end) => ((t - plan.t) / (end - plan.t)).clamp(0.0, 1.0),
+        }
+    }
+
+    /// Number of steps, were all as long as the first.
+    #[allow(clippy::cast_precision_loss)] // an estimate
+    pub(super) fn steps(self, plan: &Plan) -> f64 {
+        match self {
+            Self::Steps(wanted) => wanted as f64,
+            Self::Until(end) => ((end - plan.t) / plan.h).ceil(),
+        }
+    }
+
+    /// The time at which the run ends, were all steps as long as the first.
+    pub(super) fn end(self, plan: &Plan) -> f64 {
+        match self {
+            Self::Steps(_) => plan.t + self.steps(plan) * plan.h,
+            Self::Until(end) => end,
+        }
+    }
+}
+
+/// Where rows go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Output {
+    /// As CSV to standard output.
+    Standard,
+    /// To a CSV file.
+    Csv(PathBuf),
+    /// To an NPY file.
+    Npy(PathBuf),
+}
+
+impl Output {
+    /// The output that a path asks for.
+    fn at(path: &Path) -> Result<Self, Failure> {
+        let shown = path.display();
+        let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        let output = match extension.as_deref() {
+            Some("csv") => Self::Csv(path.to_owned()),
+            Some("npy") => Self::Npy(path.to_owned()),
+            _ => return Err(Failure::Input(format!("the output `{shown}` must end in .csv or .npy"))),
+        };
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            let folder = folder.display();
+            return Err(Failure::Input(format!(
+                "there is no folder `{folder}` for the output `{shown}`; make it first"
+            )));
+        }
+        match fs::metadata(path) {
+            Ok(found) if found.is_dir() => {
+                Err(Failure::Input(format!("the output `{shown}` is a folder; name a file")))
+            }
+            Ok(found) if !found.is_file() && matches!(output, Self::Npy(_)) => Err(Failure::Input(format!(
+                "the output `{shown}` is a pipe or a device, and the head of an NPY file is written last; write CSV there"
+            ))),
+            _ => Ok(output),
+        }
+    }
+
+    /// Bytes that a number takes in a row: by measurement for CSV, whose numbers are as long as their digits.
+    pub(super) fn bytes_per_number(&self) -> f64 {
+        match self {
+            Self::Standard | Self::Csv(_) => 19.0,
+            Self::Npy(_) => 8.0,
+        }
+    }
+}
+
+impl Request {
+    /// The run that the arguments ask for.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for the first input that is wrong.
+    pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
+        let extension = Path::new(&arguments.target).extension();
+        let is_scene = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        let scene = if is_scene { Scene::read(&arguments.target)? } else { Scene::of_system(&arguments.target) };
+        let entry = catalogue::find(&scene.system)?;
+        let mut system = entry.system;
+        for (name, value) in &scene.parameters {
+            set(system.as_mut(), name, *value)?;
+        }
+        let mut names = BTreeSet::new();
+        for assignment in &arguments.set {
+            let (name, value) = parse_assignment(assignment)?;
+            if !names.insert(name) {
+                return Err(Failure::Input(format!("the parameter `{name}` is set twice; give --set once for each")));
+            }
+            set(system.as_mut(), name, value)?;
+        }
+        let plan = Plan {
+            method: arguments.method.or(scene.method).unwrap_or(Method::Fixed),
+            start: arguments.start.or(scene.start).unwrap_or(Start::Midpoint),
+            h: arguments.h.or(scene.h).unwrap_or(entry.h),
+            t: arguments.t.or(scene.t).unwrap_or(0.0),
+            q: arguments.q.clone().or(scene.q).unwrap_or(entry.q),
+            v: arguments.v.clone().or(scene.v).unwrap_or(entry.v),
+        };
+        check_initial(system.as_ref(), &plan)?;
+        // A start that belongs to another method of the scene is no mistake.
+        let start = arguments.start.or(scene.start.filter(|_| arguments.method.is_none()));
+        if start.is_some() && plan.method == Method::Fixed {
+            return Err(Failure::Input("fixed steps have no --start; add --method energy, or leave it out".to_owned()));
+        }
+        let length = match (arguments.steps, arguments.until) {
+            (None, None) => length(scene.steps, scene.until, &plan)?,
+            (steps, until) => length(steps, until, &plan)?,
+        };
+        let every = arguments.every.or(scene.every).unwrap_or(1);
+        if every == 0 {
+            return Err(Failure::Input("every how many nodes one is written (--every) must be at least 1".to_owned()));
+        }
+        let output = arguments.output.as_deref().map_or(Ok(Output::Standard), Output::at)?;
+        Ok(Self { system, plan, length, every, output, large_output: arguments.large_output })
+    }
+
+    /// Names of the columns of a row.
+    pub(super) fn columns(&self) -> Vec<String> {
+        Row::columns(&self.system.coordinates())
+    }
+}
+
+fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
+    if !value.is_finite() {
+        return Err(Failure::Input(format!("the parameter `{name}` must be finite, not {value}")));
+    }
+    if system.set(name, value) {
+        return Ok(());
+    }
+    let names: Vec<String> = system.parameters().iter().map(|(name, _)| format!("`{name}`")).collect();
+    let known = if names.is_empty() { "it has none".to_owned() } else { format!("it has {}", names.join(", ")) };
+    Err(Failure::Input(format!("{} has no parameter `{name}`; {known}", catalogue::kebab(system.name()))))
+}
+
+/// `NAME=VALUE` as its parts.
+fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
+    let (name, value) =
+        text.split_once('=').ok_or_else(|| Failure::Input(format!("`--set {text}` must have the form NAME=VALUE")))?;
+    let (name, value) = (name.trim(), value.trim());
+    let wrong = |what| Failure::Input(format!("`{value}` in `--set {text}` is not a number; {what}"));
+    Ok((name, number(value).map_err(wrong)?))
+}
+
+/// Sizes and finiteness of the initial state.
+fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
+    let coordinates = system.coordinates();
+    for (what, values) in [("coordinates (--q)", &plan.q), ("velocities (--v)", &plan.v)] {
+        if values.len() != coordinates.len() {
+            return Err(Failure::Input(format!(
+                "{} has the coordinates {}: give as many {what}, not {}",
+                catalogue::kebab(system.name()),
+                coordinates.join(", "),
+                values.len()
+            )));
+        }
+        if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+            return Err(Failure::Input(format!("the {what} must be finite, not {value}")));
+        }
+    }
+    for (what, value) in [("initial time (--t)", plan.t), ("step (--h)", plan.h)] {
+        if !value.is_finite() {
+            return Err(Failure::Input(format!("the {what} must be finite, not {value}")));
+        }
+    }
+    if plan.h == 0.0 {
+        return Err(Failure::Input("the step (--h) must not be zero".to_owned()));
+    }
+    Ok(())
+}
+
+/// Exactly one of the two, and an end that the step leads to.
+fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length, Failure> {
+    match (steps, until) {
+        (Some(steps), None) => Ok(Length::Steps(steps)),
+        (None, Some(until)) if !until.is_finite() => {
+            Err(Failure::Input(format!("the end (--until) must be finite, not {until}")))
+        }
+        (None, Some(until)) if (until - plan.t) * plan.h < 0.0 => Err(Failure::Input(format!(
+            "steps of {} from t = {} do not lead to --until {}",
+            short(plan.h),
+            short(plan.t),
+            short(until)
+        ))),
+        (None, Some(until)) => Ok(Length::Until(until)),
+        (Some(_), Some(_)) => Err(Failure::Input("give either --steps or --until, not both".to_owned())),
+        (None, None) => Err(Failure::Input("give the length of the run, --steps N or --until T".to_owned())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arguments(target: &str) -> Arguments {
+        Arguments { target: target.to_owned(), steps: Some(10), ..Arguments::default() }
+    }
+
+    fn message(arguments: &Arguments) -> String {
+        Request::of(arguments).err().map_or_else(String::new, |failure| failure.to_string())
+    }
+
+    #[test]
+    fn every_wrong_input_has_its_message() {
+        let with = |change: fn(&mut Arguments)| {
+            let mut arguments = arguments("double-well");
+            change(&mut arguments);
+            message(&arguments)
+        };
+        let cases: [(String, &str); 15] = [
+            (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
+            (
+                with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
+                "the parameter `m` is set twice; give --set once for each",
+            ),
+            (with(|a| a.every = Some(0)), "every how many nodes one is written (--every) must be at least 1"),
+            (
+                with(|a| a.start = Some(Start::Points)),
+                "fixed steps have no --start; add --method energy, or leave it out",
+            ),
+            (with(|a| a.output = Some(".npy".into())), "the output `.npy` must end in .csv or .npy"),
+            (with(|a| a.set = vec!["m".into()]), "`--set m` must have the form NAME=VALUE"),
+            (
+                with(|a| a.set = vec!["m=one".into()]),
+                "`one` in `--set m=one` is not a number; write a number such as 0.5 or 1e-3",
+            ),
+            (with(|a| a.set = vec!["m=inf".into()]), "the parameter `m` must be finite, not inf"),
+            (
+                with(|a| a.q = Some(vec![1.0, 2.0])),
+                "double-well has the coordinates q: give as many coordinates (--q), not 2",
+            ),
+            (with(|a| a.v = Some(vec![f64::NAN])), "the velocities (--v) must be finite, not NaN"),
+            (with(|a| a.h = Some(0.0)), "the step (--h) must not be zero"),
+            (with(|a| a.steps = None), "give the length of the run, --steps N or --until T"),
+            (with(|a| a.until = Some(1.0)), "give either --steps or --until, not both"),
+            (
+                with(|a| (a.steps, a.until, a.h) = (None, Some(1.0), Some(-0.1))),
+                "steps of -0.1 from t = 0 do not lead to --until 1",
+            ),
+            (with(|a| (a.steps, a.until) = (None, Some(f64::INFINITY))), "the end (--until) must be finite, not inf"),
+        ];
+        for (found, expected) in cases {
+            assert_eq!(found, expected);
+        }
+    }
+
+    #[test]
+    fn defaults_come_from_the_catalogue() {
+        let request = Request::of(&arguments("double-well")).unwrap_or_else(|failure| panic!("{failure}"));
+        assert_eq!(request.columns(), ["t", "q", "p_q", "H", "E", "h"]);
+        assert_eq!((request.every, request.output), (1, Output::Standard));
+        assert_eq!((request.plan.h, request.plan.method), (0.01, Method::Fixed));
+        assert_eq!(request.length, Length::Steps(10));
+    }
+}

@@ -1,0 +1,76 @@
+//! Whether a step is large enough, and small enough, to be one in double precision.
+//!
+//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. AFTER BOTH CHECKS h² is a normal number, a
+//! step changes t at the start, and for fixed steps at the end too, and the first step changes the state, or the system
+//! is at rest.
+
+use super::request::Request;
+use crate::failure::Failure;
+use crate::numbers::{about, short};
+use crate::simulation::{Method, Plan};
+
+/// Checks the step by itself and against the times of the run.
+pub(super) fn check_times(Request { plan, length, .. }: &Request) -> Result<(), Failure> {
+    square(plan.h)?;
+    time(plan.t, plan.h)?;
+    if plan.method == Method::Fixed { time(length.end(plan), plan.h) } else { Ok(()) }
+}
+
+/// The equations of a step contain h².
+fn square(h: f64) -> Result<(), Failure> {
+    if (h * h).is_normal() {
+        return Ok(());
+    }
+    let (smallest, largest) = (f64::MIN_POSITIVE.sqrt(), f64::MAX.sqrt());
+    Err(Failure::Input(format!(
+        "the step (--h) {} is out of range: its square is no normal number in double precision; give one from {} to {}",
+        short(h),
+        about(smallest),
+        about(largest)
+    )))
+}
+
+/// A step shorter than the distance of numbers near t would change t by too much, or not at all.
+fn time(t: f64, h: f64) -> Result<(), Failure> {
+    let spacing = t.abs().next_up() - t.abs();
+    if h.abs() >= spacing {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "a step of h = {} is lost at t = {} in double precision, where numbers are {} apart; give a larger --h, or times \
+         nearer to zero",
+        short(h),
+        short(t),
+        about(spacing)
+    )))
+}
+
+/// Checks the step against the state, by a trial: it must change q or p by more than their rounding, unless the system
+/// is at rest.
+pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), Failure> {
+    // A run that does not start, or ends with its first step, says so itself.
+    let Ok(mut trial) = system.begin(plan) else { return Ok(()) };
+    let before = trial.row();
+    let is_at_rest = plan.v.iter().all(|v| *v == 0.0);
+    if is_at_rest || trial.advance().is_err() {
+        return Ok(());
+    }
+    let after = trial.row();
+    if !(is_same(&before.q, &after.q) && is_same(&before.p, &after.p)) {
+        return Ok(());
+    }
+    let Plan { h, v, .. } = plan;
+    Err(Failure::Input(format!(
+        "the first step of h = {} changes neither q = {:?} nor p = {:?} in double precision, although v = {v:?}; give a \
+         larger --h, or a start and parameters where the mass matrix is not singular",
+        short(*h),
+        before.q,
+        before.p
+    )))
+}
+
+/// Whether two vectors are the same but for less than a rounding of the largest entry.
+fn is_same(before: &[f64], after: &[f64]) -> bool {
+    let largest = before.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    before.iter().zip(after).all(|(one, other)| (one - other).abs() <= f64::EPSILON / 2.0 * largest)
+}

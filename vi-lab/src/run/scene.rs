@@ -1,0 +1,130 @@
+//! Scenes: a run described in a TOML file.
+//!
+//! ```toml
+//! system = "damped-oscillator"      # required; everything else has a default or comes from the command line
+//! method = "energy"
+//! start = "midpoint"
+//! h = 0.01
+//! steps = 1000                      # or until = 10.0
+//! every = 10
+//! t = 0.0
+//! q = [1.0]
+//! v = [0.0]
+//! [parameters]
+//! c = 0.04
+//! ```
+
+use crate::failure::Failure;
+use crate::input::count_of_scene;
+use crate::simulation::{Method, Start};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+
+/// The entries of a scene file.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Scene {
+    /// Name of the system.
+    #[serde(default)]
+    pub(super) system: String,
+    /// Integrator.
+    pub(super) method: Option<Method>,
+    /// First interval of the energy-preserving integrator.
+    pub(super) start: Option<Start>,
+    /// Step.
+    pub(super) h: Option<f64>,
+    /// Number of steps.
+    #[serde(default, deserialize_with = "count_of_scene")]
+    pub(super) steps: Option<u64>,
+    /// End of the run.
+    pub(super) until: Option<f64>,
+    /// Every so many nodes one is written.
+    #[serde(default, deserialize_with = "count_of_scene")]
+    pub(super) every: Option<u64>,
+    /// Initial time.
+    pub(super) t: Option<f64>,
+    /// Initial coordinates.
+    pub(super) q: Option<Vec<f64>>,
+    /// Initial velocities.
+    pub(super) v: Option<Vec<f64>>,
+    /// Parameters by name.
+    #[serde(default)]
+    pub(super) parameters: BTreeMap<String, f64>,
+}
+
+impl Scene {
+    /// The scene that names a system and nothing else.
+    pub(super) fn of_system(name: &str) -> Self {
+        Self { system: name.to_owned(), ..Self::default() }
+    }
+
+    /// The scene of a file.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where it cannot be read, or is not a scene.
+    pub(super) fn read(path: &str) -> Result<Self, Failure> {
+        let text = fs::read_to_string(path).map_err(|error| Failure::Input(format!("{path}: {error}")))?;
+        Self::parse(&text).map_err(|message| Failure::Input(format!("{path}: {message}")))
+    }
+
+    /// The scene of a text, or one line that says what is wrong, and where.
+    fn parse(text: &str) -> Result<Self, String> {
+        let scene: Self = toml::from_str(text).map_err(|error| {
+            let is_toml = text.parse::<toml::Table>().is_ok();
+            let hint = if is_toml { "" } else { "; entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`" };
+            let message = format!("{}{hint}", error.message().replace('\n', " "));
+            let before = error.span().and_then(|span| text.get(..span.start));
+            before.map_or(message.clone(), |before| format!("line {}: {message}", before.matches('\n').count() + 1))
+        })?;
+        if scene.system.is_empty() {
+            return Err("no system is named; add a line such as `system = \"kepler\"`".to_owned());
+        }
+        if scene.steps.is_some() && scene.until.is_some() {
+            return Err("give either `steps` or `until`, not both".to_owned());
+        }
+        Ok(scene)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_is_read() {
+        let text = "system = \"double-well\"\nmethod = \"energy\"\nstart = \"points\"\nh = 0.1\nsteps = 5e3\nevery = 10\nq = [0.995]\n[parameters]\nm = 2\n";
+        let expected = Scene {
+            method: Some(Method::Energy),
+            start: Some(Start::Points),
+            h: Some(0.1),
+            steps: Some(5000),
+            every: Some(10),
+            q: Some(vec![0.995]),
+            parameters: BTreeMap::from([("m".to_owned(), 2.0)]),
+            ..Scene::of_system("double-well")
+        };
+        assert_eq!(Scene::parse(text), Ok(expected));
+    }
+
+    #[test]
+    fn mistakes_name_their_line() {
+        for (text, expected) in [
+            ("system = \"kepler\"\nsteps = -1\n", "line 2: invalid value: integer `-1`, expected a whole number"),
+            (
+                "system = \"kepler\"\nevery = 1.5\n",
+                "line 2: invalid value: floating point `1.5`, expected a whole number",
+            ),
+            ("system = \"kepler\"\nq = [0.4 0.0]\n", "; entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`"),
+            ("system = kepler\n", "line 1: string values must be quoted"),
+            ("system = \"kepler\"\nsteps = 1\nsteps = 2\n", "line 3: duplicate key"),
+            ("system = \"kepler\"\n\ncolour = 1\n", "line 3: unknown field `colour`"),
+            ("system = \"kepler\"\nsteps = 1\nuntil = 2.0\n", "give either `steps` or `until`, not both"),
+            ("h = 1.0\n", "no system is named; add a line such as `system = \"kepler\"`"),
+            ("system = \"a\"\nmethod = \"euler\"\n", "line 2: unknown variant `euler`, expected `fixed` or `energy`"),
+        ] {
+            let message = Scene::parse(text).err().unwrap_or_default();
+            assert!(message.contains(expected) && !message.contains('\n'), "{message}");
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! The four figures and the tables of a comparison, each with what it says.
+//!
+//! In: [`Findings`]. Out: charts and tables. Runs that lost the motion (an error over [`LOST`]) are in the table only.
+
+use super::clock;
+use super::drift::Drift;
+use super::method::Method;
+use super::study::{Findings, Point, fitted_order};
+use crate::chart::{Axis, Chart, Look, Series};
+use crate::numbers::{extremes, scientific};
+use crate::table::Table;
+
+/// An error above this is no approximation of the motion.
+pub(super) const LOST: f64 = 2.0;
+/// Errors whose price is listed.
+const PRICED: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+impl Findings {
+    /// Error against seconds, with whiskers up to the median.
+    pub(super) fn time(&self, system: &str) -> Chart {
+        self.work(
+            "work-precision",
+            format!("{system}: error against time"),
+            format!("seconds of {} for the whole run", clock::NAME),
+            |point| point.seconds,
+            |point| Some(point.median),
+        )
+    }
+
+    /// Error against evaluations.
+    pub(super) fn evaluations(&self, system: &str) -> Chart {
+        #[allow(clippy::cast_precision_loss)] // far below 2⁵³
+        let count = |point: &Point| point.evaluations as f64;
+        self.work(
+            "evaluations",
+            format!("{system}: error against evaluations"),
+            "evaluations of the equations".to_owned(),
+            count,
+            |_| None,
+        )
+    }
+
+    /// Error against some work, all methods.
+    fn work(
+        &self,
+        name: &'static str,
+        title: String,
+        label: String,
+        work: impl Fn(&Point) -> f64,
+        whisker: impl Fn(&Point) -> Option<f64>,
+    ) -> Chart {
+        let mut series = Vec::new();
+        for method in Method::ALL {
+            let kept: Vec<Point> = self.kept(method).map(|(_, point)| point).collect();
+            let points = kept.iter().map(|point| (point.error, work(point))).collect();
+            let line = Series::curve(method.name(), method.look(), points);
+            series.push(line.with_whiskers(kept.iter().filter_map(&whisker).collect()));
+        }
+        let (low, high) = extremes(series.iter().flat_map(|line| line.points.iter().map(|(_, y)| *y)));
+        let floor = self.agreement.floor();
+        let known = vec![(floor, low), (floor, high)];
+        series.insert(0, Series::curve("reference known to", Look::PUBLISHED, known));
+        Chart { name, title, x: Axis::log10(self.error_label()), y: Axis::log10(label), equal_aspect: false, series }
+    }
+
+    /// Error against the step, for the methods that have one.
+    pub(super) fn orders(&self, system: &str) -> Chart {
+        let stepping = Method::ALL.into_iter().filter(|method| *method != Method::Rival);
+        let series = stepping.map(|method| {
+            let order = fitted_order(self.points(method), self.agreement.floor());
+            let label = order.map_or_else(
+                || method.name().to_owned(),
+                |order| format!("{}: {order:.2}", method.name().replace("energy-preserving", "energy-pres.")),
+            );
+            Series::curve(label, method.look(), self.kept(method).map(|(h, point)| (h, point.error)).collect())
+        });
+        Chart {
+            name: "order",
+            title: format!("{system}: error against step, with the fitted order"),
+            x: Axis::log10("h (energy-preserving: first step)"),
+            y: Axis::log10(self.error_label()),
+            equal_aspect: false,
+            series: series.collect(),
+        }
+    }
+
+    /// Largest energy error so far against time.
+    pub(super) fn energy(&self, system: &str) -> Chart {
+        let series = self.drifts.iter().map(|drift| {
+            let line = drift.method.look().line();
+            let (label, look) = match drift.method {
+                Method::Rival if drift.setting > 1e-8 => (rival(drift), line),
+                Method::Rival if drift.setting > 1e-11 => (rival(drift), drift.method.look().dashed()),
+                Method::Rival => (rival(drift), drift.method.look().dotted()),
+                method => (method.name().to_owned(), line),
+            };
+            Series::curve(label, look, drift.worst.clone())
+        });
+        let label =
+            if self.conserved { "max |H − H₀| / |H₀| so far" } else { "max |H − H_ref(t)| / |H₀| so far" };
+        Chart {
+            name: "energy",
+            title: format!("{system}: energy error over a long time"),
+            x: Axis::log10("t"),
+            y: Axis::log10(label),
+            equal_aspect: false,
+            series: series.collect(),
+        }
+    }
+
+    /// The least seconds that reach an error, by method.
+    pub(super) fn prices(&self) -> Table {
+        let head = ["method", "error 1e-3", "1e-6", "1e-9", "1e-12"];
+        let mut table = Table::new("prices", head);
+        for method in Method::ALL {
+            let price = |error: f64| self.price(method, error).map_or_else(|| "—".to_owned(), duration);
+            let [a, b, c, d] = PRICED.map(price);
+            table.row([method.name().to_owned(), a, b, c, d]);
+        }
+        table
+    }
+
+    /// The least seconds in which a run of `method` is off by `error` at most.
+    fn price(&self, method: Method, error: f64) -> Option<f64> {
+        let seconds = self.points(method).filter(|(_, point)| point.error <= error).map(|(_, point)| point.seconds);
+        seconds.min_by(f64::total_cmp)
+    }
+
+    /// Who is the fastest, error by error, as prose.
+    pub(super) fn winners(&self) -> String {
+        let mut sentences = Vec::new();
+        for error in PRICED {
+            let mut prices: Vec<(f64, Method)> =
+                Method::ALL.into_iter().filter_map(|method| Some((self.price(method, error)?, method))).collect();
+            prices.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+            sentences.push(match prices.as_slice() {
+                [] => format!("No run is off by {} or less.", scientific(error)),
+                [(price, only)] => {
+                    format!("Only {} reaches {}, in {}.", only.name(), scientific(error), duration(*price))
+                }
+                [(best, first), (next, second), ..] => format!(
+                    "For {} the fastest is {} with {}, before {} with {}.",
+                    scientific(error),
+                    first.name(),
+                    duration(*best),
+                    second.name(),
+                    duration(*next)
+                ),
+            });
+        }
+        sentences.join(" ")
+    }
+
+    /// Energy errors and how they grow.
+    pub(super) fn drift_table(&self) -> Table {
+        let head = ["method", "setting", "evaluations per time", "error at the end", "grows as", "ended"];
+        let mut table = Table::new("drift", head);
+        for drift in &self.drifts {
+            table.row([
+                drift.method.name().to_owned(),
+                drift.method.setting(drift.setting),
+                format!("{:.0}", drift.rate),
+                drift.last().map_or_else(|| "—".to_owned(), |(_, error)| format!("{error:.2e}")),
+                drift.growth().map_or_else(|| "—".to_owned(), |power| format!("t^{power:.2}")),
+                drift.ended.map_or_else(String::new, |ended| ended.to_string()),
+            ]);
+        }
+        table
+    }
+
+    /// Every run.
+    pub(super) fn run_table(&self) -> Table {
+        let head = ["method", "setting", "error", "evaluations", "seconds, least", "seconds, median", "ended"];
+        let mut table = Table::new("runs", head);
+        for run in &self.runs {
+            let (name, setting) = (run.method.name().to_owned(), format!("{:e}", run.setting));
+            table.row(match &run.outcome {
+                Ok(point) => [
+                    name,
+                    setting,
+                    format!("{:e}", point.error),
+                    point.evaluations.to_string(),
+                    format!("{:.4e}", point.seconds),
+                    format!("{:.4e}", point.median),
+                    String::new(),
+                ],
+                Err(ended) => {
+                    let none = String::new;
+                    [name, setting, none(), none(), none(), none(), ended.to_string()]
+                }
+            });
+        }
+        table
+    }
+
+    /// What the figures cannot show, one sentence a method: runs that ended, and runs that lost the motion.
+    pub(super) fn missing(&self) -> Vec<String> {
+        let mut sentences = Vec::new();
+        for method in Method::ALL {
+            let of: Vec<_> = self.runs.iter().filter(|run| run.method == method).collect();
+            let ended: Vec<_> = of.iter().filter_map(|run| Some((run.setting, run.outcome.err()?))).collect();
+            if let (Some((setting, first)), count) = (ended.last(), ended.len()) {
+                let which = if count == of.len() { "All".to_owned() } else { format!("{count} of the") };
+                let setting = method.setting(*setting);
+                sentences.push(format!(
+                    "{which} {} runs of {} ended early; at {setting}: {first}.",
+                    of.len(),
+                    method.name()
+                ));
+            }
+            let lost = self.points(method).filter(|(_, point)| point.error > LOST).count();
+            if lost > 0 {
+                sentences.push(format!(
+                    "{lost} of the {} runs of {} lost the motion: off by more than {LOST}.",
+                    of.len(),
+                    method.name()
+                ));
+            }
+        }
+        for Drift { method, setting, ended, .. } in &self.drifts {
+            if let Some(ended) = ended {
+                let setting = method.setting(*setting);
+                sentences.push(format!("Over the long time {} at {setting} ended early: {ended}.", method.name()));
+            }
+        }
+        sentences
+    }
+
+    /// The points that the figures show.
+    fn kept(&self, method: Method) -> impl Iterator<Item = (f64, Point)> + '_ {
+        self.points(method).filter(|(_, point)| point.error <= LOST)
+    }
+
+    fn error_label(&self) -> String {
+        format!("relative error of q and p at t = {}", self.until)
+    }
+}
+
+fn rival(drift: &Drift) -> String {
+    format!("{}, {:.0e}", drift.method.name(), drift.setting)
+}
+
+/// Seconds in the unit that suits them.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        seconds if seconds < 1e-3 => format!("{} µs", scientific(seconds * 1e6)),
+        seconds if seconds < 1.0 => format!("{} ms", scientific(seconds * 1e3)),
+        seconds => format!("{} s", scientific(seconds)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::reference::Agreement;
+    use super::super::rival::Ended;
+    use super::super::study::Run;
+    use super::*;
+    use vi_core::StepError;
+
+    /// Two runs of the energy-preserving integrator, off by 1e-12 and 1e-14, and one that ended.
+    fn findings() -> Findings {
+        let point = |error, seconds| Point { error, evaluations: 100, seconds, median: 2.0 * seconds };
+        let error = StepError::NoForwardStep { t: 1.0, h: 0.1, excess: 0.0, density: -1.0 };
+        let run = |setting, outcome| Run { method: Method::Energy, setting, outcome };
+        Findings {
+            until: 10.0,
+            agreement: Agreement { composed: 1e-15, h: 0.1, rival: 1e-15 },
+            runs: vec![
+                run(0.2, Err(Ended::Step(error))),
+                run(0.1, Ok(point(1e-12, 1e-4))),
+                run(0.05, Ok(point(1e-14, 1e-3))),
+                run(0.02, Ok(point(3.0, 1e-2))),
+            ],
+            drifts: Vec::new(),
+            conserved: true,
+            long: 100.0,
+        }
+    }
+
+    #[test]
+    fn errors_of_1e_12_and_1e_14_are_told_apart() {
+        let figure = findings().time("test").figure();
+        // The marker of the legend is the last circle.
+        let places: Vec<f64> = figure
+            .svg
+            .split("<circle ")
+            .skip(1)
+            .filter_map(|circle| circle.split("cx=\"").nth(1)?.split('"').next()?.parse().ok())
+            .collect();
+        assert_eq!(places.len(), 3, "{places:?}");
+        // The axis spans the three decades from 1e-15, with a margin of 4 % at both ends, over 596 pixels.
+        assert!((places[0] - places[1] - 2.0 / (3.0 * 1.08) * 596.0).abs() < 0.02, "{places:?}");
+        assert!(figure.csv.contains("\"energy-preserving\",1e-14,1e-3,2e-3\n"), "{}", figure.csv);
+    }
+
+    #[test]
+    fn what_is_not_shown_is_said() {
+        let found = findings();
+        assert_eq!(
+            found.missing(),
+            [
+                "1 of the 4 runs of energy-preserving ended early; at h₀ = 0.2000: no energy-preserving step leads forward \
+                 from t = 1.000000000 (last h = 1.000e-1, H − E = 0.000e0, step density D = -1.000e0).",
+                "1 of the 4 runs of energy-preserving lost the motion: off by more than 2."
+            ]
+        );
+        let runs = found.run_table().csv();
+        assert!(runs.lines().any(|line| line.starts_with("energy-preserving,2e-1,,,,,\"no energy-preserving step")));
+        assert!(
+            found.winners().starts_with("Only energy-preserving reaches 1.00·10⁻³, in 100 µs."),
+            "{}",
+            found.winners()
+        );
+    }
+}

@@ -1,0 +1,632 @@
+//! The command `vi-lab` as a user meets it: output, exit status, messages, files.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+/// Runs the command, and returns exit status, standard output and standard error.
+fn lab(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } =
+        Command::new(env!("CARGO_BIN_EXE_vi-lab")).args(arguments).output().expect("the command runs");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (status.code(), text(stdout), text(stderr))
+}
+
+/// A file of this test in the folder for temporary files.
+fn temporary(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("vi-lab-{}-{name}", std::process::id()))
+}
+
+/// Asserts that the command refuses arguments with a message on one line, and status 2.
+fn assert_refused(cases: &[(&[&str], &str)]) {
+    for (arguments, message) in cases {
+        let (status, output, errors) = lab(arguments);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{arguments:?}");
+        assert_eq!(errors, format!("error: {message}\n"), "{arguments:?}");
+    }
+}
+
+/// Starts the command, its outputs to be read.
+fn start(arguments: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vi-lab"));
+    command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
+}
+
+/// Sends a signal to a command.
+#[cfg(unix)]
+fn send(signal: &str, child: &Child) {
+    let status = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill runs");
+    assert!(status.success());
+}
+
+/// The lines of a CSV file without comments and head, as numbers; what is empty is not a number.
+fn rows(csv: &str) -> Vec<Vec<f64>> {
+    let lines = csv.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let number = |text: &str| if text.is_empty() { f64::NAN } else { text.parse().expect("a number") };
+    lines.map(|line| line.split(',').map(number).collect()).collect()
+}
+
+/// The rows of an NPY file of so many columns, by its head.
+fn array(bytes: &[u8], columns: usize) -> Vec<Vec<f64>> {
+    assert_eq!(bytes.get(..8), Some(b"\x93NUMPY\x01\x00".as_slice()));
+    let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let head = String::from_utf8_lossy(&bytes[10..10 + length]);
+    let shape = head.strip_prefix("{'descr': '<f8', 'fortran_order': False, 'shape': (").expect("the head");
+    let count: usize = shape.split(',').next().and_then(|rows| rows.parse().ok()).expect("the number of rows");
+    assert!(shape.starts_with(&format!("{count}, {columns}), }}")), "{head}");
+    let numbers: Vec<f64> = bytes[10 + length..]
+        .chunks_exact(8)
+        .map(|chunk| f64::from_le_bytes(chunk.try_into().expect("eight bytes")))
+        .collect();
+    assert_eq!(numbers.len(), count * columns, "the file holds what its head says");
+    numbers.chunks(columns).map(<[f64]>::to_vec).collect()
+}
+
+/// Numbers by their bits, so that NaN is NaN.
+fn bits(rows: &[Vec<f64>]) -> Vec<Vec<u64>> {
+    rows.iter().map(|row| row.iter().map(|number| number.to_bits()).collect()).collect()
+}
+
+fn path(path: &Path) -> &str {
+    path.to_str().expect("a path of text")
+}
+
+#[test]
+fn the_list_names_every_system_with_its_parameters() {
+    let (status, list, errors) = lab(&["list"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    for name in ["double-well", "damped-oscillator", "kepler", "spherical-pendulum", "charged-particle"] {
+        assert!(list.contains(name), "{name} is missing");
+    }
+    assert!(list.contains("m = 1, k = 4, c = 0.04"), "{list}");
+}
+
+#[test]
+fn both_methods_write_csv_to_standard_output() {
+    for (method, first, tolerance) in [("fixed", 0.0, 2e-8), ("energy", 0.005, 1e-16)] {
+        let (status, csv, errors) = lab(&["run", "double-well", "--method", method, "--steps", "500"]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{method}");
+        assert!(
+            csv.starts_with("# vi-lab ")
+                && csv.contains(&format!("# command: vi-lab run double-well --method {method}"))
+        );
+        assert!(csv.contains("\n# parameters: m = 1\n") && csv.contains("\nt,q,p_q,H,E,h\n"), "{csv}");
+        let rows = rows(&csv);
+        assert_eq!(rows.len(), 501);
+        assert!((rows[0][0] - first).abs() < 1e-15, "{method} starts at {}", rows[0][0]);
+        let spread = rows[1..].iter().map(|row| (row[4] - rows[1][4]).abs()).fold(0.0, f64::max);
+        // Measured: fixed 7.2e-9 (the swing that theory gives), energy 0.
+        assert!(spread < tolerance, "{method}: {spread}");
+    }
+}
+
+#[test]
+fn parameters_and_initial_values_are_set() {
+    let run = ["run", "harmonic-oscillator", "--h", "0.001", "--until", "0.5"];
+    let set = ["--set", "k=9", "--set", "m=4", "--q", "-2", "--v", "0.75"];
+    let (status, csv, errors) = lab(&[run.as_slice(), &set].concat());
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let last = rows(&csv).pop().expect("rows");
+    let (omega, t) = (1.5_f64, 0.5);
+    let exact = -2.0 * (omega * t).cos() + 0.75 / omega * (omega * t).sin();
+    assert!((last[0] - t).abs() < 1e-12, "ends at {}", last[0]);
+    // Measured 2.4e-7: the phase error ω³h²t/12 = 1.4e-7 times v/ω = 1.7.
+    assert!((last[1] - exact).abs() < 4e-7, "{} instead of {exact}", last[1]);
+}
+
+#[test]
+fn a_failing_step_leaves_the_output_so_far() {
+    let file = temporary("failing.csv");
+    let run = ["run", "double-well", "--method", "energy", "--start", "points", "--q", "1.05", "--steps", "1000"];
+    let (status, output, errors) = lab(&[run.as_slice(), &["-o", path(&file)]].concat());
+    assert_eq!((status, output.as_str()), (Some(1), ""));
+    assert!(errors.starts_with("error: no energy-preserving step leads forward from t = "), "{errors}");
+    let written = rows(&fs::read_to_string(&file).expect("the file"));
+    // The step of the last row is number 113 or 114: the paper's theory has no solution at step 114 ± 1.
+    assert!((112..=115).contains(&written.len()), "{} rows", written.len());
+    let last = written.last().expect("rows");
+    assert!(errors.contains(&format!("last good state: t = {}, q = [{}]", last[0], last[1])), "{errors}");
+    fs::remove_file(&file).expect("the file can be removed");
+}
+
+#[test]
+fn wrong_input_is_one_line_and_status_2() {
+    let cases: [(&[&str], &str); 24] = [
+        (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
+        (&["run", "double-well"], "give the length of the run, --steps N or --until T"),
+        (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
+        (&["run", "double-well", "--steps", "1", "--set", "k=1"], "double-well has no parameter `k`; it has `m`"),
+        (
+            &["run", "double-well", "--steps", "1", "--set", "m=1", "--set", "m=2"],
+            "the parameter `m` is set twice; give --set once for each",
+        ),
+        (&["run", "double-well", "--steps", "1", "--h", "0"], "the step (--h) must not be zero"),
+        (
+            &["run", "double-well", "--steps", "one"],
+            "invalid value 'one' for '--steps <N>': write a whole number that is not negative, such as 1000 or 1e6",
+        ),
+        (
+            &["run", "double-well", "--steps", "1.5e0"],
+            "invalid value '1.5e0' for '--steps <N>': write a whole number that is not negative, such as 1000 or 1e6",
+        ),
+        (
+            &["run", "double-well", "--steps", "-3"],
+            "invalid value '-3' for '--steps <N>': write a whole number that is not negative, such as 1000 or 1e6",
+        ),
+        (
+            &["run", "double-well", "--steps", "1", "--every", "0"],
+            "every how many nodes one is written (--every) must be at least 1",
+        ),
+        (
+            &["run", "double-well", "--steps", "1", "--q", "−1"],
+            "invalid value '−1' for '--q <Q,…>': write a number such as 0.5 or 1e-3; the minus of a number is the hyphen `-`",
+        ),
+        (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
+        (
+            &["run", "double-well", "--steps", "1", "--method", "euler"],
+            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, energy]",
+        ),
+        (
+            &["run", "double-well", "--steps", "1", "--start", "points"],
+            "fixed steps have no --start; add --method energy, or leave it out",
+        ),
+        (
+            &["run", "double-well", "--steps", "1", "--q", "1,2"],
+            "double-well has the coordinates q: give as many coordinates (--q), not 2",
+        ),
+        (&["run", "double-well", "--steps", "1", "-o", "x.txt"], "the output `x.txt` must end in .csv or .npy"),
+        (
+            &["run", "double-well", "--steps", "1", "-o", "no-such-folder/x.csv"],
+            "there is no folder `no-such-folder` for the output `no-such-folder/x.csv`; make it first",
+        ),
+        (&["run", "none.toml", "--steps", "1"], "none.toml: No such file or directory (os error 2)"),
+        (&["run", "a/none.yml"], "there is no system `a/none.yml`; the name of a scene file ends in .toml"),
+        (&["run"], "the following required arguments were not provided: <SYSTEM|SCENE.toml>"),
+        (&["fly"], "unrecognized subcommand 'fly'; `vi-lab help` shows what there is"),
+        (&["run", "kepler", "--stepz", "1"], "unexpected argument '--stepz' found; did you mean `--steps`?"),
+        (
+            &["run", "kepler", "--steps", "1", "--param", "mu=2"],
+            "unexpected argument '--param' found; --set NAME=VALUE sets a parameter, `vi-lab run --help` lists the options",
+        ),
+        (
+            &["run", "kepler", "--steps", "1", "--parameter", "mu=2"],
+            "unexpected argument '--parameter' found; --set NAME=VALUE sets a parameter, `vi-lab run --help` lists the options",
+        ),
+    ];
+    assert_refused(&cases);
+}
+
+#[test]
+fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
+    let cases: [(&[&str], &str); 9] = [
+        // Steps that change nothing.
+        (
+            &["run", "pendulum", "--h", "1e-300", "--until", "1"],
+            "the step (--h) 1e-300 is out of range: its square is no normal number in double precision; give one from \
+             1.49e-154 to 1.34e154",
+        ),
+        (
+            &["run", "pendulum", "--h", "1e-20", "--until", "1"],
+            "a step of h = 1e-20 is lost at t = 1 in double precision, where numbers are 2.22e-16 apart; give a larger \
+             --h, or times nearer to zero",
+        ),
+        (
+            &["run", "pendulum", "--until", "1e30"],
+            "a step of h = 0.01 is lost at t = 1e30 in double precision, where numbers are 141000000000000 apart; give \
+             a larger --h, or times nearer to zero",
+        ),
+        (
+            &["run", "pendulum", "--method", "energy", "--t", "1e17", "--steps", "1"],
+            "a step of h = 0.01 is lost at t = 1e17 in double precision, where numbers are 16 apart; give a larger --h, \
+             or times nearer to zero",
+        ),
+        (
+            // Every fourth step would round to no step.
+            &["run", "pendulum", "--t", "1e10", "--h", "1.5e-6", "--steps", "10"],
+            "a step of h = 1.5e-6 is lost at t = 10000000000 in double precision, where numbers are 1.91e-6 apart; give a \
+             larger --h, or times nearer to zero",
+        ),
+        (
+            &["run", "kepler", "--h", "1e-100", "--steps", "3"],
+            "the first step of h = 1e-100 changes neither q = [0.4, 0.0] nor p = [0.0, 2.0] in double precision, although \
+             v = [0.0, 2.0]; give a larger --h, or a start and parameters where the mass matrix is not singular",
+        ),
+        // Gigabytes that nobody asked for: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers of 8 bytes.
+        (
+            &["run", "pendulum", "--until", "1e7"],
+            "the output would have about 1000000000 rows, 114 GB; write fewer rows with --every 114, or allow more than 1 GB \
+             with --large-output",
+        ),
+        (
+            &["run", "fpu-chain", "--steps", "1e7", "-o", "x.npy"],
+            "the output would have about 10000000 rows, 2.88 GB; write fewer rows with --every 3, or allow more than 1 GB with \
+             --large-output",
+        ),
+        (
+            &["run", "pendulum", "--method", "energy", "--until", "1e30"],
+            "the output would have about 1e32 rows, 1.14e25 GB; shorten the run, or allow more than 1 GB with --large-output",
+        ),
+    ];
+    assert_refused(&cases);
+}
+
+#[test]
+fn a_mistake_in_a_scene_is_one_line_and_status_2() {
+    let file = temporary("mistaken.toml");
+    for (text, message) in [
+        ("system = \"kepler\"\nq = [0.4 0.0]\n", "entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`"),
+        ("system = \"kepler\"\ncolour = 1\n", "line 2: unknown field `colour`, expected one of `system`, `method`"),
+        ("steps = 1\n", "no system is named; add a line such as `system = \"kepler\"`"),
+    ] {
+        fs::write(&file, text).expect("the scene");
+        let (status, output, errors) = lab(&["run", path(&file)]);
+        assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
+        assert!(errors.starts_with(&format!("error: {}: ", path(&file))) && errors.contains(message), "{errors}");
+    }
+    fs::remove_file(file).expect("the file can be removed");
+}
+
+#[test]
+fn a_count_may_have_an_exponent() {
+    let (status, csv, errors) = lab(&["run", "double-well", "--steps", "1e2"]);
+    assert_eq!((status, errors.as_str(), rows(&csv).len()), (Some(0), "", 101));
+}
+
+#[test]
+fn every_nth_node_and_the_last_are_those_of_the_whole_run() {
+    for method in ["fixed", "energy"] {
+        let run = ["run", "kepler", "--method", method, "--steps", "25"];
+        let (_, all, _) = lab(&run);
+        let (status, some, errors) = lab(&[run.as_slice(), &["--every", "10"]].concat());
+        assert_eq!((status, errors.as_str()), (Some(0), ""));
+        let all = rows(&all);
+        let expected: Vec<Vec<f64>> = [0, 10, 20, 25].map(|index: usize| all[index].clone()).to_vec();
+        assert_eq!(bits(&rows(&some)), bits(&expected), "{method}");
+    }
+}
+
+#[test]
+fn the_two_energies_have_columns_of_their_own() {
+    let (status, csv, errors) = lab(&["run", "double-well", "--h", "0.01", "--steps", "1000"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let fixed = rows(&csv);
+    assert!(csv.contains(",,0.01\n") && fixed[0][4].is_nan(), "no interval ends in the first row");
+    let largest = |values: &dyn Fn(&[f64]) -> f64| fixed[1..].iter().map(|row| values(row).abs()).fold(0.0, f64::max);
+    // H = p²/2 + (q⁴ − q²)/2, and H − E = h²D/8 with D = V'² + v²V'' to leading order.
+    let by_hand = |row: &[f64]| (row[2].powi(2) + row[1].powi(4) - row[1].powi(2)) / 2.0;
+    let density = |row: &[f64]| {
+        let (q, p) = (row[1], row[2]);
+        (2.0 * q.powi(3) - q).powi(2) + p * p * (6.0 * q * q - 1.0)
+    };
+    assert!((fixed[0][3] - by_hand(&fixed[0])).abs() < 1e-16);
+    // Measured 2.8e-17.
+    let error = largest(&|row| row[3] - by_hand(row));
+    assert!(error < 1e-16, "H: {error:e}");
+    let excess = |row: &[f64]| 1e-4 / 8.0 * density(row);
+    let error = largest(&|row| row[3] - row[4] - excess(row)) / largest(&excess);
+    // Measured 6.7e-4, a term of higher order.
+    assert!(error < 1e-3, "H − E: {error}");
+    let (_, csv, _) = lab(&["run", "double-well", "--h", "0.01", "--steps", "1000", "--method", "energy"]);
+    let energy = rows(&csv);
+    let swing = |column: usize| energy.iter().map(|row| (row[column] - energy[0][column]).abs()).fold(0.0, f64::max);
+    // Measured: 0 and 3.8e-9.
+    assert!(swing(4) < 1e-16 && swing(3) > 1e-9, "E swings by {:e}, H by {:e}", swing(4), swing(3));
+}
+
+#[test]
+fn where_no_step_exists_the_advice_leads_on() {
+    let run = ["run", "double-well", "--q", "1.05", "--steps", "1000", "--every", "1000"];
+    let (status, _, errors) = lab(&[run.as_slice(), &["--method", "energy"]].concat());
+    let lines: Vec<&str> = errors.lines().collect();
+    assert_eq!((status, lines.len()), (Some(1), 3), "{errors}");
+    assert!(lines[1].starts_with("last good state: t = "), "{errors}");
+    assert!(lines[2].starts_with("what to do: take fixed steps with --method fixed"), "{errors}");
+    let (status, _, errors) = lab(&[run.as_slice(), &["--method", "fixed"]].concat());
+    assert_eq!((status, errors.as_str()), (Some(0), ""), "the advice leads on");
+}
+
+#[test]
+fn a_singular_mass_matrix_is_status_1_with_the_initial_state() {
+    let file = temporary("singular.csv");
+    let run = ["run", "pendulum", "--set", "l=0", "--v", "1", "--steps", "10", "--method", "energy"];
+    let (status, output, errors) = lab(&[run.as_slice(), &["-o", path(&file)]].concat());
+    assert_eq!((status, output.as_str()), (Some(1), ""));
+    assert!(errors.contains(" is singular at t = "), "{errors}");
+    assert!(errors.ends_with("\nlast good state: t = 0, q = [1.0], v = [1.0], the initial state\n"), "{errors}");
+    assert!(!file.exists(), "where no run starts no file is made");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_whole_rows() {
+    let (csv, npy) = (temporary("interrupted.csv"), temporary("interrupted.npy"));
+    // Longer than any test lasts.
+    let run = ["run", "kepler", "--steps", "1e10", "--every", "100", "--large-output"];
+    for (signal, name, status) in [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143)] {
+        for file in [&csv, &npy] {
+            let child = start(&[run.as_slice(), &["-o", path(file)]].concat());
+            while fs::metadata(file).map_or(0, |file| file.len()) < 150_000 {
+                std::thread::sleep(std::time::Duration::from_millis(10));
+            }
+            send(signal, &child);
+            let Output { status: ended, stderr, .. } = child.wait_with_output().expect("the command ends");
+            let errors = String::from_utf8(stderr).expect("text");
+            assert_eq!(ended.code(), Some(status), "{errors}");
+            let said = errors.lines().last().expect("a line that says how far the run came");
+            assert!(said.starts_with(&format!("error: interrupted by {name} after ")), "{errors}");
+            let bytes = fs::read(file).expect("the output");
+            let rows = if file == &npy { array(&bytes, 8) } else { rows(&String::from_utf8(bytes).expect("text")) };
+            assert!(rows.len() > 900 && rows.iter().all(|row| row.len() == 8));
+            let last = rows.last().expect("rows")[0];
+            assert!(said.contains(&format!(" steps at t = {last}; ")), "{said} {last}");
+            fs::remove_file(file).expect("the file can be removed");
+        }
+        let mut child = start(&run);
+        let mut output = BufReader::new(child.stdout.take().expect("the output"));
+        let mut text = String::new();
+        for _ in 0..1000 {
+            output.read_line(&mut text).expect("a line");
+        }
+        send(signal, &child);
+        output.read_to_string(&mut text).expect("the rest");
+        assert_eq!(child.wait().expect("the command ends").code(), Some(status));
+        assert!(text.ends_with('\n') && rows(&text).iter().all(|row| row.len() == 8));
+    }
+    fs::remove_file(format!("{}.json", npy.display())).expect("the file can be removed");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_is_full_leaves_whole_rows() {
+    let (csv, npy) = (temporary("full.csv"), temporary("full.npy"));
+    for file in [&csv, &npy] {
+        // A file may have 200 blocks of 512 bytes, and what is written beyond fails.
+        let limited = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
+        let lab = env!("CARGO_BIN_EXE_vi-lab");
+        let run = ["-c", limited, lab, "run", "kepler", "--steps", "1e5", "-o", path(file)];
+        let Output { status, stderr, .. } = Command::new("sh").args(run).output().expect("the shell runs");
+        let errors = String::from_utf8(stderr).expect("text");
+        assert_eq!((status.code(), errors.lines().count()), (Some(1), 1), "{errors}");
+        assert!(errors.starts_with(&format!("error: {}: ", path(file))), "{errors}");
+        let bytes = fs::read(file).expect("the output");
+        let rows = if file == &npy { array(&bytes, 8) } else { rows(&String::from_utf8(bytes).expect("text")) };
+        assert!(rows.len() > 300 && rows.iter().all(|row| row.len() == 8), "{} rows", rows.len());
+        fs::remove_file(file).expect("the file can be removed");
+    }
+    fs::remove_file(format!("{}.json", npy.display())).expect("the file can be removed");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_npy_file_cannot_be_a_pipe_and_a_csv_file_can() {
+    let (csv, npy) = (temporary("pipe.csv"), temporary("pipe.npy"));
+    for pipe in [&csv, &npy] {
+        assert!(Command::new("mkfifo").arg(pipe).status().expect("mkfifo runs").success());
+    }
+    let (status, _, errors) = lab(&["run", "kepler", "--steps", "5", "-o", path(&npy)]);
+    assert_eq!((status, errors.lines().count()), (Some(2), 1));
+    assert!(
+        errors.contains("is a pipe or a device, and the head of an NPY file is written last; write CSV"),
+        "{errors}"
+    );
+    let child = start(&["run", "kepler", "--steps", "5", "-o", path(&csv)]);
+    let text = fs::read_to_string(&csv).expect("what the command writes");
+    let Output { status, .. } = child.wait_with_output().expect("the command ends");
+    assert_eq!((status.code(), rows(&text).len()), (Some(0), 6));
+    for pipe in [csv, npy] {
+        fs::remove_file(pipe).expect("the pipe can be removed");
+    }
+}
+
+#[test]
+fn output_that_nobody_reads_is_status_141() {
+    for method in ["fixed", "energy"] {
+        let mut child = start(&["run", "kepler", "--method", method, "--steps", "1e5"]);
+        let mut first = String::new();
+        // Read one line and go away, as `head -1` does.
+        BufReader::new(child.stdout.take().expect("the output")).read_line(&mut first).expect("a line");
+        let Output { status, stderr, .. } = child.wait_with_output().expect("the command ends");
+        assert!(first.starts_with("# vi-lab "), "{first}");
+        assert_eq!((status.code(), String::from_utf8(stderr).as_deref()), (Some(141), Ok("")));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_of_days_says_so() {
+    let mut child = start(&["run", "pendulum", "--steps", "1e14", "--every", "1e13"]);
+    let mut said = String::new();
+    BufReader::new(child.stderr.take().expect("messages")).read_line(&mut said).expect("a line");
+    send("-INT", &child);
+    let Output { status, stdout, .. } = child.wait_with_output().expect("the command ends");
+    assert!(said.starts_with("this run takes ") && said.contains(" days more "), "{said}");
+    let rows = rows(&String::from_utf8(stdout).expect("text"));
+    assert_eq!((status.code(), rows.len()), (Some(130), 2), "the first node and the last");
+}
+
+#[test]
+fn npy_holds_the_numbers_of_csv() {
+    let (csv, npy) = (temporary("same.csv"), temporary("same.npy"));
+    for file in [&csv, &npy] {
+        let (status, _, errors) = lab(&["run", "kepler", "--steps", "20", "-o", path(file)]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""));
+    }
+    let numbers = array(&fs::read(&npy).expect("the array"), 8);
+    let text = fs::read_to_string(&csv).expect("the table");
+    assert_eq!((numbers.len(), bits(&numbers)), (21, bits(&rows(&text))), "CSV reads back to the same bits");
+    let beside = PathBuf::from(format!("{}.json", npy.display()));
+    let description: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&beside).expect("the description")).expect("JSON");
+    assert_eq!(description["columns"], serde_json::json!(["t", "x", "y", "p_x", "p_y", "H", "E", "h"]));
+    assert_eq!(description["parameters"], serde_json::json!({"mu": 1.0}));
+    for file in [csv, npy, beside] {
+        fs::remove_file(file).expect("the file can be removed");
+    }
+}
+
+#[test]
+fn a_scene_is_run_and_the_command_line_overrides_it() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/damped-oscillator.toml");
+    let (status, csv, errors) = lab(&["run", scene]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(csv.contains("# parameters: m = 1, k = 4, c = 0.02\n"));
+    let last = rows(&csv).pop().expect("rows");
+    assert!(last[0] >= 100.0 && last[0] < 100.1, "ends at {}", last[0]);
+    // h/h0 at t = 100 for ζ = 0.005, mathematics of the step law: 2.712.
+    assert!((last[5] / 0.01 - 2.712).abs() < 5e-4, "{}", last[5]);
+    let (status, csv, _) = lab(&["run", scene, "--steps", "3", "--method", "fixed", "--set", "c=0.5"]);
+    assert_eq!((status, rows(&csv).len()), (Some(0), 4));
+    assert!(csv.contains("# parameters: m = 1, k = 4, c = 0.5\n"));
+}
+
+#[test]
+fn every_scene_runs() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
+    let mut scenes = 0;
+    for entry in fs::read_dir(folder).expect("the scenes") {
+        let file = entry.expect("an entry").path();
+        if file.extension().is_some_and(|extension| extension == "toml") {
+            let (status, _, errors) = lab(&["run", path(&file), "--steps", "5"]);
+            assert_eq!((status, errors.as_str()), (Some(0), ""), "{}", file.display());
+            scenes += 1;
+        }
+    }
+    assert!(scenes > 0);
+}
+
+#[test]
+fn the_map_of_a_system_is_a_page_with_its_files() {
+    let out = temporary("stability");
+    let (status, output, errors) = lab(&[
+        "stability",
+        "double-well",
+        "--columns",
+        "20",
+        "--x",
+        "q=-1.5:1.5",
+        "--y",
+        "v_q=-1:1",
+        "--out",
+        path(&out),
+    ]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert_eq!(output.trim(), out.join("index.html").display().to_string());
+    for name in ["index.html", "energy.svg", "energy.csv", "fixed.svg", "fixed.csv"] {
+        assert!(fs::metadata(out.join(name)).is_ok_and(|file| file.len() > 500), "{name}");
+    }
+    let csv = fs::read_to_string(out.join("energy.csv")).expect("the cells");
+    assert!(csv.contains("# 0: runs to the end\n# 2: no forward step\n") && csv.contains("# curve, D = 0: ("), "{csv}");
+    let cells: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
+    assert_eq!((cells.len(), cells[0].split(',').count()), (12, 21));
+    // Rest at the bottom of the right well runs, a run across the barrier ends.
+    let cell =
+        |row: usize, column: usize| cells[row + 1].split(',').nth(column + 1).and_then(|cell| cell.parse::<u8>().ok());
+    assert_eq!(cell(5, 14), Some(0));
+    assert!(cell(10, 14).is_some_and(|class| class > 0));
+    fs::remove_dir_all(out).expect("the folder can be removed");
+}
+
+#[test]
+fn every_method_is_compared_and_a_run_that_ends_says_why() {
+    let out = temporary("work-precision");
+    // A driven double well: its energy-preserving runs end, the others reach the end.
+    let (status, output, errors) = lab(&["work-precision", "double-well-duffing", "--quick", "--out", path(&out)]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let methods = ["fixed step", "Suzuki 4", "Kahan–Li 6", "Kahan–Li 8", "energy-preserving", "DOP853"];
+    assert!(methods.iter().all(|method| output.contains(method)), "{output}");
+    assert!(output.trim_end().ends_with(path(&out.join("index.html"))), "{output}");
+    for name in ["work-precision", "evaluations", "order", "energy"] {
+        assert!(fs::metadata(out.join(format!("{name}.svg"))).is_ok_and(|file| file.len() > 5000), "{name}");
+        assert!(fs::metadata(out.join(format!("{name}.csv"))).is_ok_and(|file| file.len() > 500), "{name}");
+    }
+    let runs = fs::read_to_string(out.join("runs.csv")).expect("the runs");
+    for method in methods {
+        let of: Vec<&str> = runs.lines().filter(|line| line.starts_with(method)).collect();
+        let ended = of.iter().filter(|line| line.contains("no energy-preserving step leads forward")).count();
+        assert!(of.len() >= 9, "{method}: {} runs", of.len());
+        assert_eq!(ended, if method == "energy-preserving" { of.len() } else { 0 }, "{method}");
+    }
+    let page = fs::read_to_string(out.join("index.html")).expect("the page");
+    let said = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step leads forward from t = ";
+    assert!(page.contains(said) && page.contains("(debug build") | page.contains("(release build"), "the page says so");
+    fs::remove_dir_all(out).expect("the folder can be removed");
+}
+
+#[test]
+fn wrong_axes_are_status_2() {
+    let cases: [(&[&str], &str); 5] = [
+        (&["stability", "double-wel"], "there is no system `double-wel`; did you mean `double-well`?"),
+        (&["stability", "kepler", "--x", "z=0:1"], "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h"),
+        (&["stability", "kepler", "--x", "x=1"], "an axis is given as NAME=LOW:HIGH, with LOW below HIGH, not `x=1`"),
+        (&["stability", "kepler", "--x", "h=1:2"], "both axes vary `h`; give two different ones with --x and --y"),
+        (&["stability", "--columns", "5"], "invalid value '5' for '--columns <N>': 5 is not in 10..=596"),
+    ];
+    assert_refused(&cases);
+    let missing = temporary("stability-file");
+    fs::write(&missing, "a file").expect("a file");
+    let (status, _, errors) = lab(&["stability", "double-well", "--columns", "10", "--out", path(&missing)]);
+    assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
+    fs::remove_file(missing).expect("the file can be removed");
+}
+
+#[test]
+fn a_file_is_expanded_stage_by_stage() {
+    let kepler = concat!(env!("CARGO_MANIFEST_DIR"), "/../vi-systems/src/kepler.rs");
+    for (stage, line) in [
+        ("syntax", "    let r = sqrt(x^2 + y^2);"),
+        ("model", "    p_x = dot(x)"),
+        ("discrete", "    (D4 L_d)_x = L_v_x + h*L_x/2"),
+        ("program", "momentum: 0 operations"),
+        ("rust", "    impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {"),
+    ] {
+        let (status, output, errors) = lab(&["expand", kepler, "--stage", stage]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{stage}");
+        assert!(output.lines().any(|shown| shown == line), "{stage}: {output}");
+    }
+    let (_, rust, _) = lab(&["expand", kepler]);
+    let documented = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/expanded/kepler.rs");
+    assert_eq!(rust, fs::read_to_string(documented).expect("the documented expansion"));
+}
+
+#[test]
+fn mistakes_in_a_file_are_shown_at_their_places() {
+    let file = temporary("wrong.rs");
+    let right = "lagrangian! { struct Right { coord x; L = dot(x)^2; discretize midpoint; } }";
+    let wrong = "lagrangian! { struct Wrong { coord x; L = a * dot(x)^2; discretize midpoint; } }";
+    fs::write(&file, format!("{wrong}\nmod inner {{\n    {right}\n}}\n")).expect("the file");
+    let (status, output, errors) = lab(&["expand", path(&file), "--stage", "syntax"]);
+    assert_eq!((status, errors.as_str(), output.matches("struct").count()), (Some(0), "", 2), "the syntax is right");
+    let (status, output, errors) = lab(&["expand", path(&file), "--stage", "model"]);
+    assert_eq!(status, Some(1));
+    assert!(output.starts_with("Right\n"), "what is right is shown: {output}");
+    let begins = format!("error: unknown name `a`\n --> {}:1:43\n  |\n1 | {wrong}\n  | {:>43}\n", path(&file), "^");
+    assert!(errors.starts_with(&begins), "{errors}");
+    for (text, message) in
+        [("fn main() {}\n", "declares no system with `lagrangian!`"), ("fn 1() {}\n", ":1:4: expected identifier")]
+    {
+        fs::write(&file, text).expect("the file");
+        let (status, output, errors) = lab(&["expand", path(&file)]);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{errors}");
+        assert!(errors.contains(message) && errors.lines().count() == 1, "{errors}");
+    }
+    fs::remove_file(&file).expect("the file can be removed");
+    let (status, _, errors) = lab(&["expand", path(&file)]);
+    assert_eq!((status, errors.lines().count()), (Some(2), 1), "{errors}");
+}
+
+#[test]
+fn a_system_is_explained_in_text_and_in_latex() {
+    let (status, text, errors) = lab(&["explain", "damped-oscillator"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    for line in ["    f_x = -c*dot(x)", "    A_x,x = m + c*h/2 + k*h^2/4", "    momentum               1"] {
+        assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
+    }
+    let (status, latex, errors) = lab(&["explain", "DampedOscillator", "--latex"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(latex.contains("A_{x,x} &= m + \\frac{c h}{2} + \\frac{k h^{2}}{4}"), "{latex}");
+    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/../vi-systems/src/damped_oscillator.rs");
+    assert_eq!(lab(&["explain", own]).1, text, "a file is explained as a ready system is");
+    let (status, _, errors) = lab(&["explain", "keppler"]);
+    assert_eq!((status, errors.as_str()), (Some(2), "error: there is no system `keppler`; did you mean `kepler`?\n"));
+}

@@ -1,9 +1,0 @@
-//! The command `vi-lab`.
-
-mod lab;
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    lab::main()
-}
