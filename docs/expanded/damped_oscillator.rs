@@ -414,7 +414,7 @@ const _: () = {
 
         /// The residual, its magnitude, and
         ///
-        /// `p1 − p0_x = h*f_x + h*L_x`
+        /// `p1_x − p0_x = h*f_x + h*L_x`
         ///
         /// 32 operations.
         #[inline(always)]

@@ -592,9 +592,9 @@ const _: () = {
 
         /// The residual, its magnitude, and
         ///
-        /// `p1 − p0_θ1 = h*L_θ1`
+        /// `p1_θ1 − p0_θ1 = h*L_θ1`
         ///
-        /// `p1 − p0_θ2 = h*L_θ2`
+        /// `p1_θ2 − p0_θ2 = h*L_θ2`
         ///
         /// 81 operations.
         #[inline(always)]

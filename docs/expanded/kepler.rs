@@ -473,9 +473,9 @@ const _: () = {
 
         /// The residual, its magnitude, and
         ///
-        /// `p1 − p0_x = h*L_x`
+        /// `p1_x − p0_x = h*L_x`
         ///
-        /// `p1 − p0_y = h*L_y`
+        /// `p1_y − p0_y = h*L_y`
         ///
         /// 44 operations.
         #[inline(always)]

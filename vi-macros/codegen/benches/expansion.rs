@@ -12,6 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
+use vi_codegen::program::FunctionId;
 use vi_codegen::{discrete, model, program, syntax};
 
 fn main() {
@@ -58,8 +59,8 @@ fn operations(text: &str) -> [usize; 2] {
     let mut model = syntax::parse::system(text.parse().expect("tokens")).and_then(model::check::model).expect("right");
     let system = discrete::system::system(&mut model).expect("a right rule");
     let program = program::program(&mut model, &system).expect("a program");
-    ["momentum_equation", "extended_system"]
-        .map(|name| program.function(name).expect("every function is there").operation_count())
+    [FunctionId::MomentumEquation, FunctionId::ExtendedSystem]
+        .map(|id| program.function(id).expect("every function is there").operation_count())
 }
 
 /// A crate beside this one's build, of one file that depends on `vi-core`.

@@ -19,7 +19,7 @@ pub use pattern::Pattern;
 
 use crate::discrete::DiscreteSystem;
 use crate::model::Model;
-use crate::program::{Function, Operation, OperationId, Program};
+use crate::program::{Function, FunctionId, Operation, OperationId, Output, Program};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::Table;
@@ -56,7 +56,7 @@ pub struct Findings {
     /// The momentum row and what the momenta gain are linear in what changes from step to step, their coefficients free of it.
     pub affine: bool,
     /// Operations of each function, in the order in which they are emitted.
-    pub operations: Vec<(&'static str, usize)>,
+    pub operations: Vec<(FunctionId, usize)>,
 }
 
 /// On what the Jacobian A depends, from little to much.
@@ -76,36 +76,29 @@ pub enum Dependence {
 #[must_use]
 pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
     let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
-    let rows = |name: &str| program.function(name).map(|function| (function, matrix(function, model.dimension())));
-    let (equation, momentum) = (rows("momentum_equation"), program.function("momentum"));
+    let matrix = |id: FunctionId, output: Output| program.function(id).map(|of| (of, of.results.matrix(output)));
+    let jacobian = matrix(FunctionId::MomentumEquation, Output::Jacobian);
+    let mass = matrix(FunctionId::Acceleration, Output::Mass);
+    let momentum = program.function(FunctionId::Momentum);
     let velocities =
         |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_) | Symbol::Continuous(Variable::Velocity(_)));
     let parameters = |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_));
-    let takes = |function: &Function, rows: &[Vec<OperationId>], allowed: &dyn Fn(&Symbol) -> bool| {
-        inputs(function, rows).iter().all(allowed)
-    };
     Findings {
         size: model.dimension(),
         autonomous: system.continuous.autonomous,
         forced: model.forced,
         cyclic: cyclic.collect(),
-        separable: momentum.is_some_and(|function| takes(function, &function.results, &velocities)),
-        constant_mass: rows("acceleration").is_some_and(|(function, rows)| takes(function, rows, &parameters)),
-        mass: rows("acceleration").map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
-        smooth: equation.is_some_and(|(function, _)| smooth(function)),
-        jacobian: equation.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
-        pattern: equation.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
-        symmetric: equation.is_some_and(|(_, rows)| symmetric(rows)),
-        affine: program.function("momentum_residual").is_some_and(affine),
-        operations: program.functions().map(|function| (function.name, function.operation_count())).collect(),
+        separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
+        constant_mass: mass
+            .is_some_and(|(function, rows)| inputs(function, rows.iter().flatten()).iter().all(parameters)),
+        mass: mass.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
+        smooth: jacobian.is_some_and(|(function, _)| smooth(function)),
+        jacobian: jacobian.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
+        pattern: jacobian.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
+        symmetric: jacobian.is_some_and(|(_, rows)| symmetric(rows)),
+        affine: program.function(FunctionId::MomentumResidual).is_some_and(affine),
+        operations: program.functions().map(|function| (function.id, function.operation_count())).collect(),
     }
-}
-
-/// The rows of the matrix among the results of a function: A stands last, M first.
-fn matrix(function: &Function, dimension: usize) -> &[Vec<OperationId>] {
-    let results = &function.results;
-    let first = if function.name == "acceleration" { 0 } else { results.len().saturating_sub(dimension) };
-    results.get(first..first + dimension).unwrap_or_default()
 }
 
 /// The pattern of a matrix among the results of a function.
@@ -118,15 +111,15 @@ fn filled(function: &Function, rows: &[Vec<OperationId>]) -> Pattern {
 /// Whether a function has no kink and no jump.
 fn smooth(function: &Function) -> bool {
     use vi_expr::Function::{Abs, Atan2, Sign};
-    let needed = function.operations.needed(&function.results);
-    !needed
+    !function
+        .needed()
         .into_iter()
         .any(|id| matches!(function.operations.get(id), Operation::Call(Abs | Sign, _) | Operation::Call2(Atan2, ..)))
 }
 
 /// What these results take as input.
-fn inputs(function: &Function, rows: &[Vec<OperationId>]) -> BTreeSet<Symbol> {
-    let needed = function.operations.needed(rows).into_iter();
+fn inputs<'a>(function: &Function, results: impl Iterator<Item = &'a OperationId>) -> BTreeSet<Symbol> {
+    let needed = function.operations.needed(results).into_iter();
     needed
         .filter_map(|id| match function.operations.get(id) {
             Operation::Input(symbol) => Some(symbol.clone()),
@@ -142,16 +135,16 @@ fn dependence(function: &Function, rows: &[Vec<OperationId>]) -> Dependence {
         Symbol::StepVelocity(_) => Dependence::Unknown,
         _ => Dependence::Node,
     };
-    inputs(function, rows).into_iter().map(of).max().unwrap_or(Dependence::Parameters)
+    inputs(function, rows.iter().flatten()).into_iter().map(of).max().unwrap_or(Dependence::Parameters)
 }
 
 /// Whether residual and increment of a momentum row are linear in what changes from step to step, but for a constant.
 fn affine(function: &Function) -> bool {
     // The degree of each operation; `None` where it is no polynomial, or one of degree 2 or more.
     let mut degrees: Table<OperationId, Option<u8>> = Table::default();
-    let [residual, _, increment] = &function.results[..] else { return false };
-    let rows = [residual.clone(), increment.clone()];
-    for id in function.operations.needed(&rows) {
+    let residual = function.results.vector(Output::Residual);
+    let increment = function.results.vector(Output::MomentumIncrement);
+    for id in function.operations.needed(residual.iter().chain(increment)) {
         let degree = |id: &OperationId| degrees.get(*id).copied().flatten();
         let found = match function.operations.get(id) {
             Operation::Constant(_) | Operation::Input(Symbol::Parameter(_) | Symbol::Step) => Some(0),
@@ -164,7 +157,7 @@ fn affine(function: &Function) -> bool {
         };
         degrees.insert(id, found.filter(|degree| *degree <= 1));
     }
-    rows.iter().flatten().all(|id| degrees.get(*id).copied().flatten().is_some())
+    residual.iter().chain(increment).all(|id| degrees.get(*id).copied().flatten().is_some())
 }
 
 fn symmetric(rows: &[Vec<OperationId>]) -> bool {

@@ -3,7 +3,7 @@
 
 use crate::families;
 use crate::families::{LENGTHS, LINKS};
-use vi_codegen::program::{Operation, OperationId, Program};
+use vi_codegen::program::{FunctionId, Operation, OperationId, Output, Program};
 use vi_codegen::symbol::{Symbol, Variable};
 use vi_codegen::{discrete, model, program, syntax};
 use vi_expr::Function;
@@ -17,8 +17,8 @@ fn lowered(text: &str) -> Program {
 
 /// Operations of the two functions that a step evaluates in every iteration, and of what measures it.
 fn counts(program: &Program) -> [usize; 3] {
-    ["momentum_equation", "extended_system", "momentum_residual"]
-        .map(|name| program.function(name).expect("every function is there").operation_count())
+    [FunctionId::MomentumEquation, FunctionId::ExtendedSystem, FunctionId::MomentumResidual]
+        .map(|id| program.function(id).expect("every function is there").operation_count())
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn the_chain_grows_with_its_length() {
 fn a_longer_chain_has_the_same_loops() {
     let [short, long] = [16, 64].map(|length| {
         let program = lowered(&families::chain(length));
-        let equation = program.function("momentum_equation").expect("every function is there");
+        let equation = program.function(FunctionId::MomentumEquation).expect("every function is there");
         let loops = equation.families().members;
         let inside: usize = loops.iter().map(Vec::len).sum();
         for members in &loops {
@@ -74,9 +74,8 @@ fn the_pendulum_grows_with_its_pairs() {
 fn the_jacobian_of_the_chain_keeps_its_zeros() {
     for length in [1, 2, 5, 16] {
         let program = lowered(&families::chain(length));
-        let equation = program.function("momentum_equation").expect("every function is there");
-        // After the residual come the rows.
-        let rows = &equation.results[1..];
+        let equation = program.function(FunctionId::MomentumEquation).expect("every function is there");
+        let rows = equation.results.matrix(Output::Jacobian);
         assert_eq!(rows.len(), length);
         for (i, row) in rows.iter().enumerate() {
             for (j, entry) in row.iter().enumerate() {
@@ -88,19 +87,24 @@ fn the_jacobian_of_the_chain_keeps_its_zeros() {
 }
 
 /// Sines and cosines that a function calls.
-fn sines(program: &Program, name: &str) -> usize {
-    let function = program.function(name).expect("every function is there");
+fn sines(program: &Program, id: FunctionId) -> usize {
+    let function = program.function(id).expect("every function is there");
     let called =
         |id: &OperationId| matches!(function.operations.get(*id), Operation::Call(Function::Sin | Function::Cos, _));
-    function.operations.needed(&function.results).iter().filter(|id| called(id)).count()
+    function.needed().iter().filter(|id| called(id)).count()
 }
 
 #[test]
 fn the_pendulum_takes_one_sine_and_cosine_a_link() {
     for links in LINKS {
         let program = lowered(&families::pendulum(links));
-        for name in ["momentum_equation", "extended_system", "momentum_residual", "extended_residual"] {
-            assert_eq!(sines(&program, name), 2 * links, "{name}, {links} links");
+        for id in [
+            FunctionId::MomentumEquation,
+            FunctionId::ExtendedSystem,
+            FunctionId::MomentumResidual,
+            FunctionId::ExtendedResidual,
+        ] {
+            assert_eq!(sines(&program, id), 2 * links, "{id:?}, {links} links");
         }
     }
 }
@@ -115,7 +119,7 @@ fn sums_of_angles_take_the_signs_that_they_have() {
             discretize midpoint;
         }",
     );
-    let function = program.function("lagrangian").expect("every function is there");
+    let function = program.function(FunctionId::Lagrangian).expect("every function is there");
     let places = (0..100).map(|k| (0.07 * f64::from(k) - 3.0, (0.13 * f64::from(k)).rem_euclid(6.0) - 3.0));
     let error = places.map(|(a, b)| {
         let found = function.evaluate(&mut |symbol| match symbol {
@@ -131,5 +135,5 @@ fn sums_of_angles_take_the_signs_that_they_have() {
     let error = error.fold(0.0, f64::max);
     assert!(error < 1.5e-14, "{error:e}");
     // Of a, of b, of 2a, each once.
-    assert_eq!(sines(&program, "lagrangian"), 6);
+    assert_eq!(sines(&program, FunctionId::Lagrangian), 6);
 }

@@ -864,9 +864,9 @@ const _: () = {
 
         /// The residual, its magnitude, and
         ///
-        /// `p1 − p0_q[0] = h*f_q[0] + h*L_q[0]`
+        /// `p1_q[0] − p0_q[0] = h*f_q[0] + h*L_q[0]`
         ///
-        /// `p1 − p0_q[1] = h*f_q[1] + h*L_q[1]`
+        /// `p1_q[1] − p0_q[1] = h*f_q[1] + h*L_q[1]`
         ///
         /// 106 operations.
         #[inline(never)]

@@ -12,7 +12,7 @@ use super::loops::{Loops, Member, Writing as Loop, Written};
 use super::names::Names;
 use super::pieces::{Statement, Writing, pieces};
 use crate::model::Model;
-use crate::program::{Function, Operation, OperationId};
+use crate::program::{Function, Operation, OperationId, Results};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
@@ -23,8 +23,8 @@ use vi_expr::{Function as Elementary, Table};
 pub(super) struct Body {
     /// The statements before the results.
     pub(super) statements: TokenStream,
-    /// The results, in their groups.
-    pub(super) results: Vec<Vec<Entry>>,
+    /// The results.
+    pub(super) results: Results<Entry>,
     /// What is read of the inputs, with its names.
     pub(super) inputs: BTreeMap<Symbol, Ident>,
     /// Vectors that are read as a whole, by their components 0, with their names.
@@ -103,7 +103,7 @@ struct Printer<'a> {
 /// more operations than `limit`.
 pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place, limit: usize) -> Body {
     let long = function.operation_count() > limit;
-    let (names, needed) = (Names::new(model, points), function.operations.needed(&function.results));
+    let (names, needed) = (Names::new(model, points), function.needed());
     if let Some(loops) = long.then(|| Loops::of(function, &needed, limit)).flatten() {
         return Printer::new(model, function, names, loops.uses()).in_loops(&loops, &needed, place);
     }
@@ -128,7 +128,7 @@ impl<'a> Printer<'a> {
             function,
             names,
             uses,
-            results: function.results.iter().flatten().map(|id| (*id, ())).collect(),
+            results: function.results.entries().map(|id| (*id, ())).collect(),
             written: Table::default(),
             named: Table::default(),
             inputs: BTreeMap::new(),
@@ -143,8 +143,7 @@ impl<'a> Printer<'a> {
 
     /// The printed body.
     fn body(self, statements: TokenStream) -> Body {
-        let row = |group: &Vec<OperationId>| group.iter().map(|id| self.result(*id)).collect();
-        let results = self.function.results.iter().map(row).collect();
+        let results = self.function.results.map(|id| self.result(*id));
         Body { statements, results, inputs: self.inputs, vectors: self.vectors }
     }
 
@@ -333,8 +332,8 @@ impl Printer<'_> {
         let operations = &self.function.operations;
         let inputs =
             self.inputs.keys().filter_map(|symbol| operations.find(&Operation::Input(symbol.clone()))).collect();
-        let results = self.function.results.iter().flatten().copied().collect();
-        let (system, function) = (&self.model.name, self.function.name);
+        let results = self.function.results.entries().copied().collect();
+        let (system, function) = (&self.model.name, self.function.id.name());
         let writing = Writing { inputs, results, system, function, prelude, named: &self.named };
         let pieces = pieces(&self.statements, limit, &writing, &mut self.names);
         self.written.extend(pieces.results.into_iter().map(|(id, place)| (id, Formula::atom(place, 0))));

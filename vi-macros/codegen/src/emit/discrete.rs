@@ -3,6 +3,7 @@
 use super::Source;
 use super::body::{Body, Place, part, parts};
 use super::lagrangian::vector_of;
+use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -12,15 +13,15 @@ use vi_expr::Expr;
 pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension, of) = (&source.model.name, source.dimension(), &source.system.slots);
     let functions = [
-        number(source, "ld", of.ld),
-        number(source, "d1_ld", of.d1_ld),
-        vector(source, "d2_ld", &of.d2_ld),
-        number(source, "d3_ld", of.d3_ld),
-        vector(source, "d4_ld", &of.d4_ld),
-        vector(source, "fd_minus", &of.fd_minus),
-        vector(source, "fd_plus", &of.fd_plus),
-        number(source, "gd_minus", of.gd_minus),
-        number(source, "gd_plus", of.gd_plus),
+        number(source, FunctionId::Ld, of.ld),
+        number(source, FunctionId::D1Ld, of.d1_ld),
+        vector(source, FunctionId::D2Ld, &of.d2_ld),
+        number(source, FunctionId::D3Ld, of.d3_ld),
+        vector(source, FunctionId::D4Ld, &of.d4_ld),
+        vector(source, FunctionId::FdMinus, &of.fd_minus),
+        vector(source, FunctionId::FdPlus, &of.fd_plus),
+        number(source, FunctionId::GdMinus, of.gd_minus),
+        number(source, FunctionId::GdPlus, of.gd_plus),
     ];
     quote! {
         impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
@@ -51,13 +52,14 @@ fn interval_parts(source: &Source, body: &Body) -> TokenStream {
 }
 
 /// A number in the slots.
-fn number(source: &Source, name: &str, expr: Expr) -> TokenStream {
-    let formula = source.formula(name, expr);
-    let Some((body, documentation)) = source.documented(name, &formula, Place::Interval) else {
+fn number(source: &Source, id: FunctionId, expr: Expr) -> TokenStream {
+    let formula = source.formula(id.name(), expr);
+    let Some((body, documentation)) = source.documented(id, &formula, Place::Interval) else {
         return TokenStream::new();
     };
-    let (name, dimension) = (format_ident!("{name}"), source.dimension());
-    let (inputs, statements, result) = (interval_parts(source, &body), &body.statements, &body.results[0][0]);
+    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
+    let (inputs, statements) = (interval_parts(source, &body), &body.statements);
+    let result = body.results.number(Output::Value);
     quote! {
         #documentation
         #[inline]
@@ -68,14 +70,14 @@ fn number(source: &Source, name: &str, expr: Expr) -> TokenStream {
 }
 
 /// A vector in the slots.
-fn vector(source: &Source, name: &str, exprs: &[Expr]) -> TokenStream {
-    let formula = source.formulas(name, exprs);
-    let Some((body, documentation)) = source.documented(name, &formula, Place::Interval) else {
+fn vector(source: &Source, id: FunctionId, exprs: &[Expr]) -> TokenStream {
+    let formula = source.formulas(id.name(), exprs);
+    let Some((body, documentation)) = source.documented(id, &formula, Place::Interval) else {
         return TokenStream::new();
     };
-    let (name, dimension) = (format_ident!("{name}"), source.dimension());
+    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
     let (inputs, statements) = (interval_parts(source, &body), &body.statements);
-    let result = vector_of(&body.results[0]);
+    let result = vector_of(body.results.vector(Output::Value));
     quote! {
         #documentation
         #[inline]

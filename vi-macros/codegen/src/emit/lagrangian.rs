@@ -5,6 +5,7 @@ use super::body::{Body, Entry, Place, body, state_parts};
 use super::entries;
 use super::matrix::matrix;
 use crate::model::Coordinate;
+use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -22,10 +23,10 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let parameters: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
     let names = parameters.iter().map(ToString::to_string);
     let functions = [
-        number(source, "lagrangian", &source.formula("L", of.lagrangian)),
-        number(source, "energy", &source.formula("v·L_v − L", of.energy)),
-        vector(source, "momentum", &source.formulas("p", &of.momentum)),
-        vector(source, "force", &source.formulas("f", &of.force)),
+        number(source, FunctionId::Lagrangian, &source.formula("L", of.lagrangian)),
+        number(source, FunctionId::Energy, &source.formula("v·L_v − L", of.energy)),
+        vector(source, FunctionId::Momentum, &source.formulas("p", &of.momentum)),
+        vector(source, FunctionId::Force, &source.formulas("f", &of.force)),
         acceleration(source),
         step_density(source, of.step_density),
         non_finite(source),
@@ -64,18 +65,21 @@ impl Source<'_> {
         }
     }
 
-    /// One formula per coordinate.
+    /// One formula per coordinate, which is the index of its name.
     pub(super) fn formulas(&self, name: &str, exprs: &[Expr]) -> String {
+        self.named_formulas(exprs, |coordinate| format!("{name}_{coordinate}"))
+    }
+
+    /// One formula per coordinate, by the name that it has for it.
+    pub(super) fn named_formulas(&self, exprs: &[Expr], name: impl Fn(&str) -> String) -> String {
         let named = exprs.iter().zip(&self.model.coordinates);
-        named
-            .map(|(expr, coordinate)| self.formula(&format!("{name}_{}", coordinate.text()), *expr))
-            .collect::<Vec<_>>()
-            .join("\n\n")
+        let formulas = named.map(|(expr, coordinate)| self.formula(&name(&coordinate.text()), *expr));
+        formulas.collect::<Vec<_>>().join("\n\n")
     }
 
     /// The body of a function with its documentation: formula and operation count.
-    pub(super) fn documented(&self, name: &str, formula: &str, place: Place) -> Option<(Body, TokenStream)> {
-        let function = self.function(name)?;
+    pub(super) fn documented(&self, id: FunctionId, formula: &str, place: Place) -> Option<(Body, TokenStream)> {
+        let function = self.function(id)?;
         let printed = body(self.model, function, self.system.slots.points.len(), place, self.limit);
         let count = function.operation_count();
         let noun = if count == 1 { "operation" } else { "operations" };
@@ -91,12 +95,13 @@ pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
     quote!(::vi_core::SVector::from(#entries))
 }
 
-fn number(source: &Source, name: &str, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(name, formula, Place::Argument) else {
+fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
+    let Some((body, documentation)) = source.documented(id, formula, Place::Argument) else {
         return TokenStream::new();
     };
-    let (name, dimension) = (format_ident!("{name}"), source.dimension());
-    let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, &body.results[0][0]);
+    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
+    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
+    let result = body.results.number(Output::Value);
     quote! {
         #documentation
         #[inline]
@@ -111,13 +116,13 @@ fn number(source: &Source, name: &str, formula: &str) -> TokenStream {
     }
 }
 
-fn vector(source: &Source, name: &str, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(name, formula, Place::Argument) else {
+fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
+    let Some((body, documentation)) = source.documented(id, formula, Place::Argument) else {
         return TokenStream::new();
     };
-    let (name, dimension) = (format_ident!("{name}"), source.dimension());
+    let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let result = vector_of(&body.results[0]);
+    let result = vector_of(body.results.vector(Output::Value));
     quote! {
         #documentation
         #[inline]
@@ -135,13 +140,12 @@ fn vector(source: &Source, name: &str, formula: &str) -> TokenStream {
 fn acceleration(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let formula = "Solves `M a = L_q + f − L_vt − L_vq v`.";
-    let Some((body, documentation)) = source.documented("acceleration", formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(FunctionId::Acceleration, formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let Some((applied, rows)) = body.results.split_last() else { return TokenStream::new() };
-    let (form, mass) = matrix(&source.findings.mass, true, rows);
-    let applied = vector_of(applied);
+    let (form, mass) = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
+    let applied = vector_of(body.results.vector(Output::MassTimesAcceleration));
     quote! {
         #documentation
         #[inline]
@@ -163,10 +167,11 @@ fn acceleration(source: &Source) -> TokenStream {
 fn step_density(source: &Source, density: Expr) -> TokenStream {
     let dimension = source.dimension();
     let formula = source.formula("D", density);
-    let Some((body, documentation)) = source.documented("step_density", &formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(FunctionId::StepDensity, &formula, Place::Argument) else {
         return TokenStream::new();
     };
-    let (inputs, statements, result) = (state_parts(&body, source.model), &body.statements, &body.results[0][0]);
+    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
+    let result = body.results.number(Output::Value);
     quote! {
         #documentation
         #[inline]
@@ -185,12 +190,12 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
 fn non_finite(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let formula = "The first of what L and f are made of that is not finite here.";
-    let Some((body, documentation)) = source.documented("non_finite", formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(FunctionId::NonFinite, formula, Place::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
     let texts = source.system.continuous.watched.iter().map(|expr| source.spelt(*expr));
-    let values = body.results[0].iter();
+    let values = body.results.vector(Output::Value).iter();
     quote! {
         #documentation
         #[cold]

@@ -71,7 +71,7 @@ impl<'a> Loops<'a> {
         }
         let operands = |id: OperationId| function.operations.get(id).operands();
         let started = folds.values().map(|fold| fold.start);
-        let read = singles.iter().flat_map(|id| operands(*id)).chain(function.results.iter().flatten().copied());
+        let read = singles.iter().flat_map(|id| operands(*id)).chain(function.results.entries().copied());
         let outside = read.chain(started).filter_map(|id| families.of(id)).map(|of| of.family).collect();
         let mut uses = vec![0; families.members.len()];
         for of in families.members.iter().flat_map(|members| operands(members[0])).filter_map(|id| families.of(id)) {
@@ -97,7 +97,7 @@ impl<'a> Loops<'a> {
         let mut uses = Table::default();
         let operands = |id: &OperationId| self.function.operations.get(*id).operands();
         let started = self.folds.values().map(|fold| fold.start);
-        let once = self.singles.iter().flat_map(operands).chain(self.function.results.iter().flatten().copied());
+        let once = self.singles.iter().flat_map(operands).chain(self.function.results.entries().copied());
         let once = once.chain(started);
         let twice = self.families.members.iter().flat_map(|members| operands(&members[0]));
         for (id, count) in once.map(|id| (id, 1)).chain(twice.map(|id| (id, 2))) {

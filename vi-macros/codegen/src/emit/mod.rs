@@ -24,7 +24,7 @@ mod structure;
 use crate::discrete::DiscreteSystem;
 use crate::found::Findings;
 use crate::model::Model;
-use crate::program::{Function, Program};
+use crate::program::{Function, FunctionId, Program};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -77,8 +77,8 @@ impl Source<'_> {
         Literal::usize_unsuffixed(self.model.dimension())
     }
 
-    /// The function of this name; the program holds all of them.
-    fn function(&self, name: &str) -> Option<&Function> {
-        self.program.function(name)
+    /// The function of this identity; the program holds all of them.
+    fn function(&self, id: FunctionId) -> Option<&Function> {
+        self.program.function(id)
     }
 }

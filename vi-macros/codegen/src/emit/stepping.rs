@@ -5,7 +5,7 @@ use super::body::{Body, Entry, Place, part, parts};
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;
-use crate::program::Function;
+use crate::program::{Function, FunctionId, Output, Results};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -25,8 +25,8 @@ pub(super) fn item(source: &Source) -> TokenStream {
             const CLOSED_FORM: bool = true;
         )
     });
-    let is_inlined =
-        ["momentum_equation", "momentum_residual"].into_iter().all(|name| operations(source, name) <= INLINED);
+    let short = |id: FunctionId| operations(source, id) <= INLINED;
+    let is_inlined = short(FunctionId::MomentumEquation) && short(FunctionId::MomentumResidual);
     let inlined = is_inlined.then(|| {
         quote!(
             const INLINED: bool = true;
@@ -75,36 +75,37 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
     quote!(#(#numbers)* #(#node)*)
 }
 
-/// The momentum row, residual and rows of A, as `MomentumEquation` holds them; and the form of A.
-fn momentum_fields(source: &Source, results: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
-    let residual = vector_of(&results[0]);
-    let (form, jacobian) = matrix(&source.findings.pattern, source.findings.symmetric, &results[1..]);
+/// The momentum row as `MomentumEquation` holds it, and the form of A.
+fn momentum_fields(source: &Source, results: &Results<Entry>) -> (TokenStream, TokenStream) {
+    let residual = vector_of(results.vector(Output::Residual));
+    let rows = results.matrix(Output::Jacobian);
+    let (form, jacobian) = matrix(&source.findings.pattern, source.findings.symmetric, rows);
     (form, quote!(::vi_core::MomentumEquation { residual: #residual, jacobian: #jacobian }))
 }
 
 /// How many operations a function has.
-fn operations(source: &Source, name: &str) -> usize {
-    source.function(name).map_or(0, Function::operation_count)
+fn operations(source: &Source, id: FunctionId) -> usize {
+    source.function(id).map_or(0, Function::operation_count)
 }
 
 /// A call that is not inlined spills the run's state out of registers, and keeps a loop over trajectories from becoming vector
 /// instructions: functions are inlined whatever the compiler thinks of it, but for those that are in pieces.
-fn attribute(source: &Source, name: &str) -> TokenStream {
-    if operations(source, name) <= source.limit { quote!(#[inline(always)]) } else { quote!(#[inline(never)]) }
+fn attribute(source: &Source, id: FunctionId) -> TokenStream {
+    if operations(source, id) <= source.limit { quote!(#[inline(always)]) } else { quote!(#[inline(never)]) }
 }
 
 /// A function of `Stepping`: of the node, the step and the velocity.
 fn method(
     source: &Source,
-    name: &str,
+    id: FunctionId,
     formula: &str,
     output: &TokenStream,
-    value: impl FnOnce(&Body) -> Option<TokenStream>,
+    value: impl FnOnce(&Results<Entry>) -> TokenStream,
 ) -> Option<TokenStream> {
     let (dimension, model) = (source.dimension(), source.model);
-    let (body, documentation) = source.documented(name, formula, Place::Argument)?;
-    let (inputs, statements, value) = (node_parts(&body, model), &body.statements, value(&body)?);
-    let (attribute, name) = (attribute(source, name), format_ident!("{name}"));
+    let (body, documentation) = source.documented(id, formula, Place::Argument)?;
+    let (inputs, statements, value) = (node_parts(&body, model), &body.statements, value(&body.results));
+    let (attribute, name) = (attribute(source, id), format_ident!("{}", id.name()));
     Some(quote! {
         #documentation
         #attribute
@@ -125,10 +126,10 @@ fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
     let formula = source.formulas("residual", &source.system.equations.residual);
     let output = quote!(::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>);
     let mut form = TokenStream::new();
-    let function = method(source, "momentum_equation", &formula, &output, |body| {
-        let (of, equation) = momentum_fields(source, &body.results);
+    let function = method(source, FunctionId::MomentumEquation, &formula, &output, |results| {
+        let (of, equation) = momentum_fields(source, results);
         form = of;
-        Some(equation)
+        equation
     });
     (form, function)
 }
@@ -136,14 +137,16 @@ fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
 fn momentum_residual(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let of = &source.system.equations;
-    let formula = format!("The residual, its magnitude, and\n\n{}", source.formulas("p1 − p0", &of.momentum_increment));
+    let increments = source.named_formulas(&of.momentum_increment, |name| format!("p1_{name} − p0_{name}"));
+    let formula = format!("The residual, its magnitude, and\n\n{increments}");
     let output = quote!(::vi_core::MomentumResidual<#dimension, T>);
-    method(source, "momentum_residual", &formula, &output, |body| {
-        let [residual, magnitude, increment] = &body.results[..] else { return None };
-        let [residual, magnitude, increment] = [residual, magnitude, increment].map(|entries| vector_of(entries));
-        Some(quote! {
+    method(source, FunctionId::MomentumResidual, &formula, &output, |results| {
+        let residual = vector_of(results.vector(Output::Residual));
+        let magnitude = vector_of(results.vector(Output::RoundingScale));
+        let increment = vector_of(results.vector(Output::MomentumIncrement));
+        quote! {
             ::vi_core::MomentumResidual { residual: #residual, magnitude: #magnitude, increment: #increment }
-        })
+        }
     })
 }
 
@@ -151,20 +154,21 @@ fn extended_system(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let formula = source.formula("energy_residual", source.system.equations.energy_residual);
     let output = quote!(::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>);
-    method(source, "extended_system", &formula, &output, |body| {
-        let (momentum, energy) = body.results.split_at(source.model.dimension() + 1);
-        let (_, momentum) = momentum_fields(source, momentum);
-        let [residual_dh, energy_residual, energy_dv, energy_dh] = energy else { return None };
-        let (residual_dh, energy_dv) = (vector_of(residual_dh), vector_of(energy_dv));
-        Some(quote! {
+    method(source, FunctionId::ExtendedSystem, &formula, &output, |results| {
+        let (_, momentum) = momentum_fields(source, results);
+        let residual_dh = vector_of(results.vector(Output::ResidualDh));
+        let energy_residual = results.number(Output::EnergyResidual);
+        let energy_dv = vector_of(results.vector(Output::EnergyDv));
+        let energy_dh = results.number(Output::EnergyDh);
+        quote! {
             ::vi_core::ExtendedSystem {
                 momentum: #momentum,
                 residual_dh: #residual_dh,
-                energy_residual: #(#energy_residual)*,
+                energy_residual: #energy_residual,
                 energy_dv: #energy_dv,
-                energy_dh: #(#energy_dh)*,
+                energy_dh: #energy_dh,
             }
-        })
+        }
     })
 }
 
@@ -174,19 +178,21 @@ fn extended_residual(source: &Source) -> Option<TokenStream> {
     let formula =
         format!("Both residuals, their magnitudes, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
     let output = quote!(::vi_core::ExtendedResidual<#dimension, T>);
-    method(source, "extended_residual", &formula, &output, |body| {
-        let [residual, magnitude, energy_residual, energy_magnitude, momentum, energy] = &body.results[..] else {
-            return None;
-        };
-        let [residual, magnitude, momentum] = [residual, magnitude, momentum].map(|entries| vector_of(entries));
-        Some(quote! {
+    method(source, FunctionId::ExtendedResidual, &formula, &output, |results| {
+        let residual = vector_of(results.vector(Output::Residual));
+        let magnitude = vector_of(results.vector(Output::RoundingScale));
+        let energy_residual = results.number(Output::EnergyResidual);
+        let energy_magnitude = results.number(Output::EnergyRoundingScale);
+        let momentum = vector_of(results.vector(Output::MomentumIncrement));
+        let energy = results.number(Output::EnergyIncrement);
+        quote! {
             ::vi_core::ExtendedResidual {
                 residual: #residual,
                 magnitude: #magnitude,
-                energy_residual: #(#energy_residual)*,
-                energy_magnitude: #(#energy_magnitude)*,
-                increment: ::vi_core::Increment { momentum: #momentum, energy: #(#energy)* },
+                energy_residual: #energy_residual,
+                energy_magnitude: #energy_magnitude,
+                increment: ::vi_core::Increment { momentum: #momentum, energy: #energy },
             }
-        })
+        }
     })
 }

@@ -14,10 +14,10 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     let latex = findings
         .lines(&|index| coordinate(index).map_or_else(String::new, |of| format!("`{}`", name::coordinate(of).text())));
     let found = text.into_iter().zip(latex).map(|(text, latex)| Line::Words { text, latex }).collect();
-    let width = findings.operations.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let costs = findings.operations.iter().map(|(name, count)| Line::Words {
-        text: format!("{name:width$} {count:6}"),
-        latex: format!("{name}: {count}"),
+    let width = findings.operations.iter().map(|(id, _)| id.name().len()).max().unwrap_or(0);
+    let costs = findings.operations.iter().map(|(id, count)| Line::Words {
+        text: format!("{:width$} {count:6}", id.name()),
+        latex: format!("{}: {count}", id.name()),
     });
     vec![
         Section { title: "What the generator found", lines: found },

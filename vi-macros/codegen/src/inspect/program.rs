@@ -15,10 +15,10 @@ pub(super) fn text(derived: &Derived) -> String {
 fn function(derived: &Derived, of: &Function) -> String {
     let spell = |symbol| derived.system.spell(&derived.model, symbol);
     let count = of.operation_count();
-    let mut text = format!("{}: {count} operation{}\n", of.name, if count == 1 { "" } else { "s" });
+    let mut text = format!("{}: {count} operation{}\n", of.id.name(), if count == 1 { "" } else { "s" });
     let mut worked = 0;
     let mut names: BTreeMap<OperationId, String> = BTreeMap::new();
-    for id in of.operations.needed(&of.results) {
+    for id in of.needed() {
         let operand = |id: &OperationId| names.get(id).cloned().unwrap_or_default();
         let operation = of.operations.get(id);
         let formula = match operation {
@@ -44,8 +44,8 @@ fn function(derived: &Derived, of: &Function) -> String {
             names.insert(id, formula);
         }
     }
-    for group in &of.results {
-        let entries: Vec<String> = group.iter().map(|id| names.get(id).cloned().unwrap_or_default()).collect();
+    for row in of.results.rows() {
+        let entries: Vec<String> = row.iter().map(|id| names.get(id).cloned().unwrap_or_default()).collect();
         text.extend(["    result ", &entries.join(", "), "\n"]);
     }
     text

@@ -5,6 +5,7 @@
 
 use super::lower::{Known, Lowering};
 use super::magnitude::magnitude;
+use super::results::{FunctionId, Output, Results};
 use super::verify;
 use super::{Function, Program};
 use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
@@ -44,7 +45,7 @@ const OPERATION: usize = 128;
 
 /// The expressions that a function lowers, and the arguments of the points in them.
 pub(super) struct Expressions {
-    pub(super) results: Vec<Expr>,
+    pub(super) results: Results<Expr>,
     pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
 }
 
@@ -85,7 +86,7 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    pub(super) fn open_all(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+    fn open_all(&mut self, exprs: &[Expr]) -> Vec<Expr> {
         exprs.iter().map(|expr| self.open(*expr)).collect()
     }
 
@@ -93,15 +94,16 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
     }
 
-    pub(super) fn function(
+    /// A function that computes these quantities, each given by its rows.
+    fn function(
         &mut self,
-        name: &'static str,
-        groups: &[Vec<Expr>],
+        id: FunctionId,
+        quantities: Vec<(Output, Vec<Vec<Expr>>)>,
     ) -> core::result::Result<(Function, Expressions), TooLarge> {
         bounded(self.pool)?;
-        let flat: Vec<Expr> = groups.iter().flatten().copied().collect();
+        let expressions = Results::new(quantities);
         let mut used = BTreeMap::new();
-        for expr in &flat {
+        for expr in expressions.entries() {
             for symbol in self.pool.symbols(*expr) {
                 if let Symbol::AtPoint(point, variable) = symbol {
                     used.extend(self.arguments.get(&(point, variable)).map(|e| ((point, variable), *e)));
@@ -109,12 +111,11 @@ impl<'a> Assembly<'a> {
             }
         }
         let mut lowering = Lowering::new(self.pool, &mut self.known, &used);
-        let mut values = lowering.lower(&flat).into_iter();
+        let results = lowering.lower(&expressions);
         let operations = lowering.operations;
         self.pool.spend(OPERATION * operations.len());
         bounded(self.pool)?;
-        let results = groups.iter().map(|group| values.by_ref().take(group.len()).collect()).collect();
-        Ok((Function { name, operations, results }, Expressions { results: flat, arguments: used }))
+        Ok((Function { id, operations, results }, Expressions { results: expressions, arguments: used }))
     }
 }
 
@@ -135,37 +136,47 @@ fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
 
 fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.continuous;
-    let mut acceleration = of.mass.clone();
-    acceleration.push(of.mass_times_acceleration.clone());
+    let mass = (Output::Mass, of.mass.clone());
+    let mass_times_acceleration = (Output::MassTimesAcceleration, vec![of.mass_times_acceleration.clone()]);
     Ok(vec![
-        assembly.function("lagrangian", &[vec![of.lagrangian]])?,
-        assembly.function("energy", &[vec![of.energy]])?,
-        assembly.function("momentum", core::slice::from_ref(&of.momentum))?,
-        assembly.function("force", core::slice::from_ref(&of.force))?,
-        assembly.function("acceleration", &acceleration)?,
-        assembly.function("step_density", &[vec![of.step_density]])?,
-        assembly.function("non_finite", core::slice::from_ref(&of.watched))?,
+        assembly.function(FunctionId::Lagrangian, number(of.lagrangian))?,
+        assembly.function(FunctionId::Energy, number(of.energy))?,
+        assembly.function(FunctionId::Momentum, vector(&of.momentum))?,
+        assembly.function(FunctionId::Force, vector(&of.force))?,
+        assembly.function(FunctionId::Acceleration, vec![mass, mass_times_acceleration])?,
+        assembly.function(FunctionId::StepDensity, number(of.step_density))?,
+        assembly.function(FunctionId::NonFinite, vector(&of.watched))?,
     ])
+}
+
+/// A number as the value of a function.
+fn number(value: Expr) -> Vec<(Output, Vec<Vec<Expr>>)> {
+    vector(&[value])
+}
+
+/// A vector as the value of a function.
+fn vector(value: &[Expr]) -> Vec<(Output, Vec<Vec<Expr>>)> {
+    vec![(Output::Value, vec![value.to_vec()])]
 }
 
 fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.slots;
-    let functions = [
-        ("ld", vec![of.ld]),
-        ("d1_ld", vec![of.d1_ld]),
-        ("d2_ld", of.d2_ld.clone()),
-        ("d3_ld", vec![of.d3_ld]),
-        ("d4_ld", of.d4_ld.clone()),
-        ("fd_minus", of.fd_minus.clone()),
-        ("fd_plus", of.fd_plus.clone()),
-        ("gd_minus", vec![of.gd_minus]),
-        ("gd_plus", vec![of.gd_plus]),
+    let functions: [(FunctionId, &[Expr]); 9] = [
+        (FunctionId::Ld, &[of.ld]),
+        (FunctionId::D1Ld, &[of.d1_ld]),
+        (FunctionId::D2Ld, &of.d2_ld),
+        (FunctionId::D3Ld, &[of.d3_ld]),
+        (FunctionId::D4Ld, &of.d4_ld),
+        (FunctionId::FdMinus, &of.fd_minus),
+        (FunctionId::FdPlus, &of.fd_plus),
+        (FunctionId::GdMinus, &[of.gd_minus]),
+        (FunctionId::GdPlus, &[of.gd_plus]),
     ];
     functions
         .into_iter()
-        .map(|(name, exprs)| {
-            let open = assembly.open_all(&exprs);
-            assembly.function(name, &[open])
+        .map(|(id, exprs)| {
+            let open = assembly.open_all(exprs);
+            assembly.function(id, vector(&open))
         })
         .collect()
 }
@@ -176,20 +187,39 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let energy_residual = assembly.open_all(&[of.energy_residual]);
     let momentum_increment = assembly.open_all(&of.momentum_increment);
     let energy_increment = assembly.open_all(&[of.energy_increment]);
-    let jacobian = of.residual_dv.iter().map(|row| assembly.open_all(row));
-    let equation: Vec<_> = [residual.clone()].into_iter().chain(jacobian).collect();
-    let mut extended = equation.clone();
-    extended.push(assembly.open_all(&of.residual_dh));
-    extended.push(energy_residual.clone());
-    extended.push(assembly.open_all(&of.energy_dv));
-    extended.push(assembly.open_all(&[of.energy_dh]));
-    let (size, energy_size) = (assembly.magnitudes(&residual), assembly.magnitudes(&energy_residual));
-    let measured = [residual.clone(), size.clone(), momentum_increment.clone()];
-    let both_measured = [residual, size, energy_residual, energy_size, momentum_increment, energy_increment];
+    let jacobian: Vec<_> = of.residual_dv.iter().map(|row| assembly.open_all(row)).collect();
+    let residual_dh = assembly.open_all(&of.residual_dh);
+    let energy_dv = assembly.open_all(&of.energy_dv);
+    let energy_dh = assembly.open_all(&[of.energy_dh]);
+    let rounding_scale = assembly.magnitudes(&residual);
+    let energy_rounding_scale = assembly.magnitudes(&energy_residual);
+    let residual = (Output::Residual, vec![residual]);
+    let jacobian = (Output::Jacobian, jacobian);
+    let rounding_scale = (Output::RoundingScale, vec![rounding_scale]);
+    let energy_residual = (Output::EnergyResidual, vec![energy_residual]);
+    let momentum_increment = (Output::MomentumIncrement, vec![momentum_increment]);
+    let equation = vec![residual.clone(), jacobian.clone()];
+    let measured = vec![residual.clone(), rounding_scale.clone(), momentum_increment.clone()];
+    let extended = vec![
+        residual.clone(),
+        jacobian,
+        (Output::ResidualDh, vec![residual_dh]),
+        energy_residual.clone(),
+        (Output::EnergyDv, vec![energy_dv]),
+        (Output::EnergyDh, vec![energy_dh]),
+    ];
+    let both_measured = vec![
+        residual,
+        rounding_scale,
+        energy_residual,
+        (Output::EnergyRoundingScale, vec![energy_rounding_scale]),
+        momentum_increment,
+        (Output::EnergyIncrement, vec![energy_increment]),
+    ];
     Ok(vec![
-        assembly.function("momentum_equation", &equation)?,
-        assembly.function("momentum_residual", &measured)?,
-        assembly.function("extended_system", &extended)?,
-        assembly.function("extended_residual", &both_measured)?,
+        assembly.function(FunctionId::MomentumEquation, equation)?,
+        assembly.function(FunctionId::MomentumResidual, measured)?,
+        assembly.function(FunctionId::ExtendedSystem, extended)?,
+        assembly.function(FunctionId::ExtendedResidual, both_measured)?,
     ])
 }

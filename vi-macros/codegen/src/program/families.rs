@@ -66,7 +66,7 @@ impl Function {
     pub fn families(&self) -> Families {
         let (mut shapes, mut placed) = (Distinct::<Shape>::default(), Table::default());
         let mut rows: Vec<BTreeMap<usize, OperationId>> = Vec::new();
-        for id in self.operations.needed(&self.results) {
+        for id in self.needed() {
             let Some((shape, place)) = shape(self.operations.get(id), &placed) else { continue };
             let number = shapes.insert_full(shape).0;
             placed.insert(id, (number, place));

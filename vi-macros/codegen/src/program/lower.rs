@@ -7,6 +7,7 @@
 
 use super::operations::{Operation, OperationId, Operations};
 use super::powers::{Factor, Occurrence};
+use super::results::Results;
 use super::sums::Way;
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, Zero};
@@ -61,19 +62,16 @@ impl<'a> Lowering<'a> {
         Self { pool, operations, occurrences, angles, values, ways, known, arguments }
     }
 
-    /// Lowers expressions and all that they need, children first; nothing where the pool is exhausted.
-    pub(super) fn lower(&mut self, exprs: &[Expr]) -> Vec<OperationId> {
-        let used: Vec<Expr> = exprs.iter().copied().chain(self.arguments.values().copied()).collect();
+    /// Lowers expressions and all that they need, children first; to no number where the pool is exhausted.
+    pub(super) fn lower(&mut self, exprs: &Results<Expr>) -> Results<OperationId> {
+        let used: Vec<Expr> = exprs.entries().chain(self.arguments.values()).copied().collect();
         self.record_powers(&used);
         self.record_angles(&used);
         // Children first, so that nothing is deep; products as they are needed, with their coefficients.
         for expr in self.pool.reachable(&used) {
             self.value(expr);
         }
-        if self.pool.is_exhausted() {
-            return Vec::new();
-        }
-        exprs.iter().map(|expr| self.value(*expr)).collect()
+        exprs.map(|expr| self.value(*expr))
     }
 
     /// The operation of an expression whose children are lowered.

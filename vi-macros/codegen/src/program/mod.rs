@@ -12,32 +12,39 @@ mod magnitude;
 mod operations;
 mod order;
 mod powers;
+mod results;
 mod sums;
 mod verify;
 
 pub use assemble::program;
 pub use families::{Families, Membership};
 pub use operations::{Operation, OperationId, Operations};
+pub use results::{FunctionId, Output, Results};
 
 use vi_expr::Table;
 
 /// What one function computes.
 pub struct Function {
-    /// Its name in the emitted code.
-    pub name: &'static str,
+    /// Which function it is.
+    pub id: FunctionId,
     /// The operations, operands before results.
     pub operations: Operations,
-    /// The results, in groups: a number is a group of one, a vector one of N, a matrix N groups (its rows).
-    pub results: Vec<Vec<OperationId>>,
+    /// The results, each an operation.
+    pub results: Results<OperationId>,
 }
 
 impl Function {
+    /// The operations that the results need, operands before results.
+    #[must_use]
+    pub fn needed(&self) -> Vec<OperationId> {
+        self.operations.needed(self.results.entries())
+    }
+
     /// How often each operation that the results need is read: by others, and as a result.
     pub(crate) fn uses(&self) -> Table<OperationId, usize> {
         let mut uses = Table::default();
-        let needed = self.operations.needed(&self.results);
-        let operands = needed.into_iter().flat_map(|id| self.operations.get(id).operands());
-        for id in operands.chain(self.results.iter().flatten().copied()) {
+        let operands = self.needed().into_iter().flat_map(|id| self.operations.get(id).operands());
+        for id in operands.chain(self.results.entries().copied()) {
             *uses.entry(id) += 1;
         }
         uses
@@ -55,10 +62,10 @@ pub struct Program {
 }
 
 impl Program {
-    /// The function of this name.
+    /// The function of this identity.
     #[must_use]
-    pub fn function(&self, name: &str) -> Option<&Function> {
-        self.functions().find(|function| function.name == name)
+    pub fn function(&self, id: FunctionId) -> Option<&Function> {
+        self.functions().find(|function| function.id == id)
     }
 
     /// All functions, in the order in which they are emitted.

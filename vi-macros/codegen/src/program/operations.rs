@@ -116,9 +116,9 @@ impl Operations {
 
     /// The operations that the results need, operands before results.
     #[must_use]
-    pub fn needed(&self, results: &[Vec<OperationId>]) -> Vec<OperationId> {
+    pub fn needed<'a>(&self, results: impl IntoIterator<Item = &'a OperationId>) -> Vec<OperationId> {
         let mut needed = vec![false; self.list.len()];
-        results.iter().flatten().for_each(|id| needed[id.index()] = true);
+        results.into_iter().for_each(|id| needed[id.index()] = true);
         for index in (0..self.list.len()).rev() {
             if needed[index] {
                 self.list[index].operands().for_each(|id| needed[id.index()] = true);

@@ -17,7 +17,7 @@ impl Function {
             place[id.index()] = Some(operations.len());
             operations.push((operations.len(), false, id));
         }
-        for id in self.operations.needed(&self.results) {
+        for id in self.needed() {
             if place[id.index()].is_none() {
                 let operands = self.operations.get(id).operands();
                 let last = operands.filter_map(|operand| place[operand.index()]).max().unwrap_or(0);
@@ -32,13 +32,13 @@ impl Function {
 
     /// The components of all vectors, ordered by how far along their vector they are; all results where there is none.
     fn side_by_side(&self) -> Vec<OperationId> {
-        let vectors = || self.results.iter().filter(|group| group.len() > 1);
-        let longest = vectors().map(Vec::len).max().unwrap_or(0);
+        let vectors = || self.results.rows().filter(|row| row.len() > 1);
+        let longest = vectors().map(<[OperationId]>::len).max().unwrap_or(0);
         let mut placed: Vec<(usize, OperationId)> = vectors()
-            .flat_map(|group| group.iter().zip(1..).map(|(id, place)| (place * longest / group.len(), *id)))
+            .flat_map(|row| row.iter().zip(1..).map(|(id, place)| (place * longest / row.len(), *id)))
             .collect();
         if placed.is_empty() {
-            return self.results.iter().flatten().copied().collect();
+            return self.results.entries().copied().collect();
         }
         placed.sort_by_key(|(place, _)| *place);
         placed.into_iter().map(|(_, id)| id).collect()

@@ -25,7 +25,7 @@ pub(super) fn has_finite_constants(function: &Function, system: &Ident) -> Resul
         Operation::Constant(bits) => f64::from_bits(*bits).is_finite(),
         _ => true,
     };
-    if function.operations.needed(&function.results).into_iter().all(finite) {
+    if function.needed().into_iter().all(finite) {
         return Ok(());
     }
     Err(error(system.span(), &Message::CoefficientRange))
@@ -49,7 +49,8 @@ pub(super) fn agrees(
     let arguments: Vec<Expr> = expressions.arguments.values().copied().collect();
     let at_points = pool.evaluate_all(&arguments, &mut input);
     let at_points: BTreeMap<_, _> = expressions.arguments.keys().zip(at_points).collect();
-    let wanted = pool.evaluate_rounded(&expressions.results, &mut |symbol| match symbol {
+    let results: Vec<Expr> = expressions.results.entries().copied().collect();
+    let wanted = pool.evaluate_rounded(&results, &mut |symbol| match symbol {
         Symbol::AtPoint(point, variable) => {
             at_points.get(&(*point, *variable)).copied().unwrap_or_else(|| input(symbol))
         }
@@ -65,14 +66,14 @@ pub(super) fn agrees(
     if wanted.iter().zip(&found).all(equal) {
         return Ok(());
     }
-    Err(error(system.span(), &Message::Internal { what: function.name }))
+    Err(error(system.span(), &Message::Internal { what: function.id.name() }))
 }
 
 impl Function {
     /// The results, one after the other, for these inputs.
     pub fn evaluate(&self, input: &mut dyn FnMut(&Symbol) -> f64) -> Vec<f64> {
         let mut values: Table<OperationId, f64> = Table::default();
-        for id in self.operations.needed(&self.results) {
+        for id in self.needed() {
             let of = |id: &OperationId| values.get(*id).copied().unwrap_or(f64::NAN);
             let value = match self.operations.get(id) {
                 Operation::Constant(bits) => f64::from_bits(*bits),
@@ -89,20 +90,20 @@ impl Function {
             };
             values.insert(id, value);
         }
-        self.results.iter().flatten().map(|id| values.get(*id).copied().unwrap_or(f64::NAN)).collect()
+        self.results.entries().map(|id| values.get(*id).copied().unwrap_or(f64::NAN)).collect()
     }
 
     /// Operations that the results need: additions, products, divisions, roots and calls.
     #[must_use]
     pub fn operation_count(&self) -> usize {
-        let needed = self.operations.needed(&self.results);
+        let needed = self.needed();
         needed.into_iter().filter(|id| self.operations.get(*id).is_work()).count()
     }
 
     /// What these operations cost, in additions.
     #[must_use]
     pub fn cost(&self) -> usize {
-        let needed = self.operations.needed(&self.results);
+        let needed = self.needed();
         needed.into_iter().map(|id| self.operations.get(id).cost()).sum()
     }
 }

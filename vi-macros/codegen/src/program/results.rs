@@ -1,0 +1,156 @@
+//! What a function computes, by name.
+//!
+//! In: values with the [`Output`] that they are. Out: [`Results`], looked up by that output: of expressions while a function is
+//! assembled, of operations in a [`Function`](super::Function), of formulas where it is printed.
+
+/// A function of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FunctionId {
+    /// L.
+    Lagrangian,
+    /// v·L_v − L.
+    Energy,
+    /// L_v.
+    Momentum,
+    /// f.
+    Force,
+    /// The mass matrix M and M a.
+    Acceleration,
+    /// D.
+    StepDensity,
+    /// What L and f are made of.
+    NonFinite,
+    /// L_d.
+    Ld,
+    /// ∂L_d/∂t0.
+    D1Ld,
+    /// ∂L_d/∂q0.
+    D2Ld,
+    /// ∂L_d/∂t1.
+    D3Ld,
+    /// ∂L_d/∂q1.
+    D4Ld,
+    /// f_d⁻.
+    FdMinus,
+    /// f_d⁺.
+    FdPlus,
+    /// g_d⁻.
+    GdMinus,
+    /// g_d⁺.
+    GdPlus,
+    /// The momentum row and A.
+    MomentumEquation,
+    /// The momentum row, its rounding scale, and p1 − p0.
+    MomentumResidual,
+    /// Both rows and their derivatives.
+    ExtendedSystem,
+    /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
+    ExtendedResidual,
+}
+
+impl FunctionId {
+    /// Its name in the emitted code.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "lagrangian",
+            Self::Energy => "energy",
+            Self::Momentum => "momentum",
+            Self::Force => "force",
+            Self::Acceleration => "acceleration",
+            Self::StepDensity => "step_density",
+            Self::NonFinite => "non_finite",
+            Self::Ld => "ld",
+            Self::D1Ld => "d1_ld",
+            Self::D2Ld => "d2_ld",
+            Self::D3Ld => "d3_ld",
+            Self::D4Ld => "d4_ld",
+            Self::FdMinus => "fd_minus",
+            Self::FdPlus => "fd_plus",
+            Self::GdMinus => "gd_minus",
+            Self::GdPlus => "gd_plus",
+            Self::MomentumEquation => "momentum_equation",
+            Self::MomentumResidual => "momentum_residual",
+            Self::ExtendedSystem => "extended_system",
+            Self::ExtendedResidual => "extended_residual",
+        }
+    }
+}
+
+/// One of the quantities that a function computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Output {
+    /// The value of a function that computes one number or one vector.
+    Value,
+    /// The mass matrix M.
+    Mass,
+    /// M a, for the acceleration a.
+    MassTimesAcceleration,
+    /// r, the momentum row.
+    Residual,
+    /// A = ∂r/∂v.
+    Jacobian,
+    /// ∂r/∂h.
+    ResidualDh,
+    /// The sum of the absolute values of the terms of r.
+    RoundingScale,
+    /// c, the energy row combined with the momentum row.
+    EnergyResidual,
+    /// The derivative of c by v, over h.
+    EnergyDv,
+    /// The derivative of c by h, over h.
+    EnergyDh,
+    /// The sum of the absolute values of the terms of c.
+    EnergyRoundingScale,
+    /// p1 − p0.
+    MomentumIncrement,
+    /// E1 − E0.
+    EnergyIncrement,
+}
+
+/// Quantities, each as rows: a number is a row of one entry, a vector a row, a matrix as many rows as it has.
+#[derive(Clone, Debug)]
+pub struct Results<E> {
+    quantities: Vec<(Output, Vec<Vec<E>>)>,
+}
+
+impl<E> Results<E> {
+    /// Of these quantities, in this order.
+    pub(super) fn new(quantities: Vec<(Output, Vec<Vec<E>>)>) -> Self {
+        Self { quantities }
+    }
+
+    /// The rows of a matrix; none where it is not computed.
+    #[must_use]
+    pub fn matrix(&self, output: Output) -> &[Vec<E>] {
+        self.quantities.iter().find(|(known, _)| *known == output).map_or(&[], |(_, rows)| rows)
+    }
+
+    /// The entries of a vector; none where it is not computed.
+    #[must_use]
+    pub fn vector(&self, output: Output) -> &[E] {
+        self.matrix(output).first().map_or(&[], Vec::as_slice)
+    }
+
+    /// A number, where it is computed.
+    #[must_use]
+    pub fn number(&self, output: Output) -> Option<&E> {
+        self.vector(output).first()
+    }
+
+    /// The rows of all quantities, in order.
+    pub fn rows(&self) -> impl Iterator<Item = &[E]> {
+        self.quantities.iter().flat_map(|(_, rows)| rows).map(Vec::as_slice)
+    }
+
+    /// All entries, in order.
+    pub fn entries(&self) -> impl Iterator<Item = &E> {
+        self.rows().flatten()
+    }
+
+    /// What is made of each entry, under the same names.
+    pub(crate) fn map<F>(&self, mut make: impl FnMut(&E) -> F) -> Results<F> {
+        let mut made = |rows: &Vec<Vec<E>>| rows.iter().map(|row| row.iter().map(&mut make).collect()).collect();
+        Results { quantities: self.quantities.iter().map(|(output, rows)| (*output, made(rows))).collect() }
+    }
+}
