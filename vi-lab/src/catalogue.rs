@@ -3,35 +3,13 @@
 //! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
 
 use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::simulation::{self, Plan, Simulation};
+use crate::system::{self, System};
 use crate::table::Table;
-use crate::work_precision::{self, Findings, Study};
-use vi_core::{Parameters, SVector, StepError, Stepping};
+use vi_core::{Parameters, Stepping};
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };
-
-/// A system with its parameters, its number of degrees of freedom erased.
-pub(crate) trait System: Send + Sync {
-    /// Name of the type.
-    fn name(&self) -> &'static str;
-    /// Names of the coordinates.
-    fn coordinates(&self) -> Vec<&'static str>;
-    /// Names and values of the parameters.
-    fn parameters(&self) -> Vec<(&'static str, f64)>;
-    /// Sets a parameter; false where there is none of this name.
-    fn set(&mut self, name: &str, value: f64) -> bool;
-    /// A system of the same type with the same parameters.
-    fn copy(&self) -> Box<dyn System>;
-    /// Step density D at t = 0; none where it has no value.
-    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
-    /// Starts a run.
-    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
-    /// Error against work of every method; an error says why there is no reference.
-    fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String>;
-}
 
 /// A system in the catalogue.
 pub(crate) struct Entry {
@@ -47,54 +25,11 @@ pub(crate) struct Entry {
     pub(crate) h: f64,
 }
 
-/// A system of a known type.
-struct Registered<S, const N: usize>(S);
-
-impl<S, const N: usize> System for Registered<S, N>
-where
-    S: Stepping<N> + Parameters + Clone + Send + Sync + 'static,
-{
-    fn name(&self) -> &'static str {
-        S::NAME
-    }
-
-    fn coordinates(&self) -> Vec<&'static str> {
-        S::COORDINATES.to_vec()
-    }
-
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        let mut system = self.0;
-        S::PARAMETERS.iter().filter_map(|name| Some((*name, *system.parameter_mut(name)?))).collect()
-    }
-
-    fn set(&mut self, name: &str, value: f64) -> bool {
-        self.0.parameter_mut(name).map(|parameter| *parameter = value).is_some()
-    }
-
-    fn copy(&self) -> Box<dyn System> {
-        Box::new(Self(self.0))
-    }
-
-    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
-        let sized = q.len() == N && v.len() == N;
-        let density = || self.0.step_density(0.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v)).ok();
-        sized.then(density).flatten().filter(|density| density.is_finite())
-    }
-
-    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
-        simulation::begin(self.0, plan)
-    }
-
-    fn compare(&self, study: &Study, progress: &mut Progress) -> Result<Findings, String> {
-        work_precision::findings(&self.0, study, progress)
-    }
-}
-
 fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
 where
     S: Stepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {
-    Entry { system: Box::new(Registered::<S, N>(S::default())), about, q: q.to_vec(), v: v.to_vec(), h }
+    Entry { system: system::erased::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
 }
 
 /// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
@@ -189,6 +124,7 @@ fn plain(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulation::{Method, Plan, Start};
 
     #[test]
     fn names_are_found_in_any_spelling() {
@@ -216,15 +152,9 @@ mod tests {
         for mut entry in entries() {
             let (size, name) = (entry.system.coordinates().len(), entry.system.name());
             assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
-            for method in [simulation::Method::Fixed, simulation::Method::Energy] {
-                let plan = Plan {
-                    method,
-                    start: simulation::Start::Midpoint,
-                    h: entry.h,
-                    t: 0.0,
-                    q: entry.q.clone(),
-                    v: entry.v.clone(),
-                };
+            for method in [Method::Fixed, Method::KahanLi6, Method::Energy] {
+                let plan =
+                    Plan { method, start: Start::Midpoint, h: entry.h, t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
                 let mut run = entry.system.begin(&plan).unwrap_or_else(|error| panic!("{name}: {error}"));
                 let first = run.t();
                 for _ in 0..10 {

@@ -1,7 +1,7 @@
 //! Why the command did not do what was asked, in one line, and the exit status that goes with it.
 
+use crate::interrupt::Signal;
 use crate::numbers::short;
-use crate::run::Signal;
 use crate::simulation::{Method, Plan};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use core::fmt;
@@ -141,10 +141,10 @@ fn advice(error: &StepError, method: Method) -> Option<&'static str> {
         (StepError::NoForwardStep { .. } | StepError::StepRatio { .. } | StepError::DegenerateStep { .. }, _) => {
             Some("take fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this place")
         }
-        (StepError::NotConverged { .. }, Method::Fixed) => Some("take shorter steps with --h"),
         (StepError::NotConverged { .. }, Method::Energy) => {
             Some("take shorter steps with --h, or fixed ones with --method fixed")
         }
+        (StepError::NotConverged { .. }, _) => Some("take shorter steps with --h"),
         _ => None,
     }
 }

@@ -1,7 +1,5 @@
 //! Numbers as pages and messages write them, and the few statistics that they need.
 
-use crate::chart::superscript;
-
 /// A number in three digits, with a power of ten where that is shorter: `7.19·10⁻⁹`.
 pub(crate) fn scientific(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -16,6 +14,16 @@ pub(crate) fn scientific(value: f64) -> String {
         },
         None => text,
     }
+}
+
+/// An integer in superscript digits.
+pub(crate) fn superscript(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    exponent
+        .to_string()
+        .chars()
+        .map(|c| c.to_digit(10).and_then(|digit| DIGITS.get(usize::try_from(digit).ok()?).copied()).unwrap_or('⁻'))
+        .collect()
 }
 
 /// A number in all its digits, with an exponent where it would have many zeros: `0.01`, `1e-300`.

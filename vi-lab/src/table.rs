@@ -2,7 +2,7 @@
 //!
 //! In: a head and rows of the same length, as text. Out: HTML, CSV, or text in columns.
 
-use crate::report::escape;
+use crate::html::escape;
 use comfy_table::{ContentArrangement, presets};
 use core::fmt::Write as _;
 

@@ -165,7 +165,7 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
         (
             &["run", "double-well", "--steps", "1", "--method", "euler"],
-            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, energy]",
+            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, energy]",
         ),
         (
             &["run", "double-well", "--steps", "1", "--start", "points"],
@@ -568,6 +568,21 @@ fn wrong_axes_are_status_2() {
     let (status, _, errors) = lab(&["stability", "double-well", "--columns", "10", "--out", path(&missing)]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
     fs::remove_file(missing).expect("the file can be removed");
+}
+
+#[test]
+fn a_composition_runs_and_has_no_discrete_energy() {
+    for (method, error) in [("suzuki-4", 1e-4), ("kahan-li-6", 1e-5), ("kahan-li-8", 1e-5)] {
+        let (status, output, errors) = lab(&["run", "kepler", "--method", method, "--h", "0.02", "--steps", "300"]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{method}");
+        let rows: Vec<Vec<&str>> =
+            output.lines().filter(|line| !line.starts_with(['#', 't'])).map(|line| line.split(',').collect()).collect();
+        assert_eq!(rows.len(), 301, "{method}");
+        for row in rows {
+            let energy: f64 = row[5].parse().expect("H");
+            assert!((energy + 0.5).abs() < error && row[6].is_empty(), "{method}: {row:?}");
+        }
+    }
 }
 
 #[test]

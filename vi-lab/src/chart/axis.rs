@@ -2,7 +2,7 @@
 //!
 //! In: the values of all series. Out: a [`Ruler`], in whose coordinate (the value, or its log10) the figure is drawn.
 
-use core::fmt::Write as _;
+use crate::numbers::superscript;
 
 /// What an axis shows.
 #[derive(Clone, Debug)]
@@ -146,18 +146,6 @@ fn decimals(step: f64) -> usize {
 #[allow(clippy::cast_possible_truncation)]
 fn whole(value: f64) -> i32 {
     value.round() as i32
-}
-
-/// An integer in superscript digits.
-pub(crate) fn superscript(exponent: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let mut plain = String::new();
-    // Writing to a string cannot fail.
-    let _ = write!(plain, "{exponent}");
-    plain
-        .chars()
-        .map(|c| c.to_digit(10).and_then(|digit| DIGITS.get(usize::try_from(digit).ok()?).copied()).unwrap_or('⁻'))
-        .collect()
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ mod map;
 mod palette;
 mod thin;
 
-pub(crate) use axis::{Axis, superscript};
+pub(crate) use axis::Axis;
 pub(crate) use map::{Class, Map, boundary, middles};
 pub(crate) use palette::Look;
 use thin::Thinning;

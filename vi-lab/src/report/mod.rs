@@ -9,6 +9,7 @@ pub(crate) mod math;
 pub(crate) use folder::Report;
 
 use crate::chart::Figure;
+use crate::html::escape;
 use crate::machine::Machine;
 use crate::table::Table;
 use core::fmt::Write as _;
@@ -86,11 +87,6 @@ impl Page {
             footer = escape(&machine.describe()),
         )
     }
-}
-
-/// Text with the characters that HTML reserves replaced.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -9,26 +9,22 @@
 //! | [`request`], [`scene`] | what is to be done: command line and scene, checked |
 //! | [`resolution`], [`extent`] | what is refused: steps that rounding swallows, outputs of gigabytes |
 //! | [`csv`], [`npy`] | where rows go |
-//! | [`interrupt`] | signals that end a run |
 
 mod csv;
 mod extent;
-mod interrupt;
 mod npy;
 mod request;
 mod resolution;
 mod scene;
 
-pub(crate) use interrupt::Signal;
-
 use crate::failure::Failure;
 use crate::input::{count, number};
+use crate::interrupt::{Interrupt, Signal};
 use crate::numbers::short;
 use crate::progress::Progress;
 use crate::simulation::{Method, Row, Simulation, Start};
 use clap::Args;
 use extent::Extent;
-use interrupt::Interrupt;
 use request::{Output, Request};
 use std::path::PathBuf;
 
@@ -37,7 +33,7 @@ const BLOCK: usize = 1 << 16;
 
 /// What the two columns of energies are, for the files that hold them.
 const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interval that ends there, none before the first \
-                        fixed step";
+                        fixed step and none of a composition";
 
 /// Arguments of `vi-lab run`.
 #[derive(Clone, Debug, Default, Args)]
@@ -45,7 +41,7 @@ const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interva
 Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the \
 discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
 term of order h². H and E differ by h²D/8 to leading order, D the step density. A run of fixed steps has no interval \
-before its first row: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
+before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
 length of the step that led to the node.
 
 Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial \
@@ -239,8 +235,16 @@ mod tests {
             0.5
         }
 
-        fn row(&self) -> Row {
-            Row { t: self.t, q: self.q(), p: vec![0.0], energy: Some(1.0), discrete_energy: None, h: 0.5 }
+        fn p(&self) -> Vec<f64> {
+            vec![0.0]
+        }
+
+        fn energy(&self) -> Result<f64, StepError> {
+            Ok(1.0)
+        }
+
+        fn discrete_energy(&self) -> Option<f64> {
+            None
         }
 
         fn advance(&mut self) -> Result<(), StepError> {
@@ -304,7 +308,7 @@ mod tests {
 
     #[test]
     fn a_signal_ends_a_run_after_the_node_reached_last() {
-        for (signal, status) in interrupt::SIGNALS.into_iter().zip([130, 143]) {
+        for (signal, status) in crate::interrupt::SIGNALS.into_iter().zip([130, 143]) {
             let looks = Cell::new(0);
             let third_look = || {
                 looks.set(looks.get() + 1);

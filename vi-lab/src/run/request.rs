@@ -2,11 +2,12 @@
 
 use super::Arguments;
 use super::scene::Scene;
-use crate::catalogue::{self, System};
+use crate::catalogue;
 use crate::failure::Failure;
 use crate::input::number;
 use crate::numbers::short;
 use crate::simulation::{Method, Plan, Row, Start};
+use crate::system::System;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -154,7 +155,7 @@ impl Request {
         check_initial(system.as_ref(), &plan)?;
         // A start that belongs to another method of the scene is no mistake.
         let start = arguments.start.or(scene.start.filter(|_| arguments.method.is_none()));
-        if start.is_some() && plan.method == Method::Fixed {
+        if start.is_some() && plan.method != Method::Energy {
             return Err(Failure::Input("fixed steps have no --start; add --method energy, or leave it out".to_owned()));
         }
         let length = match (arguments.steps, arguments.until) {

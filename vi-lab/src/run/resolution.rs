@@ -13,7 +13,7 @@ use crate::simulation::{Method, Plan};
 pub(super) fn check_times(Request { plan, length, .. }: &Request) -> Result<(), Failure> {
     square(plan.h)?;
     time(plan.t, plan.h)?;
-    if plan.method == Method::Fixed { time(length.end(plan), plan.h) } else { Ok(()) }
+    if plan.method == Method::Energy { Ok(()) } else { time(length.end(plan), plan.h) }
 }
 
 /// The equations of a step contain h².

@@ -121,7 +121,10 @@ mod tests {
             ("system = \"kepler\"\n\ncolour = 1\n", "line 3: unknown field `colour`"),
             ("system = \"kepler\"\nsteps = 1\nuntil = 2.0\n", "give either `steps` or `until`, not both"),
             ("h = 1.0\n", "no system is named; add a line such as `system = \"kepler\"`"),
-            ("system = \"a\"\nmethod = \"euler\"\n", "line 2: unknown variant `euler`, expected `fixed` or `energy`"),
+            (
+                "system = \"a\"\nmethod = \"euler\"\n",
+                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `energy`",
+            ),
         ] {
             let message = Scene::parse(text).err().unwrap_or_default();
             assert!(message.contains(expected) && !message.contains('\n'), "{message}");

@@ -6,10 +6,11 @@
 use super::atlas::{Atlas, Grid};
 use super::ending::{Course, Ending, Limit};
 use super::quantity::{Quantity, Span};
-use crate::catalogue::{Entry, System, kebab};
+use crate::catalogue::{Entry, kebab};
 use crate::chart::{Class, Look, Series, boundary, middles};
 use crate::failure::Failure;
 use crate::simulation::{Method, Plan, Simulation, Start};
+use crate::system::System;
 
 /// Steps of a run.
 const STEPS: u32 = 2500;

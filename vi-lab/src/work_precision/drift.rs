@@ -5,15 +5,14 @@
 //! energy-preserving integrator in the middles of its steps, which is where its rule preserves it. Where the energy is not
 //! conserved, it is compared with that of the reference at the same time.
 
-use super::counting::Counting;
-use super::method::{Method, steps};
+use super::method::{Method, TOO_MANY, Task};
 use super::reference::Reference;
-use super::rival::{self, Ended};
 use crate::numbers::order;
 use crate::progress::Progress;
+use crate::rival::Ended;
+use crate::simulation;
+use crate::system::{PhasePoint, System};
 use core::cell::Cell;
-use vi_core::check::Motion;
-use vi_core::{Composition, EnergyPreserving, FixedStep, State, StepError, Stepping};
 
 /// Tolerances of DOP853.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
@@ -53,22 +52,19 @@ impl Drift {
 }
 
 /// The largest error so far, as it is seen.
-struct Watch<'a, S, const N: usize> {
-    system: &'a S,
-    reference: Option<&'a Reference<&'a S, N>>,
+struct Watch<'a> {
+    system: &'a dyn System,
+    reference: Option<&'a Reference<'a>>,
     initial: f64,
     largest: f64,
     worst: Vec<(f64, f64)>,
 }
 
-impl<S: Stepping<N>, const N: usize> Watch<'_, S, N> {
+impl Watch<'_> {
     fn see(&mut self, t: f64, energy: f64) -> Result<(), Ended> {
         let expected = match self.reference {
             None => self.initial,
-            Some(reference) => {
-                let Motion { t, q, v } = reference.at(t)?;
-                self.system.energy(t, &q, &v)
-            }
+            Some(reference) => self.system.energy(&reference.at(t)?)?,
         };
         let unit = if self.initial == 0.0 { 1.0 } else { self.initial.abs() };
         let error = (energy - expected).abs() / unit;
@@ -82,126 +78,107 @@ impl<S: Stepping<N>, const N: usize> Watch<'_, S, N> {
         }
         Ok(())
     }
-
-    fn see_motion(&mut self, motion: &Motion<N>) -> Result<(), Ended> {
-        self.see(motion.t, self.system.energy(motion.t, &motion.q, &motion.v))
-    }
-
-    fn see_state(&mut self, state: State<N>) -> Result<(), Ended> {
-        // Before its first step the integrator holds the velocity that belongs to the momenta.
-        let v = FixedStep::new(self.system, state, 1.0)?.v();
-        self.see_motion(&Motion { t: state.t, q: state.q, v })
-    }
 }
 
-/// All methods: those of fixed steps at the usual length of their parts, DOP853 at three tolerances.
-pub(super) fn all<S: Stepping<N>, const N: usize>(
-    system: &S,
-    start: &Motion<N>,
-    (h, long): (f64, f64),
-    reference: Option<&Reference<&S, N>>,
+/// All methods up to the time `long`: those of fixed steps at the length `h` of their parts, DOP853 at three tolerances.
+///
+/// # Errors
+/// Where the energy of the start has no value.
+pub(super) fn all(
+    system: &dyn System,
+    start: &PhasePoint,
+    h: f64,
+    long: f64,
+    reference: Option<&Reference<'_>>,
     progress: &mut Progress,
-) -> Vec<Drift> {
+) -> Result<Vec<Drift>, Ended> {
+    let initial = system.energy(start)?;
     let stepping = Method::ALL.into_iter().filter(|method| *method != Method::Rival);
     #[allow(clippy::cast_precision_loss)] // at most 17
     let settings = stepping.map(|method| (method, h * method.parts() as f64));
-    settings
-        .chain(TOLERANCES.map(|tolerance| (Method::Rival, tolerance)))
-        .map(|(method, setting)| {
-            progress.advance_by(1);
-            let initial = system.energy(start.t, &start.q, &start.v);
-            let mut watch = Watch { system, reference, initial, largest: 0.0, worst: Vec::new() };
-            let evaluations = Cell::new(0);
-            let counting = Counting::new(system, &evaluations);
-            let ended = run(&counting, &mut watch, start, long, (method, setting)).err();
-            #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-            let count = evaluations.get() as f64;
-            let reached = watch.worst.last().map_or(long, |(t, _)| *t);
-            Drift { method, setting, worst: watch.worst, rate: count / reached, ended }
-        })
-        .collect()
+    let drifts = settings.chain(TOLERANCES.map(|tolerance| (Method::Rival, tolerance))).map(|(method, setting)| {
+        progress.advance_by(1);
+        let mut watch = Watch { system, reference, initial, largest: 0.0, worst: Vec::new() };
+        let evaluations = Cell::new(0);
+        let task = Task { start, end: long, method, setting };
+        let ended = match method {
+            Method::Own(method) => run(&task, method, &evaluations, &mut watch),
+            Method::Rival => run_rival(&task, &evaluations, &mut watch),
+        };
+        #[allow(clippy::cast_precision_loss)] // far below 2⁵³
+        let count = evaluations.get() as f64;
+        let reached = watch.worst.last().map_or(long, |(t, _)| *t);
+        Drift { method, setting, worst: watch.worst, rate: count / reached, ended: ended.err() }
+    });
+    Ok(drifts.collect())
 }
 
-/// Runs to the end `long`, and shows the energy on the way.
-fn run<S: Stepping<N>, const N: usize>(
-    counting: &Counting<'_, &S>,
-    watch: &mut Watch<'_, S, N>,
-    start: &Motion<N>,
-    long: f64,
-    (method, setting): (Method, f64),
+/// Runs one of this project's integrators to the end, and shows the energy on the way.
+fn run(
+    task: &Task<'_>,
+    method: simulation::Method,
+    evaluations: &Cell<u64>,
+    watch: &mut Watch<'_>,
 ) -> Result<(), Ended> {
-    let count = steps(long, setting);
-    let stride = (count / if watch.reference.is_some() { DEAR_SAMPLES } else { SAMPLES }).max(1);
-    let state = State::at(counting, start.t, start.q, start.v);
-    match method {
-        Method::Fixed => {
-            let mut run = FixedStep::new(counting, state, setting)?;
-            each(count, stride, || run.step(), |state| watch.see_state(state))
-        }
-        Method::Composed(scheme) => {
-            let mut run = Composition::new(counting, scheme, state, setting)?;
-            each(count, stride, || run.step(), |state| watch.see_state(state))
-        }
-        Method::Energy => {
-            let mut run = EnergyPreserving::from_midpoint(counting, start.t, start.q, start.v, setting)?;
-            let mut taken = 0;
-            while run.node().t < long {
-                let step = run.step()?;
-                taken += 1;
-                if taken % stride == 0 && step.midpoint.0 <= long {
-                    let (t, q, v) = step.midpoint;
-                    watch.see_motion(&Motion { t, q, v })?;
-                }
-                if taken > 10 * count {
-                    return Err(Ended::Short(step.t));
-                }
+    let count = task.steps();
+    let samples = if watch.reference.is_some() { DEAR_SAMPLES } else { SAMPLES };
+    let between = (count / samples).max(1);
+    let mut run = watch.system.begin_counted(&task.plan(method), evaluations)?;
+    let finds_its_step = method == simulation::Method::Energy;
+    // A given step is taken so many times, wherever rounding puts the last node.
+    let end = if finds_its_step { task.end } else { f64::INFINITY };
+    let most = if finds_its_step { TOO_MANY * count } else { count };
+    let mut taken = 0;
+    while taken < most && run.t() < end {
+        taken += run.advance_until(end, between.min(most - taken))?;
+        if taken % between == 0 {
+            let (t, energy) = uncounted(evaluations, || run.sampled_energy())?;
+            if t <= end {
+                watch.see(t, energy)?;
             }
-            Ok(())
-        }
-        Method::Rival => {
-            let mut seen = Ok(());
-            rival::motion(counting, start, long, setting, |motion| {
-                if motion.t > start.t && seen.is_ok() {
-                    seen = watch.see_motion(&motion);
-                }
-            })?;
-            seen
         }
     }
+    if run.t() < end && finds_its_step { Err(Ended::Short(run.t())) } else { Ok(()) }
 }
 
-/// Takes `count` steps and shows every `stride`-th.
-fn each<const N: usize>(
-    count: u64,
-    stride: u64,
-    mut step: impl FnMut() -> Result<State<N>, StepError>,
-    mut see: impl FnMut(State<N>) -> Result<(), Ended>,
-) -> Result<(), Ended> {
-    for taken in 1..=count {
-        let state = step()?;
-        if taken % stride == 0 {
-            see(state)?;
+/// A value whose evaluations are none of the method's.
+fn uncounted<R>(evaluations: &Cell<u64>, value: impl FnOnce() -> R) -> R {
+    let before = evaluations.get();
+    let value = value();
+    evaluations.set(before);
+    value
+}
+
+/// Runs DOP853 to the end, and shows the energy of every step.
+fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut Watch<'_>) -> Result<(), Ended> {
+    let system = watch.system;
+    let mut seen = Ok(());
+    let mut see = |t: f64, energy: f64| {
+        if t > task.start.t && seen.is_ok() {
+            seen = watch.see(t, energy);
         }
-    }
-    Ok(())
+    };
+    system.rival(task.start, task.end, task.setting, evaluations, Some(&mut see))?;
+    seen
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_systems::Kepler;
+    use crate::catalogue;
 
     #[test]
     fn kepler_drifts_with_the_rival_and_not_with_fixed_steps() {
-        let start = Motion { t: 0.0, q: [0.4, 0.0].into(), v: [0.0, 2.0].into() };
-        let found = all(&Kepler::default(), &start, (0.005, 600.0), None, &mut Progress::new(8));
+        let start = PhasePoint { t: 0.0, q: vec![0.4, 0.0], v: vec![0.0, 2.0] };
+        let system = catalogue::find("kepler").expect("the system").system;
+        let found = all(system.as_ref(), &start, 0.005, 600.0, None, &mut Progress::new(8)).expect("an energy");
         for drift in &found {
             let ((t, error), growth) = (drift.last().expect("points"), drift.growth().expect("a growth"));
             assert!(t > 580.0 && drift.ended.is_none(), "{drift:?}");
             match drift.method {
                 Method::Rival if drift.setting > 1e-10 => assert!(growth > 0.8, "{growth}"),
-                Method::Fixed => assert!(growth < 0.1 && error > 1e-6, "{growth}, {error:e}"),
-                Method::Energy => assert!(error < 2e-14, "{error:e}"),
+                Method::FIXED => assert!(growth < 0.1 && error > 1e-6, "{growth}, {error:e}"),
+                Method::ENERGY => assert!(error < 2e-14, "{error:e}"),
                 _ => {}
             }
         }

@@ -92,7 +92,7 @@ impl Findings {
                 Method::Rival if drift.setting > 1e-8 => (rival(drift), line),
                 Method::Rival if drift.setting > 1e-11 => (rival(drift), drift.method.look().dashed()),
                 Method::Rival => (rival(drift), drift.method.look().dotted()),
-                method => (method.name().to_owned(), line),
+                Method::Own(_) => (drift.method.name().to_owned(), line),
             };
             Series::curve(label, look, drift.worst.clone())
         });
@@ -252,16 +252,16 @@ fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::reference::Agreement;
-    use super::super::rival::Ended;
     use super::super::study::Run;
     use super::*;
+    use crate::rival::Ended;
     use vi_core::StepError;
 
     /// Two runs of the energy-preserving integrator, off by 1e-12 and 1e-14, and one that ended.
     fn findings() -> Findings {
         let point = |error, seconds| Point { error, evaluations: 100, seconds, median: 2.0 * seconds };
         let error = StepError::NoForwardStep { t: 1.0, h: 0.1, excess: 0.0, density: -1.0 };
-        let run = |setting, outcome| Run { method: Method::Energy, setting, outcome };
+        let run = |setting, outcome| Run { method: Method::ENERGY, setting, outcome };
         Findings {
             until: 10.0,
             agreement: Agreement { composed: 1e-15, h: 0.1, rival: 1e-15 },

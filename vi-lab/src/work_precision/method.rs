@@ -1,43 +1,48 @@
 //! The methods that are compared, and one run of each.
 //!
-//! In: a system, a motion to start from, the time to reach, a [`Method`] and its setting: the length of a step, or a
-//! tolerance. Out: the state reached, or why it was not.
+//! In: a system, a point to start from, the time to reach, a [`Method`] and its setting: the length of a step, or a
+//! tolerance. Out: the state reached, or why it was not. The energy-preserving integrator stops at the first node from the
+//! end on; the others take the number of steps that is nearest.
 
-use super::rival::{self, Ended};
 use crate::chart::Look;
-use vi_core::check::Motion;
-use vi_core::{Composition, EnergyPreserving, FixedStep, Scheme, State, Stepping};
+use crate::rival::Ended;
+use crate::simulation::{self, Plan, Simulation, Start};
+use crate::system::{PhasePoint, System};
+use core::cell::Cell;
 
 /// A method of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Method {
-    /// Fixed steps of order 2.
-    Fixed,
-    /// Fixed steps composed to a higher order.
-    Composed(Scheme),
-    /// The integrator that solves for its own step.
-    Energy,
+    /// An integrator of this project.
+    Own(simulation::Method),
     /// The Runge–Kutta method of order 8 that chooses its steps by a tolerance.
     Rival,
 }
 
 impl Method {
+    /// Fixed steps of order 2.
+    pub(super) const FIXED: Self = Self::Own(simulation::Method::Fixed);
+    /// Fixed steps composed to order 8.
+    pub(super) const KAHAN_LI_8: Self = Self::Own(simulation::Method::KahanLi8);
+    /// The integrator that solves for its own step.
+    pub(super) const ENERGY: Self = Self::Own(simulation::Method::Energy);
+
     /// All of them, in the order of the legends.
     pub(super) const ALL: [Self; 6] = [
-        Self::Fixed,
-        Self::Composed(Scheme::SUZUKI_4),
-        Self::Composed(Scheme::KAHAN_LI_6),
-        Self::Composed(Scheme::KAHAN_LI_8),
-        Self::Energy,
+        Self::FIXED,
+        Self::Own(simulation::Method::Suzuki4),
+        Self::Own(simulation::Method::KahanLi6),
+        Self::KAHAN_LI_8,
+        Self::ENERGY,
         Self::Rival,
     ];
 
     /// Its name in legends and tables.
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Fixed => "fixed step",
-            Self::Composed(scheme) => scheme.name,
-            Self::Energy => "energy-preserving",
+            Self::Own(simulation::Method::Fixed) => "fixed step",
+            Self::Own(simulation::Method::Energy) => "energy-preserving",
+            Self::Own(composed) => composed.scheme().map_or(composed.name(), |scheme| scheme.name),
             Self::Rival => "DOP853",
         }
     }
@@ -46,11 +51,11 @@ impl Method {
     pub(super) fn look(self) -> Look {
         let [four, six, eight, _] = Look::OTHERS;
         match self {
-            Self::Fixed => Look::FIXED,
-            Self::Composed(scheme) if scheme.order == 4 => four,
-            Self::Composed(scheme) if scheme.order == 6 => six,
-            Self::Composed(_) => eight,
-            Self::Energy => Look::ENERGY,
+            Self::Own(simulation::Method::Fixed) => Look::FIXED,
+            Self::Own(simulation::Method::Suzuki4) => four,
+            Self::Own(simulation::Method::KahanLi6) => six,
+            Self::Own(simulation::Method::KahanLi8) => eight,
+            Self::Own(simulation::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
         }
     }
@@ -58,8 +63,8 @@ impl Method {
     /// Parts of one of its steps: equations that are solved one after the other.
     pub(super) fn parts(self) -> usize {
         match self {
-            Self::Composed(scheme) => scheme.weights.len(),
-            Self::Fixed | Self::Energy | Self::Rival => 1,
+            Self::Own(method) => method.scheme().map_or(1, |scheme| scheme.weights.len()),
+            Self::Rival => 1,
         }
     }
 
@@ -67,58 +72,97 @@ impl Method {
     pub(super) fn setting(self, setting: f64) -> String {
         match self {
             Self::Rival => format!("tolerance {setting:.0e}"),
-            Self::Energy => format!("h₀ = {setting:.4}"),
-            Self::Fixed | Self::Composed(_) => format!("h = {setting:.4}"),
+            Self::Own(simulation::Method::Energy) => format!("h₀ = {setting:.4}"),
+            Self::Own(_) => format!("h = {setting:.4}"),
         }
     }
 }
 
-/// How many steps of length `h` lead from the start to `end`.
-pub(super) fn steps(span: f64, h: f64) -> u64 {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive count far below 2⁵³
-    let count = (span / h).round() as u64;
-    count.max(1)
+/// A run of one method: from where, until when, at which setting.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Task<'a> {
+    /// Where it starts.
+    pub(super) start: &'a PhasePoint,
+    /// The time to reach.
+    pub(super) end: f64,
+    /// The method.
+    pub(super) method: Method,
+    /// Length of its step, or its tolerance.
+    pub(super) setting: f64,
 }
 
-/// The state that `method` reaches at `end`; the energy-preserving integrator stops at the first node from there on.
-pub(super) fn reached<S: Stepping<N>, const N: usize>(
-    system: S,
-    start: &Motion<N>,
-    end: f64,
-    method: Method,
-    setting: f64,
-) -> Result<State<N>, Ended> {
-    let count = steps(end - start.t, setting);
-    let state = State::at(&system, start.t, start.q, start.v);
-    let state = match method {
-        Method::Fixed => {
-            let mut run = FixedStep::new(system, state, setting).map_err(Ended::Step)?;
-            (0..count).try_for_each(|_| run.step().map(drop)).map_err(Ended::Step)?;
-            run.state()
-        }
-        Method::Composed(scheme) => {
-            let mut run = Composition::new(system, scheme, state, setting).map_err(Ended::Step)?;
-            (0..count).try_for_each(|_| run.step().map(drop)).map_err(Ended::Step)?;
-            run.state()
-        }
-        Method::Energy => {
-            let run = EnergyPreserving::from_midpoint(system, start.t, start.q, start.v, setting);
-            let mut run = run.map_err(Ended::Step)?;
-            let mut taken = 0;
-            while run.node().t < end {
-                run.step().map_err(Ended::Step)?;
-                taken += 1;
-                if taken > 10 * count {
-                    return Err(Ended::Short(run.node().t));
-                }
-            }
-            run.state()
-        }
-        Method::Rival => {
-            let motion = rival::motion(system, start, end, setting, drop)?;
-            State::at(&system, motion.t, motion.q, motion.v)
-        }
-    };
-    let finite = state.q.iter().chain(state.p.iter()).all(|entry| entry.is_finite());
-    if finite { Ok(state) } else { Err(Ended::NonFinite) }
+/// Time, coordinates and momenta at the end of a run.
+#[derive(Clone, Debug)]
+pub(super) struct Reached {
+    /// Time.
+    pub(super) t: f64,
+    /// Coordinates.
+    pub(super) q: Vec<f64>,
+    /// Momenta.
+    pub(super) p: Vec<f64>,
 }
+
+impl Task<'_> {
+    /// Number of steps of length `setting`.
+    pub(super) fn steps(&self) -> u64 {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive count far below 2⁵³
+        let count = ((self.end - self.start.t) / self.setting).round() as u64;
+        count.max(1)
+    }
+
+    /// The plan of a run of one of this project's integrators.
+    pub(super) fn plan(&self, method: simulation::Method) -> Plan {
+        Plan {
+            method,
+            start: Start::Midpoint,
+            h: self.setting,
+            t: self.start.t,
+            q: self.start.q.clone(),
+            v: self.start.v.clone(),
+        }
+    }
+
+    /// The state reached, with the number of evaluations added to `evaluations`.
+    ///
+    /// # Errors
+    /// Why the end was not reached.
+    pub(super) fn reached(&self, system: &dyn System, evaluations: &Cell<u64>) -> Result<Reached, Ended> {
+        let reached = match self.method {
+            Method::Own(method) => {
+                let mut run = system.begin_counted(&self.plan(method), evaluations)?;
+                self.follow(method, run.as_mut())?;
+                Reached { t: run.t(), q: run.q(), p: run.p() }
+            }
+            Method::Rival => {
+                let at = system.rival(self.start, self.end, self.setting, evaluations, None)?;
+                Reached { t: at.t, p: system.momentum(&at)?, q: at.q }
+            }
+        };
+        let is_finite = reached.q.iter().chain(&reached.p).all(|entry| entry.is_finite());
+        if is_finite { Ok(reached) } else { Err(Ended::NonFinite) }
+    }
+
+    /// The same run for the clock: nothing is counted but the rival's accelerations, and nothing is read from its end.
+    ///
+    /// # Errors
+    /// Why the end was not reached.
+    pub(super) fn timed(&self, system: &dyn System) -> Result<(), Ended> {
+        match self.method {
+            Method::Own(method) => self.follow(method, system.begin(&self.plan(method))?.as_mut()),
+            Method::Rival => system.rival(self.start, self.end, self.setting, &Cell::new(0), None).map(drop),
+        }
+    }
+
+    /// Steps to the end.
+    fn follow(&self, method: simulation::Method, run: &mut dyn Simulation) -> Result<(), Ended> {
+        let steps = self.steps();
+        if method != simulation::Method::Energy {
+            return Ok(run.advance_by(steps)?);
+        }
+        run.advance_until(self.end, TOO_MANY * steps)?;
+        if run.t() < self.end { Err(Ended::Short(run.t())) } else { Ok(()) }
+    }
+}
+
+/// An energy-preserving run that takes so many times the steps of its first length is given up.
+pub(super) const TOO_MANY: u64 = 10;

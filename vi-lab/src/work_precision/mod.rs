@@ -8,31 +8,29 @@
 //! | module | what it makes |
 //! |---|---|
 //! | [`study`] | every run: error, evaluations, seconds |
-//! | [`method`], [`rival`] | one run of one method; DOP853 |
+//! | [`method`] | one run of one method |
 //! | [`mod@reference`] | the motion that errors are measured against, and how well it is known |
 //! | [`drift`] | the energy over a long time |
-//! | [`counting`], [`clock`] | evaluations, seconds |
+//! | [`clock`] | seconds |
 //! | [`figures`] | charts, tables, and what they leave out |
 
 mod clock;
-mod counting;
 mod drift;
 mod figures;
 mod method;
 mod reference;
-mod rival;
 mod study;
-
-pub(crate) use study::{Findings, Study, findings};
 
 use crate::catalogue::{self, Entry};
 use crate::failure::Failure;
+use crate::html::escape;
 use crate::machine::Machine;
 use crate::numbers::scientific;
 use crate::progress::Progress;
-use crate::report::{Page, Report, escape};
+use crate::report::{Page, Report};
 use clap::Args;
 use std::path::PathBuf;
+use study::Findings;
 
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]
@@ -58,12 +56,9 @@ pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     let name = catalogue::kebab(entry.system.name());
     let page = Page::new(&format!("What an error costs: {name}"), entry.about);
     let mut report = Report::new(&arguments.out, page)?;
-    let study = Study { q: entry.q.clone(), v: entry.v.clone(), h: entry.h, quick: arguments.quick };
-    let mut progress = Progress::new(study::length(&study));
-    let found = entry
-        .system
-        .compare(&study, &mut progress)
-        .map_err(|reason| Failure::Input(format!("the motion of {name} cannot be followed: {reason}")))?;
+    let mut progress = Progress::new(study::length(&entry, arguments.quick));
+    let found = study::findings(&entry, arguments.quick, &mut progress)
+        .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be followed: {ended}")))?;
     drop(progress);
     introduction(&mut report, &entry, &found);
     work(&mut report, &name, &found)?;

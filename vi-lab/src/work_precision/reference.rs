@@ -1,7 +1,7 @@
 //! The motion that errors are measured against.
 //!
 //! In: a system, a motion to start from, the time to reach. Out: a [`Reference`]: extrapolation of the modified midpoint rule
-//! ([`Motion::at`]), a method that is not in the comparison, known at equidistant times and followed from there to any
+//! ([`System::follow`]), a method that is not in the comparison, known at equidistant times and followed from there to any
 //! other; and how far the most accurate runs of two methods of the comparison are from it at the end, which says how well
 //! it is known.
 //!
@@ -9,10 +9,10 @@
 //! error = max_i max( |q_i − q_i^ref| / Q, |p_i − p_i^ref| / P )        Q, P: largest coordinate and momentum on the way
 //! ```
 
-use super::method::{Method, reached};
-use super::rival::Ended;
-use vi_core::check::Motion;
-use vi_core::{Scheme, State, Stepping};
+use super::method::{Method, Reached, Task};
+use crate::rival::Ended;
+use crate::system::{PhasePoint, System};
+use core::cell::Cell;
 
 /// Parts of the time at whose ends the reference is stored.
 const PARTS: u32 = 256;
@@ -20,11 +20,13 @@ const PARTS: u32 = 256;
 pub(super) const TOLERANCE: f64 = 1e-14;
 
 /// The motion that errors are measured against.
-#[derive(Clone, Debug)]
-pub(super) struct Reference<S, const N: usize> {
-    system: S,
-    track: Vec<Motion<N>>,
-    scale: (f64, f64),
+pub(super) struct Reference<'a> {
+    system: &'a dyn System,
+    track: Vec<PhasePoint>,
+    /// Largest coordinate on the way.
+    largest_q: f64,
+    /// Largest momentum on the way.
+    largest_p: f64,
 }
 
 /// How far other accurate runs are from the reference at its end, as errors.
@@ -45,41 +47,43 @@ impl Agreement {
     }
 }
 
-impl<S: Stepping<N>, const N: usize> Reference<S, N> {
+impl<'a> Reference<'a> {
     /// Follows the motion from `start` to `end`.
     ///
     /// # Errors
     /// That of a motion that cannot be followed.
-    pub(super) fn new(system: S, start: &Motion<N>, end: f64) -> Result<Self, Ended> {
-        let (mut track, mut scale) = (vec![*start], (0.0_f64, 0.0_f64));
-        let mut last = *start;
+    pub(super) fn new(system: &'a dyn System, start: &PhasePoint, end: f64) -> Result<Self, Ended> {
+        let mut reference = Self { system, track: vec![start.clone()], largest_q: 0.0, largest_p: 0.0 };
+        let mut last = start.clone();
         for part in 0..=PARTS {
-            last = last.at(&system, start.t + (end - start.t) * f64::from(part) / f64::from(PARTS))?;
-            let p = system.momentum(last.t, &last.q, &last.v);
-            scale = (scale.0.max(last.q.amax()), scale.1.max(p.amax()));
-            track.push(last);
+            last = system.follow(&last, start.t + (end - start.t) * f64::from(part) / f64::from(PARTS))?;
+            reference.largest_q = reference.largest_q.max(largest(&last.q));
+            reference.largest_p = reference.largest_p.max(largest(&system.momentum(&last)?));
+            reference.track.push(last.clone());
         }
-        Ok(Self { system, track, scale })
+        Ok(reference)
     }
 
     /// The motion at `t`, at the end or a little later too.
     ///
     /// # Errors
     /// That of a motion that cannot be followed.
-    pub(super) fn at(&self, t: f64) -> Result<Motion<N>, Ended> {
-        let later = self.track.partition_point(|motion| motion.t <= t);
+    pub(super) fn at(&self, t: f64) -> Result<PhasePoint, Ended> {
+        let later = self.track.partition_point(|point| point.t <= t);
         let before = self.track.get(later.saturating_sub(1)).ok_or(Ended::NonFinite)?;
-        Ok(before.at(&self.system, t)?)
+        Ok(self.system.follow(before, t)?)
     }
 
     /// The error of a state, at its own time.
     ///
     /// # Errors
     /// As [`Reference::at`].
-    pub(super) fn error(&self, state: &State<N>) -> Result<f64, Ended> {
-        let Motion { t, q, v } = self.at(state.t)?;
-        let p = self.system.momentum(t, &q, &v);
-        Ok(((state.q - q).amax() / self.scale.0).max((state.p - p).amax() / self.scale.1))
+    pub(super) fn error(&self, state: &Reached) -> Result<f64, Ended> {
+        let expected = self.at(state.t)?;
+        let p = self.system.momentum(&expected)?;
+        let error_q = distance(&state.q, &expected.q) / self.largest_q;
+        let error_p = distance(&state.p, &p) / self.largest_p;
+        Ok(error_q.max(error_p))
     }
 
     /// How far Kahan and Li's composition with the step `h`, and DOP853, are from the reference at its end.
@@ -87,23 +91,36 @@ impl<S: Stepping<N>, const N: usize> Reference<S, N> {
     /// # Errors
     /// What ended one of the runs.
     pub(super) fn agreement(&self, h: f64) -> Result<Agreement, Ended> {
-        let (start, end) = (self.track.first().ok_or(Ended::NonFinite)?, self.track.last().ok_or(Ended::NonFinite)?);
-        let distance = |method, setting| self.error(&reached(self.system, start, end.t, method, setting)?);
-        let composed = distance(Method::Composed(Scheme::KAHAN_LI_8), h)?;
-        Ok(Agreement { composed, h, rival: distance(Method::Rival, TOLERANCE)? })
+        let start = self.track.first().ok_or(Ended::NonFinite)?;
+        let end = self.track.last().ok_or(Ended::NonFinite)?.t;
+        let error = |method, setting| {
+            let task = Task { start, end, method, setting };
+            self.error(&task.reached(self.system, &Cell::new(0))?)
+        };
+        Ok(Agreement { composed: error(Method::KAHAN_LI_8, h)?, h, rival: error(Method::Rival, TOLERANCE)? })
     }
+}
+
+/// The largest entry, by absolute value.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
+/// The largest difference of two vectors.
+fn distance(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_systems::{DampedOscillator, Kepler};
+    use crate::catalogue;
 
     #[test]
     fn the_reference_is_the_closed_form() {
-        let start = Motion { t: 0.0, q: [1.0].into(), v: [0.0].into() };
-        let system = DampedOscillator::default();
-        let reference = Reference::new(&system, &start, 40.0).expect("a motion");
+        let start = PhasePoint { t: 0.0, q: vec![1.0], v: vec![0.0] };
+        let system = catalogue::find("damped-oscillator").expect("the system").system;
+        let reference = Reference::new(system.as_ref(), &start, 40.0).expect("a motion");
         let agreement = reference.agreement(0.02).expect("runs");
         let (decay, omega) = (0.02_f64, (4.0_f64 - 0.02 * 0.02).sqrt());
         let found = reference.at(40.0).expect("the end");
@@ -112,9 +129,9 @@ mod tests {
         let error = (found.q[0] - exact).abs();
         assert!(error < 4e-14 && error < agreement.floor(), "{error:e}, {agreement:?}");
 
-        let start = Motion { t: 0.0, q: [0.4, 0.0].into(), v: [0.0, 2.0].into() };
-        let system = Kepler::default();
-        let reference = Reference::new(&system, &start, 20.0).expect("a motion");
+        let start = PhasePoint { t: 0.0, q: vec![0.4, 0.0], v: vec![0.0, 2.0] };
+        let system = catalogue::find("kepler").expect("the system").system;
+        let reference = Reference::new(system.as_ref(), &start, 20.0).expect("a motion");
         let agreement = reference.agreement(0.01).expect("runs");
         // a = 1, e = 0.6: M = E − e sin E, x = cos E − e, y = √(1 − e²) sin E.
         let anomaly = (0..50).fold(20.0_f64, |e, _| e - (e - 0.6 * e.sin() - 20.0) / (1.0 - 0.6 * e.cos()));

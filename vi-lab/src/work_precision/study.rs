@@ -1,43 +1,30 @@
 //! Every method at every setting, on one system: errors, evaluations and times.
 //!
-//! In: a system, where it starts, its usual step. Out: [`Findings`], from which the number of degrees of freedom is
-//! erased. All but the seconds is the same in every run.
+//! In: a system, where it starts, its usual step. Out: [`Findings`]. All but the seconds is the same in every run.
 
 use super::clock;
-use super::counting::Counting;
 use super::drift::{self, Drift};
-use super::method::{Method, reached};
+use super::method::{Method, Task};
 use super::reference::{Agreement, Reference};
-use super::rival::Ended;
+use crate::catalogue::Entry;
 use crate::numbers::{median, order};
 use crate::progress::Progress;
+use crate::rival::Ended;
+use crate::system::{PhasePoint, System};
 use core::cell::Cell;
-use vi_core::check::Motion;
-use vi_core::{SVector, StepError, Stepping};
 
 /// Usual steps up to the end of the runs whose errors are measured.
 const STEPS: f64 = 4000.0;
 /// Steps of a ladder run from this many times the usual length, in powers of √2, to the [`finest`].
 const COARSEST: i32 = 6;
+/// How often each run is timed.
+const ROUNDS: u32 = 7;
 /// Tolerances of DOP853, as powers of ten.
 const TOLERANCES: core::ops::RangeInclusive<i32> = -14..=-3;
 
-/// What is to be compared.
-#[derive(Clone, Debug)]
-pub(crate) struct Study {
-    /// Initial coordinates.
-    pub(crate) q: Vec<f64>,
-    /// Initial velocities.
-    pub(crate) v: Vec<f64>,
-    /// Usual step of the system.
-    pub(crate) h: f64,
-    /// Fewer and shorter runs, each timed once.
-    pub(crate) quick: bool,
-}
-
 /// What was found.
 #[derive(Clone, Debug)]
-pub(crate) struct Findings {
+pub(super) struct Findings {
     /// Time at which errors are taken.
     pub(super) until: f64,
     /// How well the reference is known there.
@@ -102,87 +89,70 @@ fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
         .collect()
 }
 
-/// The comparison of all methods on `system`.
+/// The comparison of all methods on the system of an entry, from where the entry starts; with `quick`, fewer and shorter runs,
+/// each timed once.
 ///
 /// # Errors
-/// What ended the reference, in words.
-pub(crate) fn findings<S: Stepping<N>, const N: usize>(
-    system: &S,
-    study: &Study,
-    progress: &mut Progress,
-) -> Result<Findings, String> {
-    let vector = |values: &[f64]| (values.len() == N).then(|| SVector::<f64, N>::from_column_slice(values));
-    let (Some(q), Some(v)) = (vector(&study.q), vector(&study.v)) else {
-        return Err(format!("{} coordinates were given, {N} are needed", study.q.len()));
-    };
-    let (start, until) = (Motion { t: 0.0, q, v }, STEPS * study.h);
+/// What ended the reference.
+pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> Result<Findings, Ended> {
+    let system = entry.system.as_ref();
+    let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
+    let coordinates = start.q.len();
+    let until = STEPS * entry.h;
     progress.message("reference");
-    let reference = Reference::new(system, &start, until).map_err(|ended| ended.to_string())?;
-    let agreement = reference.agreement(study.h).map_err(|ended| ended.to_string())?;
-    let finest = finest(N, study.quick);
-    let mut runs: Vec<Run> = Method::ALL
-        .into_iter()
-        .flat_map(|method| settings(method, until, finest).into_iter().map(move |setting| (method, setting)))
-        .map(|(method, setting)| {
+    let reference = Reference::new(system, &start, until)?;
+    let agreement = reference.agreement(entry.h)?;
+    let finest = finest(coordinates, quick);
+    let mut runs = Vec::new();
+    for method in Method::ALL {
+        for setting in settings(method, until, finest) {
             progress.advance_by(1);
-            Run { method, setting, outcome: untimed(system, &start, &reference, until, (method, setting)) }
-        })
-        .collect();
-    timed(system, &start, until, &mut runs, if study.quick { 1 } else { 7 }, progress);
-    let conserved = S::AUTONOMOUS && !S::FORCED;
+            let task = Task { start: &start, end: until, method, setting };
+            runs.push(Run { method, setting, outcome: untimed(system, &task, &reference) });
+        }
+    }
+    time(system, &start, until, &mut runs, if quick { 1 } else { ROUNDS }, progress);
+    let conserved = system.conserves_energy();
     // A thousand times as long with one degree of freedom, and as much work with many.
-    let longer = match (conserved, study.quick) {
+    let longer = match (conserved, quick) {
         (false, _) => 1,
         (true, true) => 5,
-        (true, false) => (1000 / N.pow(2)).max(10),
+        (true, false) => (1000 / coordinates.pow(2)).max(10),
     };
     #[allow(clippy::cast_precision_loss)] // at most a thousand
     let long = until * longer as f64;
     progress.message("energy over a long time");
-    let drifts = drift::all(system, &start, (study.h, long), (!conserved).then_some(&reference), progress);
+    let drifts = drift::all(system, &start, entry.h, long, (!conserved).then_some(&reference), progress)?;
     Ok(Findings { until, agreement, runs, drifts, conserved, long })
 }
 
 /// Runs that [`findings`] makes, for a bar.
-pub(crate) fn length(study: &Study) -> u64 {
-    let ladder = u64::try_from(COARSEST + finest(study.q.len(), study.quick) + 1).unwrap_or(1);
-    let repetitions = if study.quick { 2 } else { 8 };
-    repetitions * (5 * ladder + 12) + 8
+pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
+    let ladder = u64::try_from(COARSEST + finest(entry.q.len(), quick) + 1).unwrap_or(1);
+    let rounds = if quick { 1 } else { u64::from(ROUNDS) };
+    (1 + rounds) * (5 * ladder + 12) + 8
 }
 
 /// Error and evaluations of one run; its times are still to be taken.
-fn untimed<S: Stepping<N>, const N: usize>(
-    system: &S,
-    start: &Motion<N>,
-    reference: &Reference<&S, N>,
-    until: f64,
-    (method, setting): (Method, f64),
-) -> Result<Point, Ended> {
+fn untimed(system: &dyn System, task: &Task<'_>, reference: &Reference<'_>) -> Result<Point, Ended> {
     let evaluations = Cell::new(0);
-    let state = reached(Counting::new(system, &evaluations), start, until, method, setting)?;
+    let state = task.reached(system, &evaluations)?;
     let error = reference.error(&state)?;
     Ok(Point { error, evaluations: evaluations.get(), seconds: f64::INFINITY, median: f64::INFINITY })
 }
 
 /// Times every run that reaches its end, in rounds: what disturbs the machine for a while then disturbs all alike.
-fn timed<S: Stepping<N>, const N: usize>(
-    system: &S,
-    start: &Motion<N>,
-    until: f64,
-    runs: &mut [Run],
-    rounds: u32,
-    progress: &mut Progress,
-) {
+fn time(system: &dyn System, start: &PhasePoint, end: f64, runs: &mut [Run], rounds: u32, progress: &mut Progress) {
     let mut times = vec![Vec::new(); runs.len()];
     for _ in 0..rounds {
         for (run, times) in runs.iter().zip(&mut times) {
             progress.message(run.method.name());
             progress.advance_by(1);
             if run.outcome.is_ok() {
-                let again = || reached(system, start, until, run.method, run.setting);
+                let task = Task { start, end, method: run.method, setting: run.setting };
                 // Once unwatched: another method's code was the last to run.
-                core::hint::black_box(again().is_ok());
-                times.push(clock::seconds(again));
+                core::hint::black_box(task.timed(system).is_ok());
+                times.push(clock::seconds(|| task.timed(system)));
             }
         }
     }
@@ -206,25 +176,21 @@ pub(super) fn fitted_order(points: impl Iterator<Item = (f64, Point)>, floor: f6
 /// Points that an order is fitted to: a factor of 2.8 in the step.
 const FITTED: usize = 4;
 
-impl From<StepError> for Ended {
-    fn from(error: StepError) -> Self {
-        Self::Step(error)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_systems::{DoublePendulum, DoubleWell, Pendulum};
+    use crate::catalogue;
+    use vi_core::StepError;
 
-    fn quick<S: Stepping<N>, const N: usize>(system: &S, q: [f64; N], v: [f64; N], h: f64) -> Findings {
-        let study = Study { q: q.to_vec(), v: v.to_vec(), h, quick: true };
-        findings(system, &study, &mut Progress::new(length(&study))).unwrap_or_else(|error| panic!("{error}"))
+    fn quick(name: &str, q: &[f64]) -> Findings {
+        let entry = catalogue::find(name).expect("the system");
+        let entry = Entry { q: q.to_vec(), v: vec![0.0; q.len()], ..entry };
+        findings(&entry, true, &mut Progress::new(length(&entry, true))).unwrap_or_else(|error| panic!("{error}"))
     }
 
     #[test]
     fn the_fitted_orders_are_those_of_the_methods() {
-        let found = quick(&Pendulum::default(), [1.0], [0.0], 0.01);
+        let found = quick("pendulum", &[1.0]);
         let floor = found.agreement.floor();
         for (method, order) in Method::ALL.into_iter().zip([2.0, 4.0, 6.0, 8.0, 2.0]) {
             let fitted = fitted_order(found.points(method), floor).expect("an order");
@@ -235,16 +201,16 @@ mod tests {
     #[test]
     fn a_run_that_ends_says_why() {
         // Across the barrier the energy-preserving step does not exist everywhere; the other methods go on.
-        let found = quick(&DoubleWell::default(), [1.05], [0.0], 0.01);
+        let found = quick("double-well", &[1.05]);
         for run in &found.runs {
             let ended = matches!(run.outcome, Err(Ended::Step(StepError::NoForwardStep { .. })));
-            assert_eq!(ended, run.method == Method::Energy, "{run:?}");
+            assert_eq!(ended, run.method == Method::ENERGY, "{run:?}");
         }
     }
 
     #[test]
     fn only_the_seconds_differ_between_two_studies() {
-        let found = || quick(&DoublePendulum::default(), [0.5, 0.3], [0.0, 0.0], 0.005);
+        let found = || quick("double-pendulum", &[0.5, 0.3]);
         let (one, other) = (found(), found());
         let plain = |found: &Findings| -> Vec<_> {
             found.runs.iter().map(|run| run.outcome.map(|point| (point.error, point.evaluations))).collect()

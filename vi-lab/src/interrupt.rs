@@ -25,12 +25,12 @@ impl Signal {
 }
 
 /// The signals that are heeded.
-pub(super) const SIGNALS: [Signal; 2] =
+pub(crate) const SIGNALS: [Signal; 2] =
     [Signal { name: "SIGINT", number: SIGINT }, Signal { name: "SIGTERM", number: SIGTERM }];
 
 /// Heeds signals from now on.
 #[derive(Debug, Default)]
-pub(super) struct Interrupt {
+pub(crate) struct Interrupt {
     /// One more than the place in [`SIGNALS`] of the signal that came; zero until then.
     came: Arc<AtomicUsize>,
 }
@@ -40,7 +40,7 @@ impl Interrupt {
     ///
     /// # Errors
     /// What the system says where it does not allow this.
-    pub(super) fn heed() -> io::Result<Self> {
+    pub(crate) fn heed() -> io::Result<Self> {
         let interrupt = Self::default();
         let is_second = Arc::new(AtomicBool::new(false));
         for (index, signal) in SIGNALS.into_iter().enumerate() {
@@ -54,7 +54,7 @@ impl Interrupt {
     }
 
     /// The signal that has come.
-    pub(super) fn signal(&self) -> Option<Signal> {
+    pub(crate) fn signal(&self) -> Option<Signal> {
         let place = self.came.load(Ordering::Relaxed).checked_sub(1)?;
         SIGNALS.get(place).copied()
     }

@@ -11,14 +11,14 @@ use vi_core::{
 
 /// A system, and the evaluations so far: its copies count together.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Counting<'a, S> {
+pub(crate) struct Counting<'a, S> {
     system: S,
     evaluations: &'a Cell<u64>,
 }
 
 impl<'a, S> Counting<'a, S> {
     /// The system, and where its evaluations are added.
-    pub(super) fn new(system: S, evaluations: &'a Cell<u64>) -> Self {
+    pub(crate) fn new(system: S, evaluations: &'a Cell<u64>) -> Self {
         Self { system, evaluations }
     }
 

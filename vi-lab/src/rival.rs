@@ -1,8 +1,9 @@
 //! The rival: the Runge–Kutta method of order 8 of Dormand and Prince (DOP853), of the crate `differential-equations`.
 //!
 //! In: a system, of which nothing is used but its acceleration, a motion, the time to reach and a tolerance, relative and
-//! absolute. Out: the motion at that time, and each step on the way to who wants to see it. The library evaluates the
-//! acceleration fifteen times in an accepted step, three of them for dense output, which it makes always.
+//! absolute. Out: the motion at that time, each step on the way, and the number of accelerations. The library evaluates
+//! fifteen of them in an accepted step, three of them for dense output, which it makes always. It counts them whether the
+//! run is timed or not: an addition beside some ten operations of each stage.
 
 use core::array;
 use core::cell::Cell;
@@ -20,7 +21,7 @@ use vi_core::{Lagrangian, SVector, StepError};
 
 /// Why a run did not reach its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Ended {
+pub(crate) enum Ended {
     /// A step failed, or the acceleration.
     Step(StepError),
     /// The rival gave up at this time, for this reason.
@@ -39,6 +40,12 @@ impl fmt::Display for Ended {
             Self::Short(t) => write!(f, "more than ten times the steps were taken up to t = {t:.9}"),
             Self::NonFinite => f.write_str("a number is not finite at the end"),
         }
+    }
+}
+
+impl From<StepError> for Ended {
+    fn from(error: StepError) -> Self {
+        Self::Step(error)
     }
 }
 
@@ -93,13 +100,15 @@ impl<const N: usize> State<f64> for Phase<N> {
 
 /// The motion as a system of first order. An acceleration that fails is none: the library shortens its step, and where
 /// that does not help, the failure is told in its place.
-struct Equations<S> {
+struct Equations<'a, S> {
     system: S,
+    evaluations: &'a Cell<u64>,
     failure: Cell<Option<StepError>>,
 }
 
-impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<S> {
+impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<'_, S> {
     fn diff(&self, t: f64, y: &Phase<N>, dydt: &mut Phase<N>) {
+        self.evaluations.update(|count| count + 1);
         let [q, v] = y.0;
         let acceleration = self.system.acceleration(t, &q.into(), &v.into()).unwrap_or_else(|error| {
             self.failure.set(Some(error));
@@ -109,10 +118,13 @@ impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<S> {
     }
 }
 
-/// Shows every accepted step, and stores none.
-struct Watch<F>(F);
+/// Shows every accepted step, and stores the last.
+struct Watch<'a, const N: usize> {
+    last: Motion<N>,
+    show: &'a mut dyn FnMut(&Motion<N>),
+}
 
-impl<F: FnMut(Motion<N>), const N: usize> Solout<f64, Phase<N>> for Watch<F> {
+impl<const N: usize> Solout<f64, Phase<N>> for Watch<'_, N> {
     fn solout<I: Interpolation<f64, Phase<N>> + ?Sized>(
         &mut self,
         t: f64,
@@ -122,28 +134,29 @@ impl<F: FnMut(Motion<N>), const N: usize> Solout<f64, Phase<N>> for Watch<F> {
         _interpolator: &mut I,
         _solution: &mut Solution<f64, Phase<N>>,
     ) -> ControlFlag<f64, Phase<N>> {
-        self.0(y.at(t));
+        self.last = y.at(t);
+        (self.show)(&self.last);
         ControlFlag::Continue
     }
 }
 
-/// The motion at `end`; `watch` is shown the start and every step.
-pub(super) fn motion<S: Lagrangian<N>, const N: usize>(
+/// The motion at `end`; `show` is given the start and every step, `evaluations` grows by the number of accelerations.
+///
+/// # Errors
+/// Why the run did not reach `end`.
+pub(crate) fn motion<S: Lagrangian<N>, const N: usize>(
     system: S,
     start: &Motion<N>,
     end: f64,
     tolerance: f64,
-    watch: impl FnMut(Motion<N>),
+    evaluations: &Cell<u64>,
+    show: &mut dyn FnMut(&Motion<N>),
 ) -> Result<Motion<N>, Ended> {
-    let equations = Equations { system, failure: Cell::new(None) };
+    let equations = Equations { system, evaluations, failure: Cell::new(None) };
     let mut solver = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(usize::MAX);
-    let mut last = *start;
-    let mut watch = watch;
-    let mut every = Watch(|motion| {
-        last = motion;
-        watch(motion);
-    });
-    let solved = solve_ode(&mut solver, &equations, start.t, end, &Phase::of(start), &mut every).map(drop);
+    let mut watch = Watch { last: *start, show };
+    let solved = solve_ode(&mut solver, &equations, start.t, end, &Phase::of(start), &mut watch).map(drop);
+    let last = watch.last;
     match (solved, equations.failure.get()) {
         (Ok(()), _) => Ok(last),
         (Err(_), Some(failure)) => Err(Ended::Step(failure)),
@@ -162,12 +175,14 @@ mod tests {
     fn the_damped_oscillator_is_met() {
         let (system, t) = (DampedOscillator::default(), 40.0);
         let start = Motion { t: 0.0, q: [1.0].into(), v: [0.0].into() };
-        let end = motion(system, &start, t, 1e-14, drop).expect("the motion");
+        let evaluations = Cell::new(0);
+        let end = motion(system, &start, t, 1e-14, &evaluations, &mut |_| ()).expect("the motion");
         let (decay, omega) = (0.02_f64, (4.0_f64 - 0.02 * 0.02).sqrt());
         let exact = (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin());
         // Measured 3.5e-14.
         assert!((end.q[0] - exact).abs() < 4e-14, "{:e}", end.q[0] - exact);
         assert!((end.t - t).abs() < 1e-14);
+        assert!(evaluations.get() > 1000, "{}", evaluations.get());
     }
 
     #[test]
@@ -175,7 +190,7 @@ mod tests {
         let system = Kepler::default();
         let start = Motion { t: 0.0, q: [1.0, 0.0].into(), v: [0.0, 0.0].into() };
         let mut times = Vec::new();
-        let ended = motion(system, &start, 2.0, 1e-9, |motion| times.push(motion.t));
+        let ended = motion(system, &start, 2.0, 1e-9, &Cell::new(0), &mut |motion| times.push(motion.t));
         // Free fall from r = 1 with μ = 1 ends at t = π/√8.
         let fall = core::f64::consts::PI / 8.0_f64.sqrt();
         let at_the_centre = |t: f64| (t - fall).abs() < 1e-6;

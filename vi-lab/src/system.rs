@@ -1,0 +1,181 @@
+//! A system of any number of degrees of freedom, its type erased.
+//!
+//! In: a system of a known type. Out: a [`System`], by which runs, maps and comparisons use it. Below this trait stands all
+//! code of the command that is generic over systems: its integrators, its accurate motion and the rival are compiled
+//! once for each system, however many charts use them.
+
+use crate::counting::Counting;
+use crate::rival::{self, Ended};
+use crate::simulation::{self, Plan, Simulation, vector};
+use core::cell::Cell;
+use vi_core::check::Motion;
+use vi_core::{Parameters, SVector, StepError, Stepping};
+
+/// Where a motion is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PhasePoint {
+    /// Time.
+    pub(crate) t: f64,
+    /// Coordinates.
+    pub(crate) q: Vec<f64>,
+    /// Velocities.
+    pub(crate) v: Vec<f64>,
+}
+
+/// A system with its parameters.
+pub(crate) trait System: Send + Sync {
+    /// Name of the type.
+    fn name(&self) -> &'static str;
+    /// Names of the coordinates.
+    fn coordinates(&self) -> Vec<&'static str>;
+    /// Names and values of the parameters.
+    fn parameters(&self) -> Vec<(&'static str, f64)>;
+    /// Sets a parameter; false where there is none of this name.
+    fn set(&mut self, name: &str, value: f64) -> bool;
+    /// A system of the same type with the same parameters.
+    fn copy(&self) -> Box<dyn System>;
+    /// Whether the energy of a motion is constant: L and f are free of the time, and there is no force.
+    fn conserves_energy(&self) -> bool;
+    /// Step density D at t = 0; none where it has no value.
+    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
+    /// H at a point.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] where the point has another number of coordinates, here and below.
+    fn energy(&self, at: &PhasePoint) -> Result<f64, StepError>;
+    /// Momenta ∂L/∂v at a point.
+    ///
+    /// # Errors
+    /// As [`System::energy`].
+    fn momentum(&self, at: &PhasePoint) -> Result<Vec<f64>, StepError>;
+    /// The point of the same motion at the time `end`, by [`Motion::at`].
+    ///
+    /// # Errors
+    /// Where the motion cannot be followed.
+    fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError>;
+    /// Starts a run.
+    ///
+    /// # Errors
+    /// What the integrators say of the initial state.
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
+    /// Starts a run that counts its evaluations of the equations.
+    ///
+    /// # Errors
+    /// As [`System::begin`].
+    fn begin_counted<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>)
+    -> Result<Box<dyn Simulation + 'a>, StepError>;
+    /// The point of the same motion at the time `end`, by the rival with a tolerance. `evaluations` grows by the number of
+    /// accelerations, also where the run ends early; `watch`, if any, is given time and H at the start and after every step.
+    ///
+    /// # Errors
+    /// Why the run did not reach its end.
+    fn rival(
+        &self,
+        from: &PhasePoint,
+        end: f64,
+        tolerance: f64,
+        evaluations: &Cell<u64>,
+        watch: Option<&mut dyn FnMut(f64, f64)>,
+    ) -> Result<PhasePoint, Ended>;
+}
+
+/// A system of a known type.
+struct Typed<S, const N: usize>(S);
+
+/// The system `S` with its default parameters.
+pub(crate) fn erased<S, const N: usize>() -> Box<dyn System>
+where
+    S: Stepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+{
+    Box::new(Typed::<S, N>(S::default()))
+}
+
+impl<S, const N: usize> System for Typed<S, N>
+where
+    S: Stepping<N> + Parameters + Clone + Send + Sync + 'static,
+{
+    fn name(&self) -> &'static str {
+        S::NAME
+    }
+
+    fn coordinates(&self) -> Vec<&'static str> {
+        S::COORDINATES.to_vec()
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        let mut system = self.0;
+        S::PARAMETERS.iter().filter_map(|name| Some((*name, *system.parameter_mut(name)?))).collect()
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> bool {
+        self.0.parameter_mut(name).map(|parameter| *parameter = value).is_some()
+    }
+
+    fn copy(&self) -> Box<dyn System> {
+        Box::new(Self(self.0))
+    }
+
+    fn conserves_energy(&self) -> bool {
+        S::AUTONOMOUS && !S::FORCED
+    }
+
+    fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64> {
+        let sized = q.len() == N && v.len() == N;
+        let density = || self.0.step_density(0.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v)).ok();
+        sized.then(density).flatten().filter(|density| density.is_finite())
+    }
+
+    fn energy(&self, at: &PhasePoint) -> Result<f64, StepError> {
+        let Motion { t, q, v } = sized(at)?;
+        Ok(self.0.energy(t, &q, &v))
+    }
+
+    fn momentum(&self, at: &PhasePoint) -> Result<Vec<f64>, StepError> {
+        let Motion { t, q, v } = sized(at)?;
+        Ok(self.0.momentum(t, &q, &v).as_slice().to_vec())
+    }
+
+    fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError> {
+        sized(from)?.at(&self.0, end).map(erased_point)
+    }
+
+    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
+        simulation::begin(self.0, plan)
+    }
+
+    fn begin_counted<'a>(
+        &self,
+        plan: &Plan,
+        evaluations: &'a Cell<u64>,
+    ) -> Result<Box<dyn Simulation + 'a>, StepError> {
+        simulation::begin(Counting::new(self.0, evaluations), plan)
+    }
+
+    fn rival(
+        &self,
+        from: &PhasePoint,
+        end: f64,
+        tolerance: f64,
+        evaluations: &Cell<u64>,
+        mut watch: Option<&mut dyn FnMut(f64, f64)>,
+    ) -> Result<PhasePoint, Ended> {
+        let mut show = |motion: &Motion<N>| {
+            if let Some(watch) = &mut watch {
+                watch(motion.t, self.0.energy(motion.t, &motion.q, &motion.v));
+            }
+        };
+        rival::motion(self.0, &sized(from)?, end, tolerance, evaluations, &mut show).map(erased_point)
+    }
+}
+
+/// A point with the system's number of coordinates.
+fn sized<const N: usize>(point: &PhasePoint) -> Result<Motion<N>, StepError> {
+    let q = vector(&point.q, "number of coordinates")?;
+    let v = vector(&point.v, "number of velocities")?;
+    Ok(Motion { t: point.t, q, v })
+}
+
+/// A point of any number of coordinates.
+fn erased_point<const N: usize>(motion: Motion<N>) -> PhasePoint {
+    PhasePoint { t: motion.t, q: motion.q.as_slice().to_vec(), v: motion.v.as_slice().to_vec() }
+}
