@@ -2,7 +2,7 @@
 //! of two links against the double pendulum, order 2, and the energy of both integrators.
 
 use crate::support::exact::Motion;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, Stepping, lagrangian};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, SVector, State, lagrangian};
 use vi_systems::{DoublePendulum, FpuChain, NPendulum};
 
 const N: usize = 16;
@@ -44,7 +44,7 @@ fn two_links_are_the_double_pendulum() {
 }
 
 /// The state after some fixed steps.
-fn fixed<const N: usize, S: Stepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) -> State<N> {
+fn fixed<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) -> State<N> {
     let start = State::at(&system, 0.0, q, v);
     let mut run = FixedStep::new(system, start, h).expect("a valid start");
     for _ in 0..steps {
@@ -88,7 +88,7 @@ fn linear_modes_keep_their_shape_and_frequency() {
 }
 
 /// Errors against an accurate motion fall by 4 with every halving of the step.
-fn order<const N: usize, S: Stepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) {
+fn order<const N: usize, S: EnergyStepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) {
     let mut time = 0.0;
     (0..steps).for_each(|_| time += h);
     let exact = Motion::new(0.0, q, v).at(&system, time);
@@ -113,7 +113,7 @@ fn both_are_of_order_two() {
 }
 
 /// Swing of the fixed-step energy and of the energy-preserving one, over `steps` steps.
-fn energies<const N: usize, S: Stepping<N> + Copy>(
+fn energies<const N: usize, S: EnergyStepping<N> + Copy>(
     system: S,
     q: [f64; N],
     v: [f64; N],

@@ -3,11 +3,11 @@
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number, steps, vector};
 use crate::support::slope;
-use vi_core::{Composition, Scheme, State, StepError, Stepping};
+use vi_core::{Composition, FixedStepping, Scheme, State, StepError};
 use vi_systems::{DampedOscillator, DoublePendulum, HardDuffing, Kepler, ParametricPendulum, Pendulum};
 
 /// The entries of `composition_…` of one system.
-fn references<const N: usize, S: Stepping<N> + Copy>(name: &str, system: S) {
+fn references<const N: usize, S: FixedStepping<N> + Copy>(name: &str, system: S) {
     let file = file("discrete_multi.json");
     let of = &file[name];
     for (key, scheme) in [("composition_TJ4", Scheme::TRIPLE_JUMP_4), ("composition_KL6", Scheme::KAHAN_LI_6)] {
@@ -40,7 +40,12 @@ fn the_references_are_followed() {
 
 /// The slope of the error over a ladder of steps: `count` of them from each of four equally spaced times to the next. The
 /// error is taken over all four, as at a single time its first term may be about to change sign.
-fn order<const N: usize, S: Stepping<N> + Copy>(system: S, scheme: Scheme, motion: &[Motion<N>], counts: [u32; 4]) {
+fn order<const N: usize, S: FixedStepping<N> + Copy>(
+    system: S,
+    scheme: Scheme,
+    motion: &[Motion<N>],
+    counts: [u32; 4],
+) {
     let (start, ends) = motion.split_first().expect("a start");
     let error = |h: f64, count: u32| {
         let state = State::at(&system, start.t, start.q, start.v);
@@ -63,7 +68,7 @@ fn order<const N: usize, S: Stepping<N> + Copy>(system: S, scheme: Scheme, motio
 }
 
 /// An accurate motion at five equally spaced times.
-fn motion<const N: usize, S: Stepping<N>>(system: &S, q: [f64; N], v: [f64; N], apart: f64) -> [Motion<N>; 5] {
+fn motion<const N: usize, S: FixedStepping<N>>(system: &S, q: [f64; N], v: [f64; N], apart: f64) -> [Motion<N>; 5] {
     let start = Motion::new(0.0, q, v);
     [0.0, 1.0, 2.0, 3.0, 4.0].map(|part| start.at(system, part * apart))
 }

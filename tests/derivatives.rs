@@ -4,9 +4,9 @@
 //! States, intervals and parameters are drawn, parameters away from 1, so that no term hides behind another.
 
 use crate::support::Sequence;
-use vi_core::check::{self, Checked, Dual, Place};
+use vi_core::check::{self, Dual, EnergyChecked, Place};
 use vi_core::linear::Matrix;
-use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, Parameters, SVector, Stepping};
+use vi_core::{DiscreteLagrangian, EnergyStepping, Interval, Lagrangian, Node, Parameters, SVector};
 use vi_systems as systems;
 
 /// Draws for each system.
@@ -138,13 +138,13 @@ fn check_slots<const N: usize>(
 
 /// The equations of a step against the slots, their Jacobians against dual numbers.
 fn check_step<const N: usize>(
-    system: &(impl Stepping<N> + DiscreteLagrangian<N>),
-    dual: &impl Stepping<N, D>,
+    system: &(impl EnergyStepping<N> + DiscreteLagrangian<N>),
+    dual: &impl EnergyStepping<N, D>,
     (node, h, v): (&Node<N>, f64, &SVector<f64, N>),
     check: &mut Comparison,
 ) {
     let interval = Interval { t0: node.t, q0: node.q, t1: node.t + h, q1: node.q + v * h };
-    let (found, rounding) = (system.extended_system(node, h, v), system.rounding(node, h, v));
+    let (found, rounding) = (system.extended_system(node, h, v), system.extended_rounding(node, h, v));
     let row = -system.d2_ld(&interval) - system.fd_minus(&interval) - node.p;
     check.equal_vectors("residual", &found.momentum.residual, &row, rounding.residual.amax());
     let alone = system.momentum_equation(node, h, v);
@@ -196,11 +196,14 @@ fn check_step<const N: usize>(
     let energy =
         -system.d1_ld(&interval) - system.d3_ld(&interval) - system.gd_minus(&interval) - system.gd_plus(&interval);
     check.equal("E1 - E0", both.increment.energy, energy, scale);
+    let end = -system.d3_ld(&interval) - system.gd_plus(&interval);
+    check.equal("E1", system.discrete_energy(node, h, v), end, scale);
 }
 
 /// The checks that a system carries say the same of it, about any state.
-fn passes_its_checks<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, check: &mut Comparison) {
-    for report in [check::derivatives(system, place), check::slots(system, place), check::steps(system, place)] {
+fn passes_its_checks<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, check: &mut Comparison) {
+    let checks = [check::derivatives, check::slots, check::steps, check::energy_equations];
+    for report in checks.map(|check| check(system, place)) {
         let report = report.unwrap_or_else(|failure| panic!("{failure}, at {place:?}"));
         // In bounds of rounding. Measured: 0.44.
         assert!(report.worst <= 0.9, "{report}");
@@ -220,7 +223,7 @@ macro_rules! derivatives {
                 for name in <systems::$system as Lagrangian<_>>::PARAMETERS {
                     *$s.parameter_mut(name).expect("a name of the list") = draw.within(0.6, 1.9);
                 }
-                let (dual, second) = (systems::$system::<D>::from_f64(&$s), systems::$system::<DD>::from_f64(&$s));
+                let (dual, second) = ($s.convert::<D>(), $s.convert::<DD>());
                 let ($t, h) = (draw.within(-1.0, 2.0), draw.within(0.05, 0.4));
                 let mut vector = |low, high| SVector::<f64, $n>::from_fn(|_, _| draw.within(low, high));
                 // Away from the poles of polar angles and the centre of Kepler's problem.

@@ -4,8 +4,9 @@ use crate::support;
 use core::any::type_name;
 use vi_core::linear::Matrix;
 use vi_core::{
-    DiscreteLagrangian, EnergyPreserving, ExtendedResidual, ExtendedSystem, FixedStep, Interval, Lagrangian,
-    MomentumEquation, MomentumResidual, Node, Rounding, SMatrix, SVector, State, StepError, Stepping, lagrangian,
+    DiscreteLagrangian, EnergyPreserving, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStep, FixedStepping,
+    Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Rounding, SMatrix, SVector, State, StepError,
+    lagrangian,
 };
 use vi_systems::FpuChain;
 
@@ -178,7 +179,7 @@ fn dense_in_both<const N: usize>(system: ExtendedSystem<N, f64, impl Matrix<N, f
     ExtendedSystem { momentum: dense(momentum), residual_dh, energy_residual, energy_dv, energy_dh }
 }
 
-impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
+impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
     type Jacobian = SMatrix<f64, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
 
@@ -190,6 +191,16 @@ impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
         self.0.momentum_residual(node, h, v)
     }
 
+    fn momentum_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.0.momentum_rounding(node, h, v)
+    }
+
+    fn discrete_energy(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> f64 {
+        self.0.discrete_energy(node, h, v)
+    }
+}
+
+impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
         dense_in_both(self.0.extended_system(node, h, v))
     }
@@ -198,8 +209,8 @@ impl<const N: usize, S: Stepping<N>> Stepping<N> for Dense<S> {
         self.0.extended_residual(node, h, v)
     }
 
-    fn rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
-        self.0.rounding(node, h, v)
+    fn extended_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
+        self.0.extended_rounding(node, h, v)
     }
 }
 
@@ -212,7 +223,7 @@ struct Run<const N: usize> {
 }
 
 /// Fixed steps and energy-preserving ones.
-fn runs<const N: usize, S: Stepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [Run<N>; 2] {
+fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [Run<N>; 2] {
     let panic = |error: StepError| -> ! { panic!("{}: {error}", S::NAME) };
     let mut stepper = FixedStep::new(system, State::at(&system, 0.0, q, v), h).unwrap_or_else(|error| panic(error));
     let mut fixed = Run { states: Vec::new(), iterations: 0 };
@@ -232,7 +243,7 @@ fn runs<const N: usize, S: Stepping<N>>(system: S, q: [f64; N], v: [f64; N], h: 
 /// Steps a system and its dense twin, where everything is of order 1: how far they come apart, and the iterations of each;
 /// of fixed steps, of energy-preserving ones. Energy-preserving steps come further apart: their lengths are what the energy
 /// gives by a small difference.
-fn apart<const N: usize, S: Stepping<N>>(system: S, h: f64, form: &str) -> [(f64, u32, u32); 2] {
+fn apart<const N: usize, S: EnergyStepping<N>>(system: S, h: f64, form: &str) -> [(f64, u32, u32); 2] {
     let name = type_name::<S::Jacobian>();
     assert!(name.contains(form), "{}: {name} is not {form}", S::NAME);
     let mut sequence = support::Sequence::new(7);

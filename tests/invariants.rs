@@ -6,7 +6,7 @@ use crate::support::reference::{file, number, vector};
 use crate::support::scenes::{self, Scene};
 use core::ops::RangeInclusive;
 use serde_json::Value;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, Step, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, State, Step};
 use vi_systems::{DampedOscillator, DoubleWell, Kepler};
 
 const MILLION: u32 = 1_000_000;
@@ -27,7 +27,7 @@ const CASES: [Case; 4] = [
 ];
 
 /// The paper's start: the second node from the accurate motion.
-fn papers_start<const N: usize, S: Stepping<N> + Copy>(
+fn papers_start<const N: usize, S: EnergyStepping<N> + Copy>(
     system: S,
     q0: [f64; N],
     v0: [f64; N],
@@ -149,7 +149,7 @@ fn kepler_keeps_its_angular_momentum_for_a_million_steps() {
 }
 
 /// The momentum `index` keeps every bit; the others, and its coordinate, move.
-fn keeps_every_bit<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>, index: usize) {
+fn keeps_every_bit<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>, index: usize) {
     const STEPS: RangeInclusive<u32> = 1..=200_000;
     let Scene { system, q, v, h, .. } = scene;
     assert_eq!(S::CYCLIC, core::array::from_fn(|coordinate| coordinate == index), "{}", S::NAME);

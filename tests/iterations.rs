@@ -1,7 +1,7 @@
 //! The effort of a step, and that it is the forward one: long runs of every system.
 
 use crate::support::scenes::{Scene, each_system};
-use vi_core::{EnergyPreserving, FixedStep, State, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State};
 
 const STEPS: u32 = 100_000;
 
@@ -9,7 +9,7 @@ const STEPS: u32 = 100_000;
 const LIMIT: f64 = 2.8;
 
 /// Over the time in which steps exist. Measured: 1.01 (harmonic oscillator) to 2.55 (hard Duffing oscillator).
-fn energy_preserving<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     let mut run = EnergyPreserving::from_midpoint(scene.system, 0.0, scene.q, scene.v, scene.h).expect("a valid start");
     let (sign, mut middle) = (run.density().signum(), 0.0);
     let (mut steps, mut iterations) = (0, 0);
@@ -28,7 +28,7 @@ fn energy_preserving<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) 
 }
 
 /// Measured: none (linear systems), 1.00 (Hénon–Heiles) to 2.34 (spherical pendulum).
-fn fixed<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn fixed<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     let start = State::at(&scene.system, 0.0, scene.q, scene.v);
     let mut run = FixedStep::new(scene.system, start, scene.h).expect("a valid start");
     let mut iterations = 0;

@@ -8,7 +8,7 @@ use crate::support::exact::Motion;
 use crate::support::reference::{file, number};
 use crate::support::scenes::{Scene, each_system};
 use crate::support::slope;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, State, StepError};
 use vi_systems::{DoublePendulum, HardDuffing, Kepler, Pendulum};
 
 /// Steps over the time of a run: powers of two times this number of the scene's own steps.
@@ -29,7 +29,7 @@ fn difference<const N: usize>(system: &impl Lagrangian<N>, state: &State<N>, exa
 /// Slopes lie this close to 2. Measured: 4e-4 with fixed steps, 9.0e-3 with energy-preserving ones.
 const FROM_TWO: f64 = 0.02;
 
-fn fixed_step<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn fixed_step<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     let Scene { system, q, v, h, .. } = scene;
     let start = Motion::new(0.2, q, v);
     let span = h * f64::from(STEPS);
@@ -50,7 +50,7 @@ fn fixed_step<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
 }
 
 /// The energy-preserving integrator from one of its starts, given the start of the motion and h0.
-fn energy_preserving<const N: usize, S: Stepping<N> + Copy>(
+fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(
     scene: &Scene<S, N>,
     begin: impl Fn(&S, &Motion<N>, f64) -> Result<EnergyPreserving<S, N>, StepError>,
 ) {
@@ -73,13 +73,13 @@ fn energy_preserving<const N: usize, S: Stepping<N> + Copy>(
     assert!((slope - 2.0).abs() <= FROM_TWO, "{}: slope {slope}, {points:?}", S::NAME);
 }
 
-fn from_midpoint<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn from_midpoint<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     energy_preserving(&scene, |system, start, h0| {
         EnergyPreserving::from_midpoint(*system, start.t, start.q, start.v, h0)
     });
 }
 
-fn from_points<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn from_points<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     energy_preserving(&scene, |system, start, h0| {
         let second = start.at(system, start.t + h0);
         EnergyPreserving::from_points(*system, (start.t, start.q), (second.t, second.q))

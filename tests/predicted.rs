@@ -3,7 +3,7 @@
 //! The same run by Newton's iteration from the last velocity, which goes on down to the rounding floor.
 
 use vi_core::support::step_alone;
-use vi_core::{FixedStep, Node, State, Stepping, lagrangian};
+use vi_core::{FixedStep, FixedStepping, Node, State, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, Kepler, ParametricPendulum, SphericalPendulum,
 };
@@ -34,7 +34,7 @@ lagrangian! {
 const STEPS: usize = 2000;
 
 /// How far both runs come apart, and the part of the steps that were predicted by so many iterations.
-fn apart<const N: usize, S: Stepping<N>>(
+fn apart<const N: usize, S: FixedStepping<N>>(
     system: S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,

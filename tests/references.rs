@@ -5,7 +5,7 @@
 
 use crate::support::reference::{file, number, steps, vector};
 use serde_json::Value;
-use vi_core::{EnergyPreserving, FixedStep, State, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State};
 use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, Kepler, Pendulum};
 
 /// Steps up to which the limits are stated.
@@ -23,7 +23,7 @@ fn difference<const N: usize>(state: &State<N>, entry: &Value) -> f64 {
 }
 
 /// Runs fixed steps through the entries of a reference.
-fn fixed<const N: usize>(name: &str, system: impl Stepping<N>, state: State<N>, h: f64, list: &Value) {
+fn fixed<const N: usize>(name: &str, system: impl EnergyStepping<N>, state: State<N>, h: f64, list: &Value) {
     let mut integrator = FixedStep::new(system, state, h).expect("a valid start");
     let (mut taken, mut worst) = (0, 0.0_f64);
     for (step, entry) in steps(list).into_iter().filter(|(step, _)| *step <= STEPS) {
@@ -39,7 +39,7 @@ fn fixed<const N: usize>(name: &str, system: impl Stepping<N>, state: State<N>, 
 }
 
 /// Runs energy-preserving steps through the entries of a reference.
-fn energy_preserving<const N: usize, S: Stepping<N>>(
+fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
     name: &str,
     mut integrator: EnergyPreserving<S, N>,
     first: u32,
@@ -64,7 +64,7 @@ fn energy_preserving<const N: usize, S: Stepping<N>>(
 }
 
 /// A system of `discrete_multi.json`: fixed steps from (q0, p0), energy-preserving ones from the midpoint start.
-fn multi<const N: usize, S: Stepping<N> + Copy>(name: &str, system: S) {
+fn multi<const N: usize, S: EnergyStepping<N> + Copy>(name: &str, system: S) {
     let file = file("discrete_multi.json");
     let of = &file[name];
     let (q, v, p) = (vector::<N>(&of["q0"]), vector::<N>(&of["v0"]), vector::<N>(&of["p0"]));
@@ -81,7 +81,7 @@ fn multi<const N: usize, S: Stepping<N> + Copy>(name: &str, system: S) {
 }
 
 /// A run of the paper: both integrators from the state `initial`, which the paper's start gives.
-fn paper<S: Stepping<1> + Copy>(system: S, run: &Value) {
+fn paper<S: EnergyStepping<1> + Copy>(system: S, run: &Value) {
     let (name, initial) = (run["name"].as_str().expect("a name"), &run["initial"]);
     let (h, q, p) = (number(&run["h0"]), vector(&initial["q1"]), vector(&initial["p1"]));
     let state = State { t: number(&initial["t1"]), q: q.into(), p: p.into() };

@@ -1,6 +1,6 @@
 //! A run that is stored and resumed goes on bit for bit, for every way in which steps are taken; and only as what it was.
 
-use vi_core::{EnergyPreserving, FixedStep, State, StepError, Stepping, fixed_step, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, FixedStepping, State, StepError, fixed_step, lagrangian};
 use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler};
 
 lagrangian! {
@@ -24,7 +24,7 @@ lagrangian! {
 }
 
 /// Restarts after each of `steps` steps: the next steps must be those of the run that goes on.
-fn resumes<const N: usize, S: Stepping<N>>(system: S, (q, v): ([f64; N], [f64; N]), h: f64, steps: u32) {
+fn resumes<const N: usize, S: FixedStepping<N>>(system: S, (q, v): ([f64; N], [f64; N]), h: f64, steps: u32) {
     let mut whole = FixedStep::new(system, State::at(&system, 0.3, q, v), h).expect("a start");
     let mut resumed = whole.clone();
     for step in 0..steps {

@@ -6,7 +6,7 @@
 use crate::support::Sequence;
 use crate::support::ending::{self, assert_typed};
 use crate::support::scenes::{Scene, each_system};
-use vi_core::{EnergyPreserving, Fallback, FixedStep, Parameters, SVector, State, StepError, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, Fallback, FixedStep, Parameters, SVector, State, StepError};
 
 /// Draws for each system, each from four starts.
 const DRAWS: usize = 3000;
@@ -35,7 +35,10 @@ struct Drawn<S, const N: usize> {
     h: f64,
 }
 
-fn drawn<const N: usize, S: Stepping<N> + Parameters + Copy>(scene: &Scene<S, N>, draw: &mut Sequence) -> Drawn<S, N> {
+fn drawn<const N: usize, S: EnergyStepping<N> + Parameters + Copy>(
+    scene: &Scene<S, N>,
+    draw: &mut Sequence,
+) -> Drawn<S, N> {
     // Each quantity is wild in three draws of ten; otherwise it stays near the scene, where steps exist.
     let is_wild: [bool; 5] = core::array::from_fn(|_| draw.next() < 0.3);
     let mut vector = |near: [f64; N], is_wild: bool| {
@@ -75,7 +78,7 @@ impl Tally {
     }
 }
 
-fn check<const N: usize, S: Stepping<N> + Parameters + Copy>(scene: Scene<S, N>) {
+fn check<const N: usize, S: EnergyStepping<N> + Parameters + Copy>(scene: Scene<S, N>) {
     let mut draw = Sequence::new(23);
     let [mut fixed, mut energy_preserving, mut falling_back] = [(); 3].map(|()| Tally::default());
     for _ in 0..DRAWS {

@@ -2,7 +2,7 @@
 
 use crate::support::Sequence;
 use crate::support::ending;
-use vi_core::{FixedStep, Node, SVector, State, StepError, Stepping};
+use vi_core::{FixedStep, FixedStepping, Node, SVector, State, StepError};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 
 #[test]
@@ -45,14 +45,14 @@ fn a_step_of_kepler_exists_up_to_its_bound() {
 }
 
 /// Roots v of the momentum equation, counted by the changes of sign of its residual.
-fn roots<S: Stepping<1>>(system: &S, node: &Node<1>, h: f64) -> usize {
+fn roots<S: FixedStepping<1>>(system: &S, node: &Node<1>, h: f64) -> usize {
     let residual = |v: f64| system.momentum_equation(node, h, &SVector::from([v])).residual[0];
     let values: Vec<f64> = (0..=40_000).map(|index| residual(-10.0 + 5e-4 * f64::from(index))).collect();
     values.windows(2).filter(|pair| pair[0].is_sign_negative() != pair[1].is_sign_negative()).count()
 }
 
 /// The largest number of roots over drawn states near the top of the potential, at `top`.
-fn most_roots<S: Stepping<1>>(system: &S, top: f64, h: f64) -> usize {
+fn most_roots<S: FixedStepping<1>>(system: &S, top: f64, h: f64) -> usize {
     let mut draw = Sequence::new(5);
     let each = (0..300).map(|_| {
         // From here the step with velocity v leads over the top, where V_q = 0: it solves the equation but for 1e-3.

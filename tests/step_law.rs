@@ -2,10 +2,15 @@
 //! `h √D` exactly for the damped oscillator. D is the density of the continuous system at the middle of the step.
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
-use vi_core::{EnergyPreserving, SVector, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, SVector};
 
 /// Largest relative deviation of `h |D|^exponent` from its value at the first step, over the time `span`.
-fn deviation<const N: usize, S: Stepping<N> + Copy>(scene: &Scene<S, N>, h0: f64, span: f64, exponent: f64) -> f64 {
+fn deviation<const N: usize, S: EnergyStepping<N> + Copy>(
+    scene: &Scene<S, N>,
+    h0: f64,
+    span: f64,
+    exponent: f64,
+) -> f64 {
     let Scene { system, q, v, .. } = *scene;
     let mut run = EnergyPreserving::from_midpoint(system, 0.2, q, v, h0).expect("a valid start");
     let constant = |h: f64, (t, q, v): (f64, SVector<f64, N>, SVector<f64, N>)| {
@@ -23,7 +28,7 @@ fn deviation<const N: usize, S: Stepping<N> + Copy>(scene: &Scene<S, N>, h0: f64
 }
 
 /// Without force the deviation falls with h²; with force it does not fall.
-fn law<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn law<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     let span = 100.0 * scene.h;
     let each: Vec<f64> = (1..=4).map(|k| deviation(&scene, scene.h * 0.5_f64.powi(k), span, 1.0 / 3.0)).collect();
     if S::FORCED {

@@ -1,16 +1,16 @@
 //! What the fixed step is as a map: its own inverse under h → −h, and symplectic where there is no force.
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
-use vi_core::{FixedStep, SVector, State, Stepping};
+use vi_core::{FixedStep, FixedStepping, SVector, State};
 
 /// The state after `steps` steps of length `h`.
-fn after<const N: usize, S: Stepping<N> + Copy>(system: S, start: State<N>, h: f64, steps: usize) -> State<N> {
+fn after<const N: usize, S: FixedStepping<N> + Copy>(system: S, start: State<N>, h: f64, steps: usize) -> State<N> {
     let run = FixedStep::new(system, start, h).unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
     run.take(steps).last().expect("a step").unwrap_or_else(|error| panic!("{}: {error}", S::NAME))
 }
 
 /// The midpoint rule and its forces are symmetric in the two ends, so damping is run backwards as well.
-fn reversible<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn reversible<const N: usize, S: FixedStepping<N> + Copy>(scene: Scene<S, N>) {
     const STEPS: usize = 100;
     let Scene { system, q, v, h, .. } = scene;
     let start = State::at(&system, 0.2, q, v);
@@ -24,7 +24,7 @@ fn reversible<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
 }
 
 /// Derivative of the map of one step, by central differences of fourth order; columns are q, then p.
-fn derivative<const N: usize, S: Stepping<N> + Copy>(system: S, start: State<N>, h: f64) -> Vec<Vec<f64>> {
+fn derivative<const N: usize, S: FixedStepping<N> + Copy>(system: S, start: State<N>, h: f64) -> Vec<Vec<f64>> {
     const DISTANCE: f64 = 5e-4;
     let moved = |column: usize, distance: f64| -> Vec<f64> {
         let mut state = start;
@@ -51,7 +51,7 @@ fn defect<const N: usize>(columns: &[Vec<f64>]) -> f64 {
 }
 
 /// Without force the map of one step is symplectic. The forces of all forced systems damp, and the same check sees it.
-fn symplectic<const N: usize, S: Stepping<N> + Copy>(scene: Scene<S, N>) {
+fn symplectic<const N: usize, S: FixedStepping<N> + Copy>(scene: Scene<S, N>) {
     let Scene { system, q, v, h, .. } = scene;
     let defect = defect::<N>(&derivative(system, State::at(&system, 0.2, q, v), 4.0 * h));
     println!("{}: M'JM - J = {defect:.1e}", S::NAME);

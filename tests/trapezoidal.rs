@@ -3,7 +3,7 @@
 
 use crate::support::exact::Motion;
 use vi_core::check::Dual;
-use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, Stepping, lagrangian};
+use vi_core::{DiscreteLagrangian, FixedStep, FixedStepping, Interval, SVector, State, lagrangian};
 
 type D = Dual<f64>;
 
@@ -57,7 +57,7 @@ lagrangian! {
     }
 }
 
-fn run<const N: usize, S: Stepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> FixedStep<S, N> {
+fn run<const N: usize, S: FixedStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> FixedStep<S, N> {
     let start = State::at(&system, 0.0, q, v);
     FixedStep::new(system, start, h).expect("a valid start")
 }
@@ -89,7 +89,7 @@ fn it_is_verlet_for_a_separable_lagrangian() {
 }
 
 /// Errors against an accurate motion fall by 4 with every halving of the step.
-fn order<const N: usize, S: Stepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N]) {
+fn order<const N: usize, S: FixedStepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N]) {
     let exact = Motion::new(0.0, q, v).at(&system, 2.0);
     let momentum = system.momentum(2.0, &exact.q, &exact.v);
     let errors = [50, 100, 200, 400].map(|steps: u32| {
@@ -163,8 +163,8 @@ fn slots<S: DiscreteLagrangian<2>>(system: &S, dual: &impl DiscreteLagrangian<2,
 #[test]
 fn its_slots_are_those_of_its_discrete_lagrangian() {
     let (separable, surface) = (Separable::default(), Surface::default());
-    slots(&separable, &Separable::<D>::from_f64(&separable));
-    slots(&surface, &Surface::<D>::from_f64(&surface));
+    slots(&separable, &separable.convert::<D>());
+    slots(&surface, &surface.convert::<D>());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Units do not matter: a system in metres and radians, in masses of 1 and 1e-12, moves as the same one does in like units.
 
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError, Stepping, lagrangian};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, SVector, State, StepError, lagrangian};
 
 /// A system of angles u and angular velocities w, in the coordinates q = u, and in q with u_i = 2^(25 i (−1)^i) q_i: masses of
 /// 1 to 1e-75. Powers of two round nothing.
@@ -75,9 +75,9 @@ fn apart<const N: usize>(
     apart
 }
 
-fn fixed<const N: usize>(plain: impl Stepping<N>, in_units: impl Stepping<N>) -> f64 {
+fn fixed<const N: usize>(plain: impl EnergyStepping<N>, in_units: impl EnergyStepping<N>) -> f64 {
     fn run<const N: usize>(
-        system: impl Stepping<N>,
+        system: impl EnergyStepping<N>,
         unit: impl Fn(usize) -> f64,
     ) -> impl Iterator<Item = Result<SVector<f64, N>, StepError>> {
         let [q, v] = start(unit);
@@ -87,9 +87,9 @@ fn fixed<const N: usize>(plain: impl Stepping<N>, in_units: impl Stepping<N>) ->
     apart(run(plain, |_| 1.0), run(in_units, unit))
 }
 
-fn energy_preserving<const N: usize>(plain: impl Stepping<N>, in_units: impl Stepping<N>) -> f64 {
+fn energy_preserving<const N: usize>(plain: impl EnergyStepping<N>, in_units: impl EnergyStepping<N>) -> f64 {
     fn run<const N: usize>(
-        system: impl Stepping<N>,
+        system: impl EnergyStepping<N>,
         unit: impl Fn(usize) -> f64,
     ) -> impl Iterator<Item = Result<SVector<f64, N>, StepError>> {
         let [q, v] = start(unit);

@@ -12,7 +12,7 @@ use crate::pendulum::TriplePendulum;
 use crate::problem::Problem;
 use core::array::from_fn;
 use std::hint::black_box;
-use vi_core::{Batch, EnergyPreserving, FixedStep, SVector, State, Stepping};
+use vi_core::{Batch, EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, SVector, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
 
@@ -183,7 +183,7 @@ fn oscillator() -> Contest {
 }
 
 /// A chain in its lowest mode.
-fn chain<S: Stepping<N> + Clone + 'static, const N: usize, const M: usize>(
+fn chain<S: FixedStepping<N> + Clone + 'static, const N: usize, const M: usize>(
     name: &'static str,
     system: &S,
     faster: f64,
@@ -205,7 +205,11 @@ where
         .rival(DENSE, LOST, Target::Faster(faster), hand::chain::Fixed::<Plain, Lu, N, M>::new(springs(), q, h))
 }
 
-fn fixed<S: Stepping<N> + Clone, const N: usize>(system: &S, (q, v): ([f64; N], [f64; N]), h: f64) -> FixedStep<S, N> {
+fn fixed<S: FixedStepping<N> + Clone, const N: usize>(
+    system: &S,
+    (q, v): ([f64; N], [f64; N]),
+    h: f64,
+) -> FixedStep<S, N> {
     FixedStep::new(*system, State::at(system, 0.0, q, v), h).expect("a regular start")
 }
 
@@ -215,7 +219,7 @@ fn together<S: Batch<N>, const N: usize>(system: &S, (q, v): ([f64; N], [f64; N]
     Ensemble::new(vec![*system; 64], (0..64).map(start).collect(), h).expect("regular starts")
 }
 
-fn energy_preserving<S: Stepping<N> + Clone, const N: usize>(
+fn energy_preserving<S: EnergyStepping<N> + Clone, const N: usize>(
     system: &S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,
@@ -224,7 +228,7 @@ fn energy_preserving<S: Stepping<N> + Clone, const N: usize>(
 }
 
 /// Newton's method with derivatives found at run time, from the same start as [`fixed`].
-fn newton<S: Stepping<N> + Problem<N>, D, const N: usize>(
+fn newton<S: EnergyStepping<N> + Problem<N>, D, const N: usize>(
     system: &S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,
@@ -238,7 +242,7 @@ where
 }
 
 /// The same from the start of [`energy_preserving`].
-fn newton_energy<S: Stepping<N> + Problem<N>, D, const N: usize, const M: usize>(
+fn newton_energy<S: EnergyStepping<N> + Problem<N>, D, const N: usize, const M: usize>(
     system: &S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,

@@ -3,7 +3,7 @@
 //! In: anything that takes steps. Out: [`Run`], behind which a table of unlike steppers is one list. The loop over the steps is
 //! inside, so that a step is inlined into it as in a user's program.
 
-use vi_core::{Batch, EnergyPreserving, FixedStep, Stepping};
+use vi_core::{Batch, EnergyPreserving, EnergyStepping, FixedStep, FixedStepping};
 use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.
@@ -39,7 +39,7 @@ fn flat<const N: usize>(state: vi_core::State<N>) -> Vec<f64> {
     [state.t].into_iter().chain(state.q.iter().copied()).chain(state.p.iter().copied()).collect()
 }
 
-impl<S: Stepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
+impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
     #[inline]
     fn step(&mut self) {
         if let Err(failure) = FixedStep::step(self) {
@@ -52,7 +52,7 @@ impl<S: Stepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
     }
 }
 
-impl<S: Stepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<S, N> {
+impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<S, N> {
     #[inline]
     fn step(&mut self) {
         if let Err(failure) = EnergyPreserving::step(self) {

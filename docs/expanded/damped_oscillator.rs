@@ -41,18 +41,18 @@ pub struct DampedOscillator<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as system, identity as name, identity as index};
-    use ::core::convert::{identity as t, identity as q, identity as v};
-    use ::core::convert::{identity as x_dot, identity as x, identity as real};
-    use ::core::convert::{identity as time, identity as mass, identity as applied};
-    use ::core::convert::{identity as x_ddot, identity as values, identity as value};
-    use ::core::convert::{identity as text, identity as interval, identity as h};
-    use ::core::convert::{identity as x0, identity as x1, identity as x_mid};
-    use ::core::convert::{identity as node, identity as x0_low, identity as p0_x};
-    use ::core::convert::{identity as p0_x_low, identity as s1, identity as energy0};
-    use ::core::convert::{identity as energy0_low, identity as s2, identity as s3};
-    use ::core::convert::{identity as s4, identity as s5, identity as s6};
-    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as x_dot};
+    use ::core::convert::{identity as x, identity as real, identity as time};
+    use ::core::convert::{identity as mass, identity as applied, identity as x_ddot};
+    use ::core::convert::{identity as values, identity as value, identity as text};
+    use ::core::convert::{identity as interval, identity as h, identity as x0};
+    use ::core::convert::{identity as x1, identity as x_mid, identity as node};
+    use ::core::convert::{identity as x0_low, identity as p0_x, identity as p0_x_low};
+    use ::core::convert::{identity as s1, identity as energy0, identity as energy0_low};
+    use ::core::convert::{identity as s2, identity as s3, identity as s4};
+    use ::core::convert::{identity as s5, identity as s6, identity as systems};
+    use ::core::convert::identity as rows;
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for DampedOscillator<f64> {
@@ -63,16 +63,7 @@ const _: () = {
 
     impl<T: ::vi_core::Real> DampedOscillator<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn from_f64(system: &DampedOscillator<f64>) -> Self {
-            Self {
-                m: T::real(system.m),
-                k: T::real(system.k),
-                c: T::real(system.c),
-            }
-        }
-
-        /// The same system in another kind of number, every parameter rounded to it.
-        fn convert<U: ::vi_core::Real>(&self) -> DampedOscillator<U> {
+        pub fn convert<U: ::vi_core::Real>(&self) -> DampedOscillator<U> {
             DampedOscillator {
                 m: U::real(self.m.to_f64()),
                 k: U::real(self.k.to_f64()),
@@ -182,7 +173,7 @@ const _: () = {
             let applied: ::vi_core::SVector<T, 1> = ::vi_core::SVector::from([
                 -(self.c * x_dot + self.k * x),
             ]);
-            ::vi_core::linear::acceleration(time, &mass, &applied)
+            ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
         /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
@@ -377,7 +368,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Stepping<1, T> for DampedOscillator<T> {
+    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<1, T> for DampedOscillator<T> {
         type Jacobian = ::vi_core::SMatrix<T, 1, 1>;
         const CONSTANT_JACOBIAN: bool = true;
         const CLOSED_FORM: bool = true;
@@ -412,7 +403,7 @@ const _: () = {
             }
         }
 
-        /// The residual, its magnitude, and
+        /// The residual, its rounding scale, and
         ///
         /// `p1_x − p0_x = h*f_x + h*L_x`
         ///
@@ -438,7 +429,7 @@ const _: () = {
                         + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
                             - p0_x_low),
                 ]),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     p0_x.abs() + s1.abs() + (self.c * h * x_dot).abs() * real(0.5)
                         + (self.k * h * x_mid).abs() * real(0.5),
                 ]),
@@ -448,6 +439,44 @@ const _: () = {
             }
         }
 
+        /// `E1 = L_v_x*v_x - L + h*f_x*v_x/2`
+        ///
+        /// 15 operations.
+        #[inline(always)]
+        fn discrete_energy(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> T {
+            let [x0]: [T; 1] = node.q.into();
+            let [x0_low]: [T; 1] = node.q_low.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let real = T::real;
+            let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+            let s1 = x_dot * x_dot;
+            self.m * s1 * real(0.5) + self.k * (x_mid * x_mid) * real(0.5)
+                - self.c * h * real(0.5) * s1
+        }
+
+        /// What the rounding of the residual is measured in, by running error analysis.
+        #[cold]
+        fn momentum_rounding(
+            &self,
+            node: &::vi_core::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::SVector<T, 1> {
+            ::vi_core::support::momentum_rounding(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<1, T> for DampedOscillator<T> {
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
         ///
         /// 40 operations.
@@ -491,7 +520,7 @@ const _: () = {
             }
         }
 
-        /// Both residuals, their magnitudes, and
+        /// Both residuals, their rounding scales, and
         ///
         /// `E1 − E0 = h*f_x*v_x`
         ///
@@ -525,14 +554,14 @@ const _: () = {
                         + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
                             - p0_x_low),
                 ]),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     p0_x.abs() + s1.abs() + (s2 * x_dot).abs() * real(0.5)
                         + (s5 * x_mid).abs() * real(0.5),
                 ]),
                 energy_residual: s4 * real(0.5) - energy0
                     + (p0_x - s1 * real(0.5)) * x_dot
                     + ((p0_x_low - s5 * real(0.5) * x_mid) * x_dot - energy0_low),
-                energy_magnitude: s6 + (s5 * x_dot * x_mid).abs() * real(0.5),
+                energy_scale: s6 + (s5 * x_dot * x_mid).abs() * real(0.5),
                 increment: ::vi_core::Increment {
                     momentum: ::vi_core::SVector::from([
                         -((self.k * x_mid + self.c * x_dot) * h),
@@ -544,13 +573,13 @@ const _: () = {
 
         /// What the rounding of both residuals is measured in, by running error analysis.
         #[cold]
-        fn rounding(
+        fn extended_rounding(
             &self,
             node: &::vi_core::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
         ) -> ::vi_core::Rounding<1, T> {
-            ::vi_core::Rounding::of(
+            ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
                 h,
@@ -559,9 +588,16 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::Convertible<1> for DampedOscillator<f64> {
+        type In<T: ::vi_core::Real> = DampedOscillator<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
+            self.convert()
+        }
+    }
+
     impl ::vi_core::Batch<1> for DampedOscillator<f64> {
         type Rows<const W: usize> = DampedOscillator<[f64; W]>;
-        type In<T: ::vi_core::Real> = DampedOscillator<T>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             DampedOscillator {
                 m: ::core::array::from_fn(|index| systems[index].m),
@@ -571,22 +607,12 @@ const _: () = {
         }
 
         #[inline(always)]
-        fn pick<T: ::vi_core::Real, const W: usize>(
-            rows: &Self::Rows<W>,
-            index: usize,
-        ) -> Self::In<T> {
+        fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
             DampedOscillator {
-                m: T::real(rows.m[index]),
-                k: T::real(rows.k[index]),
-                c: T::real(rows.c[index]),
+                m: rows.m[index],
+                k: rows.k[index],
+                c: rows.c[index],
             }
-        }
-    }
-
-    impl ::vi_core::check::Checked<1> for DampedOscillator<f64> {
-        type In<T: ::vi_core::Real> = DampedOscillator<T>;
-        fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
-            DampedOscillator::from_f64(self)
         }
     }
 };
@@ -629,6 +655,17 @@ mod damped_oscillator_checks {
     #[::core::prelude::v1::test]
     fn steps() {
         let checked = ::vi_core::check::steps(
+            &super::DampedOscillator::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy_equations() {
+        let checked = ::vi_core::check::energy_equations(
             &super::DampedOscillator::default(),
             &place(),
         );

@@ -50,41 +50,47 @@ pub struct DoublePendulum<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as system, identity as name, identity as index};
-    use ::core::convert::{identity as t, identity as q, identity as v};
-    use ::core::convert::{identity as θ1_dot, identity as θ2_dot, identity as θ1};
-    use ::core::convert::{identity as θ2, identity as real, identity as s1};
-    use ::core::convert::{identity as sin2, identity as cos2, identity as sin3};
-    use ::core::convert::{identity as cos3, identity as s4, identity as s5};
-    use ::core::convert::{identity as s2, identity as time, identity as s6};
-    use ::core::convert::{identity as mass, identity as applied, identity as θ1_ddot};
-    use ::core::convert::{identity as θ2_ddot, identity as sin1, identity as cos1};
-    use ::core::convert::{identity as s3, identity as s7, identity as s8};
-    use ::core::convert::{identity as s9, identity as s10, identity as s11};
-    use ::core::convert::{identity as s12, identity as s13, identity as s14};
-    use ::core::convert::{identity as s15, identity as values, identity as value};
-    use ::core::convert::{identity as text, identity as interval, identity as h};
-    use ::core::convert::{identity as θ1_0, identity as θ2_0, identity as θ1_1};
-    use ::core::convert::{identity as θ2_1, identity as θ1_mid, identity as θ2_mid};
-    use ::core::convert::{identity as sin4, identity as cos4, identity as sin5};
-    use ::core::convert::{identity as cos5, identity as node, identity as θ1_0_low};
-    use ::core::convert::{identity as θ2_0_low, identity as p0_θ1, identity as p0_θ2};
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as θ1_dot};
+    use ::core::convert::{identity as θ2_dot, identity as θ1, identity as θ2};
+    use ::core::convert::{identity as real, identity as s1, identity as sin2};
+    use ::core::convert::{identity as cos2, identity as sin3, identity as cos3};
+    use ::core::convert::{identity as s4, identity as s5, identity as s2};
+    use ::core::convert::{identity as time, identity as s6, identity as mass};
     use ::core::convert::{
-        identity as p0_θ1_low, identity as p0_θ2_low, identity as sin6,
+        identity as applied, identity as θ1_ddot, identity as θ2_ddot,
     };
 
-    use ::core::convert::{identity as cos6, identity as s16, identity as s17};
-    use ::core::convert::{identity as s18, identity as s19, identity as energy0};
-    use ::core::convert::{identity as energy0_low, identity as sin8, identity as cos8};
-    use ::core::convert::{identity as sin9, identity as cos9, identity as s20};
-    use ::core::convert::{identity as s21, identity as s22, identity as s23};
-    use ::core::convert::{identity as s24, identity as s25, identity as s26};
-    use ::core::convert::{identity as s27, identity as s28, identity as s29};
-    use ::core::convert::{identity as s30, identity as s31, identity as s32};
-    use ::core::convert::{identity as s33, identity as s34, identity as s35};
-    use ::core::convert::{identity as s36, identity as s37, identity as s38};
-    use ::core::convert::{identity as s39, identity as sin7, identity as cos7};
-    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::convert::{identity as sin1, identity as cos1, identity as s3};
+    use ::core::convert::{identity as s7, identity as s8, identity as s9};
+    use ::core::convert::{identity as s10, identity as s11, identity as s12};
+    use ::core::convert::{identity as s13, identity as s14, identity as s15};
+    use ::core::convert::{identity as values, identity as value, identity as text};
+    use ::core::convert::{identity as interval, identity as h, identity as θ1_0};
+    use ::core::convert::{identity as θ2_0, identity as θ1_1, identity as θ2_1};
+    use ::core::convert::{identity as θ1_mid, identity as θ2_mid, identity as sin4};
+    use ::core::convert::{identity as cos4, identity as sin5, identity as cos5};
+    use ::core::convert::{
+        identity as node, identity as θ1_0_low, identity as θ2_0_low,
+    };
+
+    use ::core::convert::{
+        identity as p0_θ1, identity as p0_θ2, identity as p0_θ1_low,
+    };
+
+    use ::core::convert::{identity as p0_θ2_low, identity as sin6, identity as cos6};
+    use ::core::convert::{identity as s16, identity as s17, identity as s18};
+    use ::core::convert::{identity as s19, identity as energy0, identity as energy0_low};
+    use ::core::convert::{identity as sin8, identity as cos8, identity as sin9};
+    use ::core::convert::{identity as cos9, identity as s20, identity as s21};
+    use ::core::convert::{identity as s22, identity as s23, identity as s24};
+    use ::core::convert::{identity as s25, identity as s26, identity as s27};
+    use ::core::convert::{identity as s28, identity as s29, identity as s30};
+    use ::core::convert::{identity as s31, identity as s32, identity as s33};
+    use ::core::convert::{identity as s34, identity as s35, identity as s36};
+    use ::core::convert::{identity as s37, identity as s38, identity as s39};
+    use ::core::convert::{identity as sin7, identity as cos7, identity as systems};
+    use ::core::convert::identity as rows;
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for DoublePendulum<f64> {
@@ -101,18 +107,7 @@ const _: () = {
 
     impl<T: ::vi_core::Real> DoublePendulum<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn from_f64(system: &DoublePendulum<f64>) -> Self {
-            Self {
-                m1: T::real(system.m1),
-                m2: T::real(system.m2),
-                l1: T::real(system.l1),
-                l2: T::real(system.l2),
-                g: T::real(system.g),
-            }
-        }
-
-        /// The same system in another kind of number, every parameter rounded to it.
-        fn convert<U: ::vi_core::Real>(&self) -> DoublePendulum<U> {
+        pub fn convert<U: ::vi_core::Real>(&self) -> DoublePendulum<U> {
             DoublePendulum {
                 m1: U::real(self.m1.to_f64()),
                 m2: U::real(self.m2.to_f64()),
@@ -254,7 +249,7 @@ const _: () = {
                 -(self.l1 * self.g * s1 * sin2 + s4 * (θ2_dot * θ2_dot) * s6),
                 s4 * (θ1_dot * θ1_dot) * s6 - self.m2 * self.l2 * self.g * sin3,
             ]);
-            ::vi_core::linear::acceleration(time, &mass, &applied)
+            ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
         /// `D = (-m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1))*dot(dot(θ1)) - dot(θ1)*(dot(θ1)*(-m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) - l1*g*(m1 + m2)*cos(θ1)) - m2*l1*l2*dot(θ2)*sin(θ1 - θ2)*dot(dot(θ1)) + m2*l1*l2*dot(θ1)*dot(θ2)^2*cos(θ1 - θ2) - m2*l1*l2*dot(θ1)*sin(θ1 - θ2)*dot(dot(θ2))) + dot(dot(θ2))*(m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)) - …`
@@ -529,7 +524,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<2, T> for DoublePendulum<T> {
         type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
@@ -590,7 +585,7 @@ const _: () = {
             }
         }
 
-        /// The residual, its magnitude, and
+        /// The residual, its rounding scale, and
         ///
         /// `p1_θ1 − p0_θ1 = h*L_θ1`
         ///
@@ -635,7 +630,7 @@ const _: () = {
                     s7 * s2 * θ1_dot + s9 - p0_θ1 - (p0_θ1_low - s1 * s14),
                     s3 + s11 - p0_θ2 - (p0_θ2_low + s1 * s16),
                 ]),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     p0_θ1.abs() + s17 * (s7 * θ1_dot).abs() + s9.abs()
                         + s19 * (s18 + s17 * (s13 * sin4).abs()),
                     p0_θ2.abs() + s3.abs() + s11.abs() + s19 * (s18 + s15.abs()),
@@ -644,6 +639,56 @@ const _: () = {
             }
         }
 
+        /// `E1 = L_v_θ1*v_θ1 - L + L_v_θ2*v_θ2`
+        ///
+        /// 51 operations.
+        #[inline(always)]
+        fn discrete_energy(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let s2 = self.m1 + self.m2;
+            let s3 = self.m2 * (self.l2 * self.l2);
+            let s4 = self.l1 * self.l1 * s2;
+            let [(sin5, cos5), (sin6, cos6)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s7 = cos5 * cos6 + sin5 * sin6;
+            let s8 = self.m2 * self.l1 * self.l2;
+            let s9 = s8 * θ1_dot;
+            let s10 = θ1_dot * (s4 * θ1_dot + s8 * θ2_dot * s7)
+                + θ2_dot * (s3 * θ2_dot + s9 * s7)
+                - s4 * (θ1_dot * θ1_dot) * real(0.5);
+            let s11 = s10 - s3 * (θ2_dot * θ2_dot) * real(0.5) - s9 * θ2_dot * s7
+                - self.l1 * self.g * s2 * cos5;
+            s11 - self.m2 * self.l2 * self.g * cos6
+        }
+
+        /// What the rounding of the residual is measured in, by running error analysis.
+        #[cold]
+        fn momentum_rounding(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            ::vi_core::support::momentum_rounding(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<2, T> for DoublePendulum<T> {
         /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
         ///
         /// 136 operations.
@@ -728,7 +773,7 @@ const _: () = {
             }
         }
 
-        /// Both residuals, their magnitudes, and
+        /// Both residuals, their rounding scales, and
         ///
         /// `E1 − E0 = 0`
         ///
@@ -787,14 +832,14 @@ const _: () = {
                     s16 + s17 - p0_θ1 - (p0_θ1_low - s1 * s20),
                     s4 + s18 - p0_θ2 - (p0_θ2_low + s1 * s22),
                 ]),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     p0_θ1.abs() + s24 * (s5 * θ1_dot).abs() + s17.abs() + s27 * s26,
                     p0_θ2.abs() + s4.abs() + s18.abs() + s27 * s28,
                 ]),
                 energy_residual: s23
                     + (θ1_dot * p0_θ1_low + θ2_dot * p0_θ2_low - energy0_low
                         + s1 * (θ2_dot * s22 - θ1_dot * s20)),
-                energy_magnitude: s30 + s15.abs() + s26 * (h * θ1_dot).abs() * real(0.5)
+                energy_scale: s30 + s15.abs() + s26 * (h * θ1_dot).abs() * real(0.5)
                     + s28 * (h * θ2_dot).abs() * real(0.5),
                 increment: ::vi_core::Increment {
                     momentum: ::vi_core::SVector::from([-(h * s20), h * s22]),
@@ -805,13 +850,13 @@ const _: () = {
 
         /// What the rounding of both residuals is measured in, by running error analysis.
         #[cold]
-        fn rounding(
+        fn extended_rounding(
             &self,
             node: &::vi_core::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::vi_core::Rounding<2, T> {
-            ::vi_core::Rounding::of(
+            ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
                 h,
@@ -820,9 +865,16 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::Convertible<2> for DoublePendulum<f64> {
+        type In<T: ::vi_core::Real> = DoublePendulum<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
+            self.convert()
+        }
+    }
+
     impl ::vi_core::Batch<2> for DoublePendulum<f64> {
         type Rows<const W: usize> = DoublePendulum<[f64; W]>;
-        type In<T: ::vi_core::Real> = DoublePendulum<T>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             DoublePendulum {
                 m1: ::core::array::from_fn(|index| systems[index].m1),
@@ -834,24 +886,14 @@ const _: () = {
         }
 
         #[inline(always)]
-        fn pick<T: ::vi_core::Real, const W: usize>(
-            rows: &Self::Rows<W>,
-            index: usize,
-        ) -> Self::In<T> {
+        fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
             DoublePendulum {
-                m1: T::real(rows.m1[index]),
-                m2: T::real(rows.m2[index]),
-                l1: T::real(rows.l1[index]),
-                l2: T::real(rows.l2[index]),
-                g: T::real(rows.g[index]),
+                m1: rows.m1[index],
+                m2: rows.m2[index],
+                l1: rows.l1[index],
+                l2: rows.l2[index],
+                g: rows.g[index],
             }
-        }
-    }
-
-    impl ::vi_core::check::Checked<2> for DoublePendulum<f64> {
-        type In<T: ::vi_core::Real> = DoublePendulum<T>;
-        fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
-            DoublePendulum::from_f64(self)
         }
     }
 };
@@ -894,6 +936,17 @@ mod double_pendulum_checks {
     #[::core::prelude::v1::test]
     fn steps() {
         let checked = ::vi_core::check::steps(
+            &super::DoublePendulum::default(),
+            &place(),
+        );
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy_equations() {
+        let checked = ::vi_core::check::energy_equations(
             &super::DoublePendulum::default(),
             &place(),
         );

@@ -35,27 +35,27 @@ pub struct Kepler<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as system, identity as name, identity as index};
-    use ::core::convert::{identity as t, identity as q, identity as v};
-    use ::core::convert::{identity as x_dot, identity as y_dot, identity as x};
-    use ::core::convert::{identity as y, identity as real, identity as s1};
-    use ::core::convert::{identity as time, identity as s2, identity as s3};
-    use ::core::convert::{identity as mass, identity as applied, identity as x_ddot};
-    use ::core::convert::{identity as y_ddot, identity as s4, identity as s5};
-    use ::core::convert::{identity as s6, identity as s7, identity as s8};
-    use ::core::convert::{identity as s9, identity as s10, identity as s11};
-    use ::core::convert::{identity as s12, identity as values, identity as value};
-    use ::core::convert::{identity as text, identity as interval, identity as h};
-    use ::core::convert::{identity as x0, identity as y0, identity as x1};
-    use ::core::convert::{identity as y1, identity as x_mid, identity as y_mid};
-    use ::core::convert::{identity as node, identity as x0_low, identity as y0_low};
-    use ::core::convert::{identity as p0_x, identity as p0_y, identity as p0_x_low};
-    use ::core::convert::{identity as p0_y_low, identity as s13, identity as energy0};
-    use ::core::convert::{identity as energy0_low, identity as s14, identity as s15};
-    use ::core::convert::{identity as s16, identity as s17, identity as s18};
-    use ::core::convert::{identity as s19, identity as s20, identity as s21};
-    use ::core::convert::{identity as s22, identity as s23, identity as s24};
-    use ::core::convert::{identity as s25, identity as systems, identity as rows};
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as x_dot};
+    use ::core::convert::{identity as y_dot, identity as x, identity as y};
+    use ::core::convert::{identity as real, identity as s1, identity as time};
+    use ::core::convert::{identity as s2, identity as s3, identity as mass};
+    use ::core::convert::{identity as applied, identity as x_ddot, identity as y_ddot};
+    use ::core::convert::{identity as s4, identity as s5, identity as s6};
+    use ::core::convert::{identity as s7, identity as s8, identity as s9};
+    use ::core::convert::{identity as s10, identity as s11, identity as s12};
+    use ::core::convert::{identity as values, identity as value, identity as text};
+    use ::core::convert::{identity as interval, identity as h, identity as x0};
+    use ::core::convert::{identity as y0, identity as x1, identity as y1};
+    use ::core::convert::{identity as x_mid, identity as y_mid, identity as node};
+    use ::core::convert::{identity as x0_low, identity as y0_low, identity as p0_x};
+    use ::core::convert::{identity as p0_y, identity as p0_x_low, identity as p0_y_low};
+    use ::core::convert::{identity as s13, identity as energy0, identity as energy0_low};
+    use ::core::convert::{identity as s14, identity as s15, identity as s16};
+    use ::core::convert::{identity as s17, identity as s18, identity as s19};
+    use ::core::convert::{identity as s20, identity as s21, identity as s22};
+    use ::core::convert::{identity as s23, identity as s24, identity as s25};
+    use ::core::convert::{identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Kepler<f64> {
@@ -66,12 +66,7 @@ const _: () = {
 
     impl<T: ::vi_core::Real> Kepler<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn from_f64(system: &Kepler<f64>) -> Self {
-            Self { mu: T::real(system.mu) }
-        }
-
-        /// The same system in another kind of number, every parameter rounded to it.
-        fn convert<U: ::vi_core::Real>(&self) -> Kepler<U> {
+        pub fn convert<U: ::vi_core::Real>(&self) -> Kepler<U> {
             Kepler {
                 mu: U::real(self.mu.to_f64()),
             }
@@ -189,7 +184,7 @@ const _: () = {
                 -(self.mu * x * s3),
                 -(self.mu * y * s3),
             ]);
-            ::vi_core::linear::acceleration(time, &mass, &applied)
+            ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
         /// `D = -mu*x*dot(dot(x))/(x^2 + y^2)^(3/2) - dot(x)*(dot(x)*(3*mu*x^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)) + 3*mu*x*y*dot(y)/(x^2 + y^2)^(5/2)) - mu*y*dot(dot(y))/(x^2 + y^2)^(3/2) - dot(y)*(3*mu*x*y*dot(x)/(x^2 + y^2)^(5/2) + dot(y)*(3*mu*y^2/(x^2 + y^2)^(5/2) - mu/(x^2 + y^2)^(3/2)))`
@@ -417,7 +412,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Kepler<T> {
+    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<2, T> for Kepler<T> {
         type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
@@ -471,7 +466,7 @@ const _: () = {
             }
         }
 
-        /// The residual, its magnitude, and
+        /// The residual, its rounding scale, and
         ///
         /// `p1_x − p0_x = h*L_x`
         ///
@@ -506,7 +501,7 @@ const _: () = {
                     x_dot - p0_x + (s8 * x_mid * s4 - p0_x_low),
                     y_dot - p0_y + (s8 * y_mid * s4 - p0_y_low),
                 ]),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     x_dot.abs() + p0_x.abs() + s6.abs() * real(0.5),
                     y_dot.abs() + p0_y.abs() + s7.abs() * real(0.5),
                 ]),
@@ -514,6 +509,46 @@ const _: () = {
             }
         }
 
+        /// `E1 = L_v_x*v_x - L + L_v_y*v_y`
+        ///
+        /// 20 operations.
+        #[inline(always)]
+        fn discrete_energy(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid + y_mid * y_mid;
+            x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                - self.mu * (s2.recip() * s2.sqrt())
+        }
+
+        /// What the rounding of the residual is measured in, by running error analysis.
+        #[cold]
+        fn momentum_rounding(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            ::vi_core::support::momentum_rounding(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<2, T> for Kepler<T> {
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
         ///
         /// 107 operations.
@@ -579,7 +614,7 @@ const _: () = {
             }
         }
 
-        /// Both residuals, their magnitudes, and
+        /// Both residuals, their rounding scales, and
         ///
         /// `E1 − E0 = 0`
         ///
@@ -620,13 +655,13 @@ const _: () = {
                     x_dot - p0_x + (s10 * x_mid * s6 - p0_x_low),
                     y_dot - p0_y + (s10 * y_mid * s6 - p0_y_low),
                 ]),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     x_dot.abs() + p0_x.abs() + s8.abs() * real(0.5),
                     y_dot.abs() + p0_y.abs() + s9.abs() * real(0.5),
                 ]),
                 energy_residual: (p0_y - y_dot * real(0.5)) * y_dot - (energy0 + s5)
                     + (p0_x - x_dot * real(0.5)) * x_dot + s11,
-                energy_magnitude: s12 + s5.abs()
+                energy_scale: s12 + s5.abs()
                     + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
                     + (s7 * y_dot * y_mid * s6).abs() * real(0.5),
                 increment: ::vi_core::Increment {
@@ -638,13 +673,13 @@ const _: () = {
 
         /// What the rounding of both residuals is measured in, by running error analysis.
         #[cold]
-        fn rounding(
+        fn extended_rounding(
             &self,
             node: &::vi_core::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::vi_core::Rounding<2, T> {
-            ::vi_core::Rounding::of(
+            ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
                 h,
@@ -653,9 +688,16 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::Convertible<2> for Kepler<f64> {
+        type In<T: ::vi_core::Real> = Kepler<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
+            self.convert()
+        }
+    }
+
     impl ::vi_core::Batch<2> for Kepler<f64> {
         type Rows<const W: usize> = Kepler<[f64; W]>;
-        type In<T: ::vi_core::Real> = Kepler<T>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             Kepler {
                 mu: ::core::array::from_fn(|index| systems[index].mu),
@@ -663,20 +705,8 @@ const _: () = {
         }
 
         #[inline(always)]
-        fn pick<T: ::vi_core::Real, const W: usize>(
-            rows: &Self::Rows<W>,
-            index: usize,
-        ) -> Self::In<T> {
-            Kepler {
-                mu: T::real(rows.mu[index]),
-            }
-        }
-    }
-
-    impl ::vi_core::check::Checked<2> for Kepler<f64> {
-        type In<T: ::vi_core::Real> = Kepler<T>;
-        fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
-            Kepler::from_f64(self)
+        fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
+            Kepler { mu: rows.mu[index] }
         }
     }
 };
@@ -713,6 +743,17 @@ mod kepler_checks {
     #[::core::prelude::v1::test]
     fn steps() {
         let checked = ::vi_core::check::steps(&super::Kepler::default(), &place());
+        if let ::core::result::Result::Err(failure) = checked {
+            ::core::panic!("{failure}");
+        }
+    }
+
+    #[::core::prelude::v1::test]
+    fn energy_equations() {
+        let checked = ::vi_core::check::energy_equations(
+            &super::Kepler::default(),
+            &place(),
+        );
         if let ::core::result::Result::Err(failure) = checked {
             ::core::panic!("{failure}");
         }

@@ -19,7 +19,7 @@ use crate::support::ending::assert_typed;
 use crate::support::scenes::Scene;
 use vi_core::check::{self, Checked, Place};
 use vi_core::composition::Scheme;
-use vi_core::{Composition, EnergyPreserving, FixedStep, Node, SVector, State, Stepping};
+use vi_core::{Composition, EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, Node, SVector, State};
 
 /// Steps of each system by each integrator.
 const STEPS: usize = 40_000;
@@ -79,25 +79,30 @@ impl Row {
     }
 
     /// The momentum rows of the step of length h with velocity v from a node.
-    fn of_momentum<const N: usize, S: Stepping<N>>(system: &S, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Self {
+    fn of_momentum<const N: usize, S: FixedStepping<N>>(
+        system: &S,
+        node: &Node<N>,
+        h: f64,
+        v: &SVector<f64, N>,
+    ) -> Self {
         let at = system.momentum_residual(node, h, v);
-        let analysis = system.rounding(node, h, v);
+        let analysis = system.momentum_rounding(node, h, v);
         Self::new((0..N).map(|i| {
             let own = node.p[i].abs() + at.increment[i].abs();
-            (at.residual[i], [own, at.magnitude[i], analysis.residual[i]])
+            (at.residual[i], [own, at.scale[i], analysis[i]])
         }))
     }
 
     /// All rows of an energy-preserving step.
-    fn of_both<const N: usize, S: Stepping<N>>(system: &S, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Self {
+    fn of_both<const N: usize, S: EnergyStepping<N>>(system: &S, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Self {
         let at = system.extended_residual(node, h, v);
-        let analysis = system.rounding(node, h, v);
+        let analysis = system.extended_rounding(node, h, v);
         let momentum = (0..N).map(|i| {
             let own = node.p[i].abs() + at.increment.momentum[i].abs();
-            (at.residual[i], [own, at.magnitude[i], analysis.residual[i]])
+            (at.residual[i], [own, at.scale[i], analysis.residual[i]])
         });
         let own = node.energy.abs() + at.increment.energy.abs() + v.component_mul(&node.p).abs().sum();
-        let energy = (at.energy_residual, [own, at.energy_magnitude, analysis.energy_residual]);
+        let energy = (at.energy_residual, [own, at.energy_scale, analysis.energy_residual]);
         Self::new(momentum.chain([energy]))
     }
 
@@ -108,7 +113,7 @@ impl Row {
 }
 
 /// A start near the scene, and a step.
-fn start<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>, draw: &mut Sequence) -> (State<N>, f64) {
+fn start<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>, draw: &mut Sequence) -> (State<N>, f64) {
     let mut near = |values: [f64; N]| SVector::from(values.map(|value| value * draw.within(0.7, 1.3)));
     let (q, v) = (near(scene.q), near(scene.v));
     let h = scene.h * 10_f64.powf(draw.within(-1.0, 0.5));
@@ -116,7 +121,7 @@ fn start<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>, draw: &mut Sequenc
 }
 
 /// Takes motions of an integrator until there are so many steps; `motion` takes one and gives what was found of each step.
-fn hunted<const N: usize, S: Stepping<N>>(
+fn hunted<const N: usize, S: FixedStepping<N>>(
     scene: &Scene<S, N>,
     limit: usize,
     mut motion: impl FnMut(State<N>, f64, usize, &mut Found),
@@ -130,7 +135,7 @@ fn hunted<const N: usize, S: Stepping<N>>(
     found
 }
 
-fn by_fixed_steps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
+fn by_fixed_steps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
     let found = hunted(scene, STEPS, |state, h, steps, found| {
         let Ok(mut run) = FixedStep::new(scene.system, state, h).map_err(assert_typed) else { return };
         for _ in 0..steps {
@@ -147,7 +152,7 @@ fn by_fixed_steps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
     found.finish(S::NAME, "fixed steps");
 }
 
-fn by_energy_preserving_steps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
+fn by_energy_preserving_steps<const N: usize, S: EnergyStepping<N>>(scene: &Scene<S, N>) {
     let found = hunted(scene, STEPS, |State { t, q, p }, h, steps, found| {
         let Ok(v) = (State { t, q, p }).velocity(&scene.system).map_err(assert_typed) else { return };
         let run = EnergyPreserving::from_midpoint(scene.system, t, q, v, h);
@@ -167,7 +172,7 @@ fn by_energy_preserving_steps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N
     found.finish(S::NAME, "energy-preserving steps");
 }
 
-fn by_substeps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
+fn by_substeps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
     for scheme in [Scheme::TRIPLE_JUMP_4, Scheme::KAHAN_LI_8] {
         let found = hunted(scene, STEPS / scheme.weights.len(), |state, h, steps, found| {
             let run = Composition::new(scene.system, scheme, state, h);
@@ -181,7 +186,7 @@ fn by_substeps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
                     let h = h * weight;
                     found.add(&Row::of_momentum(&scene.system, &node, h, &v));
                     let increment = scene.system.momentum_residual(&node, h, &v).increment;
-                    node.advance(h, &(v * h), &increment);
+                    node.advance(h, &v, &increment);
                 }
                 // The substeps are those that were taken.
                 assert_eq!(node.state(), run.state());
@@ -193,15 +198,19 @@ fn by_substeps<const N: usize, S: Stepping<N>>(scene: &Scene<S, N>) {
     }
 }
 
-fn hunt<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
+fn hunt<const N: usize, S: Checked<N> + EnergyStepping<N>>(scene: Scene<S, N>) {
+    by_energy_preserving_steps(&scene);
+    hunt_fixed_steps(scene);
+}
+
+fn hunt_fixed_steps<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
     let place = Place { t: 0.0, q: scene.q.into(), v: scene.v.into(), h: scene.h / 10.0 };
     check::steps(&scene.system, &place).unwrap_or_else(|failure| panic!("{failure}"));
     by_fixed_steps(&scene);
-    by_energy_preserving_steps(&scene);
     by_substeps(&scene);
 }
 
-sudden::each_sudden!(hunt);
+sudden::each_sudden!(hunt, hunt_fixed_steps);
 
 mod catalogue {
     crate::support::scenes::each_system!(super::hunt);

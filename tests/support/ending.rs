@@ -1,6 +1,6 @@
 //! How runs end: the steps that were taken, and the error that ended them.
 
-use vi_core::{EnergyPreserving, FixedStep, State, Step, StepError, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, State, Step, StepError};
 
 /// The end of a run of the energy-preserving integrator.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub(crate) struct Ending {
 
 /// Runs to the first error, at most `limit` steps, and checks each step: finite, forward, not the last one backwards.
 /// After the error the state stays and the error repeats.
-pub(crate) fn energy_preserving<const N: usize, S: Stepping<N>>(
+pub(crate) fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
     mut run: EnergyPreserving<S, N>,
     limit: usize,
 ) -> Ending {
@@ -45,7 +45,7 @@ pub(crate) fn energy_preserving<const N: usize, S: Stepping<N>>(
 }
 
 /// Runs to the first error, at most `limit` steps, with the same checks.
-pub(crate) fn fixed<const N: usize, S: Stepping<N>>(mut run: FixedStep<S, N>, limit: usize) -> Option<StepError> {
+pub(crate) fn fixed<const N: usize, S: FixedStepping<N>>(mut run: FixedStep<S, N>, limit: usize) -> Option<StepError> {
     for _ in 0..limit {
         let before = run.state();
         match run.step() {

@@ -11,9 +11,10 @@
 //!
 //! | check | what has to hold | of which systems |
 //! |---|---|---|
-//! | [`derivatives()`] | momentum, energy, acceleration, step density, Jacobians are those of dual numbers | all |
+//! | [`derivatives()`] | momentum, energy, acceleration, step density, Jacobian are those of dual numbers | all |
 //! | [`slots()`] | D1…D4 are the derivatives of L_d; `L_d/h → L`, `(f_d⁻ + f_d⁺)/h → f`, `(g_d⁻ + g_d⁺)/h → −f·v` | all |
 //! | [`steps()`] | the equations and gains of a step, and the p1, E1 of steps taken, are those of the slots | all |
+//! | [`energy_equations()`] | the energy row of a step is that of the slots, its Jacobian that of dual numbers | with energy-preserving steps |
 //! | [`order()`] | the error falls with h to the order of the rule | all |
 //! | [`momenta()`] | momenta of cyclic coordinates keep every bit | with a cyclic coordinate |
 //! | [`symplecticity()`] | `dq1 ∧ dp1 = dq0 ∧ dp0` | without force |
@@ -29,6 +30,7 @@ mod comparison;
 mod derivatives;
 pub mod dual;
 mod energy;
+mod energy_equations;
 mod ladder;
 mod length;
 mod motion;
@@ -38,45 +40,18 @@ mod sample;
 mod slots;
 mod step_law;
 mod steps;
+mod subject;
 mod symmetries;
 
 pub use derivatives::derivatives;
 pub use dual::Dual;
 pub use energy::energy;
+pub use energy_equations::energy_equations;
 pub use motion::Motion;
 pub use order::order;
 pub use report::{CheckFailure, Report};
 pub use slots::slots;
 pub use step_law::step_law;
 pub use steps::steps;
+pub use subject::{Checked, EnergyChecked, Place};
 pub use symmetries::{momenta, reversibility, symplecticity};
-
-use crate::{DiscreteLagrangian, Parameters, Real, Stepping};
-use nalgebra::SVector;
-
-/// Steps of the place's length over which the motion from there is followed.
-const STEPS: u32 = 32;
-
-/// Where a system is checked: a state from which it is well behaved over 32 steps of length `h`, with every quantity of
-/// moderate size and the step density of one sign. Units are the system's own.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place<const N: usize> {
-    /// Time.
-    pub t: f64,
-    /// Coordinates.
-    pub q: SVector<f64, N>,
-    /// Velocities.
-    pub v: SVector<f64, N>,
-    /// Step, positive, in units of time: small enough for the error to fall with h². Where rounding hides what a check is
-    /// about, the check tries larger ones.
-    pub h: f64,
-}
-
-/// A system that can be evaluated in other kinds of numbers, as every generated one can.
-pub trait Checked<const N: usize>: Stepping<N> + DiscreteLagrangian<N> + Parameters + Clone {
-    /// The same system in the numbers T.
-    type In<T: Real>: Stepping<N, T> + DiscreteLagrangian<N, T>;
-
-    /// The same system, every parameter converted.
-    fn convert<T: Real>(&self) -> Self::In<T>;
-}

@@ -5,7 +5,9 @@
 //! every further step, and every error, is bit for bit that of the run which was not interrupted. An error is not stored: the
 //! restarted run meets it again, for the state before it is unchanged and nothing else enters.
 
-use crate::{Lagrangian, Scalar, StepError};
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::real::Scalar;
 
 /// A run R between two steps, and which system it is of.
 #[derive(Clone, Debug, PartialEq)]

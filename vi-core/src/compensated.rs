@@ -3,7 +3,7 @@
 //! In: a number as the unevaluated sum of `value` and `low`, and an increment. Out: the new sum in the same form, by Knuth's
 //! two-sum or Kahan's. No branch, so it serves every [`Real`].
 
-use crate::Real;
+use crate::real::Real;
 use nalgebra::SVector;
 
 /// `a + b` as (rounded sum, what rounding took from it).

@@ -16,10 +16,15 @@
 //! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of Computation
 //! 66 (1997) 1089.
 
+use crate::branch::Branch;
 use crate::called::Called;
-use crate::fixed_step::{Branch, check_step};
+use crate::error::StepError;
+use crate::fixed_step::check_step;
 use crate::momentum::{Steps, Way};
-use crate::{Node, Real, Scalar, State, StepError, Stepping};
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::state::State;
+use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
 /// A symmetric composition.
@@ -100,7 +105,7 @@ impl Scheme {
 #[derive(Clone, Debug)]
 pub struct Composition<S, const N: usize, T = f64>
 where
-    S: Stepping<N, T>,
+    S: FixedStepping<N, T>,
     T: Real,
 {
     system: S,
@@ -116,7 +121,7 @@ where
 
 impl<S, const N: usize, T> Composition<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: FixedStepping<N, T>,
     T: Scalar,
 {
     /// The composition of fixed steps of `system` from `state`, with the whole step `h`, in units of time.
@@ -188,7 +193,7 @@ where
                     .searched(called, &node, Branch::Nearest)
                     .map_err(|failure| failure.explained(system, &node, h, &substep.v()))?,
             };
-            node.advance(h, &(solved.v * h), &solved.increment);
+            node.advance(h, &solved.v, &solved.increment);
             node.check_finite(self.node.t)?;
             substep.push(&solved);
             before = Some(solved.v);
@@ -201,7 +206,7 @@ where
 
 impl<S, const N: usize, T> Iterator for Composition<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: FixedStepping<N, T>,
     T: Scalar,
 {
     type Item = Result<State<N, T>, StepError>;

@@ -10,7 +10,8 @@
 //! grow as `1/h` in the unknowns `(v, h)`; in `(q1, t1)`, where `v = (q1 − q0)/h`, as `1/h²`; combined and scaled not at all.
 
 use crate::linear::Matrix;
-use crate::{ExtendedSystem, Scalar};
+use crate::real::Scalar;
+use crate::stepping::ExtendedSystem;
 use nalgebra::{DMatrix, SVector};
 
 /// Condition numbers in the 2-norm; infinite where the Jacobian is singular.

@@ -37,8 +37,12 @@ pub use fallback::{Fallback, Switches};
 
 use crate::called::Called;
 use crate::condition::Condition;
+use crate::error::StepError;
+use crate::node::Node;
+use crate::real::{Real, Scalar};
 use crate::state::Method;
-use crate::{Increment, Node, Real, Scalar, State, Step, StepError, Stepping};
+use crate::state::{State, Step};
+use crate::stepping::{EnergyStepping, Increment};
 use core::hint::black_box;
 use nalgebra::SVector;
 use newton::{Failure, Root, Trial};
@@ -85,7 +89,7 @@ pub struct EnergyPreserving<S, const N: usize, T = f64> {
 
 impl<S, const N: usize, T> EnergyPreserving<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: EnergyStepping<N, T>,
     T: Scalar,
 {
     /// Takes one step and returns it.
@@ -176,7 +180,7 @@ where
     pub fn condition(&self) -> Condition {
         let Last { v, h, previous, .. } = &self.run.last;
         let mut start = self.run.node;
-        start.shift(-*h, &(v * -*h));
+        start.shift(-*h, v);
         Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
     }
 
@@ -239,7 +243,7 @@ where
 
 /// The run after a step that is not the common one, and the step; after an error the run as it was.
 #[inline(never)]
-fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn uncommon<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: S,
     run: Run<N, T>,
 ) -> (Run<N, T>, Result<Step<N, T>, StepError>) {
@@ -253,7 +257,7 @@ fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
 impl<const N: usize, T: Real> Run<N, T> {
     /// The node and the interval after the step `root` from `start`, and the step.
     #[inline]
-    fn reached<S: Stepping<N, T>>(
+    fn reached<S: EnergyStepping<N, T>>(
         &self,
         start: &Node<N, T>,
         root: &Root<N, T>,
@@ -287,7 +291,7 @@ impl<const N: usize, T: Real> Run<N, T> {
 
 impl<S, const N: usize, T> Iterator for EnergyPreserving<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: EnergyStepping<N, T>,
     T: Scalar,
 {
     type Item = Result<Step<N, T>, StepError>;

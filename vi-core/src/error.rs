@@ -1,8 +1,6 @@
 //! Every way in which a step can fail, with its numbers, and what to do about it.
 
-use crate::{Lagrangian, Node, Scalar};
 use core::fmt;
-use nalgebra::SVector;
 
 /// Why a step was not taken. The integrator still holds the last good state, and a further call returns the same error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,24 +102,6 @@ impl StepError {
     #[must_use]
     pub fn reason(&self) -> impl fmt::Display + '_ {
         Reason(self)
-    }
-
-    /// With the expression that is not finite where the step `(v, h)` from `node` was tried, if that is the error and the
-    /// system says so.
-    #[cold]
-    pub(crate) fn explained<const N: usize, T: Scalar, S: Lagrangian<N, T>>(
-        self,
-        system: &S,
-        node: &Node<N, T>,
-        h: T,
-        v: &SVector<T, N>,
-    ) -> Self {
-        let Self::NonFinite { t, quantity, expression: None } = self else { return self };
-        // The middle of the step, the node, and the middle of the longest step that is looked at.
-        let lengths = [h, T::zero(), h * T::real(3.0)];
-        let mut places = lengths.into_iter().map(|h| node.midpoint(h, v));
-        let expression = places.find_map(|(t, q)| system.non_finite(t, &q, v));
-        Self::NonFinite { t, quantity, expression }
     }
 }
 

@@ -16,8 +16,13 @@
 //! q and p are carried with what rounding takes from them, so that an increment below an ulp of theirs is not lost, only later seen.
 
 use crate::called::Called;
+use crate::checkpoint;
+use crate::error::StepError;
 use crate::momentum::{Steps, Way};
-use crate::{Node, Real, Scalar, State, StepError, Stepping, checkpoint};
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::state::State;
+use crate::stepping::FixedStepping;
 use core::hint::black_box;
 use nalgebra::SVector;
 
@@ -25,7 +30,7 @@ use nalgebra::SVector;
 #[derive(Clone, Debug)]
 pub struct FixedStep<S, const N: usize, T = f64>
 where
-    S: Stepping<N, T>,
+    S: FixedStepping<N, T>,
     T: Real,
 {
     system: S,
@@ -36,23 +41,7 @@ where
     is_searched: bool,
 }
 
-/// Which root of the momentum equation is a step, where it has several.
-///
-/// With `L = v·Mv/2 − V(q)` and the midpoint rule the derivative of the equation is `M + (h²/4) ∇²V`: the root is the only
-/// one for `h < 2/√(−V''_min/m)`, and then this makes no difference. Beyond, roots appear and vanish in pairs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Branch {
-    /// The root that Newton's iteration reaches from the velocity of the last step, or extrapolated over the last ones. It
-    /// depends on the steps before, and on nothing else.
-    #[default]
-    Nearest,
-    /// The root that is connected with h = 0, where it is the velocity that belongs to p: it depends on the state alone.
-    /// The step is followed in sixteen parts or more, at 20 to 40 times the effort. Where the branch ends before h,
-    /// [`StepError::NotConverged`].
-    Connected,
-}
+pub use crate::branch::Branch;
 
 /// What a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +65,7 @@ pub type Checkpoint<const N: usize, T = f64> = checkpoint::Checkpoint<Run<N, T>,
 
 impl<S, const N: usize, T> FixedStep<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: FixedStepping<N, T>,
     T: Scalar,
 {
     /// The integrator of `system` from `state` with the step `h`, in units of time.
@@ -140,10 +129,10 @@ where
             && !*is_searched
             && let Some(solved) = run.steps.common(system, &run.node, way)
         {
-            let (h, displacement) = (run.steps.h, solved.v * run.steps.h);
-            if run.node.stays_finite(h, &displacement, &solved.increment) {
+            let h = run.steps.h;
+            if run.node.stays_finite(h, &solved.v, &solved.increment) {
                 run.steps.push_common(&solved);
-                run.node.advance(h, &displacement, &solved.increment);
+                run.node.advance(h, &solved.v, &solved.increment);
                 run.iterations = solved.iterations;
                 return Ok(run.node.state());
             }
@@ -207,9 +196,8 @@ where
         let v = self.v();
         let energy = (!self.run.steps.is_new()).then(|| {
             let mut start = self.run.node;
-            start.shift(-self.run.steps.h, &(v * -self.run.steps.h));
-            let start = start.leaving(&self.system, self.run.steps.h, &v);
-            start.energy + self.system.extended_residual(&start, self.run.steps.h, &v).increment.energy
+            start.shift(-self.run.steps.h, &v);
+            self.system.discrete_energy(&start, self.run.steps.h, &v)
         });
         energy.filter(|energy| energy.is_finite())
     }
@@ -227,7 +215,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
     }
 
     /// Takes a step that is not the common one.
-    fn take<S: Stepping<N, T>>(&mut self, system: &S, way: &Way<S::Jacobian, N, T>) -> Result<(), StepError> {
+    fn take<S: FixedStepping<N, T>>(&mut self, system: &S, way: &Way<S::Jacobian, N, T>) -> Result<(), StepError> {
         let (t, h) = (self.node.t, self.steps.h);
         // A common step that was not at the floor has been corrected as often as it is worth.
         let is_corrected = self.steps.is_common::<S>() && !S::CLOSED_FORM;
@@ -238,7 +226,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
             Some(solved) => solved,
             None => self.steps.searched(system, &self.node, self.branch)?,
         };
-        self.node.advance(h, &(solved.v * h), &solved.increment);
+        self.node.advance(h, &solved.v, &solved.increment);
         self.node.check_finite(t)?;
         self.steps.push(&solved);
         self.iterations = solved.iterations;
@@ -248,7 +236,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
 
 /// The run after a step that is not the common one; or the error, with the expression that is not finite.
 #[inline(never)]
-fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn uncommon<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: S,
     way: Way<S::Jacobian, N, T>,
     before: Run<N, T>,
@@ -261,7 +249,7 @@ fn uncommon<const N: usize, T: Scalar, S: Stepping<N, T>>(
 
 impl<S, const N: usize, T> Iterator for FixedStep<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: FixedStepping<N, T>,
     T: Scalar,
 {
     type Item = Result<State<N, T>, StepError>;

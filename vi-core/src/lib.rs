@@ -28,36 +28,46 @@
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]
 
+mod branch;
 mod called;
 pub mod check;
 pub mod checkpoint;
 mod compensated;
 pub mod composition;
 pub mod condition;
+mod delegate;
+pub mod discrete;
 pub mod energy_preserving;
 pub mod error;
+mod explained;
 pub mod fixed_step;
 pub mod lagrangian;
+mod legendre;
 pub mod linear;
 mod momentum;
 pub mod node;
 mod predictor;
 pub mod real;
+pub mod rules;
 pub mod state;
+pub mod stepping;
 #[doc(hidden)]
 pub mod support;
 
 pub use composition::{Composition, Scheme};
+pub use discrete::DiscreteLagrangian;
 pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
-pub use lagrangian::{
-    Batch, DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Increment, Lagrangian, MomentumEquation,
-    MomentumResidual, Parameters, Rounding, Stepping,
-};
+pub use lagrangian::{Lagrangian, Parameters};
 pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};
 pub use node::Node;
 pub use real::{Real, Scalar};
+pub use rules::By;
 pub use state::{Interval, Method, State, Step};
+pub use stepping::{
+    Batch, Convertible, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, MomentumEquation,
+    MomentumResidual, Rounding,
+};
 pub use vi_macros::lagrangian;

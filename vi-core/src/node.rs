@@ -1,9 +1,12 @@
 //! Nodes as the steppers carry them, and how one follows from another.
 //!
-//! In: a node, the solved `(v, h)` of a step and what momentum and energy gain over it. Out: the next node, every sum
-//! compensated. AFTER A STEP each low part is below half an ulp of its number.
+//! In: a node, the solved `(v, h)` of a step and what momentum and energy gain over it. Out: the next node,
+//! `q1 = q0 + h v` and every other sum compensated. AFTER A STEP each low part is below half an ulp of its number.
 
-use crate::{Increment, Real, Scalar, State, StepError, Stepping, compensated};
+use crate::compensated;
+use crate::error::StepError;
+use crate::real::{Real, Scalar};
+use crate::state::State;
 use nalgebra::SVector;
 
 /// A node as the steppers carry it: each quantity as the unevaluated sum of a number and its low part, so that
@@ -79,40 +82,24 @@ impl<const N: usize, T: Real> Node<N, T> {
         self.q + (self.q_low + v * h)
     }
 
-    /// Moves time by `h` and coordinates by `displacement = h v`; momenta and energy stay.
+    /// Moves to the end of the step `(v, h)` in time and coordinates, `q1 = q0 + h v`; momenta and energy stay.
     #[inline(always)]
-    pub(crate) fn shift(&mut self, h: T, displacement: &SVector<T, N>) {
+    pub(crate) fn shift(&mut self, h: T, v: &SVector<T, N>) {
         compensated::add_rounded(&mut self.t, &mut self.t_low, h);
-        compensated::add_vector(&mut self.q, &mut self.q_low, displacement);
+        compensated::add_vector(&mut self.q, &mut self.q_low, &(v * h));
     }
 
-    /// Moves to the end of the step of length h that adds `displacement = h v` to q; the energy stays.
+    /// Moves to the end of the step `(v, h)`, which adds `increment` to p; the energy stays.
     #[inline(always)]
-    pub fn advance(&mut self, h: T, displacement: &SVector<T, N>, increment: &SVector<T, N>) {
-        self.shift(h, displacement);
+    pub fn advance(&mut self, h: T, v: &SVector<T, N>, increment: &SVector<T, N>) {
+        self.shift(h, v);
         compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
-    /// The node at the end of the step `(v, h)` of a system.
+    /// Adds to the energy.
     #[inline]
-    pub(crate) fn advanced<S: Stepping<N, T>>(mut self, h: T, v: &SVector<T, N>, increment: &Increment<N, T>) -> Self {
-        self.advance(h, &(v * h), &increment.momentum);
-        // Else the increment is the number zero, which the compiler may not leave out of a sum.
-        if !S::AUTONOMOUS || S::FORCED {
-            compensated::add(&mut self.energy, &mut self.energy_low, increment.energy);
-        }
-        self
-    }
-
-    /// The same place with the momenta and the energy that make `(v, h)` the step from here:
-    /// `p0 = −D2 L_d − f_d⁻`, `E0 = D1 L_d + g_d⁻`.
-    pub(crate) fn leaving<S: Stepping<N, T>>(self, system: &S, h: T, v: &SVector<T, N>) -> Self {
-        let zeros = SVector::zeros();
-        let bare = Self { p: zeros, p_low: zeros, energy: T::zero(), energy_low: T::zero(), ..self };
-        let equations = system.extended_system(&bare, h, v);
-        let p = equations.momentum.residual;
-        // The energy row is e = c + v·r, and r is all of p0 where the node has no momentum.
-        Self { p, energy: equations.energy_residual + v.dot(&p), ..bare }
+    pub(crate) fn add_energy(&mut self, increment: T) {
+        compensated::add(&mut self.energy, &mut self.energy_low, increment);
     }
 }
 
@@ -120,7 +107,8 @@ impl<const N: usize, T: Scalar> Node<N, T> {
     /// Whether [`Node::advance`] leads to a node that is finite. Asked before, since what is asked after has to be taken back,
     /// and a long node is not copied for nothing.
     #[inline(always)]
-    pub(crate) fn stays_finite(&self, h: T, displacement: &SVector<T, N>, increment: &SVector<T, N>) -> bool {
+    pub(crate) fn stays_finite(&self, h: T, v: &SVector<T, N>, increment: &SVector<T, N>) -> bool {
+        let displacement = v * h;
         let t = compensated::sum(self.t, self.t_low, h);
         let q = |i| compensated::sum(self.q[i], self.q_low[i], displacement[i]);
         let p = |i| compensated::sum(self.p[i], self.p_low[i], increment[i]);

@@ -12,7 +12,7 @@
 //! The degree grows by one a step, while that makes the guess better, up to [`HIGHEST`]. After a step at which the guess was too
 //! poor to use, [`Predictor::restart`] takes the degree that would have been the best there.
 
-use crate::{Real, Scalar};
+use crate::real::{Real, Scalar};
 use nalgebra::SVector;
 
 /// Highest degree of the polynomial.

@@ -3,7 +3,7 @@
 //! `q`, `p` and `v` are column vectors of N entries, in the order in which the system declares its coordinates and
 //! in the system's own units.
 
-use crate::{Lagrangian, Node, Real, Scalar, StepError, Stepping, momentum};
+use crate::real::Scalar;
 use nalgebra::SVector;
 
 /// Where a system is: time, coordinates, momenta.
@@ -15,49 +15,6 @@ pub struct State<const N: usize, T = f64> {
     pub q: SVector<T, N>,
     /// Momenta, `p = ∂L/∂v`.
     pub p: SVector<T, N>,
-}
-
-impl<const N: usize, T: Real> State<N, T> {
-    /// The state at time `t` with coordinates `q` and velocities `v`: `p = ∂L/∂v(t, q, v)`.
-    pub fn at<S: Lagrangian<N, T>>(system: &S, t: T, q: impl Into<SVector<T, N>>, v: impl Into<SVector<T, N>>) -> Self {
-        let (q, v) = (q.into(), v.into());
-        Self { t, q, p: system.momentum(t, &q, &v) }
-    }
-}
-
-impl<const N: usize, T: Scalar> State<N, T> {
-    /// The velocity v at this node, the root of `∂L/∂v(t, q, v) = p`: in the coordinates' units by time.
-    ///
-    /// Not the velocity of the last interval, `(q1 − q0)/h`, which differs from it by a term of order h.
-    ///
-    /// # Errors
-    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NotConverged`] where no velocity has
-    /// these momenta, [`StepError::NonFinite`].
-    pub fn velocity<S: Stepping<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
-        let node = Node::new(*self, T::zero());
-        let explained = |failure: StepError| failure.explained(system, &node, T::zero(), &SVector::zeros());
-        node.check_finite(T::zero()).map_err(explained)?;
-        // Most Lagrangians give the velocity in one iteration from rest; where the mass matrix vanishes there,
-        // any other start will do.
-        momentum::velocity(system, &node, [SVector::zeros(), self.p]).map_err(explained)
-    }
-
-    /// The energy `H = v·∂L/∂v − L` at this node, in the units of L, v the velocity that belongs to its momenta.
-    ///
-    /// Along a run of fixed steps it oscillates about the energy of the motion by a term of order h²; the discrete energy of
-    /// an interval, which the integrators report, is another number.
-    ///
-    /// # Errors
-    /// Those of [`State::velocity`]; [`StepError::NonFinite`] where L is not finite, though its forces may be.
-    pub fn energy<S: Stepping<N, T>>(&self, system: &S) -> Result<T, StepError> {
-        let v = self.velocity(system)?;
-        let energy = system.energy(self.t, &self.q, &v);
-        if energy.is_finite() {
-            return Ok(energy);
-        }
-        let failure = StepError::NonFinite { t: self.t.to_f64(), quantity: "energy", expression: None };
-        Err(failure.explained(system, &Node::new(*self, T::zero()), T::zero(), &v))
-    }
 }
 
 /// The pair of nodes between which one discrete Lagrangian lives: `(t0, q0) → (t1, q1)`.

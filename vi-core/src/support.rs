@@ -2,11 +2,16 @@
 
 pub use crate::compensated::two_sum;
 pub use crate::fixed_step::check_step;
+pub use crate::legendre::acceleration;
+pub use crate::stepping::{extended_rounding, momentum_rounding};
 
+use crate::branch::Branch;
 use crate::called::Called;
-use crate::fixed_step::Branch;
+use crate::error::StepError;
 use crate::momentum::Steps;
-use crate::{Node, Scalar, StepError, Stepping};
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
 /// The node and the velocity after one step of length h from `node`, by Newton's iteration from `last`, the velocity of the step
@@ -15,7 +20,7 @@ use nalgebra::SVector;
 /// # Errors
 /// Those of [`FixedStep::step`](crate::FixedStep::step).
 #[cold]
-pub fn step_alone<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub fn step_alone<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
@@ -24,7 +29,7 @@ pub fn step_alone<const N: usize, T: Scalar, S: Stepping<N, T>>(
     let explained = |failure: StepError| failure.explained(system, node, h, &last);
     let solved = Steps::new(h, last).searched(&Called(*system), node, Branch::Nearest).map_err(explained)?;
     let mut next = *node;
-    next.advance(h, &(solved.v * h), &solved.increment);
+    next.advance(h, &solved.v, &solved.increment);
     next.check_finite(node.t).map_err(explained)?;
     Ok((next, solved.v))
 }

@@ -3,7 +3,7 @@
 
 use crate::systems::{DoubleWell, UnitMass};
 use vi_core::fixed_step::{Branch, FixedStep};
-use vi_core::{Node, SVector, State, StepError, Stepping};
+use vi_core::{FixedStepping, Node, SVector, State, StepError};
 
 const SYSTEM: UnitMass<DoubleWell> = UnitMass(DoubleWell);
 

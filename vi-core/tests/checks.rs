@@ -93,16 +93,8 @@ fn trips<const N: usize, S: Checked<N>>(system: S, place: &Place<N>, fault: Faul
 
 #[test]
 fn wrong_derivatives_are_seen() {
-    let faults = [
-        Fault::Momentum,
-        Fault::Energy,
-        Fault::Acceleration,
-        Fault::StepDensity,
-        Fault::Rounding,
-        Fault::Jacobian,
-        Fault::ResidualDh,
-        Fault::EnergyDh,
-    ];
+    let faults =
+        [Fault::Momentum, Fault::Energy, Fault::Acceleration, Fault::StepDensity, Fault::Rounding, Fault::Jacobian];
     for fault in faults {
         trips(SphericalPendulum::default(), &PENDULUM, fault, check::derivatives);
         trips(Duffing::default(), &DUFFING, fault, check::derivatives);
@@ -122,11 +114,29 @@ fn wrong_slots_are_seen() {
 
 #[test]
 fn wrong_steps_are_seen() {
-    for fault in [Fault::Damping, Fault::EnergyResidual, Fault::MomentumGain, Fault::DirectedGain, Fault::EnergyGain] {
+    for fault in [Fault::Damping, Fault::MomentumGain, Fault::DirectedGain, Fault::DiscreteEnergy] {
         trips(SphericalPendulum::default(), &PENDULUM, fault, check::steps);
         trips(Duffing::default(), &DUFFING, fault, check::steps);
     }
     trips(Duffing::default(), &DUFFING, Fault::Residual, check::steps);
+}
+
+#[test]
+fn wrong_energy_equations_are_seen() {
+    let faults = [
+        Fault::Jacobian,
+        Fault::ResidualDh,
+        Fault::EnergyResidual,
+        Fault::EnergyDh,
+        Fault::EnergyGain,
+        Fault::Rounding,
+        Fault::D3,
+    ];
+    for fault in faults {
+        trips(SphericalPendulum::default(), &PENDULUM, fault, check::energy_equations);
+        trips(Duffing::default(), &DUFFING, fault, check::energy_equations);
+    }
+    trips(Duffing::default(), &DUFFING, Fault::GdPlus, check::energy_equations);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use crate::many;
 use crate::many::Case;
 use crate::spoiled::{Fault, Spoiled};
-use vi_core::check::{self, CheckFailure, Checked, Place, Report};
+use vi_core::check::{self, CheckFailure, Checked, EnergyChecked, Place, Report};
 
 /// Places that are drawn about each.
 const DRAWS: u32 = 20;
@@ -17,30 +17,42 @@ fn second_order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> 
     check::order(system, place, 2)
 }
 
-/// The checks that apply, with faults that each has to see.
-fn checks<const N: usize, S: Checked<N>>(is_midpoint: bool) -> Vec<(Check<S, N>, Vec<Fault>)> {
-    use Fault::{Acceleration, Density, EnergyResidual, Gain, Jacobian, Ld, Loss, Momentum, ResidualDh, Rounding};
-    let of_derivatives = vec![Momentum, Fault::Energy, Acceleration, Jacobian, ResidualDh, Rounding];
-    let each: [(bool, Check<S, N>, Vec<Fault>); 9] = [
+/// A check, with faults that it has to see.
+type Seen<S, const N: usize> = (Check<S, N>, Vec<Fault>);
+
+/// The checks that apply to fixed steps.
+fn of_fixed_steps<const N: usize, S: Checked<N>>() -> Vec<Seen<S, N>> {
+    use Fault::{Acceleration, DiscreteEnergy, Gain, Jacobian, Ld, Loss, Momentum, Rounding};
+    let of_derivatives = vec![Momentum, Fault::Energy, Acceleration, Jacobian, Rounding];
+    let each: [(bool, Check<S, N>, Vec<Fault>); 7] = [
         (true, check::derivatives, of_derivatives),
         (true, check::slots, vec![Ld, Fault::D1, Fault::D2, Fault::D4]),
-        (true, check::steps, vec![EnergyResidual, Gain, Loss]),
+        (true, check::steps, vec![Gain, Loss, DiscreteEnergy]),
         (true, second_order, vec![Gain, Loss, Acceleration]),
         (S::CYCLIC.contains(&true), check::momenta, vec![Loss]),
         (!S::FORCED, check::symplecticity, vec![Loss]),
         (true, check::reversibility, vec![Gain, Loss]),
-        (is_midpoint, check::energy, vec![Fault::Energy]),
-        (is_midpoint && !S::FORCED, check::step_law, vec![Density]),
     ];
     each.into_iter().filter(|(applies, ..)| *applies).map(|(_, check, faults)| (check, faults)).collect()
 }
 
+/// The checks that apply to a system with energy-preserving steps by the midpoint rule.
+fn of_energy_steps<const N: usize, S: EnergyChecked<N>>() -> Vec<Seen<S, N>> {
+    let mut all = of_fixed_steps();
+    all.push((check::energy_equations, vec![Fault::EnergyResidual, Fault::ResidualDh]));
+    all.push((check::energy, vec![Fault::Energy]));
+    if !S::FORCED {
+        all.push((check::step_law, vec![Fault::Density]));
+    }
+    all
+}
+
 /// Each check passes for the right system, and fails for each spoiled one by numbers, whatever the step.
 #[allow(clippy::needless_pass_by_value, reason = "as the other tests of each case")]
-fn seen_at_each_step<const N: usize, S: Checked<N>>(case: Case<S, N>) {
-    let Case { system, is_midpoint, .. } = case;
+fn seen_at_each_step<const N: usize, S: Checked<N>>(case: Case<S, N>, checks: Vec<Seen<Spoiled<S>, N>>) {
+    let system = case.system;
     for place in case.places() {
-        for (check, faults) in checks(is_midpoint) {
+        for (check, faults) in checks.clone() {
             let right = check(&Spoiled { system, fault: Fault::None }, &place);
             let report = right.unwrap_or_else(|failure| panic!("h = {:e}: {failure}", place.h));
             println!("h = {:.1e}: {report}", place.h);
@@ -54,7 +66,7 @@ fn seen_at_each_step<const N: usize, S: Checked<N>>(case: Case<S, N>) {
 }
 
 mod at_their_places {
-    super::many::each_case!(super::seen_at_each_step);
+    super::many::each_case!(super::seen_at_each_step, super::of_energy_steps, super::of_fixed_steps);
 }
 
 /// A fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
@@ -69,14 +81,14 @@ fn sequence() -> impl FnMut() -> f64 {
 /// No check fails by numbers for a right system about its place, with steps up to twice the largest sensible one. What is
 /// allowed: a motion or a step that does not exist from there, and a law below rounding.
 #[allow(clippy::needless_pass_by_value, reason = "as the other tests of each case")]
-fn not_red_at_others<const N: usize, S: Checked<N>>(case: Case<S, N>) {
-    let Case { system, place, is_midpoint } = case;
+fn not_red_at_others<const N: usize, S: Checked<N>>(case: Case<S, N>, checks: Vec<Seen<Spoiled<S>, N>>) {
+    let Case { system, place } = case;
     let (mut draw, mut passed, mut refused) = (sequence(), 0, 0);
     for _ in 0..DRAWS {
         let (t, h) = (place.t + 60.0 * place.h * draw(), 2.0 * place.h * 10_f64.powf(-6.0 * draw()));
         let (q, v) = (place.q.map(|entry| entry * (0.5 + draw())), place.v.map(|entry| entry * (0.3 + 1.2 * draw())));
         let place = Place { t, q, v, h };
-        for (check, _) in checks(is_midpoint) {
+        for (check, _) in &checks {
             match check(&Spoiled { system, fault: Fault::None }, &place) {
                 Ok(_) => passed += 1,
                 Err(CheckFailure::Step { .. } | CheckFailure::StepTooSmall { .. }) => refused += 1,
@@ -89,7 +101,7 @@ fn not_red_at_others<const N: usize, S: Checked<N>>(case: Case<S, N>) {
 }
 
 mod about_their_places {
-    super::many::each_case!(super::not_red_at_others);
+    super::many::each_case!(super::not_red_at_others, super::of_energy_steps, super::of_fixed_steps);
 }
 
 /// Of the energy of a slow particle nearly all is that of its rest: what is left has six digits.

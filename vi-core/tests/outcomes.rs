@@ -1,11 +1,12 @@
 //! What the errors say, and that it is so: looked up independently of the solver.
 
 use crate::systems::{DampedOscillator, Kepler, Steppable, UnitMass};
+use vi_core::FixedStepping;
 use vi_core::{
-    EnergyPreserving, FixedStep, Lagrangian, Node, Residuals, SVector, State, StepError, Stepping, lagrangian,
+    EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, Node, Residuals, SVector, State, StepError, lagrangian,
 };
 
-fn last_error<const N: usize, S: Stepping<N>>(run: &mut EnergyPreserving<S, N>) -> StepError {
+fn last_error<const N: usize, S: EnergyStepping<N>>(run: &mut EnergyPreserving<S, N>) -> StepError {
     loop {
         if let Err(error) = run.step() {
             return error;
@@ -26,7 +27,7 @@ fn curve<const N: usize, P: Steppable<N>>(
         *v -= inverse * equation.residual;
     }
     let equations = system.extended_system(node, h, v);
-    equations.energy_residual / system.rounding(node, h, v).energy_residual / f64::EPSILON
+    equations.energy_residual / system.extended_rounding(node, h, v).energy_residual / f64::EPSILON
 }
 
 #[test]

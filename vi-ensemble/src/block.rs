@@ -156,7 +156,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             if self.verdict.refused.get(lane) & self.verdict.running.get(lane) == 0 {
                 continue;
             }
-            let (system, node) = (S::pick::<f64, HALF>(&self.fixed.systems[lane.half], lane.index), self.node(number));
+            let (system, node) = (S::from_rows(&self.fixed.systems[lane.half], lane.index), self.node(number));
             let last: SVector<f64, N> = self.velocities[0].get(lane);
             match step_alone(&system, &node, self.fixed.h, last) {
                 Ok((next, v)) => {

@@ -74,10 +74,10 @@ fn hunt_by<S: Batch<N> + Default, const N: usize>(instructions: Instructions, h:
         block.run(1);
         for (number, node) in before.iter().enumerate().filter(|(number, _)| block.result(*number).is_ok()) {
             let v = block.velocity(number);
-            let (at, analysis) = (system.momentum_residual(node, h, &v), system.rounding(node, h, &v));
+            let (at, analysis) = (system.momentum_residual(node, h, &v), system.momentum_rounding(node, h, &v));
             for i in 0..N {
                 let own = node.p[i].abs() + at.increment[i].abs();
-                let scale = own.max(at.magnitude[i]).max(analysis.residual[i]);
+                let scale = own.max(at.scale[i]).max(analysis[i]);
                 let roundings = if at.residual[i] == 0.0 { 0.0 } else { at.residual[i].abs() / (f64::EPSILON * scale) };
                 worst = if roundings > worst || roundings.is_nan() { roundings } else { worst };
             }

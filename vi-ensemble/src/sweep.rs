@@ -19,7 +19,7 @@ use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
 use vi_core::linear::Matrix;
 use vi_core::support::two_sum;
-use vi_core::{Batch, MomentumResidual, Node, Stepping};
+use vi_core::{Batch, FixedStepping, MomentumResidual, Node};
 
 /// Roundings that a row may leave.
 const FLOOR: f64 = 4.0;
@@ -82,18 +82,18 @@ struct Step<const N: usize, const FUSED: bool> {
     accepted: bool,
 }
 
-impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<N, FUSED, S> {
+impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajectory<N, FUSED, S> {
     /// The step after a Newton step from v.
     #[inline(always)]
     fn step(&self, v: &SVector<Lane<FUSED>, N>) -> Step<N, FUSED> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
         let v = v - equation.jacobian.solve_unchecked(&(equation.residual + self.remainder));
-        let MomentumResidual { residual, magnitude, increment } = self.system.momentum_residual(&self.node, self.h, &v);
+        let MomentumResidual { residual, scale, increment } = self.system.momentum_residual(&self.node, self.h, &v);
         let remainder = residual + self.remainder;
         let mut accepted = true;
         for k in 0..N {
             // A scale that overflows proves nothing.
-            let rounding = (magnitude[k] * Lane::new(f64::EPSILON)).get();
+            let rounding = (scale[k] * Lane::new(f64::EPSILON)).get();
             accepted &= remainder[k].get().abs() <= rounding && rounding < f64::MAX * f64::EPSILON;
             accepted &= residual[k].get().abs() <= FLOOR * rounding;
         }
@@ -112,7 +112,7 @@ impl<const N: usize, const FUSED: bool, S: Stepping<N, Lane<FUSED>>> Trajectory<
     ) -> u64 {
         let kept = AGAIN && verdict.refused.get(lane) == 0;
         let mut node = self.node;
-        node.advance(self.h, &(step.v * self.h), &step.increment);
+        node.advance(self.h, &step.v, &step.increment);
         // A sum, not a number where one of its terms is not: what solves the equations need not lead anywhere.
         let sum = (0..N).fold(0.0, |sum, k| sum + (node.q[k].get() * 0.0 + node.p[k].get() * 0.0));
         let accepted = step.accepted && sum == 0.0;
@@ -180,7 +180,7 @@ fn trajectory<S: Batch<N>, const N: usize, const FUSED: bool>(
     lane: LaneIndex,
 ) -> Trajectory<N, FUSED, S::In<Lane<FUSED>>> {
     Trajectory {
-        system: S::pick::<Lane<FUSED>, HALF>(&fixed.systems[lane.half], lane.index),
+        system: S::from_rows(&fixed.systems[lane.half], lane.index).convert(),
         node: before.get(lane, elapsed.since(fixed.t.get(lane))),
         h: Lane::new(fixed.h),
         remainder: before.remainder.get(lane),

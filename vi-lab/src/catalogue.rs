@@ -5,7 +5,7 @@
 use crate::failure::Failure;
 use crate::system::{self, System};
 use crate::table::Table;
-use vi_core::{Parameters, Stepping};
+use vi_core::{EnergyStepping, Parameters};
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
@@ -27,7 +27,7 @@ pub(crate) struct Entry {
 
 fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
 where
-    S: Stepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {
     Entry { system: system::erased::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
 }

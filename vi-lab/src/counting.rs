@@ -5,8 +5,8 @@
 
 use core::cell::Cell;
 use vi_core::{
-    DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Interval, Lagrangian, MomentumEquation, MomentumResidual,
-    Node, Rounding, SVector, StepError, Stepping,
+    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Interval, Lagrangian,
+    MomentumEquation, MomentumResidual, Node, Rounding, SVector, StepError,
 };
 
 /// A system, and the evaluations so far: its copies count together.
@@ -103,7 +103,7 @@ impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Countin
     }
 }
 
-impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
+impl<S: FixedStepping<N>, const N: usize> FixedStepping<N> for Counting<'_, S> {
     type Jacobian = S::Jacobian;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const CLOSED_FORM: bool = S::CLOSED_FORM;
@@ -117,6 +117,16 @@ impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
         self.counted().momentum_residual(node, h, v)
     }
 
+    fn momentum_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> SVector<f64, N> {
+        self.system.momentum_rounding(node, h, v)
+    }
+
+    fn discrete_energy(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> f64 {
+        self.system.discrete_energy(node, h, v)
+    }
+}
+
+impl<S: EnergyStepping<N>, const N: usize> EnergyStepping<N> for Counting<'_, S> {
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N, f64, S::Jacobian> {
         self.counted().extended_system(node, h, v)
     }
@@ -125,8 +135,8 @@ impl<S: Stepping<N>, const N: usize> Stepping<N> for Counting<'_, S> {
         self.counted().extended_residual(node, h, v)
     }
 
-    fn rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
-        self.system.rounding(node, h, v)
+    fn extended_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {
+        self.system.extended_rounding(node, h, v)
     }
 }
 

@@ -8,7 +8,7 @@
 use crate::start;
 use clap::ValueEnum;
 use serde::Deserialize;
-use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, Scheme, State, StepError, Stepping};
+use vi_core::{Composition, EnergyPreserving, EnergyStepping, FixedStep, SVector, Scheme, State, StepError};
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -201,7 +201,7 @@ pub(crate) trait Simulation {
 /// velocities are not those of the system.
 pub(crate) fn begin<'a, S, const N: usize>(system: S, plan: &Plan) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: Stepping<N> + 'a,
+    S: EnergyStepping<N> + 'a,
 {
     let initial = (plan.t, vector(&plan.q, "number of coordinates")?, vector(&plan.v, "number of velocities")?);
     let (t, q, v) = initial;
@@ -242,11 +242,11 @@ pub(crate) fn vector<const N: usize>(values: &[f64], input: &'static str) -> Res
     }
 }
 
-struct Fixed<S: Stepping<N>, const N: usize> {
+struct Fixed<S: EnergyStepping<N>, const N: usize> {
     integrator: FixedStep<S, N>,
 }
 
-impl<S: Stepping<N>, const N: usize> Simulation for Fixed<S, N> {
+impl<S: EnergyStepping<N>, const N: usize> Simulation for Fixed<S, N> {
     fn t(&self) -> f64 {
         self.integrator.state().t
     }
@@ -276,13 +276,13 @@ impl<S: Stepping<N>, const N: usize> Simulation for Fixed<S, N> {
     }
 }
 
-struct Composed<S: Stepping<N>, const N: usize> {
+struct Composed<S: EnergyStepping<N>, const N: usize> {
     system: S,
     integrator: Composition<S, N>,
     h: f64,
 }
 
-impl<S: Stepping<N>, const N: usize> Simulation for Composed<S, N> {
+impl<S: EnergyStepping<N>, const N: usize> Simulation for Composed<S, N> {
     fn t(&self) -> f64 {
         self.integrator.state().t
     }
@@ -324,7 +324,7 @@ struct Middle<const N: usize> {
     v: SVector<f64, N>,
 }
 
-impl<S: Stepping<N>, const N: usize> Simulation for Energy<S, N> {
+impl<S: EnergyStepping<N>, const N: usize> Simulation for Energy<S, N> {
     fn t(&self) -> f64 {
         self.integrator.state().t
     }

@@ -9,7 +9,7 @@ use crate::rival::{self, Ended};
 use crate::simulation::{self, Plan, Simulation, vector};
 use core::cell::Cell;
 use vi_core::check::Motion;
-use vi_core::{Parameters, SVector, StepError, Stepping};
+use vi_core::{EnergyStepping, Parameters, SVector, StepError};
 
 /// Where a motion is.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,14 +85,14 @@ struct Typed<S, const N: usize>(S);
 /// The system `S` with its default parameters.
 pub(crate) fn erased<S, const N: usize>() -> Box<dyn System>
 where
-    S: Stepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {
     Box::new(Typed::<S, N>(S::default()))
 }
 
 impl<S, const N: usize> System for Typed<S, N>
 where
-    S: Stepping<N> + Parameters + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Parameters + Clone + Send + Sync + 'static,
 {
     fn name(&self) -> &'static str {
         S::NAME

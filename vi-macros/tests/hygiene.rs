@@ -14,7 +14,7 @@
 #![allow(non_upper_case_globals, non_camel_case_types, dead_code, reason = "the surroundings")]
 #![allow(missing_docs, reason = "a test")]
 
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Parameters, SVector, State, StepError, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, Parameters, SVector, State, StepError};
 
 /// Nothing that a binding may be named after.
 macro_rules! constants {
@@ -22,7 +22,7 @@ macro_rules! constants {
 }
 
 /// Positions after some steps of both integrators.
-fn run<const N: usize, S: Stepping<N> + Copy>(system: S) -> [SVector<f64, N>; 2] {
+fn run<const N: usize, S: EnergyStepping<N> + Copy>(system: S) -> [SVector<f64, N>; 2] {
     let place = |i: usize| 0.3 + 0.2 * f64::from(u8::try_from(i).expect("few coordinates"));
     let (q, v) = (SVector::from_fn(|i, _| place(i)), SVector::from_fn(|i, _| 0.5 - place(i)));
     let fixed = || -> Result<_, StepError> {
@@ -150,13 +150,13 @@ mod names {
         };
     }
     systems! {
-        N Some Option Result Vec Clone Copy Debug Default PartialEq Into Real SVector SMatrix Lagrangian Stepping Interval Node Rows In
+        N Some Option Result Vec Clone Copy Debug Default PartialEq Into Real SVector SMatrix Lagrangian EnergyStepping Interval Node Rows In
         Jacobian Parameters Banded core std vi_core x identity union auto raw
     }
 }
 
 mod attributes {
-    use super::{Parameters, Stepping};
+    use super::{EnergyStepping, Parameters};
 
     /// What is not there needs no sense.
     #[cfg(any())]
@@ -194,7 +194,7 @@ mod attributes {
 
     #[test]
     fn go_over_to_the_struct() {
-        fn has<S: Parameters + Stepping<1> + PartialOrd>(_: S) {}
+        fn has<S: Parameters + EnergyStepping<1> + PartialOrd>(_: S) {}
         has(Chosen::default());
         assert_eq!(Chosen::default().partial_cmp(&Chosen { M: 3.0 }), Some(core::cmp::Ordering::Less));
         let [fixed, energy_preserving] = super::run::<1, _>(Chosen::default());

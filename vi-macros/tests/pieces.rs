@@ -4,7 +4,7 @@
 //! compiler, `UPDATE_EXPANDED=1 cargo test -p vi-macros --test pieces` writes them anew.
 
 use vi_core::linear::Matrix;
-use vi_core::{DiscreteLagrangian, Interval, Lagrangian, Node, SVector, Stepping};
+use vi_core::{DiscreteLagrangian, EnergyStepping, Interval, Lagrangian, Node, SVector};
 
 /// A system, its text, and its expansion in functions of at most so many operations, from its file.
 macro_rules! system {
@@ -90,7 +90,7 @@ fn no_function_is_longer_than_the_limit() {
 /// Bits of everything that the functions of a system give at one place.
 fn bits<const N: usize, S>(system: &S) -> Vec<u64>
 where
-    S: Lagrangian<N> + DiscreteLagrangian<N> + Stepping<N>,
+    S: Lagrangian<N> + DiscreteLagrangian<N> + EnergyStepping<N>,
 {
     let mut place = -1.0;
     let q: SVector<f64, N> = SVector::from_fn(|_, _| {

@@ -21,7 +21,7 @@ mod kepler;
 use std::fs;
 use std::path::Path;
 use vi_codegen::inspect::{Stage, source, stage};
-use vi_core::{EnergyPreserving, FixedStep, State, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State};
 
 /// The expansion of the one system that a text declares.
 fn expansion(text: &str) -> String {
@@ -53,7 +53,7 @@ fn every_system_expands_to_the_same_bytes_twice() {
 }
 
 /// Bits of the states of both integrators over some steps.
-fn bits<S: Stepping<N>, const N: usize>(system: &S, q: [f64; N], v: [f64; N], h: f64) -> Vec<u64> {
+fn bits<S: EnergyStepping<N>, const N: usize>(system: &S, q: [f64; N], v: [f64; N], h: f64) -> Vec<u64> {
     let mut numbers = Vec::new();
     let start = State::at(system, 0.0, q, v);
     for state in FixedStep::new(system, start, h).expect("a start").take(200) {

@@ -10,7 +10,7 @@ use vi_codegen::found::{Dependence, Findings, Pattern};
 use vi_codegen::inspect::source;
 use vi_codegen::{derive, syntax::parse};
 use vi_core::linear::Matrix;
-use vi_core::{Node, SMatrix, SVector, State, Stepping};
+use vi_core::{FixedStepping, Node, SMatrix, SVector, State};
 
 /// The findings of a ready system.
 fn findings(file: &str) -> Findings {
@@ -28,12 +28,12 @@ fn generic<const N: usize>(seed: f64) -> SVector<f64, N> {
 }
 
 /// A at a node with the coordinates and the time of a seed.
-fn jacobian<S: Stepping<N>, const N: usize>(system: &S, node: f64, h: f64, v: f64) -> SMatrix<f64, N, N> {
+fn jacobian<S: FixedStepping<N>, const N: usize>(system: &S, node: f64, h: f64, v: f64) -> SMatrix<f64, N, N> {
     let state = State { t: node, q: generic(node), p: generic(node + 2.0) };
     system.momentum_equation(&Node::new(state, 0.3), h, &generic(v)).jacobian.dense()
 }
 
-fn check<S: Stepping<N> + Default, const N: usize>(file: &str) -> Findings {
+fn check<S: FixedStepping<N> + Default, const N: usize>(file: &str) -> Findings {
     let (system, found) = (S::default(), findings(file));
     let of = |node, h, v| jacobian(&system, node, h, v);
     let a = of(1.0, 0.1, 3.0);

@@ -12,7 +12,7 @@
 //! its roundings behind, and they are seen. Source: Higham, Accuracy and Stability of Numerical Algorithms, section 3.3
 //! (running error analysis).
 
-use crate::Real;
+use crate::real::Real;
 use crate::real::assignments;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use nalgebra::SVector;
@@ -23,7 +23,7 @@ const EXACT: f64 = 1_048_576.0;
 
 /// A value and the bound of its rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Bounded {
+pub struct Bounded {
     pub(super) value: f64,
     /// Not negative; infinite, or not a number, where nothing is known.
     pub(super) error: f64,

@@ -5,7 +5,7 @@
 
 use super::bounded::Bounded;
 use super::report::{CheckFailure, Report};
-use crate::StepError;
+use crate::error::StepError;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 

@@ -4,7 +4,7 @@
 //! operation by operation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating
 //! Derivatives, chapter 3.
 
-use crate::Real;
+use crate::real::Real;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::SVector;
 

@@ -18,10 +18,11 @@
 //! `tests/checks_of_many.rs` with steps that are all rounding: 0.005 to 0.12 of the bound.
 
 use super::bounded::{Bounded, exact};
-use super::derivatives::carried;
-use super::{Checked, Place};
+use super::subject::{EnergyChecked, Place};
 use crate::linear;
-use crate::{ExtendedSystem, Node, State, Stepping};
+use crate::node::Node;
+use crate::state::State;
+use crate::stepping::{EnergyStepping, ExtendedSystem};
 use nalgebra::{SMatrix, SVector};
 
 /// Part of itself by which the length of a step may be rounded in a run that is taken at all.
@@ -38,7 +39,7 @@ pub(super) struct Solved {
 }
 
 /// The step `(v, h)` from `node`, which solves its equations; `None` where A is singular.
-pub(super) fn solved<const N: usize, S: Checked<N>>(
+pub(super) fn solved<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     node: &Node<N, Bounded>,
     h: f64,
@@ -58,12 +59,12 @@ pub(super) fn solved<const N: usize, S: Checked<N>>(
 }
 
 /// The rounding of the first interval of length h, of which the place is the middle.
-pub(super) fn at_start<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, h: f64) -> f64 {
+pub(super) fn at_start<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, h: f64) -> f64 {
     let Place { t, q, v, .. } = place;
     let node = Node::new(State { t: t - h / 2.0, q: q - v * (h / 2.0), p: SVector::zeros() }, 0.0);
     let equations = system.extended_system(&node, h, v);
     // The momenta and the energy with which the equations hold: the energy row is c + v·r.
     let p = equations.momentum.residual;
     let node = Node { p, energy: equations.energy_residual + v.dot(&p), ..node };
-    solved(system, &carried(&node, Bounded::exact), h, v).map_or(f64::INFINITY, |solved| solved.length)
+    solved(system, &node.map(Bounded::exact), h, v).map_or(f64::INFINITY, |solved| solved.length)
 }

@@ -4,7 +4,8 @@
 //! In: a system, of which nothing is used but its acceleration, and a state. Out: the state at another time.
 
 use crate::error::Residuals;
-use crate::{Lagrangian, StepError};
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
 use nalgebra::SVector;
 
 /// Rows of the extrapolation tableau.

@@ -16,10 +16,13 @@
 
 use super::comparison::Comparison;
 use super::ladder::{Law, Measured};
+use super::motion::Motion;
 use super::report::{CheckFailure, Report};
 use super::sample::Course;
-use super::{Checked, Motion, Place, STEPS};
-use crate::{FixedStep, State, StepError};
+use super::subject::{Checked, Place, STEPS};
+use crate::error::StepError;
+use crate::fixed_step::FixedStep;
+use crate::state::State;
 use nalgebra::SVector;
 
 /// Roundings of each coordinate and velocity between the two places.

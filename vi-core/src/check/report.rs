@@ -1,6 +1,6 @@
 //! What a check found.
 
-use crate::StepError;
+use crate::error::StepError;
 use core::fmt;
 
 /// A check that passed, with its numbers.

@@ -6,10 +6,13 @@
 //! however small the place's h is; with h itself a term of order h² would lie below the rounding of the others.
 
 use super::comparison::Comparison;
+use super::motion::Motion;
 use super::report::CheckFailure;
-use super::{Checked, Motion, Place, STEPS};
+use super::subject::{Checked, Place, STEPS};
+use crate::error::StepError;
 use crate::linear::Matrix;
-use crate::{Interval, Node, State, StepError};
+use crate::node::Node;
+use crate::state::{Interval, State};
 use nalgebra::SVector;
 
 /// Samples of one place.
@@ -210,9 +213,10 @@ impl<S: Checked<N>, const N: usize> Sample<S, N> {
     fn has_values(&self) -> bool {
         let Self { system, t, q, v, h } = self;
         let Ok(acceleration) = system.acceleration(*t, q, v) else { return false };
-        let equations = system.extended_system(&self.node(), *h, v);
-        let sums = [acceleration, system.force(*t, q, v), equations.momentum.residual].map(|vector| vector.sum());
-        let numbers = [system.lagrangian(*t, q, v), system.ld(&self.interval()), equations.energy_residual];
+        let (node, interval) = (self.node(), self.interval());
+        let equation = system.momentum_equation(&node, *h, v);
+        let sums = [acceleration, system.force(*t, q, v), equation.residual].map(|vector| vector.sum());
+        let numbers = [system.lagrangian(*t, q, v), system.ld(&interval), system.discrete_energy(&node, *h, v)];
         sums.iter().chain(&numbers).all(|number| number.is_finite())
     }
 }

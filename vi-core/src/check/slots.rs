@@ -11,11 +11,15 @@
 use super::bounded::{Bounded, vector_of};
 use super::comparison::Comparison;
 use super::derivatives::First;
+use super::dual::Dual;
 use super::dual::{along, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
-use super::{Checked, Dual, Place};
-use crate::{DiscreteLagrangian, Interval, Lagrangian, Real};
+use super::subject::{Checked, Place};
+use crate::discrete::DiscreteLagrangian;
+use crate::lagrangian::Lagrangian;
+use crate::real::Real;
+use crate::state::Interval;
 use nalgebra::SVector;
 
 /// Parts of the step from which a limit is approached: two, since the distance may happen to be zero at one.

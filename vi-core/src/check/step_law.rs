@@ -13,13 +13,15 @@
 
 use super::bounded::{Bounded, exact, once};
 use super::comparison::Comparison;
-use super::derivatives::carried;
 use super::ladder::{Law, Measured};
 use super::length;
 use super::report::{CheckFailure, Report};
 use super::sample::Course;
-use super::{Checked, Place, STEPS};
-use crate::{EnergyPreserving, Lagrangian, Node, StepError};
+use super::subject::{EnergyChecked, Place, STEPS};
+use crate::energy_preserving::EnergyPreserving;
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::node::Node;
 use nalgebra::SVector;
 
 /// Slope of what falls with h².
@@ -35,7 +37,7 @@ const EVEN: f64 = 8.0;
 /// # Errors
 /// A deviation that does not fall with h²; [`CheckFailure::NotApplicable`] for a system with a force;
 /// [`CheckFailure::StepTooSmall`] for less than three deviations above rounding; a step that does not exist.
-pub fn step_law<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
+pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "step law");
     if S::FORCED {
         return Err(check.not_applicable("the law is one of systems without a force"));
@@ -70,7 +72,7 @@ pub fn step_law<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> 
 
 /// Whether the step density keeps its sign and size along the motion over the time of a ladder: where it comes near zero
 /// steps grow without bound, and nothing falls with h².
-fn is_even<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, h: f64) -> Result<bool, StepError> {
+fn is_even<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, h: f64) -> Result<bool, StepError> {
     let states = Course::over(system, place, h, u32::MAX)?.states;
     let densities = states.iter().map(|state| system.step_density(state.t, &state.q, &state.v));
     let densities = densities.collect::<Result<Vec<f64>, _>>()?;
@@ -80,7 +82,7 @@ fn is_even<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>, h: f64) 
 
 /// Relative deviations of h D^(1/3) and of D over a run, as the root of their mean square in time: unlike the largest one
 /// it does not depend on where in a steep place a step happens to lie.
-fn deviations<const N: usize, S: Checked<N>>(
+fn deviations<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     place: &Place<N>,
     [h0, span]: [f64; 2],
@@ -96,7 +98,7 @@ fn deviations<const N: usize, S: Checked<N>>(
         let node = Node::new(run.state(), run.energy());
         let step = run.step().map_err(|error| check.step(error))?;
         let here = density(system, &step.midpoint).map_err(|error| check.step(error))?;
-        let solved = length::solved(system, &carried(&node, Bounded::once), step.h, &step.midpoint.2);
+        let solved = length::solved(system, &node.map(Bounded::once), step.h, &step.midpoint.2);
         let solved = solved.ok_or_else(|| check.step(singular(step.t)))?;
         let ratio = solved.density / here;
         let law = Measured {
@@ -121,7 +123,7 @@ fn singular(t: f64) -> StepError {
 }
 
 /// The step density in the middle of a step, which is known to one rounding.
-fn density<const N: usize, S: Checked<N>>(
+fn density<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     (t, q, v): &(f64, SVector<f64, N>, SVector<f64, N>),
 ) -> Result<Bounded, StepError> {

@@ -12,12 +12,16 @@
 
 use super::bounded::{Bounded, exact};
 use super::comparison::Comparison;
-use super::derivatives::{First, carried};
+use super::derivatives::First;
+use super::dual::Dual;
 use super::dual::{along, lift, slopes, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
-use super::{Checked, Dual, Place, STEPS};
-use crate::{FixedStep, Node, State, Stepping};
+use super::subject::{Checked, Place, STEPS};
+use crate::fixed_step::FixedStep;
+use crate::node::Node;
+use crate::state::State;
+use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
 /// Momenta of cyclic coordinates keep every bit over fixed steps, and gain nothing in any step.
@@ -69,7 +73,7 @@ pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>
     for sample in samples(system, place, &check)? {
         let system = sample.system.convert::<Bounded>();
         let (h, v) = (Bounded::exact(sample.h), exact(&sample.v));
-        let start = carried(&bare(&sample), Bounded::exact);
+        let start = bare(&sample).map(Bounded::exact);
         let start = Node { p: system.momentum_equation(&start, h, &v).residual, ..start };
         let gain = system.momentum_residual(&start, h, &v).increment;
         let (t, q) = (start.t + h, start.q + v.map(|v| v * h));
@@ -123,7 +127,7 @@ impl<const N: usize> Column<N> {
     fn of<S: Checked<N>>(sample: &Sample<S, N>, column: usize) -> Self {
         let system = sample.system.convert::<First>();
         let h = Dual::fixed(Bounded::exact(sample.h));
-        let still = carried(&bare(sample), |number| Dual::fixed(Bounded::exact(number)));
+        let still = bare(sample).map(|number| Dual::fixed(Bounded::exact(number)));
         let (q, v) = (exact(&sample.q), exact(&sample.v));
         let direction = unit(column % N);
         let (q, v) = if column < N { (along(&q, &direction), lift(&v)) } else { (lift(&q), along(&v, &direction)) };

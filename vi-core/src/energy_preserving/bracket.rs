@@ -13,8 +13,11 @@
 use super::newton::{self, Failure, Root, Trial};
 use super::{Last, RATIO};
 use crate::error::Residuals;
+use crate::error::StepError;
 use crate::momentum;
-use crate::{Node, Scalar, StepError, Stepping};
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
 /// φ is looked at from `h_last/REACH` to `REACH · h_last`: wide enough to tell a step beyond the factor from none.
@@ -38,7 +41,7 @@ struct Point<const N: usize, T> {
 
 impl<const N: usize, T: Scalar> Point<N, T> {
     /// The point at `h`, v by Newton's iteration from `guess`.
-    fn at<S: Stepping<N, T>>(
+    fn at<S: EnergyStepping<N, T>>(
         system: &S,
         node: &Node<N, T>,
         h: T,
@@ -46,7 +49,7 @@ impl<const N: usize, T: Scalar> Point<N, T> {
     ) -> Result<Self, momentum::Failure> {
         let v = momentum::solve(system, node, h, guess)?.v;
         let equations = system.extended_system(node, h, &v);
-        let scale = system.rounding(node, h, &v).energy_residual;
+        let scale = system.extended_rounding(node, h, &v).energy_residual;
         let size = momentum::roundings(equations.energy_residual, scale);
         let negative = equations.energy_residual.to_f64() < 0.0;
         let roundings = if negative { -size } else { size };
@@ -84,7 +87,7 @@ enum Search<const N: usize, T> {
 /// [`StepError::NoForwardStep`], [`StepError::DegenerateStep`], [`StepError::StepRatio`]; [`StepError::NotConverged`],
 /// [`StepError::Singular`] and [`StepError::NonFinite`] where the momentum equation or D has no value at the node.
 #[cold]
-pub(super) fn smallest_root<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(super) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
@@ -114,7 +117,7 @@ pub(super) fn smallest_root<const N: usize, T: Scalar, S: Stepping<N, T>>(
 }
 
 /// The first two neighbours between which φ changes its sign, from `start` at h = 0 with the velocity `v`.
-fn first_change<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn first_change<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
@@ -154,7 +157,7 @@ fn first_change<const N: usize, T: Scalar, S: Stepping<N, T>>(
 
 /// A point between two at which φ does not have the sign `known`, by golden sections towards the extremum; none where φ
 /// has that sign there as well.
-fn other_side<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn other_side<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     known: i8,
@@ -182,7 +185,7 @@ fn other_side<const N: usize, T: Scalar, S: Stepping<N, T>>(
 }
 
 /// The root between two points, by bisection and then on all equations.
-fn polished<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn polished<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,

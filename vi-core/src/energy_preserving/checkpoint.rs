@@ -8,7 +8,11 @@
 use super::fallback::{Fallback, Phase, StepBounds, Switches};
 use super::predicted::Predictors;
 use super::{EnergyPreserving, Last};
-use crate::{Node, Scalar, StepError, Stepping, checkpoint};
+use crate::checkpoint;
+use crate::error::StepError;
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
 /// Everything that a run of [`EnergyPreserving`] carries, to be stored and resumed bit for bit.
@@ -69,7 +73,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
 
 impl<S, const N: usize, T> EnergyPreserving<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: EnergyStepping<N, T>,
     T: Scalar,
 {
     /// Everything that the run carries: the node with its low parts, the last interval, bounds, fallback and switches; and of

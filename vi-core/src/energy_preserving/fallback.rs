@@ -19,9 +19,14 @@
 //! AFTER A SWITCH q, p and t go on without a jump.
 
 use super::{EnergyPreserving, Last, newton::Elimination};
+use crate::compensated;
+use crate::error::StepError;
 use crate::momentum::{self, Solution, continuation};
+use crate::node::Node;
+use crate::real::Scalar;
 use crate::state::Method;
-use crate::{Node, Scalar, Step, StepError, Stepping, compensated};
+use crate::state::Step;
+use crate::stepping::EnergyStepping;
 
 /// With the fallback a step may be longer than the last by this factor at most: where D falls linearly to zero, the step
 /// law gives it at the distance of 0.7 h.
@@ -156,7 +161,7 @@ impl<T: Scalar> Phase<T> {
 
 impl<S, const N: usize, T> EnergyPreserving<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: EnergyStepping<N, T>,
     T: Scalar,
 {
     /// What to do where no energy-preserving step exists; [`Fallback::Stop`] unless this is called.

@@ -6,11 +6,13 @@
 
 use super::newton::{Elimination, Trial};
 use super::{Last, RATIO};
-use crate::{Node, Scalar, Stepping};
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
 /// The trial that follows `last`.
-pub(super) fn predict<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(super) fn predict<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
@@ -21,7 +23,7 @@ pub(super) fn predict<const N: usize, T: Scalar, S: Stepping<N, T>>(
         .unwrap_or(extrapolated)
 }
 
-fn improve<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn improve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,

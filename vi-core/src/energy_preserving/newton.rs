@@ -14,8 +14,10 @@
 
 use crate::linear::{self, Matrix};
 use crate::momentum;
+use crate::node::Node;
 use crate::predictor::length_squared;
-use crate::{ExtendedSystem, Node, Scalar, Stepping};
+use crate::real::Scalar;
+use crate::stepping::{EnergyStepping, ExtendedSystem};
 use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
 
@@ -158,7 +160,7 @@ impl<const N: usize, T: Scalar> Step<N, T> {
 
 /// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of
 /// the rows before each iteration, in roundings.
-pub(super) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(super) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     mut trial: Trial<N, T>,
@@ -195,9 +197,13 @@ struct Rows {
 }
 
 impl Rows {
-    fn of<const N: usize, T: Scalar, S: Stepping<N, T>>(system: &S, node: &Node<N, T>, trial: &Trial<N, T>) -> Self {
+    fn of<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+        system: &S,
+        node: &Node<N, T>,
+        trial: &Trial<N, T>,
+    ) -> Self {
         let (at, rounding) =
-            (system.extended_residual(node, trial.h, &trial.v), system.rounding(node, trial.h, &trial.v));
+            (system.extended_residual(node, trial.h, &trial.v), system.extended_rounding(node, trial.h, &trial.v));
         Self {
             momentum: momentum::worst(&at.residual, &rounding.residual),
             energy: momentum::roundings(at.energy_residual, rounding.energy_residual),

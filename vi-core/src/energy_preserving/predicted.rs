@@ -17,8 +17,10 @@
 use super::newton::{Elimination, Root, Trial};
 use super::{Last, RATIO};
 use crate::momentum::{FLOOR, roundings, worse, worst};
+use crate::node::Node;
 use crate::predictor::Predictor;
-use crate::{ExtendedResidual, Increment, Node, Rounding, Scalar, Stepping};
+use crate::real::Scalar;
+use crate::stepping::{EnergyStepping, ExtendedResidual, Increment, Rounding};
 use nalgebra::SVector;
 
 /// Newton steps that may follow a guess.
@@ -106,7 +108,7 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
 
     /// The step from `node` after the interval `last`, from a trial.
     #[inline(always)]
-    pub(super) fn step<S: Stepping<N, T>>(
+    pub(super) fn step<S: EnergyStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
@@ -165,7 +167,7 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         };
         if !is_at_floor(&scale) {
             // Where momenta or the energy vanish, what they are sums of need not.
-            scale = Rounding { residual: at.magnitude, energy_residual: at.energy_magnitude };
+            scale = Rounding { residual: at.scale, energy_residual: at.energy_scale };
             if !is_at_floor(&scale) {
                 return None;
             }

@@ -6,12 +6,16 @@
 use super::newton::Elimination;
 use super::{EnergyPreserving, Last, Run};
 use crate::called::Called;
-use crate::{Node, Scalar, State, StepError, Stepping};
+use crate::error::StepError;
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::state::State;
+use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
 impl<S, const N: usize, T> EnergyPreserving<S, N, T>
 where
-    S: Stepping<N, T>,
+    S: EnergyStepping<N, T>,
     T: Scalar,
 {
     /// The midpoint start: `(t0, q0, v0)` becomes the middle of the first interval, of length `h0`. For the midpoint rule
@@ -35,7 +39,7 @@ where
         check_step("the step h0", h0)?;
         let (q, v) = (q0.into(), v0.into());
         let mut start = Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero());
-        start.shift(h0 * T::real(-0.5), &(v * (h0 * T::real(-0.5))));
+        start.shift(h0 * T::real(-0.5), &v);
         Self::after(system, start, h0, v)
     }
 
@@ -75,7 +79,7 @@ where
         check_step("the step h", h)?;
         let (node, v) = (Node::new(state, energy), v.into());
         let mut start = node;
-        start.shift(-h, &(v * -h));
+        start.shift(-h, &v);
         let mut integrator = Self::after(system, start, h, v)?;
         integrator.run.node = node;
         Ok(integrator)
@@ -91,7 +95,7 @@ where
 }
 
 /// The run at the end of the step `(v, h)` from the place of `start`.
-fn first_interval<const N: usize, T: Scalar, S: Stepping<N, T>>(
+fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     start: Node<N, T>,
     h: T,

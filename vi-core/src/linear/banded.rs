@@ -1,7 +1,7 @@
 //! Banded matrices, eliminated inside the band.
 
 use super::{Matrix, is_kept};
-use crate::Real;
+use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix whose entries stand at most W places from the diagonal; D = 2 W + 1. Diagonal matrices have D = 1.

@@ -1,7 +1,7 @@
 //! Block-diagonal matrices: bodies that do not feel each other within a step.
 
 use super::{Matrix, dense};
-use crate::Real;
+use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix of blocks of at most B rows, whose rows need not stand together.

@@ -2,7 +2,7 @@
 //! the program.
 
 use super::{Matrix, is_kept};
-use crate::Real;
+use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
 impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {

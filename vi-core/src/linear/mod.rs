@@ -26,7 +26,7 @@ pub use blocks::Blocks;
 pub use symmetric::Symmetric;
 pub use tridiagonal::Tridiagonal;
 
-use crate::{Real, StepError};
+use crate::real::Real;
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
@@ -82,19 +82,6 @@ const GROWTH: f64 = 1024.0;
 #[inline(always)]
 fn is_kept<T: Real>(entry: T, eliminated: T) -> bool {
     eliminated.abs().is_at_most(entry.abs() * T::real(GROWTH))
-}
-
-/// The acceleration a with `mass · a = applied`, as generated code asks for it.
-///
-/// # Errors
-/// [`StepError::Singular`] where the mass matrix cannot be inverted at the time `t`.
-#[inline]
-pub fn acceleration<T: Real, const N: usize>(
-    t: T,
-    mass: &impl Matrix<N, T>,
-    applied: &SVector<T, N>,
-) -> Result<SVector<T, N>, StepError> {
-    solve(mass, applied).ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
 }
 
 /// Sign of the determinant, by elimination with partial pivoting: −1, 0 or 1; 0 where an entry is not a number.

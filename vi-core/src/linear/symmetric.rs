@@ -1,7 +1,7 @@
 //! Dense symmetric matrices by `A = L D Lᵀ`, half the products of an elimination.
 
 use super::{Matrix, dense};
-use crate::Real;
+use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// A symmetric matrix, given whole.

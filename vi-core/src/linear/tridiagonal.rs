@@ -12,7 +12,7 @@
 //! and mirrored from below. One row or two in the middle close the elimination.
 
 use super::{GROWTH, Matrix, is_kept};
-use crate::Real;
+use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
 /// A matrix of three diagonals, entry i of each in row i.

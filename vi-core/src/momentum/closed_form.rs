@@ -11,7 +11,9 @@
 //! two products that wait for nothing, instead of an evaluation, a solution and another evaluation one after the other.
 
 use crate::linear::Matrix;
-use crate::{Node, Real, Scalar, Stepping};
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
 /// Coordinates that a system with a closed form has at most.
@@ -55,7 +57,7 @@ impl<T: Real> Affine<T> {
 
 impl<T: Scalar> ClosedForm<T> {
     /// That of a system with a step h, by the inverse of its A.
-    pub(crate) fn of<const N: usize, S: Stepping<N, T>>(
+    pub(crate) fn of<const N: usize, S: FixedStepping<N, T>>(
         system: &S,
         h: T,
         inverse: &<S::Jacobian as Matrix<N, T>>::Inverse,

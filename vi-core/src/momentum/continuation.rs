@@ -7,8 +7,11 @@
 
 use super::{FLOOR, Failure, Solution, newton};
 use crate::error::Residuals;
+use crate::error::StepError;
 use crate::linear::{self, Matrix};
-use crate::{Node, Scalar, StepError, Stepping};
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
 /// How the branch is followed: by which parts of h, and how close to the last root the next one must be.
@@ -37,7 +40,7 @@ impl Pace {
 /// # Errors
 /// As [`solve`].
 #[cold]
-pub(crate) fn nearest<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
@@ -52,7 +55,7 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: Stepping<N, T>>(
 /// # Errors
 /// [`StepError::NotConverged`] where the branch ends before h; [`StepError::NonFinite`], [`StepError::Singular`].
 #[cold]
-pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,

@@ -2,13 +2,16 @@
 //!
 //! In: a node, h and a guess of v. Out: the v with `−D2 L_d − f_d⁻ = p0` to the rounding floor: each residual is at most
 //! one rounding, or stopped decreasing within [`FLOOR`] of them. A rounding is what evaluating the row loses at most, by running
-//! error analysis, with v the nearest number to the root ([`Stepping::rounding`]).
+//! error analysis, with v the nearest number to the root ([`FixedStepping::momentum_rounding`]).
 //! A Newton step that does not lessen the residual is halved; an absolute tolerance is used nowhere.
 //! AFTER IT the matrix A at the root has an inverse.
 
 use crate::error::Residuals;
+use crate::error::StepError;
 use crate::linear::{self, Matrix};
-use crate::{MomentumEquation, Node, Scalar, StepError, Stepping};
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::{FixedStepping, MomentumEquation};
 use nalgebra::{SMatrix, SVector};
 
 /// Residual, in roundings, below which an iteration that no longer gains is at the floor.
@@ -80,8 +83,8 @@ struct Trial<const N: usize, T, J> {
 }
 
 impl<const N: usize, T: Scalar, J: Matrix<N, T>> Trial<N, T, J> {
-    fn at<S: Stepping<N, T, Jacobian = J>>(system: &S, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Self {
-        Self { equation: system.momentum_equation(node, h, v), scale: system.rounding(node, h, v).residual }
+    fn at<S: FixedStepping<N, T, Jacobian = J>>(system: &S, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Self {
+        Self { equation: system.momentum_equation(node, h, v), scale: system.momentum_rounding(node, h, v) }
     }
 
     /// The largest residual, in roundings.
@@ -109,7 +112,7 @@ impl<const N: usize, T: Scalar, J: Matrix<N, T>> Trial<N, T, J> {
 }
 
 /// The largest residual of the momentum equation at `(v, h)`, in roundings.
-pub(crate) fn residual<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(crate) fn residual<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
@@ -119,7 +122,7 @@ pub(crate) fn residual<const N: usize, T: Scalar, S: Stepping<N, T>>(
 }
 
 /// The velocity that solves the momentum equation at `h`, from the guess `v`.
-pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
@@ -130,7 +133,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: Stepping<N, T>>(
 
 /// As [`solve`], with `observe` told the residual before each iteration, in roundings. Behind a pointer, that there is one copy of
 /// this long function.
-pub(crate) fn observed<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(crate) fn observed<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     h: T,
@@ -203,7 +206,7 @@ fn contracts<const N: usize, T: Scalar, J: Matrix<N, T>>(
 ///
 /// # Errors
 /// [`StepError::Singular`], [`StepError::NonFinite`] or [`StepError::NotConverged`] from the last guess.
-pub(crate) fn velocity<const N: usize, T: Scalar, S: Stepping<N, T>>(
+pub(crate) fn velocity<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     guesses: [SVector<T, N>; 2],

@@ -21,10 +21,13 @@
 
 use super::closed_form::ClosedForm;
 use super::{FLOOR, Solution, continuation, newton};
-use crate::fixed_step::Branch;
+use crate::branch::Branch;
+use crate::error::StepError;
 use crate::linear::Matrix;
+use crate::node::Node;
 use crate::predictor::Predictor;
-use crate::{MomentumResidual, Node, Real, Scalar, StepError, Stepping};
+use crate::real::{Real, Scalar};
+use crate::stepping::{FixedStepping, MomentumResidual};
 use nalgebra::SVector;
 
 /// Corrections that may follow a guess.
@@ -43,7 +46,7 @@ pub(crate) enum Way<J: Matrix<N, T>, const N: usize, T: Real> {
 
 impl<J: Matrix<N, T>, const N: usize, T: Scalar> Way<J, N, T> {
     /// That of steps of length h.
-    pub(crate) fn of<S: Stepping<N, T, Jacobian = J>>(system: &S, h: T) -> Self {
+    pub(crate) fn of<S: FixedStepping<N, T, Jacobian = J>>(system: &S, h: T) -> Self {
         if !S::CONSTANT_JACOBIAN {
             return Self::Newton;
         }
@@ -181,14 +184,14 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
     /// Whether the step is the common one: by one matrix, or from a guess of the highest order.
     #[inline(always)]
-    pub(crate) fn is_common<S: Stepping<N, T>>(&self) -> bool {
+    pub(crate) fn is_common<S: FixedStepping<N, T>>(&self) -> bool {
         S::CLOSED_FORM || self.predictor.is_highest()
     }
 
     /// The common step from `node`: by one matrix, or by corrections of a guess of the highest order. `None` where these do not solve
     /// it.
     #[inline(always)]
-    pub(crate) fn common<S: Stepping<N, T>>(
+    pub(crate) fn common<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
@@ -207,7 +210,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
     /// The step from `node` by corrections of v; `None` where three do not solve it.
     #[inline(always)]
-    pub(crate) fn corrected<S: Stepping<N, T>>(
+    pub(crate) fn corrected<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
@@ -227,7 +230,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
     /// The step from `node` after a correction of v, where its residual is at the floor then.
     #[inline(always)]
-    fn corrected_once<S: Stepping<N, T>>(
+    fn corrected_once<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
@@ -237,13 +240,13 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     ) -> Option<Solved<N, T>> {
         let equation = system.momentum_equation(node, self.h, v);
         *v -= way.correction(&equation.jacobian, &(equation.residual + self.remainder));
-        let MomentumResidual { residual, magnitude, increment } = system.momentum_residual(node, self.h, v);
-        // Long functions have computed the magnitudes; short ones are inlined, and compute them where they are needed: where momenta
-        // vanish, and what they are sums of does not.
-        let scale = if S::INLINED { scale(node, &increment) } else { magnitude };
-        let mut measured = Measured { residual, scale };
+        let MomentumResidual { residual, scale, increment } = system.momentum_residual(node, self.h, v);
+        // Long functions have computed the scales of their terms; short ones are inlined, and compute them where they are needed: where
+        // momenta vanish, and what they are sums of does not.
+        let first = if S::INLINED { momentum_scale(node, &increment) } else { scale };
+        let mut measured = Measured { residual, scale: first };
         if !measured.is_at_floor(&self.remainder) {
-            measured.scale = magnitude;
+            measured.scale = scale;
             if !(S::INLINED && measured.is_at_floor(&self.remainder)) {
                 return None;
             }
@@ -254,7 +257,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
     /// The step by one matrix, where that solves it to rounding.
     #[inline(always)]
-    fn by_matrix<S: Stepping<N, T>>(
+    fn by_matrix<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
@@ -262,7 +265,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     ) -> Option<Solved<N, T>> {
         let (v, increment) = form.step(node);
         let at = system.momentum_residual(node, self.h, &v);
-        let measured = Measured { residual: at.residual, scale: scale(node, &increment) };
+        let measured = Measured { residual: at.residual, scale: momentum_scale(node, &increment) };
         let lost = Measured { residual: increment - at.increment, ..measured };
         let remainder = SVector::zeros();
         let solved = measured.is_at_floor(&remainder) && lost.is_at_floor(&remainder);
@@ -274,7 +277,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     /// # Errors
     /// Those of Newton's iteration and of the continuation.
     #[cold]
-    pub(crate) fn searched<S: Stepping<N, T>>(
+    pub(crate) fn searched<S: FixedStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,
@@ -286,7 +289,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
             Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
         };
         let MomentumResidual { residual, increment, .. } = system.momentum_residual(node, h, &v);
-        let measured = Measured { residual, scale: system.rounding(node, h, &v).residual };
+        let measured = Measured { residual, scale: system.momentum_rounding(node, h, &v) };
         Ok(Solved { v, increment, iterations, measured, remainder: SVector::zeros(), predicted: false })
     }
 
@@ -317,7 +320,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
 /// What a rounding of each row is ε times of, at least.
 #[inline(always)]
-fn scale<const N: usize, T: Scalar>(node: &Node<N, T>, increment: &SVector<T, N>) -> SVector<T, N> {
+fn momentum_scale<const N: usize, T: Scalar>(node: &Node<N, T>, increment: &SVector<T, N>) -> SVector<T, N> {
     let mut scale = *increment;
     for i in 0..N {
         scale[i] = node.p[i].abs() + increment[i].abs();

@@ -1,11 +1,11 @@
 //! A right system with one function spoiled, as a wrong generator would print it: in every kind of number. Each file uses its
 //! part of the faults.
 
-use vi_core::check::Checked;
 use vi_core::linear::Matrix;
 use vi_core::{
-    DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation,
-    MomentumResidual, Node, Parameters, Real, Rounding, SMatrix, SVector, StepError, Stepping,
+    Convertible, DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment,
+    Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Parameters, Real, Rounding, SMatrix, SVector,
+    StepError,
 };
 
 /// The damping of [`Fault::Damping`].
@@ -66,6 +66,8 @@ pub(crate) enum Fault {
     DirectedGain,
     /// The energy gains.
     EnergyGain,
+    /// The discrete energy is a part in a thousand too large.
+    DiscreteEnergy,
 }
 
 /// A system with a fault.
@@ -88,7 +90,7 @@ impl<S: Parameters> Parameters for Spoiled<S> {
     }
 }
 
-impl<const N: usize, S: Checked<N>> Checked<N> for Spoiled<S> {
+impl<const N: usize, S: Convertible<N>> Convertible<N> for Spoiled<S> {
     type In<T: Real> = Spoiled<S::In<T>>;
     fn convert<T: Real>(&self) -> Self::In<T> {
         Spoiled { system: self.system.convert(), fault: self.fault }
@@ -172,7 +174,7 @@ impl<S> Spoiled<S> {
         v: &SVector<T, N>,
     ) -> MomentumEquation<N, T>
     where
-        S: Stepping<N, T>,
+        S: FixedStepping<N, T>,
     {
         let mut jacobian = right.jacobian.dense();
         match self.fault {
@@ -191,7 +193,7 @@ impl<S> Spoiled<S> {
         v: &SVector<T, N>,
     ) -> SVector<T, N>
     where
-        S: Stepping<N, T>,
+        S: FixedStepping<N, T>,
     {
         let half = h * T::real(0.5);
         match self.fault {
@@ -221,13 +223,33 @@ impl<S> Spoiled<S> {
     }
 }
 
-impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
+impl<const N: usize, T: Real, S: FixedStepping<N, T>> FixedStepping<N, T> for Spoiled<S> {
     type Jacobian = SMatrix<T, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
 
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
         self.spoil_momentum(self.system.momentum_equation(node, h, v), node, h, v)
     }
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
+        let right = self.system.momentum_residual(node, h, v);
+        let increment = Increment { momentum: right.increment, energy: T::zero() };
+        MomentumResidual {
+            residual: self.spoil_residual(right.residual, node, h, v),
+            scale: right.scale,
+            increment: self.spoil_increment(increment, node, h, v).momentum,
+        }
+    }
+    fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N> {
+        let right = self.system.momentum_rounding(node, h, v);
+        self.unless(Fault::Rounding, right, |rounding| rounding * T::real(1e-3))
+    }
+    fn discrete_energy(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> T {
+        let right = self.system.discrete_energy(node, h, v);
+        self.unless(Fault::DiscreteEnergy, right, |energy| energy * T::real(1.001))
+    }
+}
+
+impl<const N: usize, T: Real, S: EnergyStepping<N, T>> EnergyStepping<N, T> for Spoiled<S> {
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
         let right = self.system.extended_system(node, h, v);
         let mut found = ExtendedSystem {
@@ -245,30 +267,20 @@ impl<const N: usize, T: Real, S: Stepping<N, T>> Stepping<N, T> for Spoiled<S> {
         }
         found
     }
-    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
-        let right = self.system.momentum_residual(node, h, v);
-        let increment = Increment { momentum: right.increment, energy: T::zero() };
-        MomentumResidual {
-            residual: self.spoil_residual(right.residual, node, h, v),
-            magnitude: right.magnitude,
-            increment: self.spoil_increment(increment, node, h, v).momentum,
-        }
-    }
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
         let right = self.system.extended_residual(node, h, v);
         let spoilt = self.unless(Fault::EnergyResidual, right.energy_residual, |residual| residual + node.energy);
         ExtendedResidual {
             residual: self.spoil_residual(right.residual, node, h, v),
-            magnitude: right.magnitude,
+            scale: right.scale,
             energy_residual: spoilt,
-            energy_magnitude: right.energy_magnitude,
+            energy_scale: right.energy_scale,
             increment: self.spoil_increment(right.increment, node, h, v),
         }
     }
-    fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
-        self.unless(Fault::Rounding, self.system.rounding(node, h, v), |right| Rounding {
-            residual: right.residual * T::real(1e-3),
-            ..right
-        })
+    fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        let right = self.system.extended_rounding(node, h, v);
+        let spoil = |right: Rounding<N, T>| Rounding { residual: right.residual * T::real(1e-3), ..right };
+        self.unless(Fault::Rounding, right, spoil)
     }
 }

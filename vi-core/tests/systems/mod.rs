@@ -13,8 +13,8 @@
 
 use vi_core::real::Rounded;
 use vi_core::{
-    DiscreteLagrangian, ExtendedResidual, ExtendedSystem, Increment, Interval, Lagrangian, MomentumEquation,
-    MomentumResidual, Node, Real, Rounding, SMatrix, SVector, StepError, Stepping,
+    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, Interval,
+    Lagrangian, MomentumEquation, MomentumResidual, Node, Real, Rounding, SMatrix, SVector, StepError, support,
 };
 
 /// A potential and a force at one point, with their derivatives.
@@ -273,7 +273,7 @@ impl<const N: usize, T: Real, P: Potential<N, T>> DiscreteLagrangian<N, T> for U
     }
 }
 
-impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Stepping<N, T> for UnitMass<P> {
+impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> FixedStepping<N, T> for UnitMass<P> {
     type Jacobian = SMatrix<T, N, N>;
     const CONSTANT_JACOBIAN: bool = false;
 
@@ -288,6 +288,24 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Steppi
         }
     }
 
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
+        let both = self.extended_residual(node, h, v);
+        let ExtendedResidual { residual, scale, increment, .. } = both;
+        MomentumResidual { residual, scale, increment: increment.momentum }
+    }
+
+    fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N> {
+        support::momentum_rounding(self, node, h, v)
+    }
+
+    fn discrete_energy(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> T {
+        let (t, q) = node.midpoint(h, v);
+        let fields = self.0.fields(t, &q, v);
+        self.energy(t, &q, v) + h * T::real(0.5) * (fields.potential_t + fields.force.dot(v))
+    }
+}
+
+impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> EnergyStepping<N, T> for UnitMass<P> {
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
         let momentum = self.momentum_equation(node, h, v);
         let (t, q) = node.midpoint(h, v);
@@ -309,23 +327,17 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Steppi
         }
     }
 
-    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
-        let both = self.extended_residual(node, h, v);
-        let ExtendedResidual { residual, magnitude, increment, .. } = both;
-        MomentumResidual { residual, magnitude, increment: increment.momentum }
-    }
-
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
         let system = self.extended_system(node, h, v);
         let (t, q) = node.midpoint(h, v);
         let fields = self.0.fields(t, &q, v);
         ExtendedResidual {
             residual: system.momentum.residual,
-            magnitude: v.map(Real::abs)
+            scale: v.map(Real::abs)
                 + (fields.gradient.map(Real::abs) + fields.force.map(Real::abs)) * (h * T::real(0.5)).abs()
                 + node.p.map(Real::abs),
             energy_residual: system.energy_residual,
-            energy_magnitude: v.dot(v) * T::real(0.5)
+            energy_scale: v.dot(v) * T::real(0.5)
                 + fields.potential_magnitude
                 + (h * T::real(0.5)).abs() * (fields.potential_t.abs() + magnitude(v, &fields.gradient))
                 + magnitude(v, &node.p)
@@ -337,8 +349,8 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Steppi
         }
     }
 
-    fn rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
-        Rounding::of(self, node, h, v)
+    fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+        support::extended_rounding(self, node, h, v)
     }
 }
 

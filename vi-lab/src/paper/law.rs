@@ -7,7 +7,7 @@ use crate::numbers::{extremes, order, scientific};
 use crate::report::math::{id, num, op, row, sqrt, sub, sub_sup};
 use crate::start::second_point;
 use crate::table::Table;
-use vi_core::{EnergyPreserving, SVector, StepError, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, SVector, StepError};
 use vi_systems::{DampedOscillator, DoubleWell};
 
 /// Initial steps at which constancy is measured.
@@ -81,7 +81,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
 /// Relative spread of `h root(D)` along a run.
 fn spread<S>(system: S, q0: f64, h0: f64, root: fn(f64) -> f64) -> Result<f64, StepError>
 where
-    S: Stepping<1> + Clone,
+    S: EnergyStepping<1> + Clone,
 {
     let q0 = SVector::from([q0]);
     let second = second_point(&system, (0.0, q0, SVector::zeros()), h0)?;

@@ -6,7 +6,7 @@
 //! the Jacobian is exact: what is left is the cancellation in `(q1 − q0)/(t1 − t0)`, which `(v, h)` do not have.
 
 use vi_core::linear::Matrix;
-use vi_core::{DiscreteLagrangian, EnergyPreserving, ExtendedSystem, Interval, Node, SVector, State, Stepping};
+use vi_core::{DiscreteLagrangian, EnergyPreserving, EnergyStepping, ExtendedSystem, Interval, Node, SVector, State};
 
 /// What the equations are solved for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,12 +30,16 @@ pub(crate) struct RawNode {
 
 impl RawNode {
     /// The node that an integrator starts from.
-    pub(crate) fn first<S: Stepping<1> + DiscreteLagrangian<1>>(integrator: &EnergyPreserving<S, 1>) -> Self {
+    pub(crate) fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(integrator: &EnergyPreserving<S, 1>) -> Self {
         Self { state: integrator.state(), energy: integrator.energy(), h: integrator.h(), v: integrator.v().x }
     }
 
     /// The next node; none where there is no step, or the iteration leaves the numbers.
-    pub(crate) fn next<S: Stepping<1> + DiscreteLagrangian<1>>(&self, system: &S, unknowns: Unknowns) -> Option<Self> {
+    pub(crate) fn next<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
+        &self,
+        system: &S,
+        unknowns: Unknowns,
+    ) -> Option<Self> {
         let guess =
             EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v]).ok()?.step().ok()?;
         match unknowns {
@@ -45,7 +49,11 @@ impl RawNode {
     }
 
     /// The next node, from the guess `(v, h)`.
-    fn polished_velocity<S: Stepping<1> + DiscreteLagrangian<1>>(&self, system: &S, guess: (f64, f64)) -> Option<Self> {
+    fn polished_velocity<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
+        &self,
+        system: &S,
+        guess: (f64, f64),
+    ) -> Option<Self> {
         let (v, h) = descend(guess, |trial| {
             let [r, e] = self.velocity_residuals(system, trial);
             ([r, e], self.velocity_newton(system, trial, [r, e]))
@@ -60,7 +68,11 @@ impl RawNode {
     }
 
     /// `−D2 L_d − f_d⁻ − p0` and `D1 L_d + g_d⁻ − E0` in `(v, h)`; `−(h/2) f·v` is half of what the energy loses.
-    fn velocity_residuals<S: Stepping<1> + DiscreteLagrangian<1>>(&self, system: &S, (v, h): (f64, f64)) -> [f64; 2] {
+    fn velocity_residuals<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
+        &self,
+        system: &S,
+        (v, h): (f64, f64),
+    ) -> [f64; 2] {
         let (node, velocity) = (Node::new(self.state, self.energy), SVector::from([v]));
         let middle = self.state.q + velocity * (h / 2.0);
         let lost = -system.extended_residual(&node, h, &velocity).increment.energy / 2.0;
@@ -69,7 +81,7 @@ impl RawNode {
     }
 
     /// The correction of `(v, h)`.
-    fn velocity_newton<S: Stepping<1> + DiscreteLagrangian<1>>(
+    fn velocity_newton<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
         &self,
         system: &S,
         (v, h): (f64, f64),
@@ -82,7 +94,7 @@ impl RawNode {
     }
 
     /// Derivatives of both rows, un-combined, by v and h.
-    fn rows<S: Stepping<1> + DiscreteLagrangian<1>>(&self, system: &S, v: f64, h: f64) -> [[f64; 2]; 2] {
+    fn rows<S: EnergyStepping<1> + DiscreteLagrangian<1>>(&self, system: &S, v: f64, h: f64) -> [[f64; 2]; 2] {
         let ExtendedSystem { momentum, residual_dh, energy_dv, energy_dh, .. } =
             system.extended_system(&Node::new(self.state, self.energy), h, &SVector::from([v]));
         let (r_v, r_h) = (momentum.jacobian.dense().x, residual_dh.x);
@@ -90,7 +102,7 @@ impl RawNode {
     }
 
     /// The next node, from the guess `(t1, q1)`.
-    fn polished<S: Stepping<1> + DiscreteLagrangian<1>>(&self, system: &S, guess: (f64, f64)) -> Option<Self> {
+    fn polished<S: EnergyStepping<1> + DiscreteLagrangian<1>>(&self, system: &S, guess: (f64, f64)) -> Option<Self> {
         let end = descend(guess, |trial| {
             let [r, e] = self.residuals(system, trial);
             ([r, e], self.newton(system, trial, [r, e]))
@@ -108,14 +120,14 @@ impl RawNode {
     }
 
     /// `−D2 L_d − f_d⁻ − p0` and `D1 L_d + g_d⁻ − E0`.
-    fn residuals<S: Stepping<1> + DiscreteLagrangian<1>>(&self, system: &S, end: (f64, f64)) -> [f64; 2] {
+    fn residuals<S: EnergyStepping<1> + DiscreteLagrangian<1>>(&self, system: &S, end: (f64, f64)) -> [f64; 2] {
         let interval = self.interval(end);
         let r = -system.d2_ld(&interval) - system.fd_minus(&interval) - self.state.p;
         [r.x, system.d1_ld(&interval) + system.gd_minus(&interval) - self.energy]
     }
 
     /// The correction of `(t1, q1)`.
-    fn newton<S: Stepping<1> + DiscreteLagrangian<1>>(
+    fn newton<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
         &self,
         system: &S,
         (t1, q1): (f64, f64),

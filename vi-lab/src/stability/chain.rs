@@ -9,7 +9,7 @@ use super::trial::{Chain, TrapezoidalChain};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use core::f64::consts::PI;
-use vi_core::Stepping;
+use vi_core::FixedStepping;
 
 const LIMIT: Limit = Limit { steps: 1000, until: f64::INFINITY, bound: 100.0 };
 const STEPS: (f64, f64) = (0.1, 3.0);
@@ -52,7 +52,7 @@ fn linear_limit() -> f64 {
 }
 
 /// How a run from the lowest mode ends.
-fn class<S: Stepping<8>>(system: S, amplitude: f64, h: f64) -> Class {
+fn class<S: FixedStepping<8>>(system: S, amplitude: f64, h: f64) -> Class {
     let mut place = 0.0;
     let mode = [(); 8].map(|()| {
         place += 1.0;

@@ -4,7 +4,7 @@
 //! a motion that grows without bound: each typed error has a colour of its own.
 
 use crate::chart::Class;
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError, Stepping};
+use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, SVector, State, StepError};
 
 /// When a run is over.
 #[derive(Clone, Copy, Debug)]
@@ -105,7 +105,7 @@ impl Course {
     }
 
     /// Runs the integrator with fixed step from the node `(q, p)`, p belonging to `v`.
-    pub(super) fn fixed<S: Stepping<N>, const N: usize>(
+    pub(super) fn fixed<S: FixedStepping<N>, const N: usize>(
         system: S,
         (q, v): (impl Into<SVector<f64, N>>, impl Into<SVector<f64, N>>),
         h: f64,
@@ -119,7 +119,7 @@ impl Course {
     }
 
     /// Runs the energy-preserving integrator from the midpoint `(q, v)` of the first interval.
-    pub(super) fn energy<S: Stepping<N>, const N: usize>(
+    pub(super) fn energy<S: EnergyStepping<N>, const N: usize>(
         system: S,
         (q, v): (impl Into<SVector<f64, N>>, impl Into<SVector<f64, N>>),
         h: f64,

@@ -9,7 +9,7 @@ use super::ending::{Course, Ending, LASTING, Limit, OWN, UNBOUNDED};
 use super::trial::TrapezoidalOscillator;
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
-use vi_core::{FixedStep, State, StepError, Stepping};
+use vi_core::{FixedStep, FixedStepping, State, StepError};
 use vi_systems::DampedOscillator;
 
 /// Steps of a run.
@@ -73,7 +73,7 @@ fn axes() -> (Axis, Axis) {
 }
 
 /// How fixed steps end.
-fn class<S: Stepping<1>>(system: S, h: f64, zeta: f64) -> Class {
+fn class<S: FixedStepping<1>>(system: S, h: f64, zeta: f64) -> Class {
     let rate = (-zeta).max(0.0);
     let limit = Limit { steps: STEPS, until: GROWTH / rate, bound: BOUND };
     let state = State::at(&system, 0.0, [1.0], [0.0]);

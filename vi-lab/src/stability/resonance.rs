@@ -9,7 +9,7 @@ use super::ending::{Course, Ending, LASTING, Limit, OWN};
 use super::trial::{Bent, TrapezoidalBent};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
-use vi_core::Stepping;
+use vi_core::FixedStepping;
 
 /// Steps of a run.
 const STEPS: u32 = 2000;
@@ -68,7 +68,7 @@ fn vertical(steps: &[f64]) -> Vec<Vec<(f64, f64)>> {
 }
 
 /// How much the amplitude grows.
-fn class<S: Stepping<1>>(system: S, h: f64, amplitude: f64) -> Class {
+fn class<S: FixedStepping<1>>(system: S, h: f64, amplitude: f64) -> Class {
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: 100.0 };
     let course = Course::fixed(system, ([amplitude], [0.0]), h, limit);
     let growth = course.largest / amplitude;

@@ -9,7 +9,7 @@ use super::ending::{Course, LASTING, Limit, OWN};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use core::f64::consts::PI;
-use vi_core::{Node, SVector, State, Stepping};
+use vi_core::{FixedStepping, Node, SVector, State};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 
 const ONE: Class = Class { label: "one solution", ..LASTING };
@@ -55,7 +55,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
 }
 
 /// Solutions of a fixed step from `w` at rest, within `reach` of it on either side, counted by changes of sign.
-fn count<S: Stepping<1>>(system: &S, w: f64, h: f64, reach: f64) -> Class {
+fn count<S: FixedStepping<1>>(system: &S, w: f64, h: f64, reach: f64) -> Class {
     let node = Node::new(State { t: 0.0, q: [w].into(), p: SVector::zeros() }, 0.0);
     let residual = |index: u32| {
         let middle = reach * (2.0 * (f64::from(index) + 0.5) / f64::from(LOOKS) - 1.0);

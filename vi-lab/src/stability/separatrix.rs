@@ -9,7 +9,7 @@ use super::system;
 use crate::catalogue;
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
-use vi_core::Stepping;
+use vi_core::EnergyStepping;
 use vi_systems::{DoubleWell, Pendulum};
 
 /// Steps enough for the time even where the first one, close to D = 0, is by far the longest.
@@ -57,7 +57,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     Ok(())
 }
 
-fn course<S: Stepping<1>>(system: S, q: f64, v: f64, h: f64) -> Class {
+fn course<S: EnergyStepping<1>>(system: S, q: f64, v: f64, h: f64) -> Class {
     Course::energy(system, ([q], [v]), h, LIMIT).ending.class()
 }
 

@@ -31,111 +31,111 @@ pub struct Chain<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as system, identity as name, identity as index};
-    use ::core::convert::{identity as t, identity as q, identity as v};
-    use ::core::convert::{identity as q_0_dot, identity as q_1_dot, identity as q_2_dot};
-    use ::core::convert::{identity as q_3_dot, identity as q_4_dot, identity as q_5_dot};
-    use ::core::convert::{identity as q_6_dot, identity as q_7_dot, identity as q_8_dot};
-    use ::core::convert::{identity as q_9_dot, identity as q_0, identity as q_1};
-    use ::core::convert::{identity as q_2, identity as q_3, identity as q_4};
-    use ::core::convert::{identity as q_5, identity as q_6, identity as q_7};
-    use ::core::convert::{identity as q_8, identity as q_9, identity as real};
-    use ::core::convert::{identity as s1, identity as s2, identity as s3};
-    use ::core::convert::{identity as s4, identity as s5, identity as s6};
-    use ::core::convert::{identity as s7, identity as s8, identity as s9};
-    use ::core::convert::{identity as s10, identity as s11, identity as s12};
-    use ::core::convert::{identity as s13, identity as s14, identity as s15};
-    use ::core::convert::{identity as s16, identity as s17, identity as s18};
-    use ::core::convert::{identity as s19, identity as s20, identity as sin21};
-    use ::core::convert::{identity as cos22, identity as cos23, identity as cos24};
-    use ::core::convert::{identity as cos25, identity as cos26, identity as cos27};
-    use ::core::convert::{identity as cos28, identity as cos29, identity as cos30};
-    use ::core::convert::{identity as cos31, identity as s32, identity as s33};
-    use ::core::convert::{identity as sin20, identity as cos21, identity as s31};
-    use ::core::convert::{identity as s34, identity as s35, identity as cos1};
-    use ::core::convert::{identity as cos2, identity as cos3, identity as cos4};
-    use ::core::convert::{identity as cos5, identity as cos6, identity as cos7};
-    use ::core::convert::{identity as cos8, identity as time, identity as sin10};
-    use ::core::convert::{identity as sin11, identity as cos11, identity as sin12};
-    use ::core::convert::{identity as cos12, identity as sin13, identity as cos13};
-    use ::core::convert::{identity as sin15, identity as cos15, identity as sin16};
-    use ::core::convert::{identity as cos16, identity as sin17, identity as cos17};
-    use ::core::convert::{identity as sin18, identity as cos18, identity as sin19};
-    use ::core::convert::{identity as cos19, identity as cos20, identity as s22};
-    use ::core::convert::{identity as s23, identity as s24, identity as s25};
-    use ::core::convert::{identity as s26, identity as s27, identity as s28};
-    use ::core::convert::{identity as s29, identity as s30, identity as mass};
-    use ::core::convert::{identity as applied, identity as a, identity as sin1};
-    use ::core::convert::{identity as i, identity as sum, identity as values};
-    use ::core::convert::{identity as value, identity as text, identity as interval};
-    use ::core::convert::{identity as t0, identity as t1, identity as h};
-    use ::core::convert::{identity as q_0_0, identity as q_1_0, identity as q_2_0};
-    use ::core::convert::{identity as q_3_0, identity as q_4_0, identity as q_5_0};
-    use ::core::convert::{identity as q_6_0, identity as q_7_0, identity as q_8_0};
-    use ::core::convert::{identity as q_9_0, identity as q_0_1, identity as q_1_1};
-    use ::core::convert::{identity as q_2_1, identity as q_3_1, identity as q_4_1};
-    use ::core::convert::{identity as q_5_1, identity as q_6_1, identity as q_7_1};
-    use ::core::convert::{identity as q_8_1, identity as q_9_1, identity as t_mid};
-    use ::core::convert::{identity as q_0_mid, identity as q_1_mid, identity as q_2_mid};
-    use ::core::convert::{identity as q_3_mid, identity as q_4_mid, identity as q_5_mid};
-    use ::core::convert::{identity as q_6_mid, identity as q_7_mid, identity as q_8_mid};
-    use ::core::convert::{identity as q_9_mid, identity as s21, identity as sin30};
-    use ::core::convert::{identity as cos32, identity as cos33, identity as cos34};
-    use ::core::convert::{identity as cos35, identity as cos36, identity as cos37};
-    use ::core::convert::{identity as cos38, identity as cos39, identity as cos40};
-    use ::core::convert::{identity as s41, identity as s42, identity as s43};
-    use ::core::convert::{identity as s44, identity as sin22, identity as sin23};
-    use ::core::convert::{identity as sin28, identity as sin29, identity as sin27};
-    use ::core::convert::{identity as node, identity as t0_low, identity as q_0_0_low};
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as q_0_dot};
+    use ::core::convert::{identity as q_1_dot, identity as q_2_dot, identity as q_3_dot};
+    use ::core::convert::{identity as q_4_dot, identity as q_5_dot, identity as q_6_dot};
+    use ::core::convert::{identity as q_7_dot, identity as q_8_dot, identity as q_9_dot};
+    use ::core::convert::{identity as q_0, identity as q_1, identity as q_2};
+    use ::core::convert::{identity as q_3, identity as q_4, identity as q_5};
+    use ::core::convert::{identity as q_6, identity as q_7, identity as q_8};
+    use ::core::convert::{identity as q_9, identity as real, identity as s1};
+    use ::core::convert::{identity as s2, identity as s3, identity as s4};
+    use ::core::convert::{identity as s5, identity as s6, identity as s7};
+    use ::core::convert::{identity as s8, identity as s9, identity as s10};
+    use ::core::convert::{identity as s11, identity as s12, identity as s13};
+    use ::core::convert::{identity as s14, identity as s15, identity as s16};
+    use ::core::convert::{identity as s17, identity as s18, identity as s19};
+    use ::core::convert::{identity as s20, identity as sin21, identity as cos22};
+    use ::core::convert::{identity as cos23, identity as cos24, identity as cos25};
+    use ::core::convert::{identity as cos26, identity as cos27, identity as cos28};
+    use ::core::convert::{identity as cos29, identity as cos30, identity as cos31};
+    use ::core::convert::{identity as s32, identity as s33, identity as sin20};
+    use ::core::convert::{identity as cos21, identity as s31, identity as s34};
+    use ::core::convert::{identity as s35, identity as cos1, identity as cos2};
+    use ::core::convert::{identity as cos3, identity as cos4, identity as cos5};
+    use ::core::convert::{identity as cos6, identity as cos7, identity as cos8};
+    use ::core::convert::{identity as time, identity as sin10, identity as sin11};
+    use ::core::convert::{identity as cos11, identity as sin12, identity as cos12};
+    use ::core::convert::{identity as sin13, identity as cos13, identity as sin15};
+    use ::core::convert::{identity as cos15, identity as sin16, identity as cos16};
+    use ::core::convert::{identity as sin17, identity as cos17, identity as sin18};
+    use ::core::convert::{identity as cos18, identity as sin19, identity as cos19};
+    use ::core::convert::{identity as cos20, identity as s22, identity as s23};
+    use ::core::convert::{identity as s24, identity as s25, identity as s26};
+    use ::core::convert::{identity as s27, identity as s28, identity as s29};
+    use ::core::convert::{identity as s30, identity as mass, identity as applied};
+    use ::core::convert::{identity as a, identity as sin1, identity as i};
+    use ::core::convert::{identity as sum, identity as values, identity as value};
+    use ::core::convert::{identity as text, identity as interval, identity as t0};
+    use ::core::convert::{identity as t1, identity as h, identity as q_0_0};
+    use ::core::convert::{identity as q_1_0, identity as q_2_0, identity as q_3_0};
+    use ::core::convert::{identity as q_4_0, identity as q_5_0, identity as q_6_0};
+    use ::core::convert::{identity as q_7_0, identity as q_8_0, identity as q_9_0};
+    use ::core::convert::{identity as q_0_1, identity as q_1_1, identity as q_2_1};
+    use ::core::convert::{identity as q_3_1, identity as q_4_1, identity as q_5_1};
+    use ::core::convert::{identity as q_6_1, identity as q_7_1, identity as q_8_1};
+    use ::core::convert::{identity as q_9_1, identity as t_mid, identity as q_0_mid};
+    use ::core::convert::{identity as q_1_mid, identity as q_2_mid, identity as q_3_mid};
+    use ::core::convert::{identity as q_4_mid, identity as q_5_mid, identity as q_6_mid};
+    use ::core::convert::{identity as q_7_mid, identity as q_8_mid, identity as q_9_mid};
+    use ::core::convert::{identity as s21, identity as sin30, identity as cos32};
+    use ::core::convert::{identity as cos33, identity as cos34, identity as cos35};
+    use ::core::convert::{identity as cos36, identity as cos37, identity as cos38};
+    use ::core::convert::{identity as cos39, identity as cos40, identity as s41};
+    use ::core::convert::{identity as s42, identity as s43, identity as s44};
+    use ::core::convert::{identity as sin22, identity as sin23, identity as sin28};
+    use ::core::convert::{identity as sin29, identity as sin27, identity as node};
     use ::core::convert::{
-        identity as q_1_0_low, identity as q_2_0_low, identity as q_3_0_low,
+        identity as t0_low, identity as q_0_0_low, identity as q_1_0_low,
     };
 
     use ::core::convert::{
-        identity as q_4_0_low, identity as q_5_0_low, identity as q_6_0_low,
+        identity as q_2_0_low, identity as q_3_0_low, identity as q_4_0_low,
     };
 
     use ::core::convert::{
-        identity as q_7_0_low, identity as q_8_0_low, identity as q_9_0_low,
-    };
-
-    use ::core::convert::{identity as p0_q_0, identity as p0_q_1, identity as p0_q_2};
-    use ::core::convert::{identity as p0_q_3, identity as p0_q_4, identity as p0_q_5};
-    use ::core::convert::{identity as p0_q_6, identity as p0_q_7, identity as p0_q_8};
-    use ::core::convert::{
-        identity as p0_q_9, identity as p0_q_0_low, identity as p0_q_1_low,
+        identity as q_5_0_low, identity as q_6_0_low, identity as q_7_0_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_2_low, identity as p0_q_3_low, identity as p0_q_4_low,
+        identity as q_8_0_low, identity as q_9_0_low, identity as p0_q_0,
+    };
+
+    use ::core::convert::{identity as p0_q_1, identity as p0_q_2, identity as p0_q_3};
+    use ::core::convert::{identity as p0_q_4, identity as p0_q_5, identity as p0_q_6};
+    use ::core::convert::{identity as p0_q_7, identity as p0_q_8, identity as p0_q_9};
+    use ::core::convert::{
+        identity as p0_q_0_low, identity as p0_q_1_low, identity as p0_q_2_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_5_low, identity as p0_q_6_low, identity as p0_q_7_low,
+        identity as p0_q_3_low, identity as p0_q_4_low, identity as p0_q_5_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_8_low, identity as p0_q_9_low, identity as sin14,
+        identity as p0_q_6_low, identity as p0_q_7_low, identity as p0_q_8_low,
     };
 
-    use ::core::convert::{identity as cos14, identity as s36, identity as s37};
-    use ::core::convert::{identity as s38, identity as s39, identity as s40};
-    use ::core::convert::{identity as s45, identity as s46, identity as s47};
-    use ::core::convert::{identity as s48, identity as s49, identity as s50};
-    use ::core::convert::{identity as s51, identity as s52, identity as s53};
-    use ::core::convert::{identity as s54, identity as s55, identity as s56};
-    use ::core::convert::{identity as s57, identity as s58, identity as s59};
-    use ::core::convert::{identity as q0, identity as q0_low, identity as p0};
-    use ::core::convert::{identity as p0_low, identity as q_mid, identity as entries};
+    use ::core::convert::{identity as p0_q_9_low, identity as sin14, identity as cos14};
+    use ::core::convert::{identity as s36, identity as s37, identity as s38};
+    use ::core::convert::{identity as s39, identity as s40, identity as s45};
+    use ::core::convert::{identity as s46, identity as s47, identity as s48};
+    use ::core::convert::{identity as s49, identity as s50, identity as s51};
+    use ::core::convert::{identity as s52, identity as s53, identity as s54};
+    use ::core::convert::{identity as s55, identity as s56, identity as s57};
+    use ::core::convert::{identity as s58, identity as s59, identity as q0};
+    use ::core::convert::{identity as q0_low, identity as p0, identity as p0_low};
+    use ::core::convert::{identity as q_mid, identity as entries, identity as sin31};
     use ::core::convert::{
-        identity as energy0, identity as energy0_low, identity as sin2,
+        identity as cos41, identity as energy0, identity as energy0_low,
     };
 
-    use ::core::convert::{identity as s60, identity as s61, identity as s62};
-    use ::core::convert::{identity as s63, identity as s64, identity as s65};
-    use ::core::convert::{identity as s66, identity as s67, identity as s68};
-    use ::core::convert::{identity as s69, identity as s70, identity as systems};
-    use ::core::convert::identity as rows;
+    use ::core::convert::{identity as sin2, identity as s60, identity as s61};
+    use ::core::convert::{identity as s62, identity as s63, identity as s64};
+    use ::core::convert::{identity as s65, identity as s66, identity as s67};
+    use ::core::convert::{identity as s68, identity as s69, identity as s70};
+    use ::core::convert::{identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Chain<f64> {
@@ -146,15 +146,7 @@ const _: () = {
 
     impl<T: ::vi_core::Real> Chain<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn from_f64(system: &Chain<f64>) -> Self {
-            Self {
-                m: T::real(system.m),
-                k: T::real(system.k),
-            }
-        }
-
-        /// The same system in another kind of number, every parameter rounded to it.
-        fn convert<U: ::vi_core::Real>(&self) -> Chain<U> {
+        pub fn convert<U: ::vi_core::Real>(&self) -> Chain<U> {
             Chain {
                 m: U::real(self.m.to_f64()),
                 k: U::real(self.k.to_f64()),
@@ -494,7 +486,7 @@ const _: () = {
                 self.k * cos20 - self.k * (s29 - s30) - s14 * sin20,
                 -(self.k * s30 + s14 * sin21),
             ]);
-            ::vi_core::linear::acceleration(time, &mass, &applied)
+            ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
         /// `D = (k*cos(q[0]) + k*(q[1] - q[0])^3 - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-3*k*(q[1] - q[0])^2 - (sin(t)/3 + 1)*cos(q[0])) - sin(q[0])*cos(t)/3 + 3*k*(q[1] - q[0])^2*dot(q[1])) + dot(q[0])*sin(q[0])*cos(t)/3 + dot(dot(q[1]))*(k*cos(q[1]) - k*(4*(q[1] - q[0])^3 - 4*(q[2] - q[1])^3)/4 - (sin(t)/3 + 1)*sin(q[1])) - dot(q[1])*(3*k*(q[1] - q[0])^2*dot(q[0]) - …`
@@ -1408,7 +1400,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Stepping<10, T> for Chain<T> {
+    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<10, T> for Chain<T> {
         type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
         const CONSTANT_JACOBIAN: bool = false;
 
@@ -1579,7 +1571,7 @@ const _: () = {
             }
         }
 
-        /// The residual, its magnitude, and
+        /// The residual, its rounding scale, and
         ///
         /// `p1_q[0] − p0_q[0] = h*f_q[0] + h*L_q[0]`
         ///
@@ -1707,7 +1699,7 @@ const _: () = {
                     entries[9] = s15[9] - (p0_low[9] - s1 * s26);
                     entries
                 }),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     s22[0] + s7 * (s27 * (self.k * s10[0]).abs() * real(3.0) + s20[0])
                         + s21[0],
                     s22[1] + s7 * (s8 * (s10[0] * s27 * real(3.0) + s24[0]) + s20[1])
@@ -1733,6 +1725,121 @@ const _: () = {
             }
         }
 
+        /// `E1 = L_v_q[0]*v_q[0] - L - h*L_t/2 + L_v_q[1]*v_q[1] + L_v_q[2]*v_q[2] + L_v_q[3]*v_q[3] + L_v_q[4]*v_q[4] + L_v_q[5]*v_q[5] + L_v_q[6]*v_q[6] + L_v_q[7]*v_q[7] + L_v_q[8]*v_q[8] + L_v_q[9]*v_q[9] + h*f_q[0]*v_q[0]/2 + h*f_q[1]*v_q[1]/2 + h*f_q[2]*v_q[2]/2 + h*f_q[3]*v_q[3]/2 + h*f_q[4]*v_q[4]/2 + h*f_q[5]*v_q[5]/2 + h*f_q[6]*v_q[6]/2 + h*f_q[7]*v_q[7]/2 + h*f_q[8]*v_q[8]/2`
+        ///
+        /// 169 operations.
+        #[inline(always)]
+        fn discrete_energy(
+            &self,
+            node: &::vi_core::Node<10, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> T {
+            let t0 = node.t;
+            let t0_low = node.t_low;
+            let [q_0_0, q_1_0, q_2_0, q_3_0, q_4_0, q_5_0, q_6_0, q_7_0, q_8_0, q_9_0,
+            ]: [T; 10] = node.q.into();
+            let [q_0_0_low, q_1_0_low, q_2_0_low, q_3_0_low, q_4_0_low, q_5_0_low,
+            q_6_0_low, q_7_0_low, q_8_0_low, q_9_0_low]: [T; 10] = node.q_low.into();
+            let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot,
+            q_8_dot, q_9_dot]: [T; 10] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let t_mid = t0 + (s1 + t0_low);
+            let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+            let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+            let q_2_mid = q_2_0 + (s1 * q_2_dot + q_2_0_low);
+            let q_3_mid = q_3_0 + (s1 * q_3_dot + q_3_0_low);
+            let q_4_mid = q_4_0 + (s1 * q_4_dot + q_4_0_low);
+            let q_5_mid = q_5_0 + (s1 * q_5_dot + q_5_0_low);
+            let q_6_mid = q_6_0 + (s1 * q_6_dot + q_6_0_low);
+            let q_7_mid = q_7_0 + (s1 * q_7_dot + q_7_0_low);
+            let q_8_mid = q_8_0 + (s1 * q_8_dot + q_8_0_low);
+            let q_9_mid = q_9_0 + (s1 * q_9_dot + q_9_0_low);
+            let s2 = q_1_mid - q_0_mid;
+            let s3 = s2 * s2;
+            let s4 = q_2_mid - q_1_mid;
+            let s5 = s4 * s4;
+            let s6 = q_3_mid - q_2_mid;
+            let s7 = s6 * s6;
+            let s8 = q_4_mid - q_3_mid;
+            let s9 = s8 * s8;
+            let s10 = q_5_mid - q_4_mid;
+            let s11 = s10 * s10;
+            let s12 = q_6_mid - q_5_mid;
+            let s13 = s12 * s12;
+            let s14 = q_7_mid - q_6_mid;
+            let s15 = s14 * s14;
+            let s16 = q_8_mid - q_7_mid;
+            let s17 = s16 * s16;
+            let s18 = q_9_mid - q_8_mid;
+            let s19 = s18 * s18;
+            let s20 = s3 * s3 + s5 * s5 + s7 * s7 + s9 * s9 + s11 * s11 + s13 * s13;
+            let s21 = q_0_dot * q_0_dot;
+            let s22 = q_1_dot * q_1_dot;
+            let s23 = q_2_dot * q_2_dot;
+            let s24 = q_3_dot * q_3_dot;
+            let s25 = q_4_dot * q_4_dot;
+            let s26 = q_5_dot * q_5_dot;
+            let s27 = q_6_dot * q_6_dot;
+            let s28 = q_7_dot * q_7_dot;
+            let s29 = q_8_dot * q_8_dot;
+            let s30 = q_9_dot * q_9_dot;
+            let [(sin31, cos31), (_, cos32), (_, cos33), (_, cos34)] = T::sin_cos_each([
+                t_mid,
+                q_0_mid,
+                q_1_mid,
+                q_2_mid,
+            ]);
+            let [(_, cos35), (_, cos36), (_, cos37), (_, cos38)] = T::sin_cos_each([
+                q_3_mid,
+                q_4_mid,
+                q_5_mid,
+                q_6_mid,
+            ]);
+            let [(_, cos39), (_, cos40), (_, cos41)] = T::sin_cos_each([
+                q_7_mid,
+                q_8_mid,
+                q_9_mid,
+            ]);
+            let s42 = cos32 + cos33 + cos34 + cos35 + cos36 + cos37 + cos38 + cos39
+                + cos40 + cos41;
+            let s43 = self.m
+                * (s21 + s22 + s23 + s24 + s25 + s26 + s27 + s28 + s29 + s30)
+                * real(0.5);
+            let s44 = self.k * (s20 + s15 * s15 + s17 * s17 + s19 * s19) * real(0.25)
+                + self.m * s21 + self.m * s22;
+            let s45 = s44 + self.m * s23 + self.m * s24 + self.m * s25 + self.m * s26
+                + self.m * s27 + self.m * s28;
+            let s46 = self.k * real(0.5);
+            let s47 = s46 * q_0_dot * cos32 + s46 * q_1_dot * cos33
+                + s46 * q_2_dot * cos34 + s46 * q_3_dot * cos35;
+            let s48 = s47 + s46 * q_4_dot * cos36 + s46 * q_5_dot * cos37
+                + s46 * q_6_dot * cos38 + s46 * q_7_dot * cos39;
+            s45 + self.m * s29 + self.m * s30 - s43
+                - (sin31 * real(0.3333333333333333) + real(1.0)) * s42
+                + (s48 + s46 * q_8_dot * cos40 - s42 * cos31 * real(0.16666666666666666))
+                    * h
+        }
+
+        /// What the rounding of the residual is measured in, by running error analysis.
+        #[cold]
+        fn momentum_rounding(
+            &self,
+            node: &::vi_core::Node<10, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> ::vi_core::SVector<T, 10> {
+            ::vi_core::support::momentum_rounding(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<10, T> for Chain<T> {
         /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1] + h*v_q[2]*L_q[2]/2 + v_q[2]*p0_q[2]_low + v_q[2]*p0_q[2] + h*v_q[3]*L_q[3]/2 + v_q[3]*p0_q[3]_low + v_q[3]*p0_q[3] + h*v_q[4]*L_q[4]/2 + v_q[4]*p0_q[4]_low + v_q[4]*p0_q[4] + h*v_q[5]*L_q[5]/2 + v_q[5]*p0_q[5]_low + v_q[5]*p0_q[5] + h*v_q[6]*L_q[6]/2 + …`
         ///
         /// 732 operations.
@@ -1999,7 +2106,7 @@ const _: () = {
             }
         }
 
-        /// Both residuals, their magnitudes, and
+        /// Both residuals, their rounding scales, and
         ///
         /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
         ///
@@ -2179,7 +2286,7 @@ const _: () = {
                     entries[9] = s20[9] - (p0_low[9] - s1 * s39);
                     entries
                 }),
-                magnitude: ::vi_core::SVector::from([
+                scale: ::vi_core::SVector::from([
                     s29[0] + s8 * s43 + s28[0],
                     s29[1] + s8 * s44 + s28[1],
                     s29[2] + s8 * s45 + s28[2],
@@ -2196,7 +2303,7 @@ const _: () = {
                         + s1
                             * ((0..8).fold(s41 + v[0] * s38, |sum, i| sum - s23[i])
                                 - v[9] * s39)),
-                energy_magnitude: s55 + s52 * s35[9] * real(0.5)
+                energy_scale: s55 + s52 * s35[9] * real(0.5)
                     + (s6 + (h * cos2).abs() * real(0.16666666666666666) + real(1.0))
                         * (1..10).fold(s34[0], |sum, i| sum + s34[i]),
                 increment: ::vi_core::Increment {
@@ -2216,13 +2323,13 @@ const _: () = {
 
         /// What the rounding of both residuals is measured in, by running error analysis.
         #[cold]
-        fn rounding(
+        fn extended_rounding(
             &self,
             node: &::vi_core::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
         ) -> ::vi_core::Rounding<10, T> {
-            ::vi_core::Rounding::of(
+            ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
                 h,
@@ -2231,9 +2338,16 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::Convertible<10> for Chain<f64> {
+        type In<T: ::vi_core::Real> = Chain<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::Real>(&self) -> Chain<T> {
+            self.convert()
+        }
+    }
+
     impl ::vi_core::Batch<10> for Chain<f64> {
         type Rows<const W: usize> = Chain<[f64; W]>;
-        type In<T: ::vi_core::Real> = Chain<T>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             Chain {
                 m: ::core::array::from_fn(|index| systems[index].m),
@@ -2242,21 +2356,11 @@ const _: () = {
         }
 
         #[inline(always)]
-        fn pick<T: ::vi_core::Real, const W: usize>(
-            rows: &Self::Rows<W>,
-            index: usize,
-        ) -> Self::In<T> {
+        fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
             Chain {
-                m: T::real(rows.m[index]),
-                k: T::real(rows.k[index]),
+                m: rows.m[index],
+                k: rows.k[index],
             }
-        }
-    }
-
-    impl ::vi_core::check::Checked<10> for Chain<f64> {
-        type In<T: ::vi_core::Real> = Chain<T>;
-        fn convert<T: ::vi_core::Real>(&self) -> Chain<T> {
-            Chain::from_f64(self)
         }
     }
 };

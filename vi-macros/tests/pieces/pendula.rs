@@ -33,19 +33,16 @@ pub struct Pendula<T = ::core::primitive::f64> {
     unused_variables
 )]
 const _: () = {
-    use ::core::convert::{identity as system, identity as name, identity as index};
-    use ::core::convert::{identity as t, identity as q, identity as v};
-    use ::core::convert::{identity as q_0_dot, identity as q_1_dot, identity as q_0};
-    use ::core::convert::{identity as q_1, identity as real, identity as s1};
-    use ::core::convert::{identity as sin2, identity as cos2, identity as sin3};
-    use ::core::convert::{identity as cos3, identity as sin4, identity as s5};
-    use ::core::convert::{identity as time, identity as sin1, identity as cos1};
-    use ::core::convert::{identity as s4, identity as s6, identity as s7};
-    use ::core::convert::{identity as s8, identity as mass, identity as applied};
-    use ::core::convert::{
-        identity as q_0_ddot, identity as q_1_ddot, identity as inputs,
-    };
-
+    use ::core::convert::{identity as name, identity as index, identity as t};
+    use ::core::convert::{identity as q, identity as v, identity as q_0_dot};
+    use ::core::convert::{identity as q_1_dot, identity as q_0, identity as q_1};
+    use ::core::convert::{identity as real, identity as s1, identity as sin2};
+    use ::core::convert::{identity as cos2, identity as sin3, identity as cos3};
+    use ::core::convert::{identity as sin4, identity as s5, identity as time};
+    use ::core::convert::{identity as sin1, identity as cos1, identity as s4};
+    use ::core::convert::{identity as s6, identity as s7, identity as s8};
+    use ::core::convert::{identity as mass, identity as applied, identity as q_0_ddot};
+    use ::core::convert::{identity as q_1_ddot, identity as system, identity as inputs};
     use ::core::convert::{identity as values, identity as s9, identity as s10};
     use ::core::convert::{identity as s11, identity as s12, identity as s13};
     use ::core::convert::{identity as s14, identity as s15, identity as s16};
@@ -66,20 +63,20 @@ const _: () = {
     use ::core::convert::{identity as s19, identity as s20, identity as s21};
     use ::core::convert::{identity as s22, identity as s23, identity as s2};
     use ::core::convert::{identity as sin5, identity as s24, identity as s25};
-    use ::core::convert::{identity as s26, identity as s27, identity as energy0};
-    use ::core::convert::{identity as energy0_low, identity as s28, identity as s29};
-    use ::core::convert::{identity as s30, identity as s31, identity as s32};
-    use ::core::convert::{identity as s33, identity as s34, identity as s35};
-    use ::core::convert::{identity as s36, identity as s37, identity as s38};
-    use ::core::convert::{identity as s39, identity as s40, identity as s41};
-    use ::core::convert::{identity as s42, identity as s43, identity as s44};
-    use ::core::convert::{identity as s45, identity as s46, identity as s47};
-    use ::core::convert::{identity as s48, identity as s49, identity as s50};
-    use ::core::convert::{identity as s51, identity as s52, identity as s53};
-    use ::core::convert::{identity as s54, identity as s55, identity as s3};
-    use ::core::convert::{identity as sin6, identity as cos6, identity as sin7};
-    use ::core::convert::{identity as cos7, identity as sin8, identity as cos8};
-    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::convert::{identity as s26, identity as s27, identity as cos5};
+    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s28};
+    use ::core::convert::{identity as s29, identity as s30, identity as s31};
+    use ::core::convert::{identity as s32, identity as s33, identity as s34};
+    use ::core::convert::{identity as s35, identity as s36, identity as s37};
+    use ::core::convert::{identity as s38, identity as s39, identity as s40};
+    use ::core::convert::{identity as s41, identity as s42, identity as s43};
+    use ::core::convert::{identity as s44, identity as s45, identity as s46};
+    use ::core::convert::{identity as s47, identity as s48, identity as s49};
+    use ::core::convert::{identity as s50, identity as s51, identity as s52};
+    use ::core::convert::{identity as s53, identity as s54, identity as s55};
+    use ::core::convert::{identity as s3, identity as sin6, identity as cos6};
+    use ::core::convert::{identity as sin7, identity as cos7, identity as sin8};
+    use ::core::convert::{identity as cos8, identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Pendula<f64> {
@@ -90,16 +87,7 @@ const _: () = {
 
     impl<T: ::vi_core::Real> Pendula<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn from_f64(system: &Pendula<f64>) -> Self {
-            Self {
-                m: T::real(system.m),
-                k: T::real(system.k),
-                b: T::real(system.b),
-            }
-        }
-
-        /// The same system in another kind of number, every parameter rounded to it.
-        fn convert<U: ::vi_core::Real>(&self) -> Pendula<U> {
+        pub fn convert<U: ::vi_core::Real>(&self) -> Pendula<U> {
             Pendula {
                 m: U::real(self.m.to_f64()),
                 k: U::real(self.k.to_f64()),
@@ -239,7 +227,7 @@ const _: () = {
                     + q_1_dot * q_1_dot * s7 * real(0.25)),
                 s8 + q_0_dot * q_0_dot * s7 * real(0.25) - self.b * q_1_dot - s4 * sin2,
             ]);
-            ::vi_core::linear::acceleration(time, &mass, &applied)
+            ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
         /// `D = (-b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-k - dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - (sin(t)/3 + 1)*cos(q[0])) - sin(q[0])*cos(t)/3 - dot(q[1])*sin(q[0] - q[1])*dot(dot(q[0]))/4 + dot(q[1])*(k + dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4) - dot(q[0])*sin(q[0] - q[1])*dot(dot(q[1]))/4) + …`
@@ -720,7 +708,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Stepping<2, T> for Pendula<T> {
+    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<2, T> for Pendula<T> {
         type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
@@ -862,7 +850,7 @@ const _: () = {
             }
         }
 
-        /// The residual, its magnitude, and
+        /// The residual, its rounding scale, and
         ///
         /// `p1_q[0] − p0_q[0] = h*f_q[0] + h*L_q[0]`
         ///
@@ -1031,11 +1019,126 @@ const _: () = {
             momentum_residual_part_3(system, &inputs, &mut values);
             ::vi_core::MomentumResidual {
                 residual: ::vi_core::SVector::from([values[0], values[1]]),
-                magnitude: ::vi_core::SVector::from([values[2], values[3]]),
+                scale: ::vi_core::SVector::from([values[2], values[3]]),
                 increment: ::vi_core::SVector::from([values[4], values[5]]),
             }
         }
 
+        /// `E1 = L_v_q[0]*v_q[0] - L - h*L_t/2 + L_v_q[1]*v_q[1] + h*f_q[0]*v_q[0]/2 + h*f_q[1]*v_q[1]/2`
+        ///
+        /// 59 operations.
+        #[inline(never)]
+        fn discrete_energy(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let t0 = node.t;
+            let t0_low = node.t_low;
+            let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+            let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+            let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            /// Part 1 of `discrete_energy`: 50 operations.
+            #[inline(never)]
+            fn discrete_energy_part_1<T: ::vi_core::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 6],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let t0 = inputs[0];
+                let q_0_0 = inputs[1];
+                let q_1_0 = inputs[2];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let t0_low = inputs[6];
+                let q_0_0_low = inputs[7];
+                let q_1_0_low = inputs[8];
+                let s1 = h * real(0.5);
+                let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+                let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+                let t_mid = t0 + (s1 + t0_low);
+                let s2 = q_0_mid - q_1_mid;
+                let [(sin3, cos3), (sin4, cos4), (sin5, cos5)] = T::sin_cos_each([
+                    q_0_mid,
+                    q_1_mid,
+                    t_mid,
+                ]);
+                let s6 = cos3 * cos4 + sin3 * sin4;
+                let s7 = system.k * (s2 * s2) * real(0.5)
+                    + q_0_dot
+                        * (system.m * q_0_dot * real(2.0) + q_1_dot * s6 * real(0.25))
+                    + q_1_dot
+                        * (system.m * q_1_dot * real(2.0) + q_0_dot * s6 * real(0.25));
+                let s8 = q_0_dot * q_0_dot;
+                let s9 = q_1_dot * q_1_dot;
+                let s10 = cos3 + cos4;
+                let s11 = s7 - q_0_dot * q_1_dot * s6 * real(0.25) - system.m * (s8 + s9)
+                    - (sin5 * real(0.3333333333333333) + real(1.0)) * s10;
+                values[1] = s8;
+                values[2] = s9;
+                values[3] = s10;
+                values[4] = cos5;
+                values[5] = s11;
+            }
+            /// Part 2 of `discrete_energy`: 9 operations.
+            #[inline(never)]
+            fn discrete_energy_part_2<T: ::vi_core::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 6],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let s8 = values[1];
+                let s9 = values[2];
+                let s10 = values[3];
+                let cos5 = values[4];
+                let s11 = values[5];
+                let s12 = system.b * real(0.5);
+                let s13 = s11
+                    - (s10 * cos5 * real(0.16666666666666666) + s12 * s8 + s12 * s9) * h;
+                values[0] = s13;
+            }
+            let system = self;
+            let inputs = [
+                t0,
+                q_0_0,
+                q_1_0,
+                h,
+                q_0_dot,
+                q_1_dot,
+                t0_low,
+                q_0_0_low,
+                q_1_0_low,
+            ];
+            let mut values = [T::real(0.0); 6];
+            discrete_energy_part_1(system, &inputs, &mut values);
+            discrete_energy_part_2(system, &inputs, &mut values);
+            values[0]
+        }
+
+        /// What the rounding of the residual is measured in, by running error analysis.
+        #[cold]
+        fn momentum_rounding(
+            &self,
+            node: &::vi_core::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::SVector<T, 2> {
+            ::vi_core::support::momentum_rounding(
+                &self.convert::<::vi_core::real::Rounded>(),
+                node,
+                h,
+                v,
+            )
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<2, T> for Pendula<T> {
         /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
         ///
         /// 170 operations.
@@ -1343,7 +1446,7 @@ const _: () = {
             }
         }
 
-        /// Both residuals, their magnitudes, and
+        /// Both residuals, their rounding scales, and
         ///
         /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
         ///
@@ -1628,9 +1731,9 @@ const _: () = {
             extended_residual_part_5(system, &inputs, &mut values);
             ::vi_core::ExtendedResidual {
                 residual: ::vi_core::SVector::from([values[0], values[1]]),
-                magnitude: ::vi_core::SVector::from([values[2], values[3]]),
+                scale: ::vi_core::SVector::from([values[2], values[3]]),
                 energy_residual: values[4],
-                energy_magnitude: values[5],
+                energy_scale: values[5],
                 increment: ::vi_core::Increment {
                     momentum: ::vi_core::SVector::from([values[6], values[7]]),
                     energy: values[8],
@@ -1640,13 +1743,13 @@ const _: () = {
 
         /// What the rounding of both residuals is measured in, by running error analysis.
         #[cold]
-        fn rounding(
+        fn extended_rounding(
             &self,
             node: &::vi_core::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::vi_core::Rounding<2, T> {
-            ::vi_core::Rounding::of(
+            ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
                 h,
@@ -1655,9 +1758,16 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::Convertible<2> for Pendula<f64> {
+        type In<T: ::vi_core::Real> = Pendula<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::Real>(&self) -> Pendula<T> {
+            self.convert()
+        }
+    }
+
     impl ::vi_core::Batch<2> for Pendula<f64> {
         type Rows<const W: usize> = Pendula<[f64; W]>;
-        type In<T: ::vi_core::Real> = Pendula<T>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             Pendula {
                 m: ::core::array::from_fn(|index| systems[index].m),
@@ -1667,22 +1777,12 @@ const _: () = {
         }
 
         #[inline(always)]
-        fn pick<T: ::vi_core::Real, const W: usize>(
-            rows: &Self::Rows<W>,
-            index: usize,
-        ) -> Self::In<T> {
+        fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
             Pendula {
-                m: T::real(rows.m[index]),
-                k: T::real(rows.k[index]),
-                b: T::real(rows.b[index]),
+                m: rows.m[index],
+                k: rows.k[index],
+                b: rows.b[index],
             }
-        }
-    }
-
-    impl ::vi_core::check::Checked<2> for Pendula<f64> {
-        type In<T: ::vi_core::Real> = Pendula<T>;
-        fn convert<T: ::vi_core::Real>(&self) -> Pendula<T> {
-            Pendula::from_f64(self)
         }
     }
 };

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::numbers::{median, order, scientific};
 use crate::table::Table;
 use vi_core::condition::Condition;
-use vi_core::{StepError, Stepping};
+use vi_core::{EnergyStepping, StepError};
 
 /// Steps along which condition numbers are taken: some oscillations.
 const LENGTH: u32 = 10_000;

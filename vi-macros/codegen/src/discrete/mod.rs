@@ -63,6 +63,12 @@ pub struct DiscreteSystem {
 }
 
 impl DiscreteSystem {
+    /// Whether the step density of the rule keeps its sign along a motion. That of the trapezoidal rule, `|V_q|² − 2 v·V_qq v`, changes
+    /// it in every swing of an oscillator.
+    pub fn has_energy_steps(&self) -> bool {
+        self.rule != Some("trapezoidal")
+    }
+
     /// A symbol as the user wrote it, and where it is evaluated: `L_v_x`, `x_mid`; `L_v_x_at2` where the rule has
     /// several points.
     #[must_use]

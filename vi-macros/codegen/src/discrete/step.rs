@@ -7,7 +7,7 @@
 //! e =  D1 L_d + g_d⁻ − E0            energy row
 //! c =  e − v·r                       combined row; its terms of order one have cancelled
 //! A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
-//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
+//! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      E1 = −D3 L_d − g_d⁺
 //! ```
 
 use super::fields::{Arguments, Changes, Variables, changes};
@@ -36,6 +36,8 @@ pub struct Equations {
     pub momentum_increment: Vec<Expr>,
     /// E1 − E0.
     pub energy_increment: Expr,
+    /// E1.
+    pub discrete_energy: Expr,
 }
 
 /// Derives the equations of a step.
@@ -56,6 +58,8 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
 
     let momentum_increment = momentum_increment(pool, slots)?;
     let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
+
+    let discrete_energy = negative_sum(pool, &[slots.d3_ld, slots.gd_plus])?;
 
     let rows = residual.iter().chain([&energy]);
     let rows = rows.map(|row| Row::new(pool, fields, *row, points.len())).collect::<Vec<_>>();
@@ -80,6 +84,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
         energy_dh,
         momentum_increment,
         energy_increment,
+        discrete_energy,
     })
 }
 

@@ -1,4 +1,4 @@
-//! The checks of a system: its conversion to other numbers, and one test for each check that applies.
+//! The checks of a system: one test for each that applies.
 //!
 //! Which apply is known here: whether there is a force, which coordinates are cyclic, which rule it is. A rule that is
 //! none of the named ones is expected to be of order 1, and nothing else.
@@ -8,20 +8,6 @@ use super::formula::number;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 use syn::Attribute;
-
-/// The implementation of `Checked`.
-pub(super) fn item(source: &Source) -> TokenStream {
-    let (name, dimension) = (&source.model.name, source.dimension());
-    quote! {
-        impl ::vi_core::check::Checked<#dimension> for #name<f64> {
-            type In<T: ::vi_core::Real> = #name<T>;
-
-            fn convert<T: ::vi_core::Real>(&self) -> #name<T> {
-                #name::from_f64(self)
-            }
-        }
-    }
-}
 
 /// The tests of the clause `check`, in a module of their own:
 ///
@@ -71,6 +57,7 @@ fn checks(source: &Source) -> Vec<(&'static str, TokenStream)> {
         ("derivatives", true, TokenStream::new()),
         ("slots", true, TokenStream::new()),
         ("steps", true, TokenStream::new()),
+        ("energy_equations", source.system.has_energy_steps(), TokenStream::new()),
         ("order", true, order),
         ("momenta", source.system.continuous.cyclic.contains(&true), TokenStream::new()),
         ("symplecticity", !forced, TokenStream::new()),

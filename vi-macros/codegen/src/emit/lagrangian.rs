@@ -159,7 +159,7 @@ fn acceleration(source: &Source) -> TokenStream {
             #inputs #statements
             let mass: #form = #mass;
             let applied: ::vi_core::SVector<T, #dimension> = #applied;
-            ::vi_core::linear::acceleration(time, &mass, &applied)
+            ::vi_core::support::acceleration(time, &mass, &applied)
         }
     }
 }

@@ -57,9 +57,8 @@ pub fn items(
     let lagrangian = lagrangian::item(&source);
     let discrete = discrete::item(&source);
     let stepping = stepping::item(&source);
-    let batch = structure::batch(&source);
-    let checked = check::item(&source);
-    let implementations = quote!(#parameters #lagrangian #discrete #stepping #batch #checked);
+    let numbers = structure::numbers(&source);
+    let implementations = quote!(#parameters #lagrangian #discrete #stepping #numbers);
     let conditions: Vec<_> = conditions(&model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests(&source, &conditions);

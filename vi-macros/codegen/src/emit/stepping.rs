@@ -1,4 +1,4 @@
-//! `impl Stepping`: the equations of one step in the unknowns (v, h).
+//! `impl FixedStepping` and, for rules with a step density, `impl EnergyStepping`: the equations of one step in the unknowns (v, h).
 
 use super::Source;
 use super::body::{Body, Entry, Place, part, parts};
@@ -8,18 +8,23 @@ use crate::model::Model;
 use crate::program::{Function, FunctionId, Output, Results};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
-/// Operations up to which the functions of a momentum step are short: `Stepping::INLINED`.
+/// Operations up to which the functions of a momentum step are short: `FixedStepping::INLINED`.
 const INLINED: usize = 250;
 
-/// The implementation of `Stepping`.
+/// The implementations of `FixedStepping` and `EnergyStepping`.
 pub(super) fn item(source: &Source) -> TokenStream {
+    let fixed = fixed(source);
+    let energy = source.system.has_energy_steps().then(|| energy(source));
+    quote!(#fixed #energy)
+}
+
+fn fixed(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let constant = source.findings.constant_jacobian();
     let (form, equation) = momentum_equation(source);
-    let functions = [equation, momentum_residual(source), extended_system(source), extended_residual(source)];
-    let functions = functions.into_iter().flatten();
+    let functions = [equation, momentum_residual(source), discrete_energy(source)].into_iter().flatten();
     let closed = source.findings.closed_form().then(|| {
         quote!(
             const CLOSED_FORM: bool = true;
@@ -33,22 +38,43 @@ pub(super) fn item(source: &Source) -> TokenStream {
         )
     });
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::Stepping<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::Real> ::vi_core::FixedStepping<#dimension, T> for #name<T> {
             type Jacobian = #form;
             const CONSTANT_JACOBIAN: bool = #constant;
             #closed
             #inlined
             #(#functions)*
 
+            /// What the rounding of the residual is measured in, by running error analysis.
+            #[cold]
+            fn momentum_rounding(
+                &self,
+                node: &::vi_core::Node<#dimension, T>,
+                h: T,
+                v: &::vi_core::SVector<T, #dimension>,
+            ) -> ::vi_core::SVector<T, #dimension> {
+                ::vi_core::support::momentum_rounding(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
+            }
+        }
+    }
+}
+
+fn energy(source: &Source) -> TokenStream {
+    let (name, dimension) = (&source.model.name, source.dimension());
+    let functions = [extended_system(source), extended_residual(source)].into_iter().flatten();
+    quote! {
+        impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<#dimension, T> for #name<T> {
+            #(#functions)*
+
             /// What the rounding of both residuals is measured in, by running error analysis.
             #[cold]
-            fn rounding(
+            fn extended_rounding(
                 &self,
                 node: &::vi_core::Node<#dimension, T>,
                 h: T,
                 v: &::vi_core::SVector<T, #dimension>,
             ) -> ::vi_core::Rounding<#dimension, T> {
-                ::vi_core::Rounding::of(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
+                ::vi_core::support::extended_rounding(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
             }
         }
     }
@@ -94,7 +120,7 @@ fn attribute(source: &Source, id: FunctionId) -> TokenStream {
     if operations(source, id) <= source.limit { quote!(#[inline(always)]) } else { quote!(#[inline(never)]) }
 }
 
-/// A function of `Stepping`: of the node, the step and the velocity.
+/// A function of a step: of the node, the step and the velocity.
 fn method(
     source: &Source,
     id: FunctionId,
@@ -138,15 +164,22 @@ fn momentum_residual(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let of = &source.system.equations;
     let increments = source.named_formulas(&of.momentum_increment, |name| format!("p1_{name} − p0_{name}"));
-    let formula = format!("The residual, its magnitude, and\n\n{increments}");
+    let formula = format!("The residual, its rounding scale, and\n\n{increments}");
     let output = quote!(::vi_core::MomentumResidual<#dimension, T>);
     method(source, FunctionId::MomentumResidual, &formula, &output, |results| {
         let residual = vector_of(results.vector(Output::Residual));
-        let magnitude = vector_of(results.vector(Output::RoundingScale));
+        let scale = vector_of(results.vector(Output::RoundingScale));
         let increment = vector_of(results.vector(Output::MomentumIncrement));
         quote! {
-            ::vi_core::MomentumResidual { residual: #residual, magnitude: #magnitude, increment: #increment }
+            ::vi_core::MomentumResidual { residual: #residual, scale: #scale, increment: #increment }
         }
+    })
+}
+
+fn discrete_energy(source: &Source) -> Option<TokenStream> {
+    let formula = source.formula("E1", source.system.equations.discrete_energy);
+    method(source, FunctionId::DiscreteEnergy, &formula, &quote!(T), |results| {
+        results.number(Output::Value).to_token_stream()
     })
 }
 
@@ -176,21 +209,21 @@ fn extended_residual(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let of = &source.system.equations;
     let formula =
-        format!("Both residuals, their magnitudes, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
+        format!("Both residuals, their rounding scales, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
     let output = quote!(::vi_core::ExtendedResidual<#dimension, T>);
     method(source, FunctionId::ExtendedResidual, &formula, &output, |results| {
         let residual = vector_of(results.vector(Output::Residual));
-        let magnitude = vector_of(results.vector(Output::RoundingScale));
+        let scale = vector_of(results.vector(Output::RoundingScale));
         let energy_residual = results.number(Output::EnergyResidual);
-        let energy_magnitude = results.number(Output::EnergyRoundingScale);
+        let energy_scale = results.number(Output::EnergyRoundingScale);
         let momentum = vector_of(results.vector(Output::MomentumIncrement));
         let energy = results.number(Output::EnergyIncrement);
         quote! {
             ::vi_core::ExtendedResidual {
                 residual: #residual,
-                magnitude: #magnitude,
+                scale: #scale,
                 energy_residual: #energy_residual,
-                energy_magnitude: #energy_magnitude,
+                energy_scale: #energy_scale,
                 increment: ::vi_core::Increment { momentum: #momentum, energy: #energy },
             }
         }

@@ -57,12 +57,7 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
 
         impl<T: ::vi_core::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
-            pub fn from_f64(system: &#name<f64>) -> Self {
-                Self { #(#names: T::real(system.#names),)* #marker_value }
-            }
-
-            /// The same system in another kind of number, every parameter rounded to it.
-            fn convert<U: ::vi_core::Real>(&self) -> #name<U> {
+            pub fn convert<U: ::vi_core::Real>(&self) -> #name<U> {
                 #name { #(#names: U::real(self.#names.to_f64()),)* #marker_value }
             }
         }
@@ -78,23 +73,31 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
     }
 }
 
-/// The implementation of `Batch`: parameters side by side.
-pub(super) fn batch(source: &Source) -> TokenStream {
+/// The implementations of `Convertible` and of `Batch`: the system in other numbers, and parameters side by side.
+pub(super) fn numbers(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
     let (_, marker_value) = marker(names.is_empty());
     quote! {
+        impl ::vi_core::Convertible<#dimension> for #name<f64> {
+            type In<T: ::vi_core::Real> = #name<T>;
+
+            #[inline(always)]
+            fn convert<T: ::vi_core::Real>(&self) -> #name<T> {
+                self.convert()
+            }
+        }
+
         impl ::vi_core::Batch<#dimension> for #name<f64> {
             type Rows<const W: usize> = #name<[f64; W]>;
-            type In<T: ::vi_core::Real> = #name<T>;
 
             fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
                 #name { #(#names: ::core::array::from_fn(|index| systems[index].#names),)* #marker_value }
             }
 
             #[inline(always)]
-            fn pick<T: ::vi_core::Real, const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self::In<T> {
-                #name { #(#names: T::real(rows.#names[index]),)* #marker_value }
+            fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
+                #name { #(#names: rows.#names[index],)* #marker_value }
             }
         }
     }
@@ -219,14 +222,18 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn gd_minus(#over) -> T #none
             fn gd_plus(#over) -> T #none
         }
-        impl<T: ::vi_core::Real> ::vi_core::Stepping<#n, T> for #name<T> {
+        impl<T: ::vi_core::Real> ::vi_core::FixedStepping<#n, T> for #name<T> {
             type Jacobian = ::vi_core::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
             fn momentum_equation(#from) -> ::vi_core::MomentumEquation<#n, T> #none
             fn momentum_residual(#from) -> ::vi_core::MomentumResidual<#n, T> #none
+            fn momentum_rounding(#from) -> #vector #none
+            fn discrete_energy(#from) -> T #none
+        }
+        impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<#n, T> for #name<T> {
             fn extended_system(#from) -> ::vi_core::ExtendedSystem<#n, T> #none
             fn extended_residual(#from) -> ::vi_core::ExtendedResidual<#n, T> #none
-            fn rounding(#from) -> ::vi_core::Rounding<#n, T> #none
+            fn extended_rounding(#from) -> ::vi_core::Rounding<#n, T> #none
         }
     }
 }

@@ -187,6 +187,7 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let energy_residual = assembly.open_all(&[of.energy_residual]);
     let momentum_increment = assembly.open_all(&of.momentum_increment);
     let energy_increment = assembly.open_all(&[of.energy_increment]);
+    let discrete_energy = assembly.open_all(&[of.discrete_energy]);
     let jacobian: Vec<_> = of.residual_dv.iter().map(|row| assembly.open_all(row)).collect();
     let residual_dh = assembly.open_all(&of.residual_dh);
     let energy_dv = assembly.open_all(&of.energy_dv);
@@ -219,6 +220,7 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     Ok(vec![
         assembly.function(FunctionId::MomentumEquation, equation)?,
         assembly.function(FunctionId::MomentumResidual, measured)?,
+        assembly.function(FunctionId::DiscreteEnergy, vector(&discrete_energy))?,
         assembly.function(FunctionId::ExtendedSystem, extended)?,
         assembly.function(FunctionId::ExtendedResidual, both_measured)?,
     ])

@@ -42,6 +42,8 @@ pub enum FunctionId {
     MomentumEquation,
     /// The momentum row, its rounding scale, and p1 − p0.
     MomentumResidual,
+    /// E1.
+    DiscreteEnergy,
     /// Both rows and their derivatives.
     ExtendedSystem,
     /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
@@ -71,6 +73,7 @@ impl FunctionId {
             Self::GdPlus => "gd_plus",
             Self::MomentumEquation => "momentum_equation",
             Self::MomentumResidual => "momentum_residual",
+            Self::DiscreteEnergy => "discrete_energy",
             Self::ExtendedSystem => "extended_system",
             Self::ExtendedResidual => "extended_residual",
         }

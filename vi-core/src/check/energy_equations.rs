@@ -1,0 +1,93 @@
+//! The equations of an energy-preserving step, in the rows that a fixed step does not have.
+//!
+//! ```text
+//! c = D1 L_d + g_d⁻ − E0 − v·r   E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺
+//! ∂r/∂h      (∂e/∂v − v·A)/h = (∂c/∂v + r)/h      (∂e/∂h − v·∂r/∂h)/h = (∂c/∂h)/h
+//! ```
+//!
+//! Left: what the system says. Right: the slots, and r and c differentiated operation by operation. What it says of r, A and p1 − p0
+//! must be what it says of them for a fixed step. Rounding: as in `derivatives`, that of both sides, carried along.
+
+use super::bounded::{Bounded, exact, vector_of};
+use super::comparison::Comparison;
+use super::derivatives::{First, enough};
+use super::dual::{Dual, along, lift, slopes, unit};
+use super::report::{CheckFailure, Report};
+use super::sample::{Sample, samples};
+use super::steps::ends;
+use super::subject::{EnergyChecked, Place};
+use crate::discrete::DiscreteLagrangian;
+use crate::linear::Matrix;
+use crate::stepping::{EnergyStepping, FixedStepping};
+use nalgebra::SVector;
+
+/// The energy row of a step and its increments against the slots, its derivatives against dual numbers, its momentum rows against
+/// those of a fixed step.
+///
+/// # Errors
+/// The first number that differs; [`CheckFailure::Vacuous`] where the energy row is zero throughout.
+pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
+    system: &S,
+    place: &Place<N>,
+) -> Result<Report, CheckFailure> {
+    let mut check = Comparison::new(S::NAME, "energy equations");
+    for sample in samples(system, place, &check)? {
+        rows(&sample, &mut check)?;
+        jacobian(&sample, &mut check)?;
+    }
+    check.finish(&["energy residual", "momentum rows"])
+}
+
+fn rows<const N: usize, S: EnergyChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
+    let Sample { system, v, h, .. } = sample;
+    let (node, bounded) = (sample.node(), system.convert::<Bounded>());
+    let (known, step, velocity) = (node.map(Bounded::exact), Bounded::exact(*h), exact(v));
+    let (found, measured) = (system.extended_system(&node, *h, v), system.extended_residual(&node, *h, v));
+    let again = bounded.extended_residual(&known, step, &velocity);
+    let (row, increment) = (vector_of(&found.momentum.residual, &again.residual), again.increment.momentum);
+    let alone = bounded.momentum_residual(&known, step, &velocity);
+    check.vector("momentum rows", &row, &alone.residual)?;
+    check.vector("momentum rows measured", &vector_of(&measured.residual, &again.residual), &alone.residual)?;
+    check.vector("p1 - p0", &vector_of(&measured.increment.momentum, &increment), &alone.increment)?;
+
+    let interval = ends(&known, step, &velocity);
+    let row = -bounded.d2_ld(&interval) - bounded.fd_minus(&interval) - known.p;
+    let minus = bounded.d1_ld(&interval) + bounded.gd_minus(&interval);
+    let plus = bounded.d3_ld(&interval) + bounded.gd_plus(&interval);
+    let wanted = minus - known.energy - velocity.dot(&row);
+    check.number("energy residual", again.energy_residual.of(found.energy_residual), wanted)?;
+    check.number("energy residual measured", again.energy_residual.of(measured.energy_residual), wanted)?;
+    check.number("E1 - E0", again.increment.energy.of(measured.increment.energy), -(minus + plus))?;
+    let rounding = system.extended_rounding(&node, *h, v);
+    let pairs = found.momentum.residual.iter().zip(rounding.residual.iter());
+    let all = pairs.chain([(&found.energy_residual, &rounding.energy_residual)]);
+    all.into_iter().try_for_each(|(residual, rounding)| enough(*residual, *rounding, check))
+}
+
+fn jacobian<const N: usize, S: EnergyChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
+    let Sample { system, v, h, .. } = sample;
+    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
+    let found = system.extended_system(&node, *h, v);
+    let known = node.map(Bounded::exact);
+    let lifted = node.map(|number| Dual::fixed(Bounded::exact(number)));
+    let (step, velocity) = (Bounded::exact(*h), exact(v));
+    let again = bounded.extended_system(&known, step, &velocity);
+    let (matrix, bounds) = (found.momentum.jacobian.dense(), again.momentum.jacobian.dense());
+    for j in 0..N {
+        let column = dual.extended_system(&lifted, Dual::fixed(step), &along(&velocity, &unit(j)));
+        let entries: SVector<Bounded, N> = vector_of(&matrix.column(j).into_owned(), &bounds.column(j).into_owned());
+        check.vector("residual_dv", &entries, &slopes(&column.momentum.residual))?;
+        let wanted = (column.energy_residual.slope + again.momentum.residual[j]) / step;
+        check.number("energy_dv", again.energy_dv[j].of(found.energy_dv[j]), wanted)?;
+    }
+    let column = dual.extended_system(&lifted, Dual::variable(step), &lift(&velocity));
+    let residual_dh = vector_of(&found.residual_dh, &again.residual_dh);
+    check.vector("residual_dh", &residual_dh, &slopes(&column.momentum.residual))?;
+    check.number("energy_dh", again.energy_dh.of(found.energy_dh), column.energy_residual.slope / step)
+}

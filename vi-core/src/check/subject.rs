@@ -1,0 +1,48 @@
+//! What is checked: a system in any kind of number, and a place where it is well behaved.
+
+use super::bounded::Bounded;
+use super::dual::Dual;
+use crate::discrete::DiscreteLagrangian;
+use crate::lagrangian::Parameters;
+use crate::stepping::{Convertible, EnergyStepping, FixedStepping};
+use nalgebra::SVector;
+
+/// Steps of the place's length over which the motion from there is followed.
+pub(super) const STEPS: u32 = 32;
+
+/// Where a system is checked: a state from which it is well behaved over 32 steps of length `h`, with every quantity of
+/// moderate size and the step density of one sign. Units are the system's own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place<const N: usize> {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: SVector<f64, N>,
+    /// Velocities.
+    pub v: SVector<f64, N>,
+    /// Step, positive, in units of time: small enough for the error to fall with h². Where rounding hides what a check is
+    /// about, the check tries larger ones.
+    pub h: f64,
+}
+
+/// A system that can be checked, as every generated one can.
+pub trait Checked<const N: usize>: FixedStepping<N> + DiscreteLagrangian<N> + Convertible<N> + Parameters {}
+
+impl<const N: usize, S: FixedStepping<N> + DiscreteLagrangian<N> + Convertible<N> + Parameters> Checked<N> for S {}
+
+/// Such a system with energy-preserving steps.
+pub trait EnergyChecked<const N: usize>:
+    EnergyStepping<N>
+    + DiscreteLagrangian<N>
+    + Parameters
+    + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
+{
+}
+
+impl<const N: usize, S> EnergyChecked<N> for S where
+    S: EnergyStepping<N>
+        + DiscreteLagrangian<N>
+        + Parameters
+        + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
+{
+}

@@ -1,0 +1,219 @@
+//! What a system says of itself, said by what dereferences to it: a reference, a system by another rule, a system whose functions
+//! are calls.
+
+use crate::called::Called;
+use crate::discrete::DiscreteLagrangian;
+use crate::error::StepError;
+use crate::lagrangian::{Lagrangian, Parameters};
+use crate::node::Node;
+use crate::real::Real;
+use crate::rules::{By, Own, Rule};
+use crate::state::Interval;
+use crate::stepping::{
+    Batch, Convertible, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumEquation,
+    MomentumResidual, Rounding,
+};
+use nalgebra::SVector;
+
+/// The continuous system of what dereferences to S.
+macro_rules! lagrangian {
+    ($wrapper:ty $(, $rule:ident)?) => {
+        impl<const N: usize, T: Real, S: Lagrangian<N, T>$(, $rule: Rule)?> Lagrangian<N, T> for $wrapper {
+            const NAME: &'static str = S::NAME;
+            const COORDINATES: [&'static str; N] = S::COORDINATES;
+            const AUTONOMOUS: bool = S::AUTONOMOUS;
+            const FORCED: bool = S::FORCED;
+            const CYCLIC: [bool; N] = S::CYCLIC;
+            const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+
+            fn parameter(&self, index: usize) -> T {
+                S::parameter(self, index)
+            }
+
+            #[inline]
+            fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+                S::lagrangian(self, t, q, v)
+            }
+
+            #[inline]
+            fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+                S::energy(self, t, q, v)
+            }
+
+            #[inline]
+            fn momentum(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+                S::momentum(self, t, q, v)
+            }
+
+            #[inline]
+            fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
+                S::force(self, t, q, v)
+            }
+
+            #[inline]
+            fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
+                S::acceleration(self, t, q, v)
+            }
+
+            #[inline]
+            fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+                S::step_density(self, t, q, v)
+            }
+
+            fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
+                S::non_finite(self, t, q, v)
+            }
+        }
+    };
+}
+
+/// The discrete system of what dereferences to S: its rule `$of_rule` is the rule `$rule` of the wrapper.
+macro_rules! discrete {
+    ($wrapper:ty, $of_rule:ident as $rule:ident $(, $generic:ident)?) => {
+        impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T, $of_rule>$(, $generic: Rule)?>
+            DiscreteLagrangian<N, T, $rule> for $wrapper
+        {
+            #[inline]
+            fn ld(&self, interval: &Interval<N, T>) -> T {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::ld(self, interval)
+            }
+
+            #[inline]
+            fn d1_ld(&self, interval: &Interval<N, T>) -> T {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::d1_ld(self, interval)
+            }
+
+            #[inline]
+            fn d2_ld(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::d2_ld(self, interval)
+            }
+
+            #[inline]
+            fn d3_ld(&self, interval: &Interval<N, T>) -> T {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::d3_ld(self, interval)
+            }
+
+            #[inline]
+            fn d4_ld(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::d4_ld(self, interval)
+            }
+
+            #[inline]
+            fn fd_minus(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::fd_minus(self, interval)
+            }
+
+            #[inline]
+            fn fd_plus(&self, interval: &Interval<N, T>) -> SVector<T, N> {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::fd_plus(self, interval)
+            }
+
+            #[inline]
+            fn gd_minus(&self, interval: &Interval<N, T>) -> T {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::gd_minus(self, interval)
+            }
+
+            #[inline]
+            fn gd_plus(&self, interval: &Interval<N, T>) -> T {
+                <S as DiscreteLagrangian<N, T, $of_rule>>::gd_plus(self, interval)
+            }
+        }
+    };
+}
+
+/// The equations of a step of what dereferences to S, each function with this attribute.
+macro_rules! stepping {
+    ($wrapper:ty, $of_rule:ident as $rule:ident, #[$attribute:meta] $(, $generic:ident)?) => {
+        impl<const N: usize, T: Real, S: FixedStepping<N, T, $of_rule>$(, $generic: Rule)?> FixedStepping<N, T, $rule>
+            for $wrapper
+        {
+            type Jacobian = S::Jacobian;
+            const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
+            const CLOSED_FORM: bool = S::CLOSED_FORM;
+            const INLINED: bool = S::INLINED;
+
+            #[$attribute]
+            fn momentum_equation(
+                &self,
+                node: &Node<N, T>,
+                h: T,
+                v: &SVector<T, N>,
+            ) -> MomentumEquation<N, T, S::Jacobian> {
+                <S as FixedStepping<N, T, $of_rule>>::momentum_equation(self, node, h, v)
+            }
+
+            #[$attribute]
+            fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
+                <S as FixedStepping<N, T, $of_rule>>::momentum_residual(self, node, h, v)
+            }
+
+            fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N> {
+                <S as FixedStepping<N, T, $of_rule>>::momentum_rounding(self, node, h, v)
+            }
+
+            fn discrete_energy(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> T {
+                <S as FixedStepping<N, T, $of_rule>>::discrete_energy(self, node, h, v)
+            }
+        }
+
+        impl<const N: usize, T: Real, S: EnergyStepping<N, T, $of_rule>$(, $generic: Rule)?> EnergyStepping<N, T, $rule>
+            for $wrapper
+        {
+            #[$attribute]
+            fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, S::Jacobian> {
+                <S as EnergyStepping<N, T, $of_rule>>::extended_system(self, node, h, v)
+            }
+
+            #[$attribute]
+            fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
+                <S as EnergyStepping<N, T, $of_rule>>::extended_residual(self, node, h, v)
+            }
+
+            fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
+                <S as EnergyStepping<N, T, $of_rule>>::extended_rounding(self, node, h, v)
+            }
+        }
+    };
+}
+
+// A system may be lent as well as given.
+lagrangian!(&S);
+discrete!(&S, R as R, R);
+stepping!(&S, R as R, #[inline(always)], R);
+
+lagrangian!(By<S, R>, R);
+discrete!(By<S, R>, R as Own, R);
+stepping!(By<S, R>, R as Own, #[inline(always)], R);
+
+lagrangian!(Called<S>);
+stepping!(Called<S>, Own as Own, #[inline(never)]);
+
+impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
+        self.system_mut().parameter_mut(name)
+    }
+}
+
+impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N> for By<S, R> {
+    type In<T: Real> = By<S::In<T>, R>;
+
+    fn convert<T: Real>(&self) -> Self::In<T> {
+        By::new(self.system().convert(), self.rule())
+    }
+}
+
+impl<const N: usize, S, R: Rule> Batch<N> for By<S, R>
+where
+    S: Batch<N> + FixedStepping<N, f64, R> + Convertible<N, R>,
+{
+    type Rows<const W: usize> = (S::Rows<W>, R);
+
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
+        (S::rows(&systems.map(|by| *by.system())), systems[0].rule())
+    }
+
+    #[inline(always)]
+    fn from_rows<const W: usize>((rows, rule): &Self::Rows<W>, index: usize) -> Self {
+        By::new(S::from_rows(rows, index), *rule)
+    }
+}

@@ -1,0 +1,223 @@
+//! The equations of one step from a node, in the unknowns `(v, h)`: `q1 = q0 + h v`, `t1 = t0 + h`.
+//!
+//! In: a node, h and v. Out: the residuals of the discrete equations there ([`crate::discrete`]), their derivatives, what their
+//! rounding is measured in, and what momentum and energy gain. A rule gives [`FixedStepping`]; one whose steps have a density gives
+//! [`EnergyStepping`] besides.
+
+use crate::discrete::DiscreteLagrangian;
+use crate::lagrangian::Lagrangian;
+use crate::linear::Matrix;
+use crate::node::Node;
+use crate::real::{Real, Rounded};
+use crate::rules::Own;
+use nalgebra::{SMatrix, SVector};
+
+/// The momentum equation of a step by the rule R, its length given.
+///
+/// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
+/// the numbers of the common path stay in registers.
+pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
+    /// The form of A, by its zero pattern.
+    type Jacobian: Matrix<N, T>;
+    /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
+    const CONSTANT_JACOBIAN: bool;
+    /// Whether v and what a step adds to p are a constant matrix times (q, p), but for a constant: A is constant, the momenta
+    /// gain what is linear in the state, and nothing depends on the time. Worth it for a few coordinates only.
+    const CLOSED_FORM: bool = false;
+    /// Whether the functions of a momentum step are short. Then they are inlined, the rounding scales are computed only
+    /// where they are asked for, and a loop over trajectories becomes vector instructions.
+    const INLINED: bool = false;
+
+    /// Momentum equation at the trial velocity `v`, the step `h` given. Defined at `h = 0` too, where its root is the
+    /// velocity that belongs to `p`.
+    fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, Self::Jacobian>;
+    /// The residual of that equation, and what the momenta gain over the step.
+    fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T>;
+    /// What the rounding of that residual is measured in, by running error analysis: a residual of `ε` times this is one rounding.
+    fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N>;
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` at the end of the step; what momentum and energy the node has does not matter.
+    fn discrete_energy(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> T;
+}
+
+/// Momentum and energy equation of a step by the rule R, whose length is an unknown.
+///
+/// Implemented for rules whose steps have a density D that keeps its sign: the length of a step follows from `h² D/8 = H − E`. That of
+/// the trapezoidal rule is `|V_q|² − 2 v·V_qq v`, which changes its sign in every swing of an oscillator.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no energy-preserving step",
+    label = "the rule that this system is discretized with gives no length of a step",
+    note = "an energy-preserving step needs a rule with a step density, as `discretize midpoint;`",
+    note = "fixed steps exist with every rule: use `FixedStep` or `Composition`"
+)]
+pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<N, T, R> {
+    /// Momentum and energy equation at the trial `(v, h)`.
+    fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
+    /// The residuals of both, and what momentum and energy gain over the step.
+    fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T>;
+    /// What the rounding of both residuals is measured in, by running error analysis.
+    fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
+}
+
+/// A system that can be evaluated in other kinds of numbers, as every generated one can.
+pub trait Convertible<const N: usize, R = Own> {
+    /// The same system in the numbers T.
+    type In<T: Real>: FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R>;
+
+    /// The same system, every parameter rounded to T.
+    fn convert<T: Real>(&self) -> Self::In<T>;
+}
+
+/// A system of which many can be integrated at once, each with its own parameters.
+pub trait Batch<const N: usize>: FixedStepping<N> + Convertible<N> + Send + Sync {
+    /// The parameters of W systems, side by side.
+    type Rows<const W: usize>: Clone + core::fmt::Debug + Send + Sync;
+
+    /// The parameters of W systems, side by side.
+    fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W>;
+    /// One of the systems.
+    fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self;
+}
+
+/// The momentum equation at a trial velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentumEquation<const N: usize, T = f64, J = SMatrix<T, N, N>> {
+    /// `−D2 L_d − f_d⁻ − p0`.
+    pub residual: SVector<T, N>,
+    /// `A`, the derivative of the residual by `v`: row i, column j is `∂r_i/∂v_j`.
+    pub jacobian: J,
+}
+
+/// Momentum and energy equation at a trial `(v, h)`, rows combined and scaled so that the condition number does not
+/// depend on `h`.
+///
+/// With the momentum row `r` and the energy row `e = D1 L_d + g_d⁻ − E0`, the combined row is `c = e − v·r`; its
+/// leading terms, of order one, are cancelled symbolically. A Newton step `(δv, δh)` solves
+///
+/// ```text
+/// [ A                 ∂r/∂h               ] [ δv/h ]     [ r/h  ]
+/// [ (∂e/∂v − v·A)/h   (∂e/∂h − v·∂r/∂h)/h ] [ δh/h ] = − [ c/h² ]
+/// ```
+///
+/// whose Schur complement of `A` is `−D/4` to leading order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtendedSystem<const N: usize, T = f64, J = SMatrix<T, N, N>> {
+    /// The momentum row `r` and its block `A`.
+    pub momentum: MomentumEquation<N, T, J>,
+    /// `∂r/∂h`.
+    pub residual_dh: SVector<T, N>,
+    /// `c = e − v·r`, unscaled.
+    pub energy_residual: T,
+    /// `(∂e/∂v − v·A)/h`.
+    pub energy_dv: SVector<T, N>,
+    /// `(∂e/∂h − v·∂r/∂h)/h`.
+    pub energy_dh: T,
+}
+
+/// The residual of the momentum equation, and what follows from the same evaluation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentumResidual<const N: usize, T = f64> {
+    /// `r = −D2 L_d − f_d⁻ − p0`.
+    pub residual: SVector<T, N>,
+    /// Sums of the absolute values of the terms of r, sums inside them term by term: r is known to an ulp of this at best.
+    pub scale: SVector<T, N>,
+    /// `p1 − p0`; see [`Increment::momentum`].
+    pub increment: SVector<T, N>,
+}
+
+/// The residuals of both equations, and what follows from the same evaluation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtendedResidual<const N: usize, T = f64> {
+    /// `r = −D2 L_d − f_d⁻ − p0`.
+    pub residual: SVector<T, N>,
+    /// Sums of the absolute values of the terms of r, as in [`MomentumResidual`].
+    pub scale: SVector<T, N>,
+    /// `c = e − v·r`, `e = D1 L_d + g_d⁻ − E0`.
+    pub energy_residual: T,
+    /// The same sum for c.
+    pub energy_scale: T,
+    /// `p1 − p0` and `E1 − E0`.
+    pub increment: Increment<N, T>,
+}
+
+/// What rounding moves the residuals at a trial `(v, h)` by at most, in ulps of 1: a residual of `ε` times this is one rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding<const N: usize, T = f64> {
+    /// Of each momentum residual.
+    pub residual: SVector<T, N>,
+    /// Of the combined energy residual c.
+    pub energy_residual: T,
+}
+
+/// What the rounding of the momentum residual is measured in: that of a system, given in numbers that carry a bound of their
+/// rounding; v and h are the numbers nearest to a root.
+#[doc(hidden)]
+pub fn momentum_rounding<const N: usize, T: Real, R>(
+    system: &impl FixedStepping<N, Rounded, R>,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> SVector<T, N> {
+    let node = node.map(|number| Rounded::exact(number.to_f64()));
+    system.momentum_residual(&node, nearest(h), &v.map(nearest)).residual.map(ulps)
+}
+
+/// The same of both residuals.
+#[doc(hidden)]
+pub fn extended_rounding<const N: usize, T: Real, R>(
+    system: &impl EnergyStepping<N, Rounded, R>,
+    node: &Node<N, T>,
+    h: T,
+    v: &SVector<T, N>,
+) -> Rounding<N, T> {
+    let node = node.map(|number| Rounded::exact(number.to_f64()));
+    let measured = system.extended_residual(&node, nearest(h), &v.map(nearest));
+    Rounding { residual: measured.residual.map(ulps), energy_residual: ulps(measured.energy_residual) }
+}
+
+/// The number nearest to the one that is meant.
+fn nearest<T: Real>(number: T) -> Rounded {
+    Rounded::nearest(number.to_f64())
+}
+
+/// The bound of a rounding, which is in halves of an ulp.
+fn ulps<T: Real>(number: Rounded) -> T {
+    T::real(0.5 * number.error())
+}
+
+/// What momentum and energy gain over one solved step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Increment<const N: usize, T = f64> {
+    /// `p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺`; for the midpoint rule `h (L_q + f)`.
+    pub momentum: SVector<T, N>,
+    /// `E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺`; for the midpoint rule `−h (L_t − f·v)`.
+    pub energy: T,
+}
+
+impl<const N: usize, T: Real> Node<N, T> {
+    /// The node at the end of the step `(v, h)` of a system.
+    #[inline]
+    pub(crate) fn advanced<S: Lagrangian<N, T>>(
+        mut self,
+        h: T,
+        v: &SVector<T, N>,
+        increment: &Increment<N, T>,
+    ) -> Self {
+        self.advance(h, v, &increment.momentum);
+        // Else the increment is the number zero, which the compiler may not leave out of a sum.
+        if !S::AUTONOMOUS || S::FORCED {
+            self.add_energy(increment.energy);
+        }
+        self
+    }
+
+    /// The same place with the momenta and the energy that make `(v, h)` the step from here:
+    /// `p0 = −D2 L_d − f_d⁻`, `E0 = D1 L_d + g_d⁻`.
+    pub(crate) fn leaving<S: EnergyStepping<N, T>>(self, system: &S, h: T, v: &SVector<T, N>) -> Self {
+        let zeros = SVector::zeros();
+        let bare = Self { p: zeros, p_low: zeros, energy: T::zero(), energy_low: T::zero(), ..self };
+        let equations = system.extended_system(&bare, h, v);
+        let p = equations.momentum.residual;
+        // The energy row is e = c + v·r, and r is all of p0 where the node has no momentum.
+        Self { p, energy: equations.energy_residual + v.dot(&p), ..bare }
+    }
+}
