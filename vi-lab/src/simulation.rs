@@ -214,8 +214,7 @@ where
                     EnergyPreserving::from_points(system, (t, q), second)?
                 }
             };
-            let last_middle = Middle { t, q, v };
-            Box::new(Energy { integrator, last_middle })
+            Box::new(Energy { integrator })
         }
         (_, Some(scheme)) => {
             let integrator = Composition::new(system, scheme, State::at(&system, t, q, v), plan.h)?;
@@ -274,6 +273,14 @@ impl<S: EnergyStepping<N>, const N: usize> Simulation for Fixed<S, N> {
     fn advance(&mut self) -> Result<(), StepError> {
         self.integrator.step().map(drop)
     }
+
+    fn advance_by(&mut self, steps: u64) -> Result<(), StepError> {
+        // The loop has an integrator of its own: behind a pointer its numbers would go through memory in every step.
+        let mut integrator = self.integrator.clone();
+        let outcome = (0..steps).try_for_each(|_| integrator.step().map(drop));
+        self.integrator = integrator;
+        outcome
+    }
 }
 
 struct Composed<S: EnergyStepping<N>, const N: usize> {
@@ -314,14 +321,6 @@ impl<S: EnergyStepping<N>, const N: usize> Simulation for Composed<S, N> {
 
 struct Energy<S, const N: usize> {
     integrator: EnergyPreserving<S, N>,
-    last_middle: Middle<N>,
-}
-
-/// The middle of a step, or of the first interval.
-struct Middle<const N: usize> {
-    t: f64,
-    q: SVector<f64, N>,
-    v: SVector<f64, N>,
 }
 
 impl<S: EnergyStepping<N>, const N: usize> Simulation for Energy<S, N> {
@@ -350,13 +349,26 @@ impl<S: EnergyStepping<N>, const N: usize> Simulation for Energy<S, N> {
     }
 
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
-        let Middle { t, q, v } = &self.last_middle;
-        Ok((*t, self.integrator.system().energy(*t, q, v)))
+        let Self { integrator } = self;
+        let v = integrator.v();
+        let (t, q) = integrator.node().midpoint(-integrator.h(), &v);
+        Ok((t, integrator.system().energy(t, &q, &v)))
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
-        let (t, q, v) = self.integrator.step()?.midpoint;
-        self.last_middle = Middle { t, q, v };
-        Ok(())
+        self.integrator.step().map(drop)
+    }
+
+    fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
+        // As in fixed steps, the loop has an integrator of its own.
+        let mut integrator = self.integrator.clone();
+        let mut taken = 0;
+        let mut outcome = Ok(());
+        while outcome.is_ok() && taken < most && integrator.node().t < end {
+            outcome = integrator.step().map(drop);
+            taken += 1;
+        }
+        self.integrator = integrator;
+        outcome.map(|()| taken)
     }
 }
