@@ -341,7 +341,7 @@ const _: () = {
             ::vi_core::SVector::from([-(self.c * h * real(0.5) * x_dot)])
         }
 
-        /// `gd_minus = -h*f_x*v_x/2`
+        /// `gd_minus = -h*v_x*f_x/2`
         ///
         /// 4 operations.
         #[inline]
@@ -354,7 +354,7 @@ const _: () = {
             self.c * h * real(0.5) * (x_dot * x_dot)
         }
 
-        /// `gd_plus = -h*f_x*v_x/2`
+        /// `gd_plus = -h*v_x*f_x/2`
         ///
         /// 4 operations.
         #[inline]
@@ -374,7 +374,7 @@ const _: () = {
         const CLOSED_FORM: bool = true;
         const INLINED: bool = true;
 
-        /// `residual_x = L_v_x - h*f_x/2 - h*L_x/2 - p0_x_low - p0_x`
+        /// `residual_x = L_v_x - h*L_x/2 - h*f_x/2 - p0_x_low - p0_x`
         ///
         /// 19 operations.
         #[inline(always)]
@@ -405,7 +405,7 @@ const _: () = {
 
         /// The residual, its rounding scale, and
         ///
-        /// `p1_x − p0_x = h*f_x + h*L_x`
+        /// `p1_x − p0_x = h*L_x + h*f_x`
         ///
         /// 32 operations.
         #[inline(always)]
@@ -522,7 +522,7 @@ const _: () = {
 
         /// Both residuals, their rounding scales, and
         ///
-        /// `E1 − E0 = h*f_x*v_x`
+        /// `E1 − E0 = h*v_x*f_x`
         ///
         /// 65 operations.
         #[inline(always)]

@@ -15,22 +15,25 @@ pub(crate) fn expand(tokens: TokenStream) -> TokenStream {
 }
 
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
-    let expansion = vi_codegen::expand(tokens.clone());
-    let written = folder.map_or(Ok(()), |folder| write(tokens, folder));
-    let error = written.err().map(|reason| quote!(::core::compile_error! { #reason }));
+    // A system with mistakes is its errors, and no file.
+    let (items, error) = match vi_codegen::compile(tokens) {
+        Ok(derived) => {
+            let items = vi_codegen::items(&derived);
+            let written = folder.map_or(Ok(()), |folder| write(&derived.model.name.to_string(), items.clone(), folder));
+            (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
+        }
+        Err(errors) => (errors, None),
+    };
     quote! {
-        #expansion
+        #items
         #error
         const _: ::core::option::Option<&::core::primitive::str> = ::core::option_env!("VI_EXPAND_DIR");
     }
 }
 
-fn write(tokens: TokenStream, folder: &Path) -> Result<(), String> {
-    // Mistakes are reported by the expansion itself.
-    let Ok(derived) = vi_codegen::syntax::parse::system(tokens).and_then(vi_codegen::derive) else { return Ok(()) };
-    let name = derived.model.name.to_string();
-    let text = vi_codegen::pretty::text(vi_codegen::items(&derived)).map_err(|error| error.to_string())?;
-    match vi_codegen::pretty::write(folder, &name, &text) {
+fn write(name: &str, items: TokenStream, folder: &Path) -> Result<(), String> {
+    let text = vi_codegen::pretty::text(items).map_err(|error| error.to_string())?;
+    match vi_codegen::pretty::write(folder, name, &text) {
         Ok(_) => Ok(()),
         Err(error) => Err(format!(
             "cannot write the expansion of `{name}` into `{}`: {error}\n\

@@ -56,8 +56,7 @@ system! {
 fn expansion(text: &str, limit: usize) -> String {
     let system = vi_codegen::syntax::parse::system(text.parse().expect("tokens")).expect("a right system");
     let derived = vi_codegen::derive(system).expect("a right system");
-    let vi_codegen::Derived { model, system, program, findings } = &derived;
-    vi_codegen::pretty::text(vi_codegen::emit::items(model, system, program, findings, limit)).expect("Rust")
+    vi_codegen::pretty::text(vi_codegen::emit::items(&derived, limit)).expect("Rust")
 }
 
 fn documented_is_todays(file: &str, today: &str) {

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 use vi_codegen::program::FunctionId;
-use vi_codegen::{discrete, model, program, syntax};
+use vi_codegen::syntax;
 
 fn main() {
     let project = Project::new();
@@ -56,9 +56,8 @@ fn main() -> Result<(), vi_core::StepError> {
 
 /// Operations that one iteration of either integrator takes.
 fn operations(text: &str) -> [usize; 2] {
-    let mut model = syntax::parse::system(text.parse().expect("tokens")).and_then(model::check::model).expect("right");
-    let system = discrete::system::system(&mut model).expect("a right rule");
-    let program = program::program(&mut model, &system).expect("a program");
+    let system = syntax::parse::system(text.parse().expect("tokens"));
+    let program = system.and_then(vi_codegen::derive).expect("a right system").program;
     [FunctionId::MomentumEquation, FunctionId::ExtendedSystem]
         .map(|id| program.function(id).expect("every function is there").operation_count())
 }

@@ -9,53 +9,46 @@
 //!
 //! One stage, one folder, one product. A stage reports all its errors before the next one starts.
 
+mod derived;
 pub mod discrete;
 pub mod emit;
 pub mod found;
 #[cfg(feature = "inspect")]
 pub mod inspect;
+mod limits;
 pub mod messages;
 pub mod model;
 pub mod pretty;
 pub mod program;
+pub mod rules;
 pub mod symbol;
 pub mod syntax;
 
-use discrete::DiscreteSystem;
-use emit::Broken;
-use found::Findings;
-use model::{Model, check};
-use proc_macro2::TokenStream;
-use program::Program;
-use syntax::parse;
+pub use derived::Derived;
 
-/// A system with all that was derived from it.
-pub struct Derived {
-    /// The checked system, and the pool of all expressions.
-    pub model: Model,
-    /// L_d, its slot derivatives, and the equations of a step.
-    pub system: DiscreteSystem,
-    /// The functions as operations.
-    pub program: Program,
-    /// What is special about the system.
-    pub findings: Findings,
-}
+use emit::Broken;
+use model::check;
+use proc_macro2::TokenStream;
+use syntax::parse;
+use vi_expr::Pool;
 
 /// What a `lagrangian!` becomes: the items of the system, or its errors with a stub of the struct.
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
-    let system = match parse::system(tokens.clone()) {
-        Ok(system) => system,
-        Err(error) => {
-            let outline = parse::outline(tokens);
-            return outline.map_or_else(|| error.to_compile_error(), |system| Broken::of(&system).with(&error));
-        }
-    };
+    compile(tokens).map_or_else(|errors| errors, |derived| items(&derived))
+}
+
+/// A system from its tokens.
+///
+/// # Errors
+/// The errors as items, with a stub of the struct.
+pub fn compile(tokens: TokenStream) -> Result<Derived, TokenStream> {
+    let system = parse::system(tokens.clone()).map_err(|error| {
+        let outline = parse::outline(tokens);
+        outline.map_or_else(|| error.to_compile_error(), |system| Broken::of(&system).with(&error))
+    })?;
     let broken = Broken::of(&system);
-    match derive(system) {
-        Ok(derived) => items(&derived),
-        Err(error) => broken.with(&error),
-    }
+    derive(system).map_err(|error| broken.with(&error))
 }
 
 /// The stages from a system as written up to its program.
@@ -63,15 +56,16 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
 /// # Errors
 /// Everything that the first stage which fails finds wrong.
 pub fn derive(system: syntax::System) -> syn::Result<Derived> {
-    let mut model = check::model(system)?;
-    let system = discrete::system::system(&mut model)?;
-    let program = program::program(&mut model, &system)?;
+    let mut pool = Pool::bounded(limits::WORK);
+    let model = check::model(&mut pool, system)?;
+    let system = discrete::system::system(&mut pool, &model)?;
+    let program = program::program(&mut pool, &model, &system)?;
     let findings = found::findings(&model, &system, &program);
-    Ok(Derived { model, system, program, findings })
+    Ok(Derived { pool, model, system, program, findings })
 }
 
 /// The items of a derived system.
 #[must_use]
 pub fn items(derived: &Derived) -> TokenStream {
-    emit::items(&derived.model, &derived.system, &derived.program, &derived.findings, emit::LIMIT)
+    emit::items(derived, emit::LIMIT)
 }

@@ -3,6 +3,7 @@
 //! In: what a stage found wrong. Out: the text, what is wrong first, then what to do; lower case, no full stop.
 //! A stage collects its errors in [`Errors`] and reports them all before the next stage starts.
 
+use crate::rules::{self, RULES};
 use proc_macro2::Span;
 use vi_expr::TooLarge;
 
@@ -98,6 +99,10 @@ pub enum Message {
     MissingSlot { name: &'static str },
     /// A slot of a rule written twice.
     SecondSlot { name: String },
+    /// A name in a rule that changes with the state.
+    NotInRule { name: String },
+    /// L or f in the arguments of L or f.
+    FieldInArgument,
     /// A vector where a rule needs a number, or the reverse.
     Shape { needs: &'static str },
     /// A clause that does not exist.
@@ -180,6 +185,8 @@ impl Message {
             Self::UnknownSlot { name } => format!("a rule has no line `{name}`"),
             Self::MissingSlot { name } => format!("the rule has no line `{name}`"),
             Self::SecondSlot { name } => format!("a second `{name}` in the rule"),
+            Self::NotInRule { name } => format!("a rule cannot depend on `{name}`"),
+            Self::FieldInArgument => "`L` or `f` in an argument of `L` or `f`".to_owned(),
             Self::Shape { needs } => format!("a {needs} is needed here"),
             Self::UnknownClause { found, .. } => format!("unknown clause `{found}`"),
             Self::Expected { what } => format!("expected {what}"),
@@ -219,7 +226,7 @@ impl Message {
             }
             Self::UnknownFunction { near, .. } => did_you_mean(
                 near.as_ref(),
-                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow sum dot",
+                "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow sum, in a rule L f, elsewhere dot",
             ),
             Self::Arity { name, takes, .. } => format!("write `{name}({})`", ["a", "a, b"][usize::from(*takes > 1)]),
             Self::FunctionWithoutArguments { name } => format!("write its argument: `{name}(…)`"),
@@ -229,11 +236,10 @@ impl Message {
                 "use positions, velocities, time and parameters; an inertial term belongs in `L`".to_owned()
             }
             Self::NotConstant { .. } => "use numbers, `pi`, functions and earlier `const`s here".to_owned(),
-            Self::NotFinite { .. } => {
+            Self::DivisionByZero => "the denominator is identically zero; check it".to_owned(),
+            Self::NotFinite { .. } | Self::NoValue => {
                 "look for a division by zero, or a root or logarithm of a negative number".to_owned()
             }
-            Self::DivisionByZero => "the denominator is identically zero; check it".to_owned(),
-            Self::NoValue => "look for a division by zero, a root or logarithm of a negative number".to_owned(),
             Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
             Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
@@ -248,7 +254,7 @@ impl Message {
             Self::UnusedSlot { .. } => "a discrete Lagrangian depends on both ends of its interval".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
-            Self::MissingRule => "write `discretize midpoint;`".to_owned(),
+            Self::MissingRule => format!("write `discretize {};`", RULES[0].name),
             Self::SecondRule => "write `discretize` once".to_owned(),
             Self::SecondCheck => "write `check` once".to_owned(),
             Self::MissingStep => "end it with the step, as in `h = 0.01;`".to_owned(),
@@ -271,10 +277,12 @@ impl Message {
                 },
                 |name| format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
             ),
-            Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), "the rules are midpoint, trapezoidal"),
+            Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), &format!("the rules are {}", rules::list())),
             Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),
             Self::MissingSlot { name } if *name == "Ld" => "write `Ld = …;`".to_owned(),
-            Self::MissingSlot { name } => format!("the system has a force: write `{name} = …;`"),
+            Self::MissingSlot { .. } => "the system has a force: write all lines, or `Ld` alone, made of `L`".to_owned(),
+            Self::NotInRule { .. } => "a rule knows t0, t1, h, q0, q1, L, f, constants and parameters".to_owned(),
+            Self::FieldInArgument => "evaluate both at times, coordinates and velocities".to_owned(),
             Self::SecondSlot { .. } => "write each line of a rule once".to_owned(),
             Self::Shape { .. } => {
                 "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"

@@ -106,9 +106,9 @@ fn the_stages_show_their_products() {
             "D1 L_d = L_v_x*v_x - L",
             "(D2 L_d)_x = h*L_x/2 - L_v_x",
             "(f_d⁻)_x = h*f_x/2",
-            "g_d⁺ = -h*f_x*v_x/2",
+            "g_d⁺ = -h*v_x*f_x/2",
             "A_x,x = m + h/2 + k*h^2/4",
-            "E1 − E0 = h*f_x*v_x",
+            "E1 − E0 = h*v_x*f_x",
         ],
     );
     holds(Stage::Program, &["momentum: 1 operation", "%1 = m * dot(x)", "result %1"]);

@@ -9,4 +9,5 @@ mod mass;
 mod messages;
 mod operations;
 mod reference;
+mod rules;
 mod scope;

@@ -2,12 +2,14 @@
 
 use proc_macro2::TokenStream;
 use vi_codegen::{model, syntax};
+use vi_expr::Pool;
 
 /// What the check of names and meanings says of a system with these clauses.
 fn said(clauses: &str) -> Option<String> {
     let text = format!("struct System {{ {clauses} discretize midpoint; }}");
     let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
-    syntax::parse::system(tokens).and_then(model::check::model).err().map(|error| error.to_string())
+    let check = |system| model::check::model(&mut Pool::new(), system);
+    syntax::parse::system(tokens).and_then(check).err().map(|error| error.to_string())
 }
 
 #[test]

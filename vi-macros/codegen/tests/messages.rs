@@ -4,14 +4,12 @@
 //! exactly there, with the text given.
 
 use proc_macro2::TokenStream;
-use vi_codegen::{discrete, model, syntax};
+use vi_codegen::syntax;
 
 /// All errors of a text: (token underlined, message).
 fn errors(text: &str) -> Vec<(String, String)> {
     let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
-    let result = syntax::parse::system(tokens)
-        .and_then(model::check::model)
-        .and_then(|mut model| discrete::system::system(&mut model).map(|_| ()));
+    let result = syntax::parse::system(tokens).and_then(vi_codegen::derive).map(|_| ());
     let Err(error) = result else { return Vec::new() };
     let token = |error: &syn::Error| error.span().source_text().unwrap_or_default();
     error.into_iter().map(|error| (token(&error), error.to_string())).collect()
@@ -197,14 +195,25 @@ fn rules() {
     case(&system(&format!("{ld} {forces} gd_plus = 0; «Ld» = h;")), "a second `Ld` in the rule");
     case(&system(&format!("{ld} {forces} gd_plus = «q0»;")), "a number is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = t0 + «q0»;")), "a number is needed here");
-    case(&system(&format!("{ld} {forces} gd_plus = «q2»;")), "unknown name `q2`");
-    case(&system(&format!("{ld} {forces} gd_plus = «sin»(h);")), "unknown function `sin`");
+    case(&system(&format!("{ld} {forces} gd_plus = «q2»;")), "unknown name `q2`\nhelp: did you mean `q0`?");
+    case(&system(&format!("{ld} {forces} gd_plus = «sine»(h);")), "unknown function `sine`\nhelp: did you mean `sin`?");
+    case(&system(&format!("{ld} {forces} gd_plus = «dot»(q0);")), "unknown function `dot`");
+    case(&system(&format!("{ld} {forces} gd_plus = sin(«q0»);")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = «x»;")), "a rule cannot depend on `x`\nhelp: a rule knows t0,");
+    case(&system(&format!("{ld} {forces} gd_plus = «L»;")), "`L` is a function\nhelp: write its argument");
+    case(&system(&format!("{ld} {forces} gd_plus = «h»[0];")), "`h` is not an array");
+    case(&system(&format!("{ld} {forces} gd_plus = q0[«1»];")), "`q0[1]` is out of range 0..1");
+    case(&system(&format!("{ld} {forces} gd_plus = «sum»(i in 0..2, i * q0);")), "a number is needed here");
+    case(&system(&format!("{ld} {forces} gd_plus = sum(«q0» in 0..2, 1);")), "the name `q0` is declared twice");
+    case(
+        &system(&format!("{ld} {forces} gd_plus = «L»(t0, q0, h * f(t0, q0, q1));")),
+        "`L` or `f` in an argument of `L` or `f`",
+    );
     case(&system(&format!("{ld} {forces} gd_plus = «L»(t0, q0);")), "`L` takes 3 argument(s), not 2");
     case(&system(&format!("{ld} {forces} gd_plus = L(«q0», q0, q1);")), "a number is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = L(t0, «t0», q1);")), "a vector is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = h / «q0»;")), "a number is needed here");
-    case(&system(&format!("{ld} {forces} gd_plus = h^«t0»;")), "a constant number is needed here");
-    case(&system(&format!("{ld} {forces} gd_plus = «q0»[0];")), "expected t0, t1, h, q0, q1, L(…) or f(…)");
+    case(&system(&format!("{ld} {forces} gd_plus = h^«q0»;")), "a number is needed here");
     let rule = |ld: &str| format!("coord x; L = dot(x)^2 / 2 - x^2; discretize {{ {ld} }}");
     case(&rule("«Ld» = h * L(t0, q0, q0/h);"), "`Ld` does not depend on `q1`");
     case(&rule("«Ld» = h * L(t0, q1, q1/h);"), "`Ld` does not depend on `q0`");
@@ -212,6 +221,9 @@ fn rules() {
     let missing = errors(&format!("struct System {{ {} }}", system(&format!("{ld} {forces}"))));
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(missing[0].1.starts_with("the rule has no line `gd_plus`\nhelp: the system has a force"), "{missing:?}");
+    // The work of the force follows from what `Ld` takes of `L`: nothing.
+    let missing = errors(&format!("struct System {{ {} }}", system("Ld = (q1 - q0) * (q1 - q0) / (2 * h);")));
+    assert_eq!(missing.len(), 4, "{missing:?}");
 }
 
 #[test]
@@ -460,6 +472,10 @@ fn right_systems_pass() {
         "coord x; L = dot(x)^2 - x^2; force x = t; discretize trapezoidal;",
         "const N = 5; coord θ[N]; let x[i in 0..N] = sum(j in 0..i + 1, dot(θ[j]) * cos(θ[j])); L = sum(i in 0..N, x[i]^2 + dot(θ[i])^2); dissipation = sum(i in 0..N, i * dot(θ[i])^2); force θ[0] = cos(t); discretize midpoint;",
         "coord q[3]; L = sum(i in 0..3, dot(q[i])^2) - sum(i in 3..3, q[i]); force q[i in 1..3] = -q[i - 1]; discretize trapezoidal;",
+        "coord x; L = dot(x)^2 / 2; force x = -x; discretize { Ld = h * L(t0, q0, (q1 - q0)/h); }",
+        "param θ = 0.5; const h = 3; coord x; L = dot(x)^2 / 2 - x^2; discretize { Ld = h * L(t0 + θ * h, q0 + θ * (q1 - q0), (q1 - q0)/h); }",
+        "coord x; let w[i in 0..3] = 1 + 3 * i - i * i; L = dot(x)^2 / 2 - x^2; force x = t; discretize { Ld = h/6 * sum(i in 0..3, (w[i] + i * (2 - i)) * L(t0 + i * h/2, q0 + i * (q1 - q0)/2, (q1 - q0)/h)); }",
+        "coord x, y; L = dot(x)^2 + dot(y)^2; discretize { Ld = h * L(t0, q0, (q1 - q0)/h) - h * sqrt(1 + q0[0]^2) * cos(q1[1] / pi); }",
         "coord h, x; L = dot(h)^2 + dot(x)^2 - h * x; discretize midpoint; check { h = 2, dot(h) = 1; h = 0.01; }",
         "const g = 2; coord x, q[2]; L = dot(x)^2 + sum(i in 0..2, dot(q[i])^2); discretize midpoint; check { x = sqrt(g) * pi, q[i in 0..2] = i, dot(q[i in 0..2]) = -i; t = 1; h = 1e-2 };",
     ] {

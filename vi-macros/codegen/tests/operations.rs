@@ -5,14 +5,12 @@ use crate::families;
 use crate::families::{LENGTHS, LINKS};
 use vi_codegen::program::{FunctionId, Operation, OperationId, Output, Program};
 use vi_codegen::symbol::{Symbol, Variable};
-use vi_codegen::{discrete, model, program, syntax};
+use vi_codegen::syntax;
 use vi_expr::Function;
 
 fn lowered(text: &str) -> Program {
     let tokens = text.parse().expect("tokens");
-    let mut model = syntax::parse::system(tokens).and_then(model::check::model).expect("a right system");
-    let system = discrete::system::system(&mut model).expect("a right rule");
-    program::program(&mut model, &system).expect("a program")
+    syntax::parse::system(tokens).and_then(vi_codegen::derive).expect("a right system").program
 }
 
 /// Operations of the two functions that a step evaluates in every iteration, and of what measures it.

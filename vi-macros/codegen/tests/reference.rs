@@ -2,16 +2,14 @@
 //! and on the line, that its comment names. (That the other blocks run, and that these fail, the doctests say.)
 
 use proc_macro2::TokenStream;
-use vi_codegen::{discrete, model, syntax};
+use vi_codegen::syntax;
 
 const REFERENCE: &str = include_str!("../../../docs/dsl.md");
 
 /// The errors of a system: (line, what is wrong, help).
 fn errors(body: &str) -> Vec<(usize, String, String)> {
     let tokens: TokenStream = body.parse().expect("a block of the reference is made of Rust tokens");
-    let result = syntax::parse::system(tokens)
-        .and_then(model::check::model)
-        .and_then(|mut model| discrete::system::system(&mut model).map(|_| ()));
+    let result = syntax::parse::system(tokens).and_then(vi_codegen::derive).map(|_| ());
     let errors = result.expect_err("a block that is marked so does not compile");
     let split = |error: syn::Error| {
         let text = error.to_string();

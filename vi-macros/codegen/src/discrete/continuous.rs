@@ -8,7 +8,8 @@
 //! D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
 //! ```
 
-use super::{Fields, bounded};
+use super::fields::Fields;
+use crate::limits::bounded;
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Node, Pool, Rational, TooLarge};

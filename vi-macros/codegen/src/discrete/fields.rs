@@ -10,8 +10,7 @@
 //! A partial derivative that depends on parameters only is put in place, so that zeros and constants act at once. Of each
 //! partial derivative it is known on what it depends: most of those of a long chain are zero, and never derived.
 
-use super::Point;
-use crate::model::Model;
+use crate::model::{Model, Point};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::{Distinct, Expr, Pool};

@@ -10,8 +10,10 @@
 //! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      E1 = −D3 L_d − g_d⁺
 //! ```
 
-use super::fields::{Arguments, Changes, Variables, changes};
-use super::{Fields, Point, Slots, bounded};
+use super::fields::{Arguments, Changes, Fields, Variables, changes};
+use super::slots::Slots;
+use crate::limits::bounded;
+use crate::model::Point;
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::{Expr, Pool, Rational, TooLarge};
@@ -48,18 +50,19 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let mut residual = Vec::with_capacity(dimension);
     for i in 0..dimension {
         let start = carried(pool, Symbol::P0(i));
-        let terms = [slots.d2_ld[i], slots.fd_minus[i], start];
+        let terms = [slots.d2_ld[i], slots.forces.fd_minus[i], start];
         residual.push(negative_sum(pool, &terms)?);
     }
     let start = carried(pool, Symbol::E0);
-    let power = pool.add(slots.d1_ld, slots.gd_minus);
+    let power = pool.add(slots.d1_ld, slots.forces.gd_minus);
     let energy = pool.sub(power, start);
     let energy_residual = combined(pool, energy, &velocities, &residual)?;
 
     let momentum_increment = momentum_increment(pool, slots)?;
-    let energy_increment = negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.gd_minus, slots.gd_plus])?;
+    let energy_increment =
+        negative_sum(pool, &[slots.d1_ld, slots.d3_ld, slots.forces.gd_minus, slots.forces.gd_plus])?;
 
-    let discrete_energy = negative_sum(pool, &[slots.d3_ld, slots.gd_plus])?;
+    let discrete_energy = negative_sum(pool, &[slots.d3_ld, slots.forces.gd_plus])?;
 
     let rows = residual.iter().chain([&energy]);
     let rows = rows.map(|row| Row::new(pool, fields, *row, points.len())).collect::<Vec<_>>();
@@ -115,8 +118,8 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
                 Symbol::Q1(index) => {
                     let start = carried(pool, Symbol::Q0(*index));
                     let velocity = pool.symbol(Symbol::StepVelocity(*index));
-                    let way = pool.mul(step, velocity);
-                    Some(pool.add(start, way))
+                    let displacement = pool.mul(step, velocity);
+                    Some(pool.add(start, displacement))
                 }
                 _ => None,
             }
@@ -132,7 +135,7 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
 
 /// p1 − p0, multiplied out.
 fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr>, TooLarge> {
-    let gain = |i: usize| [slots.d2_ld[i], slots.d4_ld[i], slots.fd_minus[i], slots.fd_plus[i]];
+    let gain = |i: usize| [slots.d2_ld[i], slots.d4_ld[i], slots.forces.fd_minus[i], slots.forces.fd_plus[i]];
     (0..slots.d2_ld.len())
         .map(|i| {
             let sum = pool.sum(&gain(i));

@@ -1,11 +1,12 @@
 //! The checks of a system: one test for each that applies.
 //!
-//! Which apply is known here: whether there is a force, which coordinates are cyclic, which rule it is. A rule that is
-//! none of the named ones is expected to be of order 1, and nothing else.
+//! Which apply is known here: whether there is a force, which coordinates are cyclic, and what the table says of the rule. A rule that
+//! is not in it is expected to be of order 1, and nothing else.
 
 use super::Source;
 use super::formula::number;
-use proc_macro2::{Ident, TokenStream};
+use crate::rules::LEAST_ORDER;
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::Attribute;
 
@@ -15,12 +16,12 @@ use syn::Attribute;
 /// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … }
 /// ```
 pub(super) fn tests(source: &Source, conditions: &[&Attribute]) -> Option<TokenStream> {
-    let place = source.model.place.as_ref()?;
+    let state = source.model.check_state.as_ref()?;
     let (name, dimension) = (&source.model.name, source.dimension());
     let module = format_ident!("{}_checks", snake_case(name));
     let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
-    let (t, h) = (number(place.t), number(place.h));
-    let (q, v) = (place.q.iter().map(|entry| number(*entry)), place.v.iter().map(|entry| number(*entry)));
+    let (t, h) = (number(state.t), number(state.h));
+    let (q, v) = (state.q.iter().map(|entry| number(*entry)), state.v.iter().map(|entry| number(*entry)));
     let tests = checks(source).into_iter().map(|(check, order)| {
         let check = format_ident!("{check}");
         quote! {
@@ -50,20 +51,22 @@ pub(super) fn tests(source: &Source, conditions: &[&Attribute]) -> Option<TokenS
 
 /// The checks that apply, with the further argument that the order takes.
 fn checks(source: &Source) -> Vec<(&'static str, TokenStream)> {
-    let (forced, rule) = (source.model.forced, source.system.rule);
-    let (midpoint, symmetric) = (rule == Some("midpoint"), rule.is_some());
-    let order = if symmetric { quote!(, 2) } else { quote!(, 1) };
+    let forced = source.model.forced;
+    let rule = source.system.rule;
+    let symmetric = rule.is_some_and(|rule| rule.symmetric);
+    let step_density = rule.is_some_and(|rule| rule.step_density);
+    let order = Literal::u32_unsuffixed(rule.map_or(LEAST_ORDER, |rule| rule.order));
     let each = [
         ("derivatives", true, TokenStream::new()),
         ("slots", true, TokenStream::new()),
         ("steps", true, TokenStream::new()),
         ("energy_equations", source.system.has_energy_steps(), TokenStream::new()),
-        ("order", true, order),
+        ("order", true, quote!(, #order)),
         ("momenta", source.system.continuous.cyclic.contains(&true), TokenStream::new()),
         ("symplecticity", !forced, TokenStream::new()),
         ("reversibility", symmetric, TokenStream::new()),
-        ("energy", midpoint, TokenStream::new()),
-        ("step_law", midpoint && !forced, TokenStream::new()),
+        ("energy", step_density, TokenStream::new()),
+        ("step_law", step_density && !forced, TokenStream::new()),
     ];
     each.into_iter().filter(|(_, applies, _)| *applies).map(|(check, _, order)| (check, order)).collect()
 }

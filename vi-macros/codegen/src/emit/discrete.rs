@@ -18,10 +18,10 @@ pub(super) fn item(source: &Source) -> TokenStream {
         vector(source, FunctionId::D2Ld, &of.d2_ld),
         number(source, FunctionId::D3Ld, of.d3_ld),
         vector(source, FunctionId::D4Ld, &of.d4_ld),
-        vector(source, FunctionId::FdMinus, &of.fd_minus),
-        vector(source, FunctionId::FdPlus, &of.fd_plus),
-        number(source, FunctionId::GdMinus, of.gd_minus),
-        number(source, FunctionId::GdPlus, of.gd_plus),
+        vector(source, FunctionId::FdMinus, &of.forces.fd_minus),
+        vector(source, FunctionId::FdPlus, &of.forces.fd_plus),
+        number(source, FunctionId::GdMinus, of.forces.gd_minus),
+        number(source, FunctionId::GdPlus, of.forces.gd_plus),
     ];
     quote! {
         impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {

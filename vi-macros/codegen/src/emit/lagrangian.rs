@@ -58,7 +58,7 @@ impl Source<'_> {
     /// An expression in the user's names; of a long one the first words.
     fn spelt(&self, expr: Expr) -> String {
         let name = |symbol: &Symbol| self.system.spell(self.model, symbol);
-        let text = self.model.pool.render_within(CHARACTERS, expr, &name);
+        let text = self.pool.render_within(CHARACTERS, expr, &name);
         match text.strip_suffix('…') {
             Some(shown) => format!("{} …", shown.rsplit_once(' ').map_or(shown, |(words, _)| words)),
             None => text,

@@ -1,7 +1,6 @@
 //! Rust, printed from a program.
 //!
-//! In: a [`Model`], its [`DiscreteSystem`] and its
-//! [`Program`]. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
+//! In: a [`Derived`] system. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
 //! One file per kind of item: the struct, the continuous system, the discrete one, the stepper, the
 //! checks. All implementations stand in a scope of their own, in which no name of the surrounding code can get in their way.
 
@@ -21,17 +20,21 @@ mod scope;
 mod stepping;
 mod structure;
 
+use crate::derived::Derived;
 use crate::discrete::DiscreteSystem;
 use crate::found::Findings;
 use crate::model::Model;
 use crate::program::{Function, FunctionId, Program};
+use crate::symbol::Symbol;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
+use vi_expr::Pool;
 
 pub use structure::Broken;
 
 /// Everything that the items are printed from.
 struct Source<'a> {
+    pool: &'a Pool<Symbol>,
     model: &'a Model,
     system: &'a DiscreteSystem,
     program: &'a Program,
@@ -44,14 +47,9 @@ pub const LIMIT: usize = 800;
 
 /// The items of a system, in fixed order, in functions of at most `limit` operations, which is [`LIMIT`] but in tests.
 #[must_use]
-pub fn items(
-    model: &Model,
-    system: &DiscreteSystem,
-    program: &Program,
-    findings: &Findings,
-    limit: usize,
-) -> TokenStream {
-    let source = Source { model, system, program, findings, limit };
+pub fn items(derived: &Derived, limit: usize) -> TokenStream {
+    let Derived { pool, model, system, program, findings } = derived;
+    let source = Source { pool, model, system, program, findings, limit };
     let structure = structure::structure(&source);
     let parameters = structure::parameters(&source);
     let lagrangian = lagrangian::item(&source);

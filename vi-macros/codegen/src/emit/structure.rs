@@ -106,7 +106,7 @@ pub(super) fn numbers(source: &Source) -> TokenStream {
 /// What the generator found out, as the end of the struct's documentation.
 fn found(source: &Source) -> TokenStream {
     let model = source.model;
-    let rule = format!(" Discretized by the rule `{}`. What the generator found:", model.rule_name);
+    let rule = format!(" Discretized by the rule `{}`. What the generator found:", model.rule.title());
     let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
     let pause = pause(&model.attributes);

@@ -5,7 +5,7 @@
 use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
-use crate::discrete::Point;
+use crate::model::Point;
 use crate::symbol::Symbol;
 
 /// Points, slots, equations of a step.
@@ -45,7 +45,7 @@ fn derivatives(derived: &Derived) -> Vec<Line> {
 }
 
 fn forces(derived: &Derived) -> Section {
-    let of = &derived.system.slots;
+    let of = &derived.system.slots.forces;
     let title = "Discrete forces and powers";
     if !derived.model.forced {
         return Section { title, lines: vec![Line::words("None: no force acts")] };

@@ -48,12 +48,12 @@ pub enum Line {
 impl Line {
     /// The equation that gives an expression a name.
     pub(super) fn equation(derived: &Derived, left: (&str, &str), right: Expr) -> Self {
-        let Derived { model, system, .. } = derived;
+        let Derived { pool, model, system, .. } = derived;
         Self::Equation {
             left: left.0.to_owned(),
-            right: model.pool.render(right, &|symbol| system.spell(model, symbol)),
+            right: pool.render(right, &|symbol| system.spell(model, symbol)),
             left_latex: left.1.to_owned(),
-            right_latex: latex::expression(&model.pool, right, &|symbol| name::latex(derived, symbol)),
+            right_latex: latex::expression(pool, right, &|symbol| name::latex(derived, symbol)),
         }
     }
 
@@ -75,7 +75,7 @@ impl Line {
         let mut lines = Vec::new();
         for (row, of) in rows.iter().zip(coordinates) {
             for (entry, by) in row.iter().zip(coordinates) {
-                if derived.model.pool.is_zero(*entry) {
+                if derived.pool.is_zero(*entry) {
                     continue;
                 }
                 let text = format!("{}_{},{}", left.0, of.text(), by.text());

@@ -23,7 +23,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
             latex: format!("Parameter `{symbol}`, by default `{}`", parameter.default),
         });
     }
-    lines.push(Line::words(format!("rule {}", model.rule_name)));
+    lines.push(Line::words(format!("rule {}", model.rule.title())));
     let of = &derived.system.continuous;
     let mut functions = vec![Line::equation(derived, ("L", "L"), of.lagrangian)];
     if model.forced {

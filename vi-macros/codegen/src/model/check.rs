@@ -2,45 +2,45 @@
 //!
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
-use super::scope::{Meaning, Scope};
-use super::{Coordinate, Model, Parameter, force, mass, place};
-use crate::discrete::{self, WORK, bounded};
-use crate::messages::{Errors, Message, error, nearest};
+use super::context::Context;
+use super::scope::Meaning;
+use super::{Coordinate, Model, Parameter, Rule, check_state, force, mass, rule};
+use crate::limits::{COORDINATES, bounded};
+use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{self, Definition, Discretization, Indices, System};
-use proc_macro2::{Ident, Span};
+use crate::syntax::{self, Definition, Indices, System};
+use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
-/// Coordinates that one system may have.
-const COORDINATES: usize = 256;
-
-/// Checks a system.
+/// Checks a system, whose expressions go into the pool.
 ///
 /// # Errors
 /// Everything that is wrong with it.
-pub fn model(system: System) -> Result<Model> {
-    let (scope, errors) = (Scope::default(), Errors::default());
-    let mut check = Check { pool: Pool::bounded(WORK), scope, errors, too_large: false };
-    check.constants(&system.constants);
-    let defaults = check.parameters(&system.parameters);
-    let coordinates = check.coordinates(&system.coordinates, &system.name);
-    check.lets(&system.lets);
-    let lagrangian = check.lagrangian(&system.lagrangians, &system.name);
-    let forces = force::forces(&mut check, &system.forces, &system.dissipations, coordinates.len());
-    let rule = check.rule(system.discretizations, &system.name);
-    let place = place::place(&mut check, &system.checks, coordinates.len());
-    if check.errors.is_empty() {
-        check.every_parameter_acts(&system.parameters, lagrangian, &forces);
+pub fn model(pool: &mut Pool<Symbol>, system: System) -> Result<Model> {
+    let mut context = Context::new(pool);
+    context.constants(&system.constants);
+    let defaults = context.parameters(&system.parameters);
+    let coordinates = context.coordinates(&system.coordinates, &system.name);
+    context.lets(&system.lets);
+    let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
+    let forces = force::forces(&mut context, &system.forces, &system.dissipations, coordinates.len());
+    let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
+    let rule = rule::rule(&mut context, &system.discretizations, &system.name, coordinates.len(), forced);
+    let check_state = check_state::check_state(&mut context, &system.checks, coordinates.len());
+    if context.errors.is_empty() {
+        let of_rule = rule.iter().flat_map(Rule::expressions);
+        let acting: Vec<Expr> = lagrangian.into_iter().chain(forces.iter().copied()).chain(of_rule).collect();
+        context.every_parameter_acts(&system.parameters, &acting);
     }
-    let Check { mut pool, errors, .. } = check;
+    let Context { pool, errors, .. } = context;
     errors.finish(())?;
-    let (Some(lagrangian), Some((rule, rule_name))) = (lagrangian, rule) else {
+    let (Some(lagrangian), Some(rule)) = (lagrangian, rule) else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
-    let singular = mass::check(&mut pool, &coordinates, lagrangian, system.lagrangians[0].name.span());
+    let singular = mass::check(pool, &coordinates, lagrangian, system.lagrangians[0].name.span());
     // What an exhausted pool says means nothing.
-    bounded(&pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
+    bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
     let parameters = system.parameters.into_iter().zip(defaults);
     Ok(Model {
@@ -52,83 +52,18 @@ pub fn model(system: System) -> Result<Model> {
             .collect(),
         coordinates,
         lagrangian,
-        forced: forces.iter().any(|force| !pool.is_zero(*force)),
+        forced,
         forces,
         rule,
-        rule_name,
-        place,
-        pool,
+        check_state,
     })
 }
 
-/// What the rules work on.
-pub(super) struct Check {
-    pub(super) pool: Pool<Symbol>,
-    pub(super) scope: Scope,
-    pub(super) errors: Errors,
-    /// It was reported, or will be, that the system is too large.
-    too_large: bool,
-}
-
-impl Check {
-    /// A declared name gets its meaning; a name that cannot be declared is reported.
-    fn declare(&mut self, name: &Ident, meaning: Meaning) {
-        if let Err(error) = self.scope.declare(name, meaning) {
-            self.errors.add(error);
-        }
-    }
-
-    /// Whether nothing more is to be made of the system.
-    fn is_too_large(&self) -> bool {
-        bounded(&self.pool).is_err()
-    }
-
-    /// What a stage makes, or nothing and a report. Of a system that is too large only the first: where it became so.
-    pub(super) fn report<P>(&mut self, made: Result<P>) -> Option<P> {
-        let reported = self.too_large;
-        self.too_large = self.is_too_large();
-        match made {
-            Ok(made) => return Some(made),
-            Err(error) if !reported => self.errors.add(error),
-            Err(_) => {}
-        }
-        None
-    }
-
-    /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.
-    pub(super) fn value(&mut self, written: &Definition) -> Expr {
-        let value = self.scope.expression(&mut self.pool, &written.value);
-        self.report(value).unwrap_or_else(|| self.pool.one())
-    }
-
-    /// The finite number that a constant definition stands for.
-    pub(super) fn number(&mut self, written: &Definition) -> (Expr, f64) {
-        let value = self.value(written);
-        match self.finite(value, written.value.span, &written.name) {
-            Some(number) => (value, number),
-            None => (self.pool.one(), 1.0),
-        }
-    }
-
-    /// The finite number that an expression stands for; where it has none, a report.
-    pub(super) fn finite(&mut self, value: Expr, span: Span, name: &Ident) -> Option<f64> {
-        let name = name.to_string();
-        if !self.pool.symbols(value).is_empty() {
-            self.errors.at(span, &Message::NotConstant { name });
-            return None;
-        }
-        let number = self.pool.evaluate(value, &mut |_| f64::NAN);
-        if !number.is_finite() && !self.is_too_large() {
-            self.errors.at(span, &Message::NotFinite { name });
-            return None;
-        }
-        Some(number)
-    }
-
+impl Context<'_> {
     fn constants(&mut self, constants: &[Definition]) {
         for constant in constants {
             let (value, _) = self.number(constant);
-            self.declare(&constant.name, Meaning::Value(value));
+            self.declare(&constant.name, Meaning::Number(value));
         }
     }
 
@@ -136,7 +71,7 @@ impl Check {
         let defaults: Vec<f64> = parameters.iter().map(|parameter| self.number(parameter).1).collect();
         for (index, parameter) in parameters.iter().enumerate() {
             let symbol = self.pool.symbol(Symbol::Parameter(index));
-            self.declare(&parameter.name, Meaning::Value(symbol));
+            self.declare(&parameter.name, Meaning::Number(symbol));
         }
         defaults
     }
@@ -158,7 +93,7 @@ impl Check {
                 self.declare(name, Meaning::Coordinate(first));
                 continue;
             };
-            let length = self.scope.integer(&mut self.pool, written);
+            let length = self.scope.integer(self.pool, written);
             let Some(length) = self.report(length) else {
                 self.declare(name, Meaning::Wrong);
                 continue;
@@ -183,15 +118,14 @@ impl Check {
             match &named.indices {
                 None => {
                     let value = self.value(named);
-                    self.declare(&named.name, Meaning::Value(value));
+                    self.declare(&named.name, Meaning::Number(value));
                 }
                 Some(Indices::Range(range)) => {
-                    let first = self.scope.integer(&mut self.pool, &range.from);
-                    let entries = self
-                        .scope
-                        .each(&mut self.pool, range, &mut |scope, pool, _| scope.expression(pool, &named.value));
+                    let first = self.scope.integer(self.pool, &range.from);
+                    let entries =
+                        self.scope.each(self.pool, range, &mut |scope, pool, _| scope.expression(pool, &named.value));
                     let meaning = match (self.report(entries), first) {
-                        (Some(entries), Ok(first)) => Meaning::Values { first, entries },
+                        (Some(entries), Ok(first)) => Meaning::Array { first, entries },
                         _ => Meaning::Wrong,
                     };
                     self.declare(&named.name, meaning);
@@ -220,44 +154,13 @@ impl Check {
         Some(lagrangian)
     }
 
-    /// A parameter that neither L nor f depends on is a mistake of spelling or of thought.
-    fn every_parameter_acts(&mut self, parameters: &[Definition], lagrangian: Option<Expr>, forces: &[Expr]) {
-        let acting: Vec<Expr> = lagrangian.into_iter().chain(forces.iter().copied()).collect();
-        let acting = self.pool.symbols_of(&acting);
+    /// A parameter that none of L, f and the rule depends on is a mistake of spelling or of thought.
+    fn every_parameter_acts(&mut self, parameters: &[Definition], acting: &[Expr]) {
+        let acting = self.pool.symbols_of(acting);
         for (index, parameter) in parameters.iter().enumerate() {
             if !acting.contains(&Symbol::Parameter(index)) && !self.is_too_large() {
                 let name = parameter.name.to_string();
                 self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
-            }
-        }
-    }
-
-    fn rule(&mut self, written: Vec<Discretization>, system: &Ident) -> Option<(crate::syntax::Rule, String)> {
-        let mut written = written.into_iter();
-        let Some(first) = written.next() else {
-            self.errors.at(system.span(), &Message::MissingRule);
-            return None;
-        };
-        for other in written {
-            let span = match &other {
-                Discretization::Named(name) => name.span(),
-                Discretization::Written(rule) => rule.span,
-            };
-            self.errors.at(span, &Message::SecondRule);
-        }
-        match first {
-            Discretization::Written(rule) => Some((rule, "written out".to_owned())),
-            Discretization::Named(name) => {
-                let known = discrete::named_rule(&name.to_string());
-                match known {
-                    Some(Ok(rule)) => return Some((rule, name.to_string())),
-                    Some(Err(error)) => self.errors.add(error),
-                    None => {
-                        let near = nearest(&name.to_string(), discrete::RULES);
-                        self.errors.at(name.span(), &Message::UnknownRule { name: name.to_string(), near });
-                    }
-                }
-                None
             }
         }
     }

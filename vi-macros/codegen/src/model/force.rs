@@ -6,7 +6,7 @@
 //! f_i = (line of x_i) − ∂R/∂v_i        R(t,q,v) is Rayleigh's function
 //! ```
 
-use super::check::Check;
+use super::context::Context;
 use super::scope::Meaning;
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
@@ -16,24 +16,26 @@ use vi_expr::Expr;
 
 /// The force on each coordinate; zero where none is declared.
 pub(super) fn forces(
-    check: &mut Check,
+    context: &mut Context,
     lines: &[Definition],
     dissipations: &[Definition],
     dimension: usize,
 ) -> Vec<Expr> {
     let mut forces: Vec<Option<Expr>> = vec![None; dimension];
     for line in lines {
-        let Some(entries) = entries(check, line, &|name, near| Message::ForceOnOther { name, near }) else { continue };
+        let Some(entries) = entries(context, line, &|name, near| Message::ForceOnOther { name, near }) else {
+            continue;
+        };
         for (coordinate, value) in entries {
             if forces[coordinate].replace(value).is_some() {
-                check.errors.at(line.name.span(), &Message::SecondForce { name: line.name.to_string() });
+                context.errors.at(line.name.span(), &Message::SecondForce { name: line.name.to_string() });
                 break;
             }
         }
     }
-    let zero = check.pool.zero();
+    let zero = context.pool.zero();
     let mut forces: Vec<Expr> = forces.into_iter().map(|force| force.unwrap_or(zero)).collect();
-    dissipate(check, dissipations, &mut forces);
+    dissipate(context, dissipations, &mut forces);
     forces
 }
 
@@ -41,26 +43,26 @@ pub(super) fn forces(
 pub(super) type Other<'a> = &'a dyn Fn(String, Option<String>) -> Message;
 
 /// The coordinates that a line is about, with their values.
-pub(super) fn entries(check: &mut Check, line: &Definition, other: Other) -> Option<Vec<(usize, Expr)>> {
+pub(super) fn entries(context: &mut Context, line: &Definition, other: Other) -> Option<Vec<(usize, Expr)>> {
     let name = line.name.to_string();
-    let wanted = match (check.scope.meaning(&name).cloned(), &line.indices) {
-        (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, check.value(line))]),
+    let wanted = match (context.scope.meaning(&name).cloned(), &line.indices) {
+        (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, context.value(line))]),
         (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
         (Some(Meaning::Wrong), _) => Ok(Vec::new()),
         (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
-        (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(check, line, indices),
+        (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(context, line, indices),
         _ => {
             // The value may be wrong too.
-            check.value(line);
-            let near = check.scope.near_coordinate(&check.pool, &name);
+            context.value(line);
+            let near = context.scope.near_coordinate(context.pool, &name);
             Err(error(line.name.span(), &other(name, near)))
         }
     };
-    check.report(wanted)
+    context.report(wanted)
 }
 
-fn array_entries(check: &mut Check, line: &Definition, indices: &Indices) -> Result<Vec<(usize, Expr)>> {
-    let Check { scope, pool, .. } = check;
+fn array_entries(context: &mut Context, line: &Definition, indices: &Indices) -> Result<Vec<(usize, Expr)>> {
+    let Context { scope, pool, .. } = context;
     let range = match indices {
         Indices::One(index) => {
             let value = scope.expression(pool, &line.value)?;
@@ -86,21 +88,21 @@ fn array_entries(check: &mut Check, line: &Definition, indices: &Indices) -> Res
 }
 
 /// Adds −∂R/∂v.
-fn dissipate(check: &mut Check, written: &[Definition], forces: &mut [Expr]) {
+fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr]) {
     let Some((first, others)) = written.split_first() else { return };
     for other in others {
-        check.errors.at(other.name.span(), &Message::SecondDissipation);
+        context.errors.at(other.name.span(), &Message::SecondDissipation);
     }
-    let rayleigh = check.value(first);
+    let rayleigh = context.value(first);
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
-    if check.errors.is_empty() && !check.pool.depends_on(rayleigh, &moves) {
-        check.errors.at(first.name.span(), &Message::NoDissipation);
+    if context.errors.is_empty() && !context.pool.depends_on(rayleigh, &moves) {
+        context.errors.at(first.name.span(), &Message::NoDissipation);
     }
     for (index, force) in forces.iter_mut().enumerate() {
         let velocity = Symbol::Continuous(Variable::Velocity(index));
-        let loss = check.pool.derivative(rayleigh, &mut |pool, symbol| {
+        let loss = context.pool.derivative(rayleigh, &mut |pool, symbol| {
             if *symbol == velocity { pool.one() } else { pool.zero() }
         });
-        *force = check.pool.sub(*force, loss);
+        *force = context.pool.sub(*force, loss);
     }
 }

@@ -1,27 +1,27 @@
 //! The system, checked: what it is called, what it is made of, and L and f as expressions.
 //!
-//! In: a [`System`](crate::syntax::System). Out: a [`Model`]. AFTER THIS every name is resolved, every number exact,
-//! and L and f are expressions in [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only; the spans that
-//! are left are those of declared names.
+//! In: a [`System`](crate::syntax::System). Out: a [`Model`], whose expressions are in the pool. AFTER THIS every name is resolved, those
+//! of the rule too, every number exact, and L and f are expressions in [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only;
+//! the spans that are left are those of declared names.
 
 pub mod check;
+mod check_state;
+mod context;
 mod force;
 mod mass;
-mod place;
 mod resolve;
+pub(crate) mod rule;
 mod scope;
 
-pub use place::Place;
+pub use check_state::CheckState;
+pub use rule::{DiscreteForces, Point, Rule};
 
 use crate::symbol::Symbol;
-use crate::syntax::Rule;
 use proc_macro2::Ident;
-use vi_expr::{Expr, Pool};
+use vi_expr::Expr;
 
 /// A checked system.
 pub struct Model {
-    /// The expressions of this system.
-    pub pool: Pool<Symbol>,
     /// Attributes and doc comments of the struct.
     pub attributes: Vec<syn::Attribute>,
     /// Visibility of the struct.
@@ -40,10 +40,8 @@ pub struct Model {
     pub forced: bool,
     /// How L becomes L_d.
     pub rule: Rule,
-    /// The rule as the documentation names it.
-    pub rule_name: String,
-    /// Where the system is checked, if it says so.
-    pub place: Option<Place>,
+    /// The state at which the system is checked, if it says so.
+    pub check_state: Option<CheckState>,
 }
 
 /// A coordinate.

@@ -1,11 +1,13 @@
 //! Written expressions become exact ones.
 //!
-//! In: an [`Expression`] and the names in [`Scope`]. Out: an expression of the pool, or the message at the token.
+//! In: an [`Expression`] and the names in [`Scope`]. Out: a [`Value`] of the pool, or the message at the token. An expression of a system
+//! is a number; in the lines of a rule the coordinates at an end are a vector, the force is one, and `*` of two is their dot product.
 
+use super::rule::Point;
 use super::scope::{Meaning, Scope};
-use crate::discrete::bounded;
+use crate::limits::bounded;
 use crate::messages::{Message, error, nearest};
-use crate::symbol::{Symbol, Variable};
+use crate::symbol::{Field, Quantity, Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator, Range};
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Span};
@@ -18,34 +20,117 @@ const READING: usize = 8;
 /// What is done with one value of an index.
 type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
 
+/// A number, or a vector with one entry for each coordinate.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Number(Expr),
+    Vector(Vec<Expr>),
+}
+
+impl Value {
+    /// The number that it is.
+    ///
+    /// # Errors
+    /// It is a vector: a message at this place.
+    pub(super) fn number(self, span: Span) -> Result<Expr> {
+        match self {
+            Self::Number(value) => Ok(value),
+            Self::Vector(_) => Err(error(span, &Message::Shape { needs: "number" })),
+        }
+    }
+
+    /// The vector that it is.
+    ///
+    /// # Errors
+    /// It is a number: a message at this place.
+    pub(super) fn vector(self, span: Span) -> Result<Vec<Expr>> {
+        match self {
+            Self::Vector(entries) => Ok(entries),
+            Self::Number(_) => Err(error(span, &Message::Shape { needs: "vector" })),
+        }
+    }
+
+    fn entries(&self) -> &[Expr] {
+        match self {
+            Self::Number(value) => core::slice::from_ref(value),
+            Self::Vector(entries) => entries,
+        }
+    }
+
+    fn map(self, mut make: impl FnMut(Expr) -> Expr) -> Self {
+        match self {
+            Self::Number(value) => Self::Number(make(value)),
+            Self::Vector(entries) => Self::Vector(entries.into_iter().map(make).collect()),
+        }
+    }
+
+    /// The sum of values of one shape, each with its place.
+    fn sum(pool: &mut Pool<Symbol>, terms: Vec<(Self, Span)>) -> Result<Self> {
+        let Some((Self::Vector(first), _)) = terms.first() else {
+            let numbers = terms.into_iter().map(|(term, span)| term.number(span)).collect::<Result<Vec<_>>>()?;
+            return Ok(Self::Number(pool.sum(&numbers)));
+        };
+        let length = first.len();
+        let vectors = terms.into_iter().map(|(term, span)| term.vector(span)).collect::<Result<Vec<_>>>()?;
+        let entry = |index: usize| vectors.iter().filter_map(|vector| vector.get(index)).copied().collect::<Vec<_>>();
+        Ok(Self::Vector((0..length).map(|index| pool.sum(&entry(index))).collect()))
+    }
+
+    /// The product of factors, from left to right.
+    fn product(pool: &mut Pool<Symbol>, factors: Vec<Self>) -> Self {
+        let numbers: Option<Vec<Expr>> = factors.iter().map(|factor| factor.clone().into_number()).collect();
+        if let Some(numbers) = numbers {
+            return Self::Number(pool.product(&numbers));
+        }
+        let times = |left: Self, right: Self| match (left, right) {
+            (Self::Number(scale), other) | (other, Self::Number(scale)) => other.map(|entry| pool.mul(entry, scale)),
+            (Self::Vector(left), Self::Vector(right)) => {
+                let products: Vec<Expr> = left.into_iter().zip(right).map(|(a, b)| pool.mul(a, b)).collect();
+                Self::Number(pool.sum(&products))
+            }
+        };
+        factors.into_iter().reduce(times).unwrap_or(Self::Vector(Vec::new()))
+    }
+
+    fn into_number(self) -> Option<Expr> {
+        if let Self::Number(value) = self { Some(value) } else { None }
+    }
+}
+
 impl Scope {
-    /// The exact expression that a written one stands for.
+    /// The exact number that a written expression stands for.
+    ///
+    /// # Errors
+    /// Those of [`Self::value`], and a vector.
+    pub(super) fn expression(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
+        self.value(pool, written)?.number(written.span)
+    }
+
+    /// The exact value that a written expression stands for.
     ///
     /// # Errors
     /// Unknown names, wrong arguments, no value (a division by zero, say), too much work: at the token.
-    pub(super) fn expression(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Expr> {
+    pub(super) fn value(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Value> {
         pool.spend(READING);
         let value = match &written.kind {
-            Kind::Number(value) => pool.number(value.clone()),
+            Kind::Number(value) => Value::Number(pool.number(value.clone())),
             Kind::Name(name) => self.name(pool, name)?,
-            Kind::Entry(name, index) => self.entry(pool, name, index)?,
+            Kind::Entry(name, index) => Value::Number(self.entry(pool, name, index)?),
             Kind::Call(function, arguments) => self.call(pool, function, arguments)?,
             Kind::Sum(range, summand) => {
-                let terms = self.each(pool, range, &mut |scope, pool, _| scope.expression(pool, summand))?;
-                pool.sum(&terms)
+                let terms = self.each(pool, range, &mut |scope, pool, _| scope.value(pool, summand))?;
+                Value::sum(pool, terms.into_iter().map(|term| (term, summand.span)).collect())?
             }
-            Kind::Negative(operand) => {
-                let operand = self.expression(pool, operand)?;
-                pool.neg(operand)
-            }
+            Kind::Negative(operand) => self.value(pool, operand)?.map(|operand| pool.neg(operand)),
             Kind::Power(base, exponent) => {
-                let (base, exponent) = (self.expression(pool, base)?, self.expression(pool, exponent)?);
-                pool.call(Function::Pow, &[base, exponent])
+                let base = self.expression(pool, base)?;
+                let exponent = self.expression(pool, exponent)?;
+                Value::Number(pool.call(Function::Pow, &[base, exponent]))
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
         };
         bounded(pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
-        if pool.is_undefined(value) {
+        if value.entries().iter().any(|entry| pool.is_undefined(*entry)) {
             return Err(error(written.span, &Message::NoValue));
         }
         Ok(value)
@@ -61,9 +146,9 @@ impl Scope {
             return Err(error(range.to.span, &Message::BackwardRange { from, to }));
         }
         let index = range.index.to_string();
-        self.declare(&range.index, Meaning::Value(pool.zero()))?;
+        self.declare(&range.index, Meaning::Number(pool.zero()))?;
         let made = (from..to).map(|value| {
-            self.set(&index, Meaning::Value(pool.integer(value)));
+            self.set(&index, Meaning::Number(pool.integer(value)));
             make(self, pool, value)
         });
         let made = made.collect();
@@ -81,37 +166,52 @@ impl Scope {
         integer.ok_or_else(|| error(written.span, &Message::NotInteger))
     }
 
-    fn chain(&mut self, pool: &mut Pool<Symbol>, first: &Expression, rest: &[(Operator, Expression)]) -> Result<Expr> {
-        let mut operands = vec![self.expression(pool, first)?];
-        let mut sum = true;
+    fn chain(&mut self, pool: &mut Pool<Symbol>, first: &Expression, rest: &[(Operator, Expression)]) -> Result<Value> {
+        let mut operands = vec![(self.value(pool, first)?, first.span)];
+        let mut is_sum = true;
         for (operator, written) in rest {
-            let operand = self.expression(pool, written)?;
-            operands.push(match operator {
+            let operand = self.value(pool, written)?;
+            let operand = match operator {
                 Operator::Plus | Operator::Times => operand,
-                Operator::Minus => pool.neg(operand),
-                Operator::Over if pool.is_zero(operand) => {
-                    return Err(error(written.span, &Message::DivisionByZero));
+                Operator::Minus => operand.map(|operand| pool.neg(operand)),
+                Operator::Over => {
+                    let divisor = operand.number(written.span)?;
+                    if pool.is_zero(divisor) {
+                        return Err(error(written.span, &Message::DivisionByZero));
+                    }
+                    Value::Number(pool.power(divisor, &Rational::from_integer((-1).into())))
                 }
-                Operator::Over => pool.power(operand, &Rational::from_integer((-1).into())),
-            });
-            sum = matches!(operator, Operator::Plus | Operator::Minus);
+            };
+            operands.push((operand, written.span));
+            is_sum = matches!(operator, Operator::Plus | Operator::Minus);
         }
-        Ok(if sum { pool.sum(&operands) } else { pool.product(&operands) })
+        if is_sum {
+            return Value::sum(pool, operands);
+        }
+        Ok(Value::product(pool, operands.into_iter().map(|(operand, _)| operand).collect()))
     }
 
-    fn name(&self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Expr> {
+    fn name(&self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Value> {
         let text = name.to_string();
-        match (self.meaning(&text), text.as_str()) {
-            (Some(Meaning::Value(value)), _) => Ok(*value),
-            (Some(Meaning::Wrong), _) => Ok(pool.one()),
-            (Some(Meaning::Coordinate(index)), _) => Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index)))),
-            (Some(Meaning::Values { .. } | Meaning::Coordinates { .. }), _) => {
-                Err(error(name.span(), &Message::ArrayWithoutIndex { name: text }))
+        let said = match self.meaning(&text) {
+            Some(Meaning::Number(value)) => return Ok(Value::Number(*value)),
+            Some(Meaning::Wrong) => return Ok(Value::Number(pool.one())),
+            Some(Meaning::Pi) => return Ok(Value::Number(pool.pi())),
+            Some(Meaning::Symbol(symbol)) => return Ok(Value::Number(pool.symbol(symbol.clone()))),
+            Some(Meaning::Coordinate(index)) => {
+                return Ok(Value::Number(pool.symbol(Symbol::Continuous(Variable::Coordinate(*index)))));
             }
-            (None, "t") => Ok(pool.symbol(Symbol::Continuous(Variable::Time))),
-            (None, "pi") => Ok(pool.pi()),
-            (None, _) => Err(error(name.span(), &self.unknown(pool, text))),
-        }
+            Some(Meaning::Vector(entries)) => {
+                return Ok(Value::Vector(entries.iter().map(|entry| pool.symbol(entry.clone())).collect()));
+            }
+            Some(Meaning::Array { .. } | Meaning::Coordinates { .. }) => Message::ArrayWithoutIndex { name: text },
+            Some(Meaning::OfState) => Message::NotInRule { name: text },
+            Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_)) => {
+                Message::FunctionWithoutArguments { name: text }
+            }
+            None => self.unknown(pool, text),
+        };
+        Err(error(name.span(), &said))
     }
 
     /// An entry of an array.
@@ -121,16 +221,21 @@ impl Scope {
         }
         let at = self.integer(pool, index)?;
         let text = name.to_string();
+        let of_coordinates: Vec<Expr>;
         let (first, entries) = match self.meaning(&text) {
-            Some(Meaning::Values { first, entries }) => (first, entries),
+            Some(Meaning::Array { first, entries }) => (*first, entries),
+            Some(Meaning::Vector(entries)) => {
+                of_coordinates = entries.iter().map(|entry| pool.symbol(entry.clone())).collect();
+                (0, &of_coordinates)
+            }
             Some(Meaning::Wrong) => return Ok(pool.one()),
             _ => return Err(error(name.span(), &self.no_array(pool, text))),
         };
-        let offset = at.checked_sub(*first).and_then(|offset| usize::try_from(offset).ok());
+        let offset = at.checked_sub(first).and_then(|offset| usize::try_from(offset).ok());
         let entry = offset.and_then(|offset| entries.get(offset));
         entry.copied().ok_or_else(|| {
             let end = first.saturating_add(i64::try_from(entries.len()).unwrap_or(i64::MAX));
-            error(index.span, &Message::IndexRange { name: text, index: at, first: *first, end })
+            error(index.span, &Message::IndexRange { name: text, index: at, first, end })
         })
     }
 
@@ -158,15 +263,17 @@ impl Scope {
 
     /// What a name with an index was meant to be.
     fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
-        if self.meaning(&name).is_some() || name == "t" || name == "pi" {
-            return Message::NotArray { name };
+        match self.meaning(&name) {
+            Some(Meaning::OfState) => Message::NotInRule { name },
+            Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_)) => Message::FunctionWithoutArguments { name },
+            Some(_) => Message::NotArray { name },
+            None => self.unknown(pool, name),
         }
-        self.unknown(pool, name)
     }
 
     /// What a name that stands for nothing was meant to be.
     fn unknown(&self, pool: &Pool<Symbol>, name: String) -> Message {
-        if name == "dot" || name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
+        if name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
         }
         let acceleration = ["ddot", "_ddot", "_tt"].iter().find_map(|ending| name.strip_suffix(ending));
@@ -177,25 +284,57 @@ impl Scope {
         Message::Unknown { name, near }
     }
 
-    fn call(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Expr> {
+    fn call(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Value> {
         let name = function.to_string();
-        if name == "dot" {
-            return self.velocity(pool, function.span(), arguments);
+        match self.meaning(&name).cloned() {
+            Some(Meaning::Dot) => return self.velocity(pool, function.span(), arguments).map(Value::Number),
+            Some(Meaning::Lagrangian) => {
+                let point = self.arguments_of_point(pool, function, arguments)?;
+                return Ok(Value::Number(pool.symbol(at_point(Quantity::Lagrangian, point))));
+            }
+            Some(Meaning::Force(dimension)) => {
+                let point = self.arguments_of_point(pool, function, arguments)?;
+                let components = (0..dimension).map(|index| pool.symbol(at_point(Quantity::Force(index), point)));
+                return Ok(Value::Vector(components.collect()));
+            }
+            _ => {}
         }
         let known = Function::from_name(&name);
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
-            let functions = Function::ALL.into_iter().map(Function::name).chain(["sqrt", "dot", "sum"]);
-            let near = nearest(&name, functions);
+            let near = nearest(&name, self.functions());
             return Err(error(function.span(), &Message::UnknownFunction { name, near }));
         };
         if arguments.len() != takes {
             return Err(error(function.span(), &Message::Arity { name, takes, given: arguments.len() }));
         }
         let values = arguments.iter().map(|each| self.expression(pool, each)).collect::<Result<Vec<_>>>()?;
-        Ok(match known {
+        Ok(Value::Number(match known {
             Some(function) => pool.call(function, &values),
             None => pool.power(values[0], &Rational::new(1.into(), 2.into())),
-        })
+        }))
+    }
+
+    /// The point that the arguments of L or f are: a time, coordinates, velocities.
+    fn arguments_of_point(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        function: &Ident,
+        arguments: &[Expression],
+    ) -> Result<usize> {
+        let [time, coordinates, velocities] = arguments else {
+            let name = function.to_string();
+            return Err(error(function.span(), &Message::Arity { name, takes: 3, given: arguments.len() }));
+        };
+        let point = Point {
+            time: self.expression(pool, time)?,
+            coordinates: self.value(pool, coordinates)?.vector(coordinates.span)?,
+            velocities: self.value(pool, velocities)?.vector(velocities.span)?,
+        };
+        let is_field = |symbol: &Symbol| matches!(symbol, Symbol::Field(_));
+        if point.arguments().any(|(_, argument)| pool.depends_on(argument, &is_field)) {
+            return Err(error(function.span(), &Message::FieldInArgument));
+        }
+        Ok(self.point(point))
     }
 
     fn velocity(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Expr> {
@@ -209,10 +348,8 @@ impl Scope {
                 Some(Meaning::Coordinates { .. }) => {
                     return Err(error(name.span(), &Message::ArrayWithoutIndex { name: name.to_string() }));
                 }
-                None if name != "t" && name != "pi" => {
-                    return Err(error(name.span(), &self.unknown(pool, name.to_string())));
-                }
-                _ => return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() })),
+                None => return Err(error(name.span(), &self.unknown(pool, name.to_string()))),
+                Some(_) => return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() })),
             },
             Kind::Entry(name, index) => match self.coordinate_entry(pool, name, index)? {
                 Some(coordinate) => coordinate,
@@ -229,4 +366,9 @@ impl Scope {
         };
         Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(coordinate))))
     }
+}
+
+/// L or a component of f itself, at a point of the rule.
+fn at_point(quantity: Quantity, point: usize) -> Symbol {
+    Symbol::Field(Field { quantity, derivatives: Vec::new(), point })
 }

@@ -1,7 +1,11 @@
 //! The names that an expression may use, and what they stand for.
+//!
+//! In: the declarations of a system, one by one. Out: what each name means, in the expressions of the system or in the lines of a rule.
+//! A name means one thing, and nothing where it is not declared yet.
 
+use super::rule::Point;
 use crate::messages::{Message, error, nearest};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 use syn::Result;
@@ -14,27 +18,96 @@ const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
 const COMPARISON: usize = 16;
 
 /// The names that an expression may use.
-#[derive(Default)]
 pub(super) struct Scope {
     names: BTreeMap<String, Meaning>,
+    /// Where the expressions of a rule evaluate L and f.
+    points: Vec<Point>,
 }
 
 /// What a name stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// A parameter, constant, index or `let`, with its expression.
-    Value(Expr),
+    Number(Expr),
     /// An array of `let`s: its first index, its entries.
-    Values { first: i64, entries: Vec<Expr> },
+    Array { first: i64, entries: Vec<Expr> },
+    /// Time, or a slot of a rule.
+    Symbol(Symbol),
+    /// π.
+    Pi,
     /// A coordinate, by its number.
     Coordinate(usize),
     /// An array of coordinates: the number of its first one, its length.
     Coordinates { first: usize, length: usize },
+    /// The coordinates at an end of the interval.
+    Vector(Vec<Symbol>),
+    /// The function `dot`.
+    Dot,
+    /// L of time, coordinates and velocities.
+    Lagrangian,
+    /// f of time, coordinates and velocities, for so many coordinates.
+    Force(usize),
+    /// Something that changes with the state, which a rule does not know but as an argument of L and f.
+    OfState,
     /// Something that was reported wrong where it was declared: it reads as 1, with or without an index.
     Wrong,
 }
 
 impl Scope {
+    /// The names that the language gives to the expressions of a system.
+    pub(super) fn of_system() -> Self {
+        let time = Meaning::Symbol(Symbol::Continuous(Variable::Time));
+        Self::of([("t", time), ("pi", Meaning::Pi), ("dot", Meaning::Dot)])
+    }
+
+    /// The names that the language gives to the lines of a rule, for a system of so many coordinates.
+    pub(super) fn of_rule(dimension: usize) -> Self {
+        Self::of([
+            ("t0", Meaning::Symbol(Symbol::T0)),
+            ("t1", Meaning::Symbol(Symbol::T1)),
+            ("h", Meaning::Symbol(Symbol::Step)),
+            ("q0", Meaning::Vector((0..dimension).map(Symbol::Q0).collect())),
+            ("q1", Meaning::Vector((0..dimension).map(Symbol::Q1).collect())),
+            ("pi", Meaning::Pi),
+            ("L", Meaning::Lagrangian),
+            ("f", Meaning::Force(dimension)),
+        ])
+    }
+
+    fn of<const N: usize>(names: [(&str, Meaning); N]) -> Self {
+        let names = names.into_iter().map(|(name, meaning)| (name.to_owned(), meaning)).collect();
+        Self { names, points: Vec::new() }
+    }
+
+    /// The same with what a system declares, but for the names that stand for something already: numbers of constants and parameters
+    /// keep their meaning.
+    pub(super) fn with_constants_of(mut self, system: &Self, pool: &Pool<Symbol>) -> Self {
+        let is_constant = |expr: &Expr| !pool.depends_on(*expr, &|symbol| !matches!(symbol, Symbol::Parameter(_)));
+        for (name, meaning) in &system.names {
+            let meaning = match meaning {
+                Meaning::Number(value) if is_constant(value) => meaning.clone(),
+                Meaning::Array { entries, .. } if entries.iter().all(is_constant) => meaning.clone(),
+                Meaning::Pi | Meaning::Wrong => meaning.clone(),
+                _ => Meaning::OfState,
+            };
+            self.names.entry(name.clone()).or_insert(meaning);
+        }
+        self
+    }
+
+    /// The number of a point where L or f is evaluated; the same for equal points.
+    pub(super) fn point(&mut self, point: Point) -> usize {
+        self.points.iter().position(|known| *known == point).unwrap_or_else(|| {
+            self.points.push(point);
+            self.points.len() - 1
+        })
+    }
+
+    /// The points where L or f was evaluated.
+    pub(super) fn into_points(self) -> Vec<Point> {
+        self.points
+    }
+
     /// Adds a name.
     ///
     /// # Errors
@@ -75,12 +148,23 @@ impl Scope {
 
     /// The declared name nearest to a misspelt one.
     pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
-        self.near_of(pool, name, |_| true)
+        self.near_of(pool, name, |known| self.meaning(known) != Some(&Meaning::OfState))
     }
 
     /// The coordinate nearest to a misspelt name.
     pub(super) fn near_coordinate(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
         self.near_of(pool, name, |known| self.is_coordinate(known))
+    }
+
+    /// The functions of the language, and those that only expressions of this scope have.
+    pub(super) fn functions(&self) -> impl Iterator<Item = &'static str> {
+        let own = self.names.values().filter_map(|meaning| match meaning {
+            Meaning::Dot => Some("dot"),
+            Meaning::Lagrangian => Some("L"),
+            Meaning::Force(_) => Some("f"),
+            _ => None,
+        });
+        Function::ALL.into_iter().map(Function::name).chain(["sqrt", "sum"]).chain(own)
     }
 
     fn near_of(&self, pool: &Pool<Symbol>, name: &str, is_meant: impl Fn(&str) -> bool) -> Option<String> {

@@ -8,9 +8,10 @@ use super::magnitude::magnitude;
 use super::results::{FunctionId, Output, Results};
 use super::verify;
 use super::{Function, Program};
-use crate::discrete::{DiscreteSystem, Fields, Point, bounded};
+use crate::discrete::{DiscreteSystem, Fields};
+use crate::limits::bounded;
 use crate::messages::{Message, error};
-use crate::model::Model;
+use crate::model::{Model, Point};
 use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeMap;
 use syn::Result;
@@ -21,23 +22,18 @@ use vi_expr::{Expr, Node, Pool, TooLarge};
 /// # Errors
 /// A coefficient outside the range of `f64`, at the name of the system.
 /// Operations that do not reproduce their expressions: a mistake of this compiler, reported and not emitted.
-pub fn program(model: &mut Model, system: &DiscreteSystem) -> Result<Program> {
-    let mut pool: Pool<Symbol> = core::mem::take(&mut model.pool);
-    let assembled = (|| {
-        let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
-        let continuous = continuous(&mut Assembly::new(&mut pool, system, &[]), system).map_err(too_large)?;
-        let slots = slots(&mut Assembly::new(&mut pool, system, &system.slots.points), system).map_err(too_large)?;
-        let step = step(&mut Assembly::new(&mut pool, system, &system.equations.points), system).map_err(too_large)?;
-        let check = |(function, expressions): (Function, Expressions)| {
-            verify::has_finite_constants(&function, &model.name)?;
-            // Only builds with debug assertions do so: it is no work of the system's.
-            pool.uncounted(|pool| verify::agrees(pool, &function, &expressions, &model.name)).map(|()| function)
-        };
-        let all = |list: Vec<_>| list.into_iter().map(check).collect::<Result<Vec<_>>>();
-        Ok(Program { continuous: all(continuous)?, slots: all(slots)?, step: all(step)? })
-    })();
-    model.pool = pool;
-    assembled
+pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) -> Result<Program> {
+    let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
+    let continuous = continuous(&mut Assembly::new(pool, system, &[]), system).map_err(too_large)?;
+    let slots = slots(&mut Assembly::new(pool, system, &system.slots.points), system).map_err(too_large)?;
+    let step = step(&mut Assembly::new(pool, system, &system.equations.points), system).map_err(too_large)?;
+    let check = |(function, expressions): (Function, Expressions)| {
+        verify::has_finite_constants(&function, &model.name)?;
+        // Only builds with debug assertions do so: it is no work of the system's.
+        pool.uncounted(|pool| verify::agrees(pool, &function, &expressions, &model.name)).map(|()| function)
+    };
+    let all = |list: Vec<_>| list.into_iter().map(check).collect::<Result<Vec<_>>>();
+    Ok(Program { continuous: all(continuous)?, slots: all(slots)?, step: all(step)? })
 }
 
 /// Work that an operation takes until it is emitted.
@@ -125,8 +121,8 @@ fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
         Symbol::Q1(index) => {
             let (start, step) = (pool.symbol(Symbol::Q0(*index)), pool.symbol(Symbol::Step));
             let velocity = pool.symbol(Symbol::StepVelocity(*index));
-            let way = pool.mul(step, velocity);
-            Some(pool.add(start, way))
+            let displacement = pool.mul(step, velocity);
+            Some(pool.add(start, displacement))
         }
         _ => None,
     });
@@ -167,10 +163,10 @@ fn slots(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         (FunctionId::D2Ld, &of.d2_ld),
         (FunctionId::D3Ld, &[of.d3_ld]),
         (FunctionId::D4Ld, &of.d4_ld),
-        (FunctionId::FdMinus, &of.fd_minus),
-        (FunctionId::FdPlus, &of.fd_plus),
-        (FunctionId::GdMinus, &[of.gd_minus]),
-        (FunctionId::GdPlus, &[of.gd_plus]),
+        (FunctionId::FdMinus, &of.forces.fd_minus),
+        (FunctionId::FdPlus, &of.forces.fd_plus),
+        (FunctionId::GdMinus, &[of.forces.gd_minus]),
+        (FunctionId::GdPlus, &[of.forces.gd_plus]),
     ];
     functions
         .into_iter()

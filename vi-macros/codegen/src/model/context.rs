@@ -1,0 +1,83 @@
+//! What a system is checked with: the pool of its expressions, the names that are declared so far, and what was found wrong.
+//!
+//! In: one definition after the other. Out: their expressions and numbers. What is wrong is reported and read as 1, so that later lines
+//! are checked too.
+
+use super::scope::{Meaning, Scope};
+use crate::limits::bounded;
+use crate::messages::{Errors, Message};
+use crate::symbol::Symbol;
+use crate::syntax::Definition;
+use proc_macro2::{Ident, Span};
+use syn::Result;
+use vi_expr::{Expr, Pool};
+
+/// What a system is checked with.
+pub(super) struct Context<'a> {
+    pub(super) pool: &'a mut Pool<Symbol>,
+    pub(super) scope: Scope,
+    pub(super) errors: Errors,
+    /// It was reported, or will be, that the system is too large.
+    too_large: bool,
+}
+
+impl<'a> Context<'a> {
+    /// Of a system of which nothing is declared yet.
+    pub(super) fn new(pool: &'a mut Pool<Symbol>) -> Self {
+        Self { pool, scope: Scope::of_system(), errors: Errors::default(), too_large: false }
+    }
+
+    /// A declared name gets its meaning; a name that cannot be declared is reported.
+    pub(super) fn declare(&mut self, name: &Ident, meaning: Meaning) {
+        if let Err(error) = self.scope.declare(name, meaning) {
+            self.errors.add(error);
+        }
+    }
+
+    /// Whether nothing more is to be made of the system.
+    pub(super) fn is_too_large(&self) -> bool {
+        bounded(self.pool).is_err()
+    }
+
+    /// What a stage makes, or nothing and a report. Of a system that is too large only the first: where it became so.
+    pub(super) fn report<P>(&mut self, made: Result<P>) -> Option<P> {
+        let reported = self.too_large;
+        self.too_large = self.is_too_large();
+        match made {
+            Ok(made) => return Some(made),
+            Err(error) if !reported => self.errors.add(error),
+            Err(_) => {}
+        }
+        None
+    }
+
+    /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.
+    pub(super) fn value(&mut self, written: &Definition) -> Expr {
+        let value = self.scope.expression(self.pool, &written.value);
+        self.report(value).unwrap_or_else(|| self.pool.one())
+    }
+
+    /// The finite number that a constant definition stands for.
+    pub(super) fn number(&mut self, written: &Definition) -> (Expr, f64) {
+        let value = self.value(written);
+        match self.finite(value, written.value.span, &written.name) {
+            Some(number) => (value, number),
+            None => (self.pool.one(), 1.0),
+        }
+    }
+
+    /// The finite number that an expression stands for; where it has none, a report.
+    pub(super) fn finite(&mut self, value: Expr, span: Span, name: &Ident) -> Option<f64> {
+        let name = name.to_string();
+        if !self.pool.symbols(value).is_empty() {
+            self.errors.at(span, &Message::NotConstant { name });
+            return None;
+        }
+        let number = self.pool.evaluate(value, &mut |_| f64::NAN);
+        if !number.is_finite() && !self.is_too_large() {
+            self.errors.at(span, &Message::NotFinite { name });
+            return None;
+        }
+        Some(number)
+    }
+}

@@ -1,0 +1,207 @@
+//! A rule, its names resolved: L_d, and the discrete forces where they are written.
+//!
+//! In: the lines `Ld = …; fd_minus = …; …`. Out: a [`Rule`] in the slots t0, q0, t1, q1, the step h, and L and f at the [`Point`]s where
+//! the rule evaluates them. Parameters, constants and arrays of them mean in a rule what they mean elsewhere.
+
+use super::context::Context;
+use super::resolve::Value;
+use super::scope::Scope;
+use crate::messages::{Errors, Message, error, nearest};
+use crate::rules::{self, NamedRule};
+use crate::symbol::{Quantity, Symbol, Variable};
+use crate::syntax::{self, Definition, Discretization, parse};
+use proc_macro2::{Ident, Span};
+use std::collections::BTreeSet;
+use syn::Result;
+use vi_expr::{Expr, Pool};
+
+/// How L becomes L_d.
+pub struct Rule {
+    /// The rule of the table, where the system says its name.
+    pub named: Option<&'static NamedRule>,
+    /// Where `Ld` is written.
+    pub span: Span,
+    /// L_d.
+    pub ld: Expr,
+    /// The discrete forces and powers, where they are written and a force acts.
+    pub forces: Option<DiscreteForces>,
+    /// Where L and f are evaluated.
+    pub points: Vec<Point>,
+}
+
+impl Rule {
+    /// The rule as documentation names it.
+    #[must_use]
+    pub fn title(&self) -> &'static str {
+        self.named.map_or("written out", |rule| rule.name)
+    }
+
+    /// All expressions that it is made of.
+    pub(super) fn expressions(&self) -> impl Iterator<Item = Expr> {
+        let points = self.points.iter().flat_map(Point::arguments).map(|(_, argument)| argument);
+        let forces = self.forces.iter().flat_map(DiscreteForces::expressions);
+        [self.ld].into_iter().chain(points).chain(forces)
+    }
+}
+
+/// The virtual work of f over an interval: f_d⁻·δq0 + f_d⁺·δq1 + g_d⁻ δt0 + g_d⁺ δt1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DiscreteForces {
+    /// f_d⁻.
+    pub fd_minus: Vec<Expr>,
+    /// f_d⁺.
+    pub fd_plus: Vec<Expr>,
+    /// g_d⁻.
+    pub gd_minus: Expr,
+    /// g_d⁺.
+    pub gd_plus: Expr,
+}
+
+impl DiscreteForces {
+    /// All four, entry by entry.
+    pub(crate) fn expressions(&self) -> impl Iterator<Item = Expr> {
+        let vectors = self.fd_minus.iter().chain(&self.fd_plus).copied();
+        vectors.chain([self.gd_minus, self.gd_plus])
+    }
+}
+
+/// Where a rule evaluates L and f.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Point {
+    /// Time.
+    pub time: Expr,
+    /// Coordinates.
+    pub coordinates: Vec<Expr>,
+    /// Velocities.
+    pub velocities: Vec<Expr>,
+}
+
+impl Point {
+    /// The arguments of L and f there: the time, the coordinates, the velocities.
+    pub fn arguments(&self) -> impl Iterator<Item = (Variable, Expr)> + '_ {
+        let coordinates = self.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
+        let velocities = self.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
+        [(Variable::Time, self.time)].into_iter().chain(coordinates).chain(velocities)
+    }
+}
+
+/// The line of the discrete Lagrangian.
+const LD: &str = "Ld";
+
+/// The lines that say what a force does.
+const FORCES: [&str; 4] = ["fd_minus", "fd_plus", "gd_minus", "gd_plus"];
+
+/// The rule of the first clause `discretize`; a second clause is a mistake.
+pub(super) fn rule(
+    context: &mut Context,
+    written: &[Discretization],
+    system: &Ident,
+    dimension: usize,
+    forced: bool,
+) -> Option<Rule> {
+    let Some((first, others)) = written.split_first() else {
+        context.errors.at(system.span(), &Message::MissingRule);
+        return None;
+    };
+    for other in others {
+        let span = match other {
+            Discretization::Named(name) => name.span(),
+            Discretization::Written(rule) => rule.span,
+        };
+        context.errors.at(span, &Message::SecondRule);
+    }
+    let resolved = match first {
+        Discretization::Named(name) => of_name(context.pool, name, dimension, forced),
+        Discretization::Written(rule) => {
+            let scope = Scope::of_rule(dimension).with_constants_of(&context.scope, context.pool);
+            resolve(context.pool, scope, rule, forced)
+        }
+    };
+    context.report(resolved)
+}
+
+/// The rule of a name.
+fn of_name(pool: &mut Pool<Symbol>, written: &Ident, dimension: usize, forced: bool) -> Result<Rule> {
+    let name = written.to_string();
+    if let Some(rule) = rules::named(&name) {
+        return named(pool, rule, dimension, forced);
+    }
+    let near = nearest(&name, rules::names());
+    Err(error(written.span(), &Message::UnknownRule { name, near }))
+}
+
+/// A rule of the table, for a system of so many coordinates, with or without a force.
+///
+/// # Errors
+/// A rule of the table that is written wrongly: a mistake of this compiler. A system that is too large.
+pub(crate) fn named(pool: &mut Pool<Symbol>, rule: &'static NamedRule, dimension: usize, forced: bool) -> Result<Rule> {
+    let resolved = resolve(pool, Scope::of_rule(dimension), &parse::rule(rule.text)?, forced)?;
+    Ok(Rule { named: Some(rule), ..resolved })
+}
+
+/// Resolves the lines of a rule in their scope.
+fn resolve(pool: &mut Pool<Symbol>, scope: Scope, rule: &syntax::Rule, forced: bool) -> Result<Rule> {
+    let mut lines = Lines { pool, scope, rule, errors: Errors::default() };
+    lines.check_names();
+    let ld = lines.number(LD);
+    let span = lines.written(LD).map_or(rule.span, |line| line.name.span());
+    // The work of f follows from L_d where that is made of L. Without a force the four lines are nothing, and are not resolved.
+    let is_lagrangian =
+        |symbol: &Symbol| matches!(symbol, Symbol::Field(field) if field.quantity == Quantity::Lagrangian);
+    let is_made_of_lagrangian = lines.pool.depends_on(ld, &is_lagrangian);
+    let is_needed = FORCES.into_iter().any(|name| lines.written(name).is_some()) || !is_made_of_lagrangian;
+    let [fd_minus, fd_plus, gd_minus, gd_plus] = FORCES;
+    let forces = (forced && is_needed).then(|| DiscreteForces {
+        fd_minus: lines.vector(fd_minus),
+        fd_plus: lines.vector(fd_plus),
+        gd_minus: lines.number(gd_minus),
+        gd_plus: lines.number(gd_plus),
+    });
+    let Lines { scope, errors, .. } = lines;
+    errors.finish(Rule { named: None, span, ld, forces, points: scope.into_points() })
+}
+
+/// The lines of a rule as they are resolved; a wrong one is reported and read as zero.
+struct Lines<'a> {
+    pool: &'a mut Pool<Symbol>,
+    scope: Scope,
+    rule: &'a syntax::Rule,
+    errors: Errors,
+}
+
+impl<'a> Lines<'a> {
+    /// Every line is one of a rule, and there once.
+    fn check_names(&mut self) {
+        let mut seen = BTreeSet::new();
+        for line in &self.rule.lines {
+            let name = line.name.to_string();
+            if name != LD && !FORCES.contains(&name.as_str()) {
+                self.errors.at(line.name.span(), &Message::UnknownSlot { name });
+            } else if !seen.insert(name.clone()) {
+                self.errors.at(line.name.span(), &Message::SecondSlot { name });
+            }
+        }
+    }
+
+    /// A line as it is written, if it is.
+    fn written(&self, name: &str) -> Option<&'a Definition> {
+        self.rule.lines.iter().find(|line| line.name == name)
+    }
+
+    fn number(&mut self, name: &'static str) -> Expr {
+        self.value(name, Value::number).unwrap_or(self.pool.zero())
+    }
+
+    fn vector(&mut self, name: &'static str) -> Vec<Expr> {
+        self.value(name, Value::vector).unwrap_or_default()
+    }
+
+    fn value<P>(&mut self, name: &'static str, shaped: fn(Value, Span) -> Result<P>) -> Option<P> {
+        let Some(line) = self.written(name) else {
+            self.errors.at(self.rule.span, &Message::MissingSlot { name });
+            return None;
+        };
+        let value = self.scope.value(self.pool, &line.value).and_then(|value| shaped(value, line.value.span));
+        value.map_err(|error| self.errors.add(error)).ok()
+    }
+}
