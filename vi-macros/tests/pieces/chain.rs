@@ -1305,7 +1305,7 @@ const _: () = {
             ])
         }
 
-        /// `gd_minus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2 - h*f_q[2]*v_q[2]/2 - h*f_q[3]*v_q[3]/2 - h*f_q[4]*v_q[4]/2 - h*f_q[5]*v_q[5]/2 - h*f_q[6]*v_q[6]/2 - h*f_q[7]*v_q[7]/2 - h*f_q[8]*v_q[8]/2`
+        /// `gd_minus = -h*v_q[0]*f_q[0]/2 - h*v_q[1]*f_q[1]/2 - h*v_q[2]*f_q[2]/2 - h*v_q[3]*f_q[3]/2 - h*v_q[4]*f_q[4]/2 - h*v_q[5]*f_q[5]/2 - h*v_q[6]*f_q[6]/2 - h*v_q[7]*f_q[7]/2 - h*v_q[8]*f_q[8]/2`
         ///
         /// 48 operations.
         #[inline]
@@ -1352,7 +1352,7 @@ const _: () = {
                 * (s9 + q_6_dot * cos7 + q_7_dot * cos8 + q_8_dot * q_8_mid.cos()))
         }
 
-        /// `gd_plus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2 - h*f_q[2]*v_q[2]/2 - h*f_q[3]*v_q[3]/2 - h*f_q[4]*v_q[4]/2 - h*f_q[5]*v_q[5]/2 - h*f_q[6]*v_q[6]/2 - h*f_q[7]*v_q[7]/2 - h*f_q[8]*v_q[8]/2`
+        /// `gd_plus = -h*v_q[0]*f_q[0]/2 - h*v_q[1]*f_q[1]/2 - h*v_q[2]*f_q[2]/2 - h*v_q[3]*f_q[3]/2 - h*v_q[4]*f_q[4]/2 - h*v_q[5]*f_q[5]/2 - h*v_q[6]*f_q[6]/2 - h*v_q[7]*f_q[7]/2 - h*v_q[8]*f_q[8]/2`
         ///
         /// 48 operations.
         #[inline]
@@ -1404,23 +1404,23 @@ const _: () = {
         type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
         const CONSTANT_JACOBIAN: bool = false;
 
-        /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
+        /// `residual_q[0] = L_v_q[0] - h*L_q[0]/2 - h*f_q[0]/2 - p0_q[0]_low - p0_q[0]`
         ///
-        /// `residual_q[1] = L_v_q[1] - h*f_q[1]/2 - h*L_q[1]/2 - p0_q[1]_low - p0_q[1]`
+        /// `residual_q[1] = L_v_q[1] - h*L_q[1]/2 - h*f_q[1]/2 - p0_q[1]_low - p0_q[1]`
         ///
-        /// `residual_q[2] = L_v_q[2] - h*f_q[2]/2 - h*L_q[2]/2 - p0_q[2]_low - p0_q[2]`
+        /// `residual_q[2] = L_v_q[2] - h*L_q[2]/2 - h*f_q[2]/2 - p0_q[2]_low - p0_q[2]`
         ///
-        /// `residual_q[3] = L_v_q[3] - h*f_q[3]/2 - h*L_q[3]/2 - p0_q[3]_low - p0_q[3]`
+        /// `residual_q[3] = L_v_q[3] - h*L_q[3]/2 - h*f_q[3]/2 - p0_q[3]_low - p0_q[3]`
         ///
-        /// `residual_q[4] = L_v_q[4] - h*f_q[4]/2 - h*L_q[4]/2 - p0_q[4]_low - p0_q[4]`
+        /// `residual_q[4] = L_v_q[4] - h*L_q[4]/2 - h*f_q[4]/2 - p0_q[4]_low - p0_q[4]`
         ///
-        /// `residual_q[5] = L_v_q[5] - h*f_q[5]/2 - h*L_q[5]/2 - p0_q[5]_low - p0_q[5]`
+        /// `residual_q[5] = L_v_q[5] - h*L_q[5]/2 - h*f_q[5]/2 - p0_q[5]_low - p0_q[5]`
         ///
-        /// `residual_q[6] = L_v_q[6] - h*f_q[6]/2 - h*L_q[6]/2 - p0_q[6]_low - p0_q[6]`
+        /// `residual_q[6] = L_v_q[6] - h*L_q[6]/2 - h*f_q[6]/2 - p0_q[6]_low - p0_q[6]`
         ///
-        /// `residual_q[7] = L_v_q[7] - h*f_q[7]/2 - h*L_q[7]/2 - p0_q[7]_low - p0_q[7]`
+        /// `residual_q[7] = L_v_q[7] - h*L_q[7]/2 - h*f_q[7]/2 - p0_q[7]_low - p0_q[7]`
         ///
-        /// `residual_q[8] = L_v_q[8] - h*f_q[8]/2 - h*L_q[8]/2 - p0_q[8]_low - p0_q[8]`
+        /// `residual_q[8] = L_v_q[8] - h*L_q[8]/2 - h*f_q[8]/2 - p0_q[8]_low - p0_q[8]`
         ///
         /// `residual_q[9] = L_v_q[9] - h*L_q[9]/2 - p0_q[9]_low - p0_q[9]`
         ///
@@ -1503,15 +1503,15 @@ const _: () = {
             let s39 = s10 * s10;
             let s40 = s39 * s10;
             let s41 = self.k * h * real(0.5);
-            let s42 = h * h;
-            let s43 = self.k * s42;
-            let s44 = self.k * s23;
+            let s42 = self.k * s23;
+            let s43 = h * h;
+            let s44 = self.k * s43;
             let s45 = s43 * real(0.25);
-            let s46 = s42 * real(0.25);
-            let s47 = s42 * real(0.75);
-            let s48 = -(s44 * s47);
+            let s46 = s44 * real(0.25);
+            let s47 = s43 * real(0.75);
+            let s48 = -(s42 * s47);
             let s49 = self.k * real(3.0);
-            let s50 = s43 * real(0.75);
+            let s50 = s44 * real(0.75);
             let s51 = -(s50 * s25);
             let s52 = -(s50 * s27);
             let s53 = -(s50 * s29);
@@ -1555,16 +1555,16 @@ const _: () = {
                 jacobian: ::vi_core::linear::Tridiagonal {
                     lower: [T::real(0.0), s48, s51, s52, s53, s54, s55, s56, s57, s59],
                     diagonal: [
-                        self.m + (s45 * sin12 + s46 * (s44 * real(3.0) + s15 * cos12)),
-                        self.m + (s45 * sin13 + s46 * (s49 * (s23 + s25) + s15 * cos13)),
-                        self.m + (s45 * sin14 + s46 * (s49 * (s25 + s27) + s15 * cos14)),
-                        self.m + (s45 * sin16 + s46 * (s49 * (s27 + s29) + s15 * cos16)),
-                        self.m + (s45 * sin17 + s46 * (s49 * (s29 + s31) + s15 * cos17)),
-                        self.m + (s45 * sin18 + s46 * (s49 * (s31 + s33) + s15 * cos18)),
-                        self.m + (s45 * sin19 + s46 * (s49 * (s33 + s35) + s15 * cos19)),
-                        self.m + (s45 * sin20 + s46 * (s49 * (s35 + s37) + s15 * cos20)),
-                        self.m + (s45 * sin21 + s46 * (s49 * (s37 + s39) + s15 * cos21)),
-                        self.m + s46 * (s58 * real(3.0) + s15 * cos22),
+                        self.m + (s46 * sin12 + s45 * (s42 * real(3.0) + s15 * cos12)),
+                        self.m + (s46 * sin13 + s45 * (s49 * (s23 + s25) + s15 * cos13)),
+                        self.m + (s46 * sin14 + s45 * (s49 * (s25 + s27) + s15 * cos14)),
+                        self.m + (s46 * sin16 + s45 * (s49 * (s27 + s29) + s15 * cos16)),
+                        self.m + (s46 * sin17 + s45 * (s49 * (s29 + s31) + s15 * cos17)),
+                        self.m + (s46 * sin18 + s45 * (s49 * (s31 + s33) + s15 * cos18)),
+                        self.m + (s46 * sin19 + s45 * (s49 * (s33 + s35) + s15 * cos19)),
+                        self.m + (s46 * sin20 + s45 * (s49 * (s35 + s37) + s15 * cos20)),
+                        self.m + (s46 * sin21 + s45 * (s49 * (s37 + s39) + s15 * cos21)),
+                        self.m + s45 * (s58 * real(3.0) + s15 * cos22),
                     ],
                     upper: [s48, s51, s52, s53, s54, s55, s56, s57, s59, T::real(0.0)],
                 },
@@ -1573,23 +1573,23 @@ const _: () = {
 
         /// The residual, its rounding scale, and
         ///
-        /// `p1_q[0] − p0_q[0] = h*f_q[0] + h*L_q[0]`
+        /// `p1_q[0] − p0_q[0] = h*L_q[0] + h*f_q[0]`
         ///
-        /// `p1_q[1] − p0_q[1] = h*f_q[1] + h*L_q[1]`
+        /// `p1_q[1] − p0_q[1] = h*L_q[1] + h*f_q[1]`
         ///
-        /// `p1_q[2] − p0_q[2] = h*f_q[2] + h*L_q[2]`
+        /// `p1_q[2] − p0_q[2] = h*L_q[2] + h*f_q[2]`
         ///
-        /// `p1_q[3] − p0_q[3] = h*f_q[3] + h*L_q[3]`
+        /// `p1_q[3] − p0_q[3] = h*L_q[3] + h*f_q[3]`
         ///
-        /// `p1_q[4] − p0_q[4] = h*f_q[4] + h*L_q[4]`
+        /// `p1_q[4] − p0_q[4] = h*L_q[4] + h*f_q[4]`
         ///
-        /// `p1_q[5] − p0_q[5] = h*f_q[5] + h*L_q[5]`
+        /// `p1_q[5] − p0_q[5] = h*L_q[5] + h*f_q[5]`
         ///
-        /// `p1_q[6] − p0_q[6] = h*f_q[6] + h*L_q[6]`
+        /// `p1_q[6] − p0_q[6] = h*L_q[6] + h*f_q[6]`
         ///
-        /// `p1_q[7] − p0_q[7] = h*f_q[7] + h*L_q[7]`
+        /// `p1_q[7] − p0_q[7] = h*L_q[7] + h*f_q[7]`
         ///
-        /// `p1_q[8] − p0_q[8] = h*f_q[8] + h*L_q[8]`
+        /// `p1_q[8] − p0_q[8] = h*L_q[8] + h*f_q[8]`
         ///
         /// `p1_q[9] − p0_q[9] = h*L_q[9]`
         ///
@@ -1866,8 +1866,8 @@ const _: () = {
             let s3 = sin2 * real(0.3333333333333333) + real(1.0);
             let s4 = h * h;
             let s5 = self.k * s4;
-            let s6 = s5 * real(0.25);
-            let s7 = s4 * real(0.25);
+            let s6 = s4 * real(0.25);
+            let s7 = s5 * real(0.25);
             let s8 = s4 * real(0.75);
             let s9 = self.k * real(3.0);
             let s10 = s5 * real(0.75);
@@ -1940,7 +1940,7 @@ const _: () = {
             }
             let mut s31 = [real(0.0); 9];
             for i in 0..9 {
-                s31[i] = s6 * s22[i].0;
+                s31[i] = s7 * s22[i].0;
             }
             let mut s32 = [real(0.0); 8];
             for i in 0..8 {
@@ -1948,7 +1948,7 @@ const _: () = {
             }
             let mut s33 = [real(0.0); 8];
             for i in 0..8 {
-                s33[i] = self.m + (s31[i + 1] + s7 * s32[i]);
+                s33[i] = self.m + (s31[i + 1] + s6 * s32[i]);
             }
             let mut s34 = [real(0.0); 10];
             for i in 0..10 {
@@ -2053,11 +2053,11 @@ const _: () = {
                         ],
                         diagonal: {
                             let mut entries = [T::real(0.0); 10];
-                            entries[0] = self.m + (s31[0] + s7 * s52);
+                            entries[0] = self.m + (s31[0] + s6 * s52);
                             for i in 0..8 {
                                 entries[i + 1] = s33[i];
                             }
-                            entries[9] = self.m + s7 * s63;
+                            entries[9] = self.m + s6 * s63;
                             entries
                         },
                         upper: [
@@ -2108,7 +2108,7 @@ const _: () = {
 
         /// Both residuals, their rounding scales, and
         ///
-        /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1] + h*f_q[2]*v_q[2] + h*f_q[3]*v_q[3] + h*f_q[4]*v_q[4] + h*f_q[5]*v_q[5] + h*f_q[6]*v_q[6] + h*f_q[7]*v_q[7] + h*f_q[8]*v_q[8]`
+        /// `E1 − E0 = h*v_q[0]*f_q[0] - h*L_t + h*v_q[1]*f_q[1] + h*v_q[2]*f_q[2] + h*v_q[3]*f_q[3] + h*v_q[4]*f_q[4] + h*v_q[5]*f_q[5] + h*v_q[6]*f_q[6] + h*v_q[7]*f_q[7] + h*v_q[8]*f_q[8]`
         ///
         /// 704 operations.
         #[inline(never)]

@@ -679,7 +679,7 @@ const _: () = {
             ::vi_core::SVector::from([-(s1 * q_0_dot), -(s1 * q_1_dot)])
         }
 
-        /// `gd_minus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2`
+        /// `gd_minus = -h*v_q[0]*f_q[0]/2 - h*v_q[1]*f_q[1]/2`
         ///
         /// 6 operations.
         #[inline]
@@ -693,7 +693,7 @@ const _: () = {
             self.b * real(0.5) * h * (q_0_dot * q_0_dot + q_1_dot * q_1_dot)
         }
 
-        /// `gd_plus = -h*f_q[0]*v_q[0]/2 - h*f_q[1]*v_q[1]/2`
+        /// `gd_plus = -h*v_q[0]*f_q[0]/2 - h*v_q[1]*f_q[1]/2`
         ///
         /// 6 operations.
         #[inline]
@@ -713,9 +713,9 @@ const _: () = {
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
-        /// `residual_q[0] = L_v_q[0] - h*f_q[0]/2 - h*L_q[0]/2 - p0_q[0]_low - p0_q[0]`
+        /// `residual_q[0] = L_v_q[0] - h*L_q[0]/2 - h*f_q[0]/2 - p0_q[0]_low - p0_q[0]`
         ///
-        /// `residual_q[1] = L_v_q[1] - h*f_q[1]/2 - h*L_q[1]/2 - p0_q[1]_low - p0_q[1]`
+        /// `residual_q[1] = L_v_q[1] - h*L_q[1]/2 - h*f_q[1]/2 - p0_q[1]_low - p0_q[1]`
         ///
         /// 85 operations.
         #[inline(never)]
@@ -852,9 +852,9 @@ const _: () = {
 
         /// The residual, its rounding scale, and
         ///
-        /// `p1_q[0] − p0_q[0] = h*f_q[0] + h*L_q[0]`
+        /// `p1_q[0] − p0_q[0] = h*L_q[0] + h*f_q[0]`
         ///
-        /// `p1_q[1] − p0_q[1] = h*f_q[1] + h*L_q[1]`
+        /// `p1_q[1] − p0_q[1] = h*L_q[1] + h*f_q[1]`
         ///
         /// 106 operations.
         #[inline(never)]
@@ -1448,7 +1448,7 @@ const _: () = {
 
         /// Both residuals, their rounding scales, and
         ///
-        /// `E1 − E0 = h*f_q[0]*v_q[0] - h*L_t + h*f_q[1]*v_q[1]`
+        /// `E1 − E0 = h*v_q[0]*f_q[0] - h*L_t + h*v_q[1]*f_q[1]`
         ///
         /// 179 operations.
         #[inline(never)]
