@@ -439,7 +439,7 @@ const _: () = {
             }
         }
 
-        /// `E1 = L_v_x*v_x - L + h*f_x*v_x/2`
+        /// `E1 = L_v_x*v_x - L + h*v_x*f_x/2`
         ///
         /// 15 operations.
         #[inline(always)]

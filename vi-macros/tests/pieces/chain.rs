@@ -1725,7 +1725,7 @@ const _: () = {
             }
         }
 
-        /// `E1 = L_v_q[0]*v_q[0] - L - h*L_t/2 + L_v_q[1]*v_q[1] + L_v_q[2]*v_q[2] + L_v_q[3]*v_q[3] + L_v_q[4]*v_q[4] + L_v_q[5]*v_q[5] + L_v_q[6]*v_q[6] + L_v_q[7]*v_q[7] + L_v_q[8]*v_q[8] + L_v_q[9]*v_q[9] + h*f_q[0]*v_q[0]/2 + h*f_q[1]*v_q[1]/2 + h*f_q[2]*v_q[2]/2 + h*f_q[3]*v_q[3]/2 + h*f_q[4]*v_q[4]/2 + h*f_q[5]*v_q[5]/2 + h*f_q[6]*v_q[6]/2 + h*f_q[7]*v_q[7]/2 + h*f_q[8]*v_q[8]/2`
+        /// `E1 = L_v_q[0]*v_q[0] - L - h*L_t/2 + L_v_q[1]*v_q[1] + L_v_q[2]*v_q[2] + L_v_q[3]*v_q[3] + L_v_q[4]*v_q[4] + L_v_q[5]*v_q[5] + L_v_q[6]*v_q[6] + L_v_q[7]*v_q[7] + L_v_q[8]*v_q[8] + L_v_q[9]*v_q[9] + h*v_q[0]*f_q[0]/2 + h*v_q[1]*f_q[1]/2 + h*v_q[2]*f_q[2]/2 + h*v_q[3]*f_q[3]/2 + h*v_q[4]*f_q[4]/2 + h*v_q[5]*f_q[5]/2 + h*v_q[6]*f_q[6]/2 + h*v_q[7]*f_q[7]/2 + h*v_q[8]*f_q[8]/2`
         ///
         /// 169 operations.
         #[inline(always)]

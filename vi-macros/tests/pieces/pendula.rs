@@ -1024,7 +1024,7 @@ const _: () = {
             }
         }
 
-        /// `E1 = L_v_q[0]*v_q[0] - L - h*L_t/2 + L_v_q[1]*v_q[1] + h*f_q[0]*v_q[0]/2 + h*f_q[1]*v_q[1]/2`
+        /// `E1 = L_v_q[0]*v_q[0] - L - h*L_t/2 + L_v_q[1]*v_q[1] + h*v_q[0]*f_q[0]/2 + h*v_q[1]*f_q[1]/2`
         ///
         /// 59 operations.
         #[inline(never)]
