@@ -6,6 +6,7 @@
 //! results have names, and [`pieces`] compute them.
 
 use super::angles::Angles;
+use super::entries::Entry;
 use super::folds::FoldText;
 use super::formula::{Formula, LINE};
 use super::loops::{Loops, Member, Writing as Loop, Written};
@@ -15,7 +16,7 @@ use crate::model::Model;
 use crate::program::{Function, Operation, OperationId, Results};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{ToTokens, format_ident, quote};
+use quote::{format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::{Function as Elementary, Table};
 
@@ -29,46 +30,6 @@ pub(super) struct Body {
     pub(super) inputs: BTreeMap<Symbol, Ident>,
     /// Vectors that are read as a whole, by their components 0, with their names.
     pub(super) vectors: BTreeMap<Symbol, Ident>,
-}
-
-/// One result.
-pub(super) struct Entry {
-    id: OperationId,
-    formula: Formula,
-    /// Where it is in an array of a loop.
-    member: Option<Member>,
-    /// It is zero for every input.
-    pub(super) zero: bool,
-}
-
-impl Entry {
-    /// The counter of loops over the arrays that such results are in.
-    pub(super) fn counter(&self) -> Option<&Ident> {
-        self.member.as_ref().map(|member| &member.counter)
-    }
-
-    /// Whether it is the same result.
-    pub(super) fn is(&self, other: &Self) -> bool {
-        self.id == other.id
-    }
-
-    /// Whether it is the entry of an array one place on.
-    pub(super) fn moves_on_from(&self, before: &Self) -> bool {
-        let members = self.member.as_ref().zip(before.member.as_ref());
-        members.is_some_and(|(this, before)| this.array == before.array && this.place == before.place + 1)
-    }
-
-    /// Its formula; with a counter, that of the entry so many places on in its array.
-    pub(super) fn formula(&self, counter: Option<&Ident>) -> Formula {
-        let moved = self.member.as_ref().filter(|_| counter.is_some());
-        moved.map_or_else(|| self.formula.clone(), |member| member.array.entry(counter, member.place))
-    }
-}
-
-impl ToTokens for Entry {
-    fn to_tokens(&self, tokens: &mut TokenStream) {
-        self.formula.tokens().to_tokens(tokens);
-    }
 }
 
 /// Where a function reads the velocity of the step.

@@ -13,13 +13,55 @@
 //! }
 //! ```
 
-use super::body::Entry;
+use super::formula::{Formula, index, zero};
+use super::loops::Member;
+use crate::program::OperationId;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, quote};
 use std::ops::Range;
 
 /// Rows from which on there is a loop.
 const LEAST: usize = 8;
+
+/// One result.
+pub(super) struct Entry {
+    pub(super) id: OperationId,
+    pub(super) formula: Formula,
+    /// Where it is in an array of a loop.
+    pub(super) member: Option<Member>,
+    /// It is zero for every input.
+    pub(super) zero: bool,
+}
+
+impl Entry {
+    /// The counter of loops over the arrays that such results are in.
+    pub(super) fn counter(&self) -> Option<&Ident> {
+        self.member.as_ref().map(|member| &member.counter)
+    }
+
+    /// Whether it is the same result.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+
+    /// Whether it is the entry of an array one place on.
+    pub(super) fn moves_on_from(&self, before: &Self) -> bool {
+        let members = self.member.as_ref().zip(before.member.as_ref());
+        members.is_some_and(|(this, before)| this.array == before.array && this.place == before.place + 1)
+    }
+
+    /// Its formula; with a counter, that of the entry so many places on in its array.
+    pub(super) fn formula(&self, counter: Option<&Ident>) -> Formula {
+        let moved = self.member.as_ref().filter(|_| counter.is_some());
+        moved.map_or_else(|| self.formula.clone(), |member| member.array.entry(counter, member.place))
+    }
+}
+
+impl ToTokens for Entry {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        self.formula.tokens().to_tokens(tokens);
+    }
+}
 
 /// What a row is made of: a result, or zero.
 #[derive(Clone, Copy)]
@@ -53,22 +95,10 @@ impl ToTokens for Part<'_> {
     }
 }
 
-/// `[3]`, or in a loop `[i + 3]`.
-pub(super) fn index(counter: Option<&Ident>, place: usize) -> TokenStream {
-    let number = (place > 0 || counter.is_none()).then(|| Literal::usize_unsuffixed(place));
-    let plus = (counter.is_some() && number.is_some()).then(|| quote!(+));
-    quote!([#counter #plus #number])
-}
-
 /// The array of such numbers.
 pub(super) fn of<'a>(parts: impl Iterator<Item = Part<'a>>) -> TokenStream {
     let rows: Vec<Vec<Part>> = parts.map(|part| vec![part]).collect();
     array(&rows, &zero(), |parts| quote!(#(#parts)*))
-}
-
-/// The number zero.
-pub(super) fn zero() -> TokenStream {
-    quote!(T::real(0.0))
 }
 
 /// The array of rows, each joined from its parts by a form; `zero` is a row of nothing.

@@ -116,3 +116,15 @@ pub(super) fn number(value: f64) -> TokenStream {
         _ => quote!(#magnitude),
     }
 }
+
+/// `[3]`, or in a loop `[i + 3]`.
+pub(super) fn index(counter: Option<&Ident>, place: usize) -> TokenStream {
+    let number = (place > 0 || counter.is_none()).then(|| Literal::usize_unsuffixed(place));
+    let plus = (counter.is_some() && number.is_some()).then(|| quote!(+));
+    quote!([#counter #plus #number])
+}
+
+/// The number zero.
+pub(super) fn zero() -> TokenStream {
+    quote!(T::real(0.0))
+}

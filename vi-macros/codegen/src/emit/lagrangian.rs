@@ -1,8 +1,8 @@
 //! `impl Lagrangian`: the continuous functions.
 
 use super::Source;
-use super::body::{Body, Entry, Place, body, state_parts};
-use super::entries;
+use super::body::{Body, Place, body, state_parts};
+use super::entries::{self, Entry};
 use super::matrix::matrix;
 use crate::model::Coordinate;
 use crate::program::{FunctionId, Output};

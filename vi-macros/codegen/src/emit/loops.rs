@@ -13,9 +13,8 @@
 //! the ends of a chain, and sums over it. The operations stay the same, and their results, bit by bit; but a short one is done
 //! again rather than kept.
 
-use super::entries::index;
 use super::folds::{Fold, FoldText, folds};
-use super::formula::{Formula, LINE};
+use super::formula::{Formula, LINE, index};
 use super::names::Names;
 use crate::program::{Families, Function, Membership, Operation, OperationId};
 use crate::symbol::Symbol;

@@ -1,7 +1,7 @@
 //! Matrices in the form that their zero pattern allows, as `vi_core::linear` solves them.
 
-use super::body::Entry;
-use super::entries::{self, Part, array};
+use super::entries::{self, Entry, Part, array};
+use super::formula::zero;
 use crate::found::{CLOSED, Pattern};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -45,8 +45,8 @@ fn banded(rows: &[Vec<Entry>], width: usize) -> (TokenStream, TokenStream) {
     let (size, diagonals) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(places));
     let band = |row: usize| (0..places).map(|place| entry(rows, row, (row + place).checked_sub(width))).collect();
     let bands: Vec<Vec<Part>> = (0..rows.len()).map(band).collect();
-    let zero = entries::zero();
-    let bands = array(&bands, &quote!([#zero; #diagonals]), |parts| quote!([#(#parts),*]));
+    let empty = zero();
+    let bands = array(&bands, &quote!([#empty; #diagonals]), |parts| quote!([#(#parts),*]));
     (quote!(::vi_core::linear::Banded<#size, #diagonals, T>), quote!(::vi_core::linear::Banded { rows: #bands }))
 }
 

@@ -15,7 +15,7 @@
 //! The time that rustc takes grows faster than the length of a function: values that travel by name, or pieces that are
 //! inlined again, bring that back. The operations stay the same, and their results, bit by bit.
 
-use super::entries::zero;
+use super::formula::zero;
 use super::names::Names;
 use crate::program::OperationId;
 use proc_macro2::{Ident, Literal, TokenStream};

@@ -1,7 +1,8 @@
 //! `impl FixedStepping` and, for rules with a step density, `impl EnergyStepping`: the equations of one step in the unknowns (v, h).
 
 use super::Source;
-use super::body::{Body, Entry, Place, part, parts};
+use super::body::{Body, Place, part, parts};
+use super::entries::Entry;
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
 use crate::model::Model;

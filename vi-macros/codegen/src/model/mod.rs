@@ -9,12 +9,14 @@ mod check_state;
 mod context;
 mod force;
 mod mass;
+mod point;
 mod resolve;
 pub(crate) mod rule;
 mod scope;
 
 pub use check_state::CheckState;
-pub use rule::{DiscreteForces, Point, Rule};
+pub use point::Point;
+pub use rule::{DiscreteForces, Rule};
 
 use crate::symbol::Symbol;
 use proc_macro2::Ident;

@@ -3,7 +3,7 @@
 //! In: an [`Expression`] and the names in [`Scope`]. Out: a [`Value`] of the pool, or the message at the token. An expression of a system
 //! is a number; in the lines of a rule the coordinates at an end are a vector, the force is one, and `*` of two is their dot product.
 
-use super::rule::Point;
+use super::point::Point;
 use super::scope::{Meaning, Scope};
 use crate::limits::bounded;
 use crate::messages::{Message, error, nearest};

@@ -4,11 +4,12 @@
 //! the rule evaluates them. Parameters, constants and arrays of them mean in a rule what they mean elsewhere.
 
 use super::context::Context;
+use super::point::Point;
 use super::resolve::Value;
 use super::scope::Scope;
 use crate::messages::{Errors, Message, error, nearest};
 use crate::rules::{self, NamedRule};
-use crate::symbol::{Quantity, Symbol, Variable};
+use crate::symbol::{Quantity, Symbol};
 use crate::syntax::{self, Definition, Discretization, parse};
 use proc_macro2::{Ident, Span};
 use std::collections::BTreeSet;
@@ -62,26 +63,6 @@ impl DiscreteForces {
     pub(crate) fn expressions(&self) -> impl Iterator<Item = Expr> {
         let vectors = self.fd_minus.iter().chain(&self.fd_plus).copied();
         vectors.chain([self.gd_minus, self.gd_plus])
-    }
-}
-
-/// Where a rule evaluates L and f.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Point {
-    /// Time.
-    pub time: Expr,
-    /// Coordinates.
-    pub coordinates: Vec<Expr>,
-    /// Velocities.
-    pub velocities: Vec<Expr>,
-}
-
-impl Point {
-    /// The arguments of L and f there: the time, the coordinates, the velocities.
-    pub fn arguments(&self) -> impl Iterator<Item = (Variable, Expr)> + '_ {
-        let coordinates = self.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
-        let velocities = self.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));
-        [(Variable::Time, self.time)].into_iter().chain(coordinates).chain(velocities)
     }
 }
 

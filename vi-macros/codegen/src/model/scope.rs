@@ -3,7 +3,7 @@
 //! In: the declarations of a system, one by one. Out: what each name means, in the expressions of the system or in the lines of a rule.
 //! A name means one thing, and nothing where it is not declared yet.
 
-use super::rule::Point;
+use super::point::Point;
 use crate::messages::{Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;

@@ -11,7 +11,7 @@
 //! n(n + 1)/2. The results are as exact as the functions of the difference, some ulps of 1; but a sine of nearly equal
 //! angles keeps fewer digits of its own. The magnitude of a residual covers that: it counts the rounding of a and of b.
 
-use super::lower::Lowering;
+use super::lowering::Lowering;
 use super::operations::{Operation, OperationId};
 use num_traits::{Signed, Zero};
 use vi_expr::{Expr, Function, Node};

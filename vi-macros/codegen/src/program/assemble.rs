@@ -3,10 +3,10 @@
 //! In: a [`Model`] and its [`DiscreteSystem`]. Out: a [`Program`]. Fields become derivatives of L and f at the points
 //! of the rule; the arguments of a point are evaluated once per function.
 
-use super::lower::{Known, Lowering};
+use super::lowering::{Known, Lowering};
 use super::magnitude::magnitude;
 use super::results::{FunctionId, Output, Results};
-use super::verify;
+use super::verify::{self, Expressions};
 use super::{Function, Program};
 use crate::discrete::{DiscreteSystem, Fields};
 use crate::limits::bounded;
@@ -38,12 +38,6 @@ pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) 
 
 /// Work that an operation takes until it is emitted.
 const OPERATION: usize = 128;
-
-/// The expressions that a function lowers, and the arguments of the points in them.
-pub(super) struct Expressions {
-    pub(super) results: Results<Expr>,
-    pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
-}
 
 pub(super) type Assembled = core::result::Result<Vec<(Function, Expressions)>, TooLarge>;
 

@@ -5,63 +5,14 @@
 //! parameters and the step. In sums with terms of order h, those are added up first and joined to the large ones last,
 //! so that no digit of theirs is lost early.
 
+use super::lowering::{Dependence, Factor, Known, Lowering, SumForm};
 use super::operations::{Operation, OperationId, Operations};
-use super::powers::{Factor, Occurrence};
 use super::results::Results;
-use super::sums::Way;
-use crate::symbol::{Symbol, Variable};
+use crate::symbol::Symbol;
 use num_traits::{One, Signed, Zero};
-use std::collections::BTreeMap;
-use vi_expr::{Expr, Node, Pool, Rational, Sum, Table};
+use vi_expr::{Expr, Node, Rational, Sum};
 
-/// What an expression depends on, the widest last.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Dependence {
-    /// Nothing: it is a number.
-    None,
-    /// Parameters: it is constant over a run.
-    Parameters,
-    /// Parameters and the step: it is constant over a run of fixed steps.
-    Run,
-    /// What changes from step to step.
-    Step,
-}
-
-/// What is found out about expressions, whichever function they are lowered for.
-#[derive(Default)]
-pub(super) struct Known {
-    dependences: Table<Expr, Dependence>,
-    /// Values of expressions that depend on nothing.
-    numbers: Table<Expr, f64>,
-    pub(super) ways: Table<Expr, Way>,
-}
-
-/// The lowering of one function.
-pub(super) struct Lowering<'a> {
-    pub(super) pool: &'a mut Pool<Symbol>,
-    pub(super) operations: Operations,
-    pub(super) occurrences: Table<Expr, Occurrence>,
-    /// The arguments of sines and cosines.
-    pub(super) angles: Table<Expr, ()>,
-    values: Table<Expr, OperationId>,
-    /// The ways that this function has taken.
-    pub(super) ways: Table<Expr, Way>,
-    pub(super) known: &'a mut Known,
-    arguments: &'a BTreeMap<(usize, Variable), Expr>,
-}
-
-impl<'a> Lowering<'a> {
-    /// A function with these arguments of the points.
-    pub(super) fn new(
-        pool: &'a mut Pool<Symbol>,
-        known: &'a mut Known,
-        arguments: &'a BTreeMap<(usize, Variable), Expr>,
-    ) -> Self {
-        let (operations, occurrences, angles) = (Operations::default(), Table::default(), Table::default());
-        let (values, ways) = (Table::default(), Table::default());
-        Self { pool, operations, occurrences, angles, values, ways, known, arguments }
-    }
-
+impl Lowering<'_> {
     /// Lowers expressions and all that they need, children first; to no number where the pool is exhausted.
     pub(super) fn lower(&mut self, exprs: &Results<Expr>) -> Results<OperationId> {
         let used: Vec<Expr> = exprs.entries().chain(self.arguments.values()).copied().collect();
@@ -172,17 +123,17 @@ impl<'a> Lowering<'a> {
 
     /// Σ coefficient·term + constant.
     fn sum(&mut self, expr: Expr, sum: &Sum) -> OperationId {
-        match self.way(expr) {
-            Way::Term => match sum.terms.first() {
+        match self.sum_form(expr) {
+            SumForm::Term => match sum.terms.first() {
                 Some((term, coefficient)) => self.term(*term, coefficient),
                 None => self.operations.constant(Self::number(&sum.constant)),
             },
-            Way::BySize { large, small } => {
+            SumForm::BySize { large, small } => {
                 let large = self.value(large);
                 self.plus(large, small)
             }
-            Way::Factor { factor, inside, rest } => {
-                let product = if matches!(self.way(inside), Way::Coefficient { .. }) {
+            SumForm::Factor { factor, inside, rest } => {
+                let product = if matches!(self.sum_form(inside), SumForm::Coefficient { .. }) {
                     self.product(&[(inside, Rational::one()), (factor, Rational::one())], &Rational::one())
                 } else {
                     let (inside, factor) = (self.value(inside), self.value(factor));
@@ -197,11 +148,11 @@ impl<'a> Lowering<'a> {
                     None => product,
                 }
             }
-            Way::Coefficient { coefficient, inside } => {
+            SumForm::Coefficient { coefficient, inside } => {
                 let (inside, coefficient) = (self.value(inside), self.value(coefficient));
                 self.multiply(inside, coefficient)
             }
-            Way::Plain => self.plain_sum(sum),
+            SumForm::Plain => self.plain_sum(sum),
         }
     }
 
@@ -283,8 +234,8 @@ impl<'a> Lowering<'a> {
             return;
         }
         // A number before a sum is one with the coefficient.
-        let value = match self.way(base) {
-            Way::Coefficient { coefficient, inside } if exponent.is_one() => {
+        let value = match self.sum_form(base) {
+            SumForm::Coefficient { coefficient, inside } if exponent.is_one() => {
                 match self.pool.as_number(coefficient).cloned() {
                     Some(number) => into.number *= Self::number(&number),
                     None => into.parameters.push(self.value(coefficient)),

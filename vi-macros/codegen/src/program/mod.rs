@@ -8,6 +8,7 @@ mod angles;
 mod assemble;
 mod families;
 mod lower;
+mod lowering;
 mod magnitude;
 mod operations;
 mod order;

@@ -4,31 +4,10 @@
 //! squares; half-integer ones are these times one root; where a base is divided by more than once, its reciprocal is
 //! computed once. A root below is a root above and a reciprocal, `x^(−3/2) = (1/x)² √x`: the two do not wait for each other.
 
-use super::lower::Lowering;
+use super::lowering::{Factor, Lowering};
 use super::operations::{Operation, OperationId};
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_traits::{One, ToPrimitive, Zero};
 use vi_expr::{Expr, Function, Node, Rational};
-
-/// With which exponents a base occurs.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Occurrence {
-    /// Some exponent is an odd multiple of 1/2.
-    has_root: bool,
-    uses_below: usize,
-}
-
-impl Occurrence {
-    pub(super) fn record(&mut self, exponent: &Rational) {
-        self.uses_below += usize::from(exponent.is_negative());
-        self.has_root |= exponent.denom().to_u32() == Some(2);
-    }
-}
-
-/// A factor of a product: multiplied, or divided by.
-pub(super) enum Factor {
-    Above(OperationId),
-    Below(OperationId),
-}
 
 impl Lowering<'_> {
     /// Notes how bases occur below these expressions.

@@ -4,60 +4,45 @@
 //! ones last. Factors are taken out where that saves products in every step. Parameters are not: they are coefficients,
 //! computed once per run, whatever stands in them.
 
-use super::lower::{Dependence, Lowering};
+use super::lowering::{Dependence, Lowering, SumForm};
 use crate::symbol::Symbol;
 use num_traits::{One, Signed, Zero};
 use std::collections::BTreeMap;
 use vi_expr::{Expr, Node, Rational, Sum};
 
-/// The way in which an expression that is a sum is written.
-#[derive(Clone, Copy)]
-pub(super) enum Way {
-    /// It is one term, or no sum.
-    Term,
-    /// Large terms, and those of order h.
-    BySize { large: Expr, small: Expr },
-    /// factor·inside + rest
-    Factor { factor: Expr, inside: Expr, rest: Option<Expr> },
-    /// coefficient·inside, the coefficient of numbers and parameters
-    Coefficient { coefficient: Expr, inside: Expr },
-    /// Term by term.
-    Plain,
-}
-
 impl Lowering<'_> {
-    /// The way in which an expression is written.
-    pub(super) fn way(&mut self, expr: Expr) -> Way {
-        if let Some(known) = self.ways.get(expr) {
+    /// How an expression is written.
+    pub(super) fn sum_form(&mut self, expr: Expr) -> SumForm {
+        if let Some(known) = self.sum_forms.get(expr) {
             return *known;
         }
-        let way = self.known.ways.get(expr).copied().unwrap_or_else(|| self.find_way(expr));
+        let form = self.known.sum_forms.get(expr).copied().unwrap_or_else(|| self.find_sum_form(expr));
         // Its parts are new in each function.
-        if let Way::Factor { inside, rest, .. } = way {
+        if let SumForm::Factor { inside, rest, .. } = form {
             self.record_powers(&[inside, rest.unwrap_or(inside)]);
         }
-        self.known.ways.insert(expr, way);
-        self.ways.insert(expr, way);
-        way
+        self.known.sum_forms.insert(expr, form);
+        self.sum_forms.insert(expr, form);
+        form
     }
 
-    fn find_way(&mut self, expr: Expr) -> Way {
-        let Node::Sum(sum) = self.pool.node(expr).clone() else { return Way::Term };
+    fn find_sum_form(&mut self, expr: Expr) -> SumForm {
+        let Node::Sum(sum) = self.pool.node(expr).clone() else { return SumForm::Term };
         if sum.terms.is_empty() || sum.constant.is_zero() && sum.terms.len() == 1 {
-            return Way::Term;
+            return SumForm::Term;
         }
-        let way = self.by_size(&sum).or_else(|| self.common_factor(&sum));
-        way.or_else(|| self.common_coefficient(&sum)).unwrap_or(Way::Plain)
+        let form = self.by_size(&sum).or_else(|| self.common_factor(&sum));
+        form.or_else(|| self.common_coefficient(&sum)).unwrap_or(SumForm::Plain)
     }
 
     /// Large terms and those of order h, where a sum has both.
-    fn by_size(&mut self, sum: &Sum) -> Option<Way> {
+    fn by_size(&mut self, sum: &Sum) -> Option<SumForm> {
         let (small, large): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| self.is_small(*term));
         if small.is_empty() || (large.is_empty() && sum.constant.is_zero()) {
             return None;
         }
         let large = self.pool_sum(&Sum { constant: sum.constant.clone(), terms: large });
-        Some(Way::BySize { large, small: self.pool_sum(&Sum { constant: Rational::zero(), terms: small }) })
+        Some(SumForm::BySize { large, small: self.pool_sum(&Sum { constant: Rational::zero(), terms: small }) })
     }
 
     /// The low part of a carried quantity, or a term with a factor h.
@@ -78,7 +63,7 @@ impl Lowering<'_> {
 
     /// The factor that most terms share, what it is multiplied by, and the other terms. Parameters are factors of what
     /// changes with the state at no cost, as coefficients computed once per run; they are taken out of sums of such only.
-    fn common_factor(&mut self, sum: &Sum) -> Option<Way> {
+    fn common_factor(&mut self, sum: &Sum) -> Option<SumForm> {
         let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
         let varies = sum.terms.iter().any(|(term, _)| self.dependence(*term) > Dependence::Parameters);
         for (term, _) in &sum.terms {
@@ -112,7 +97,7 @@ impl Lowering<'_> {
             return None;
         }
         let (inside, rest) = (self.pool.sum(&inside), self.pool_sum(&rest));
-        Some(Way::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
+        Some(SumForm::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
     }
 
     /// Whether a bare sum is among the terms: it would dissolve in their sum, and its differences with it. e²/2 + e³/3 stays as
@@ -149,7 +134,7 @@ impl Lowering<'_> {
     }
 
     /// The coefficient that most terms share but for the sign, with parameters if all have the same, and the sum without it.
-    fn common_coefficient(&mut self, sum: &Sum) -> Option<Way> {
+    fn common_coefficient(&mut self, sum: &Sum) -> Option<SumForm> {
         let mut parameters = self.parameters(sum.terms.first()?.0);
         let alike = |(term, _): &(Expr, Rational)| self.parameters(*term) == parameters;
         if !sum.constant.is_zero() && !parameters.is_empty() || !sum.terms.iter().all(alike) {
@@ -182,7 +167,7 @@ impl Lowering<'_> {
             let term = self.pool.mul(*term, inverse);
             terms.push(self.pool.scale(term, &(c / &number)));
         }
-        (!self.dissolves(&terms)).then(|| Way::Coefficient { coefficient, inside: self.pool.sum(&terms) })
+        (!self.dissolves(&terms)).then(|| SumForm::Coefficient { coefficient, inside: self.pool.sum(&terms) })
     }
 
     /// The powers of parameters that a term which changes with the state has as factors.

@@ -4,11 +4,11 @@
 //! that is not finite, or an internal one where function and expressions differ at one point drawn from a fixed
 //! sequence, in builds with debug assertions only.
 
-use super::assemble::Expressions;
 use super::operations::Operation;
+use super::results::Results;
 use super::{Function, OperationId};
 use crate::messages::{Message, error};
-use crate::symbol::Symbol;
+use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
 use syn::Result;
@@ -18,6 +18,12 @@ use vi_expr::{Expr, Pool, Rounded, Table};
 const TOLERANCE: f64 = 1e-7;
 /// How many times the rounding of an expression that of its operations may be: an angle of 1e15 leaves few digits to its cosine.
 const MARGIN: f64 = 16.0;
+
+/// The expressions that a function lowers, and the arguments of the points in them.
+pub(super) struct Expressions {
+    pub(super) results: Results<Expr>,
+    pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
+}
 
 /// Checks that every constant of a function is a finite number: derivatives multiply by exponents.
 pub(super) fn has_finite_constants(function: &Function, system: &Ident) -> Result<()> {

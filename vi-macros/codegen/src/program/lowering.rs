@@ -1,0 +1,103 @@
+//! What the lowering of a function works on.
+//!
+//! In: the pool, the arguments of the points, and what was found out about expressions for other functions. Out: a [`Lowering`], whose
+//! passes stand in files of their own: `lower` takes expressions apart, `sums` says how a sum is written, `powers` what becomes of
+//! exponents, `angles` of sines.
+
+use super::operations::{OperationId, Operations};
+use crate::symbol::{Symbol, Variable};
+use num_traits::{Signed, ToPrimitive};
+use std::collections::BTreeMap;
+use vi_expr::{Expr, Pool, Rational, Table};
+
+/// What an expression depends on, the widest last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Dependence {
+    /// Nothing: it is a number.
+    None,
+    /// Parameters: it is constant over a run.
+    Parameters,
+    /// Parameters and the step: it is constant over a run of fixed steps.
+    Run,
+    /// What changes from step to step.
+    Step,
+}
+
+/// What is found out about expressions, whichever function they are lowered for.
+#[derive(Default)]
+pub(super) struct Known {
+    pub(super) dependences: Table<Expr, Dependence>,
+    /// Values of expressions that depend on nothing.
+    pub(super) numbers: Table<Expr, f64>,
+    pub(super) sum_forms: Table<Expr, SumForm>,
+}
+
+/// The lowering of one function.
+pub(super) struct Lowering<'a> {
+    pub(super) pool: &'a mut Pool<Symbol>,
+    pub(super) operations: Operations,
+    pub(super) occurrences: Table<Expr, Occurrence>,
+    /// The arguments of sines and cosines.
+    pub(super) angles: Table<Expr, ()>,
+    pub(super) values: Table<Expr, OperationId>,
+    /// How the sums of this function are written.
+    pub(super) sum_forms: Table<Expr, SumForm>,
+    pub(super) known: &'a mut Known,
+    pub(super) arguments: &'a BTreeMap<(usize, Variable), Expr>,
+}
+
+impl<'a> Lowering<'a> {
+    /// A function with these arguments of the points.
+    pub(super) fn new(
+        pool: &'a mut Pool<Symbol>,
+        known: &'a mut Known,
+        arguments: &'a BTreeMap<(usize, Variable), Expr>,
+    ) -> Self {
+        Self {
+            pool,
+            operations: Operations::default(),
+            occurrences: Table::default(),
+            angles: Table::default(),
+            values: Table::default(),
+            sum_forms: Table::default(),
+            known,
+            arguments,
+        }
+    }
+}
+
+/// With which exponents a base occurs.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Occurrence {
+    /// Some exponent is an odd multiple of 1/2.
+    pub(super) has_root: bool,
+    pub(super) uses_below: usize,
+}
+
+impl Occurrence {
+    pub(super) fn record(&mut self, exponent: &Rational) {
+        self.uses_below += usize::from(exponent.is_negative());
+        self.has_root |= exponent.denom().to_u32() == Some(2);
+    }
+}
+
+/// A factor of a product: multiplied, or divided by.
+pub(super) enum Factor {
+    Above(OperationId),
+    Below(OperationId),
+}
+
+/// How an expression that is a sum is written.
+#[derive(Clone, Copy)]
+pub(super) enum SumForm {
+    /// It is one term, or no sum.
+    Term,
+    /// Large terms, and those of order h.
+    BySize { large: Expr, small: Expr },
+    /// factor·inside + rest
+    Factor { factor: Expr, inside: Expr, rest: Option<Expr> },
+    /// coefficient·inside, the coefficient of numbers and parameters
+    Coefficient { coefficient: Expr, inside: Expr },
+    /// Term by term.
+    Plain,
+}
