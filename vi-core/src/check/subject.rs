@@ -30,12 +30,13 @@ pub trait Checked<const N: usize>: FixedStepping<N> + DiscreteLagrangian<N> + Co
 
 impl<const N: usize, S: FixedStepping<N> + DiscreteLagrangian<N> + Convertible<N> + Parameters> Checked<N> for S {}
 
-/// Such a system with energy-preserving steps.
+/// Such a system with energy-preserving steps. Rust 1.89 takes one bound on `In` for each number, not two in one.
 pub trait EnergyChecked<const N: usize>:
     EnergyStepping<N>
     + DiscreteLagrangian<N>
     + Parameters
-    + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
+    + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>>
+    + Convertible<N, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
 {
 }
 
@@ -43,6 +44,7 @@ impl<const N: usize, S> EnergyChecked<N> for S where
     S: EnergyStepping<N>
         + DiscreteLagrangian<N>
         + Parameters
-        + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
+        + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>>
+        + Convertible<N, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
 {
 }
