@@ -34,7 +34,7 @@ pub(super) struct Body {
 
 /// Where a function reads the velocity of the step.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum VelocityFrom {
     /// From an argument.
     Argument,
     /// From the ends and the length of an interval, which are inputs then.
@@ -62,17 +62,17 @@ struct Printer<'a> {
 
 /// Prints a function of a system whose rule has so many points: in loops or, where these do not help, in pieces if it has
 /// more operations than `limit`.
-pub(super) fn body(model: &Model, function: &Function, points: usize, place: Place, limit: usize) -> Body {
+pub(super) fn body(model: &Model, function: &Function, points: usize, velocity: VelocityFrom, limit: usize) -> Body {
     let long = function.operation_count() > limit;
     let (names, needed) = (Names::new(model, points), function.needed());
     if let Some(loops) = long.then(|| Loops::of(function, &needed, limit)).flatten() {
-        return Printer::new(model, function, names, loops.uses()).in_loops(&loops, &needed, place);
+        return Printer::new(model, function, names, loops.uses()).in_loops(&loops, &needed, velocity);
     }
     let needed = if long { function.local_order() } else { needed };
     let angles = Angles::of(function, &needed);
     let needed = angles.first(function, needed);
     let mut printer = Printer { in_pieces: long, angles, ..Printer::new(model, function, names, function.uses()) };
-    printer.name_inputs(&needed, place);
+    printer.name_inputs(&needed, velocity);
     let constants = needed.iter().any(|id| matches!(function.operations.get(*id), Operation::Constant(_)));
     for id in needed {
         printer.write(id);
@@ -109,19 +109,19 @@ impl<'a> Printer<'a> {
     }
 
     /// The body in loops, and what is in none of them before and after.
-    fn in_loops(mut self, loops: &Loops, needed: &[OperationId], place: Place) -> Body {
+    fn in_loops(mut self, loops: &Loops, needed: &[OperationId], velocity: VelocityFrom) -> Body {
         let vector = |id: &OperationId| match self.function.operations.get(*id) {
             Operation::Input(symbol) => symbol.component().map(|(vector, _)| vector),
             _ => None,
         };
         let mut vectors: BTreeSet<Symbol> = needed.iter().filter_map(vector).collect();
-        if place == Place::Interval && vectors.contains(&Symbol::StepVelocity(0)) {
+        if velocity == VelocityFrom::Interval && vectors.contains(&Symbol::StepVelocity(0)) {
             vectors.extend([Symbol::Q0(0), Symbol::Q1(0)]);
         }
         for vector in vectors {
             self.vectors.insert(vector.clone(), self.names.vector(&vector));
         }
-        self.name_inputs(needed, place);
+        self.name_inputs(needed, velocity);
         let (first, last) = loops.singles();
         for id in first {
             self.write(id);
@@ -142,11 +142,11 @@ impl<'a> Printer<'a> {
 
 impl Printer<'_> {
     /// Inputs take their names before shared terms do, in the order of the symbols.
-    fn name_inputs(&mut self, needed: &[OperationId], place: Place) {
+    fn name_inputs(&mut self, needed: &[OperationId], velocity: VelocityFrom) {
         let mut symbols = BTreeSet::new();
         for id in needed {
             let Operation::Input(symbol) = self.function.operations.get(*id) else { continue };
-            if let (Symbol::StepVelocity(index), Place::Interval) = (symbol, place) {
+            if let (Symbol::StepVelocity(index), VelocityFrom::Interval) = (symbol, velocity) {
                 symbols.extend([Symbol::Step, Symbol::Q0(*index), Symbol::Q1(*index)]);
             }
             if !matches!(symbol, Symbol::Parameter(_)) {

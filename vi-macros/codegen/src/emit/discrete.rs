@@ -1,7 +1,7 @@
 //! `impl DiscreteLagrangian`: L_d, its slot derivatives, discrete forces and powers.
 
 use super::Source;
-use super::body::{Body, Place, part, parts};
+use super::body::{Body, VelocityFrom, part, parts};
 use super::lagrangian::vector_of;
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
@@ -54,7 +54,7 @@ fn interval_parts(source: &Source, body: &Body) -> TokenStream {
 /// A number in the slots.
 fn number(source: &Source, id: FunctionId, expr: Expr) -> TokenStream {
     let formula = source.formula(id.name(), expr);
-    let Some((body, documentation)) = source.documented(id, &formula, Place::Interval) else {
+    let Some((body, documentation)) = source.documented(id, &formula, VelocityFrom::Interval) else {
         return TokenStream::new();
     };
     let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
@@ -72,7 +72,7 @@ fn number(source: &Source, id: FunctionId, expr: Expr) -> TokenStream {
 /// A vector in the slots.
 fn vector(source: &Source, id: FunctionId, exprs: &[Expr]) -> TokenStream {
     let formula = source.formulas(id.name(), exprs);
-    let Some((body, documentation)) = source.documented(id, &formula, Place::Interval) else {
+    let Some((body, documentation)) = source.documented(id, &formula, VelocityFrom::Interval) else {
         return TokenStream::new();
     };
     let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());

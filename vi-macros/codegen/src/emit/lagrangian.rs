@@ -1,7 +1,7 @@
 //! `impl Lagrangian`: the continuous functions.
 
 use super::Source;
-use super::body::{Body, Place, body, state_parts};
+use super::body::{Body, VelocityFrom, body, state_parts};
 use super::entries::{self, Entry};
 use super::matrix::matrix;
 use crate::model::Coordinate;
@@ -78,9 +78,14 @@ impl Source<'_> {
     }
 
     /// The body of a function with its documentation: formula and operation count.
-    pub(super) fn documented(&self, id: FunctionId, formula: &str, place: Place) -> Option<(Body, TokenStream)> {
+    pub(super) fn documented(
+        &self,
+        id: FunctionId,
+        formula: &str,
+        velocity: VelocityFrom,
+    ) -> Option<(Body, TokenStream)> {
         let function = self.function(id)?;
-        let printed = body(self.model, function, self.system.slots.points.len(), place, self.limit);
+        let printed = body(self.model, function, self.system.slots.points.len(), velocity, self.limit);
         let count = function.operation_count();
         let noun = if count == 1 { "operation" } else { "operations" };
         let lines = format!("{formula}\n\n{count} {noun}.");
@@ -96,7 +101,7 @@ pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
 }
 
 fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(id, formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };
     let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
@@ -117,7 +122,7 @@ fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
 }
 
 fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
-    let Some((body, documentation)) = source.documented(id, formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };
     let (name, dimension) = (format_ident!("{}", id.name()), source.dimension());
@@ -140,7 +145,8 @@ fn vector(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
 fn acceleration(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let formula = "Solves `M a = L_q + f − L_vt − L_vq v`.";
-    let Some((body, documentation)) = source.documented(FunctionId::Acceleration, formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(FunctionId::Acceleration, formula, VelocityFrom::Argument)
+    else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
@@ -167,7 +173,8 @@ fn acceleration(source: &Source) -> TokenStream {
 fn step_density(source: &Source, density: Expr) -> TokenStream {
     let dimension = source.dimension();
     let formula = source.formula("D", density);
-    let Some((body, documentation)) = source.documented(FunctionId::StepDensity, &formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(FunctionId::StepDensity, &formula, VelocityFrom::Argument)
+    else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
@@ -190,7 +197,7 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
 fn non_finite(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let formula = "The first of what L and f are made of that is not finite here.";
-    let Some((body, documentation)) = source.documented(FunctionId::NonFinite, formula, Place::Argument) else {
+    let Some((body, documentation)) = source.documented(FunctionId::NonFinite, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };
     let (inputs, statements) = (state_parts(&body, source.model), &body.statements);

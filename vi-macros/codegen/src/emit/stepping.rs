@@ -1,7 +1,7 @@
 //! `impl FixedStepping` and, for rules with a step density, `impl EnergyStepping`: the equations of one step in the unknowns (v, h).
 
 use super::Source;
-use super::body::{Body, Place, part, parts};
+use super::body::{Body, VelocityFrom, part, parts};
 use super::entries::Entry;
 use super::lagrangian::vector_of;
 use super::matrix::matrix;
@@ -130,7 +130,7 @@ fn method(
     value: impl FnOnce(&Results<Entry>) -> TokenStream,
 ) -> Option<TokenStream> {
     let (dimension, model) = (source.dimension(), source.model);
-    let (body, documentation) = source.documented(id, formula, Place::Argument)?;
+    let (body, documentation) = source.documented(id, formula, VelocityFrom::Argument)?;
     let (inputs, statements, value) = (node_parts(&body, model), &body.statements, value(&body.results));
     let (attribute, name) = (attribute(source, id), format_ident!("{}", id.name()));
     Some(quote! {

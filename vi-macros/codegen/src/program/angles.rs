@@ -9,7 +9,7 @@
 //!
 //! Six operations, where a sine and a cosine take as long as about thirty: n links of a pendulum need n of them, not
 //! n(n + 1)/2. The results are as exact as the functions of the difference, some ulps of 1; but a sine of nearly equal
-//! angles keeps fewer digits of its own. The magnitude of a residual covers that: it counts the rounding of a and of b.
+//! angles keeps fewer digits of its own. The rounding scale of a residual covers that: it counts the rounding of a and of b.
 
 use super::lowering::Lowering;
 use super::operations::{Operation, OperationId};

@@ -4,8 +4,8 @@
 //! of the rule; the arguments of a point are evaluated once per function.
 
 use super::lowering::{Known, Lowering};
-use super::magnitude::magnitude;
 use super::results::{FunctionId, Output, Results};
+use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
 use super::{Function, Program};
 use crate::discrete::{DiscreteSystem, Fields};
@@ -80,8 +80,8 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| self.open(*expr)).collect()
     }
 
-    fn magnitudes(&mut self, exprs: &[Expr]) -> Vec<Expr> {
-        exprs.iter().map(|expr| magnitude(self.pool, *expr)).collect()
+    fn rounding_scales(&mut self, exprs: &[Expr]) -> Vec<Expr> {
+        exprs.iter().map(|expr| rounding_scale(self.pool, *expr)).collect()
     }
 
     /// A function that computes these quantities, each given by its rows.
@@ -182,8 +182,8 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let residual_dh = assembly.open_all(&of.residual_dh);
     let energy_dv = assembly.open_all(&of.energy_dv);
     let energy_dh = assembly.open_all(&[of.energy_dh]);
-    let rounding_scale = assembly.magnitudes(&residual);
-    let energy_rounding_scale = assembly.magnitudes(&energy_residual);
+    let rounding_scale = assembly.rounding_scales(&residual);
+    let energy_rounding_scale = assembly.rounding_scales(&energy_residual);
     let residual = (Output::Residual, vec![residual]);
     let jacobian = (Output::Jacobian, jacobian);
     let rounding_scale = (Output::RoundingScale, vec![rounding_scale]);

@@ -9,11 +9,11 @@ mod assemble;
 mod families;
 mod lower;
 mod lowering;
-mod magnitude;
 mod operations;
 mod order;
 mod powers;
 mod results;
+mod rounding_scale;
 mod sums;
 mod verify;
 

@@ -1,4 +1,4 @@
-//! What a row is a sum of.
+//! The rounding scale of a residual: what it is a sum of.
 //!
 //! In: a residual r. Out: Σ |coefficient|·|term|, where a sum inside a term counts term by term too, down to [`DEPTH`] levels. A residual
 //! below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out.
@@ -11,7 +11,7 @@ use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
 const DEPTH: u32 = 4;
 
 /// The sum of the absolute values of the terms of an expression.
-pub(super) fn magnitude(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+pub(super) fn rounding_scale(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     term_by_term(pool, expr, DEPTH)
 }
 
@@ -35,15 +35,15 @@ fn terms(pool: &mut Pool<Symbol>, sum: &Sum, depth: u32) -> Expr {
     pool.sum(&found)
 }
 
-/// The product of the magnitudes of its factors: of a sum s to the power n `n |s|^(n−1)` times that of s, by which it changes.
+/// The product of the scales of its factors: of a sum s to the power n `n |s|^(n−1)` times that of s, by which it changes.
 fn factors(pool: &mut Pool<Symbol>, product: &Product, depth: u32) -> Expr {
     let (mut sums, mut others) = (Vec::new(), Vec::new());
     for (base, exponent) in &product.factors {
         let is_power_of_sum =
             matches!(pool.node(*base), Node::Sum(_)) && exponent.is_integer() && exponent.is_positive();
         if is_power_of_sum {
-            let magnitude = term_by_term(pool, *base, depth);
-            sums.push(pool.scale(magnitude, exponent));
+            let scale = term_by_term(pool, *base, depth);
+            sums.push(pool.scale(scale, exponent));
             others.push(pool.power(*base, &(exponent - Rational::one())));
         } else {
             others.push(pool.power(*base, exponent));
