@@ -3,3 +3,9 @@
 
 #[doc = include_str!("../docs/dsl.md")]
 pub mod dsl {}
+
+#[doc = include_str!("../docs/choosing.md")]
+pub mod choosing {}
+
+#[doc = include_str!("../docs/cookbook.md")]
+pub mod cookbook {}
