@@ -6,17 +6,17 @@
 //!
 //! | module | what it makes |
 //! |---|---|
-//! | [`system`], [`simulation`] | any system and one run of it, their types erased: all that is compiled once for each system |
-//! | [`counting`], [`rival`], [`start`] | what stands below them: evaluations, DOP853, an accurate start |
-//! | [`catalogue`] | the systems by name, each with a place to start from |
-//! | [`run`] | `vi-lab run`: rows as CSV or NPY |
-//! | [`paper`] | `vi-lab paper`: figures, tables and the page |
-//! | [`stability`] | `vi-lab stability`: where methods fail, as maps |
-//! | [`work_precision`] | `vi-lab work-precision`: error against time, for every method |
-//! | [`expand`], [`explain`] | what a system becomes, stage by stage; its mathematics |
-//! | [`chart`], [`table`], [`html`], [`report`] | figures, tables, and the page that holds them |
-//! | [`input`], [`numbers`] | numbers as users write them, and as pages and messages do |
-//! | [`progress`], [`machine`], [`failure`], [`interrupt`] | bars, versions, errors, signals |
+//! | `system`, `simulation` | any system and one run of it, their types erased: all that is compiled once for each system |
+//! | `counting`, `rival`, `start` | what stands below them: evaluations, DOP853, an accurate start |
+//! | `catalogue` | the systems by name, each with a place to start from |
+//! | `run` | `vi-lab run`: rows as CSV or NPY |
+//! | `paper` | `vi-lab paper`: figures, tables and the page |
+//! | `stability` | `vi-lab stability`: where methods fail, as maps |
+//! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
+//! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
+//! | `chart`, `table`, `html`, `report` | figures, tables, and the page that holds them |
+//! | `input`, `numbers` | numbers as users write them, and as pages and messages do |
+//! | `progress`, `machine`, `failure`, `interrupt` | bars, versions, errors, signals |
 
 mod catalogue;
 mod chart;
