@@ -150,7 +150,8 @@ mod tests {
     #[test]
     fn every_entry_starts_and_keeps_its_parameters() {
         for mut entry in entries() {
-            let (size, name) = (entry.system.coordinates().len(), entry.system.name());
+            let size = entry.system.coordinates().len();
+            let name = entry.system.name();
             assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
             for method in [Method::Fixed, Method::KahanLi6, Method::Energy] {
                 let plan =

@@ -149,7 +149,8 @@ mod tests {
     #[test]
     fn every_evaluation_of_a_fixed_step_is_counted_and_no_bit_is_changed() {
         let evaluations = Cell::new(0);
-        let (plain, counting) = (Pendulum::default(), Counting::new(Pendulum::default(), &evaluations));
+        let plain = Pendulum::default();
+        let counting = Counting::new(Pendulum::default(), &evaluations);
         let start = State::at(&plain, 0.0, [1.0], [0.0]);
         let mut runs = (
             FixedStep::new(plain, start, 0.01).expect("a start"),

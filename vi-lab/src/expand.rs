@@ -64,7 +64,8 @@ pub(super) fn each(file: &Path, mut show: impl FnMut(TokenStream) -> syn::Result
     if declarations.is_empty() {
         return Err(Failure::Input(format!("{name} declares no system with `lagrangian!`")));
     }
-    let (mut shown, mut wrong) = (Vec::new(), Vec::new());
+    let mut shown = Vec::new();
+    let mut wrong = Vec::new();
     for tokens in declarations {
         match show(tokens) {
             Ok(text) => shown.push(text.trim_end().to_owned()),

@@ -94,7 +94,7 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure @ Failure::Unread) => ExitCode::from(failure.exit_status()),
         Err(Failure::System { shown, wrong }) => {
-            // What is right is shown first; where nobody reads it, the mistakes are still told.
+            // The command shows what is right first. It reports the mistakes also where nobody reads standard output.
             let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
             let _ = write!(io::stderr(), "{wrong}");
             ExitCode::FAILURE

@@ -51,7 +51,11 @@ pub(crate) fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
 
 /// Slope of the straight line through `(log x, log y)` by least squares: the order of a power law.
 pub(crate) fn order(points: &[(f64, f64)]) -> f64 {
-    let (mut n, mut sx, mut sy, mut sxx, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let mut n = 0.0;
+    let mut sx = 0.0;
+    let mut sy = 0.0;
+    let mut sxx = 0.0;
+    let mut sxy = 0.0;
     for (x, y) in points.iter().map(|(x, y)| (x.ln(), y.ln())) {
         n += 1.0;
         sx += x;

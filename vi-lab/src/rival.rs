@@ -98,8 +98,8 @@ impl<const N: usize> State<f64> for Phase<N> {
     }
 }
 
-/// The motion as a system of first order. An acceleration that fails is none: the library shortens its step, and where
-/// that does not help, the failure is told in its place.
+/// The motion as a system of first order. Where the acceleration fails, the library gets NaN and shortens its
+/// step. Where that does not help, the run ends with the failure of the acceleration.
 struct Equations<'a, S> {
     system: S,
     evaluations: &'a Cell<u64>,
@@ -173,11 +173,13 @@ mod tests {
 
     #[test]
     fn the_damped_oscillator_is_met() {
-        let (system, t) = (DampedOscillator::default(), 40.0);
+        let system = DampedOscillator::default();
+        let t = 40.0;
         let start = Motion { t: 0.0, q: [1.0].into(), v: [0.0].into() };
         let evaluations = Cell::new(0);
         let end = motion(system, &start, t, 1e-14, &evaluations, &mut |_| ()).expect("the motion");
-        let (decay, omega) = (0.02_f64, (4.0_f64 - 0.02 * 0.02).sqrt());
+        let decay = 0.02_f64;
+        let omega = (4.0_f64 - 0.02 * 0.02).sqrt();
         let exact = (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin());
         // Measured 3.5e-14.
         assert!((end.q[0] - exact).abs() < 4e-14, "{:e}", end.q[0] - exact);

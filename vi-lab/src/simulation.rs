@@ -203,14 +203,15 @@ pub(crate) fn begin<'a, S, const N: usize>(system: S, plan: &Plan) -> Result<Box
 where
     S: EnergyStepping<N> + 'a,
 {
-    let initial = (plan.t, vector(&plan.q, "number of coordinates")?, vector(&plan.v, "number of velocities")?);
-    let (t, q, v) = initial;
+    let t = plan.t;
+    let q = vector(&plan.q, "number of coordinates")?;
+    let v = vector(&plan.v, "number of velocities")?;
     Ok(match (plan.method, plan.method.scheme()) {
         (Method::Energy, _) => {
             let integrator = match plan.start {
                 Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v, plan.h)?,
                 Start::Points => {
-                    let second = start::second_point(&system, initial, plan.h)?;
+                    let second = start::second_point(&system, t, q, v, plan.h)?;
                     EnergyPreserving::from_points(system, (t, q), second)?
                 }
             };

@@ -12,10 +12,25 @@ use kuva::prelude::{
 };
 use std::sync::Arc;
 
-/// Margins of the plot area in pixels: left, right (where the legend stands), top, bottom.
-pub(super) const MARGINS: (f64, f64, f64, f64) = (88.0, 216.0, 44.0, 60.0);
+/// Margins of the plot area.
+pub(super) const MARGINS: Margins = Margins { left: 88.0, right: 216.0, top: 44.0, bottom: 60.0 };
+/// The usual plot area.
+const AREA: Area = Area { width: 596.0, height: 330.0 };
+
+/// Space around the plot area in pixels; the legend stands on the right.
+pub(super) struct Margins {
+    pub(super) left: f64,
+    right: f64,
+    pub(super) top: f64,
+    bottom: f64,
+}
+
 /// Size of the plot area in pixels.
-const AREA: (f64, f64) = (596.0, 330.0);
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Area {
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
 
 /// A series as it is drawn: coordinates for the figure, values for the table.
 struct Drawn<'a> {
@@ -42,7 +57,7 @@ impl Chart {
         let y = self.y.ruler(placed.iter().flat_map(ordinates));
         let area = self.area(&x, &y);
         let drawn: Vec<Drawn<'_>> = placed.into_iter().map(|drawn| thinned(&drawn, &x, &y, area)).collect();
-        Figure { name: self.name, svg: self.svg(&drawn, (&x, &y), area, map), csv: self.csv(&drawn) }
+        Figure { name: self.name, svg: self.svg(&drawn, &x, &y, area, map), csv: self.csv(&drawn) }
     }
 
     /// The points that have a place on the axes.
@@ -61,36 +76,32 @@ impl Chart {
     }
 
     /// Size of the plot area where both axes have ranges.
-    pub(super) fn fixed_area(&self) -> (f64, f64) {
+    pub(super) fn fixed_area(&self) -> Area {
         self.area(&self.x.ruler(core::iter::empty()), &self.y.ruler(core::iter::empty()))
     }
 
     /// Size of the plot area: of equal aspect, as large as the usual width and 1.5 times the usual height allow.
-    fn area(&self, x: &Ruler, y: &Ruler) -> (f64, f64) {
+    fn area(&self, x: &Ruler, y: &Ruler) -> Area {
         if !self.equal_aspect {
             return AREA;
         }
-        let (width, height) = (x.range.1 - x.range.0, y.range.1 - y.range.0);
-        let scale = (AREA.0 / width).min(1.5 * AREA.1 / height);
-        (scale * width, scale * height)
+        let width = x.range.1 - x.range.0;
+        let height = y.range.1 - y.range.0;
+        let scale = (AREA.width / width).min(1.5 * AREA.height / height);
+        Area { width: scale * width, height: scale * height }
     }
 
-    fn svg(
-        &self,
-        drawn: &[Drawn<'_>],
-        (x, y): (&Ruler, &Ruler),
-        area: (f64, f64),
-        map: Option<Vec<LegendEntry>>,
-    ) -> String {
+    fn svg(&self, drawn: &[Drawn<'_>], x: &Ruler, y: &Ruler, area: Area, map: Option<Vec<LegendEntry>>) -> String {
         let grid = map.is_none();
         let series = drawn.iter().filter_map(|drawn| legend_entry(drawn.series));
         let legend = map.into_iter().flatten().chain(series).collect();
-        let (label_x, label_y) = (x.clone(), y.clone());
+        let label_x = x.clone();
+        let label_y = y.clone();
         let layout = Layout::new(x.range, y.range)
-            .with_width(area.0 + MARGINS.0 + MARGINS.1)
-            .with_height(area.1 + MARGINS.2 + MARGINS.3)
-            .with_force_margins(MARGINS.0, MARGINS.1)
-            .with_force_margins_y(MARGINS.2, MARGINS.3)
+            .with_width(area.width + MARGINS.left + MARGINS.right)
+            .with_height(area.height + MARGINS.top + MARGINS.bottom)
+            .with_force_margins(MARGINS.left, MARGINS.right)
+            .with_force_margins_y(MARGINS.top, MARGINS.bottom)
             .with_x_axis_min(x.range.0)
             .with_x_axis_max(x.range.1)
             .with_y_axis_min(y.range.0)
@@ -126,7 +137,8 @@ impl Chart {
         // Writing to a string cannot fail.
         for (number, drawn) in drawn.iter().enumerate() {
             let name = drawn.series.label.clone().unwrap_or_else(|| format!("background {number}"));
-            let (shown, computed) = (drawn.values.len(), drawn.series.points.len());
+            let shown = drawn.values.len();
+            let computed = drawn.series.points.len();
             let _ = writeln!(csv, "# {name}: {shown} of {computed} points, those that the figure shows");
         }
         let whiskers = drawn.iter().any(|drawn| !drawn.whiskers.is_empty());
@@ -167,10 +179,10 @@ fn line_style(stroke: Stroke) -> LineStyle {
 }
 
 /// The points of a series that its place in the figure can show.
-fn thinned<'a>(drawn: &Drawn<'a>, x: &Ruler, y: &Ruler, area: (f64, f64)) -> Drawn<'a> {
+fn thinned<'a>(drawn: &Drawn<'a>, x: &Ruler, y: &Ruler, area: Area) -> Drawn<'a> {
     let pixel = |ruler: &Ruler, length: f64, c: f64| (c - ruler.range.0) / (ruler.range.1 - ruler.range.0) * length;
     let pixels: Vec<(f64, f64)> =
-        drawn.coordinates.iter().map(|&(a, b)| (pixel(x, area.0, a), pixel(y, area.1, b))).collect();
+        drawn.coordinates.iter().map(|&(a, b)| (pixel(x, area.width, a), pixel(y, area.height, b))).collect();
     let kept = drawn.series.thinning.keep(&pixels);
     let pick = |points: &[(f64, f64)]| kept.iter().filter_map(|&index| points.get(index).copied()).collect();
     Drawn {
@@ -223,7 +235,9 @@ mod tests {
         let series = Series::scatter("points", Look::ENERGY.dots(3.0), points);
         let figure = chart(Axis::log10("y").over(1e-16, 1.0), vec![series]).figure();
         let heights = circles(&figure.svg);
-        let (a, b, c) = (heights[0], heights[1], heights[2]);
+        let a = heights[0];
+        let b = heights[1];
+        let c = heights[2];
         // Two decades of sixteen on an axis of 330 pixels are 41.25 pixels, ten are 206.25; the file rounds to 0.01.
         assert!((a - b - 41.25).abs() < 0.02 && (b - c - 206.25).abs() < 0.02, "{heights:?}");
     }
@@ -239,7 +253,8 @@ mod tests {
     fn a_million_points_make_a_small_file_the_same_every_time() {
         let points: Vec<(f64, f64)> = (0..1_000_000).map(|i| f64::from(i) * 1e-3).map(|x| (x, x.sin())).collect();
         let chart = chart(Axis::linear("y"), vec![Series::line("sine", Look::FIXED.line(), points)]);
-        let (first, second) = (chart.figure(), chart.figure());
+        let first = chart.figure();
+        let second = chart.figure();
         // Measured 26 kB.
         assert!(first.svg.len() < 60_000, "{} bytes", first.svg.len());
         assert_eq!(first.csv, second.csv);
@@ -253,6 +268,6 @@ mod tests {
         let chart = Chart { equal_aspect: true, ..chart(Axis::linear("y"), series) };
         let x = chart.x.ruler([-1.0, 1.0].into_iter());
         let area = chart.area(&x, &x);
-        assert!((area.0 - area.1).abs() < 1e-12 && area.0 > 100.0, "{area:?}");
+        assert!((area.width - area.height).abs() < 1e-12 && area.width > 100.0, "{area:?}");
     }
 }

@@ -40,7 +40,7 @@ pub(crate) fn middles(axis: &Axis, count: usize) -> impl Iterator<Item = f64> + 
     (0..count).map(move |index| axis.at(part(index)))
 }
 
-/// A boundary that theory gives, as curves that are told from every colour of the cells; one entry in the legend.
+/// A boundary that theory gives: curves that contrast with every colour of the cells, and one entry in the legend.
 pub(crate) fn boundary(label: &str, curves: Vec<Vec<(f64, f64)>>) -> Vec<Series> {
     let lines = curves.clone().into_iter().enumerate().map(|(index, points)| {
         let line = Series::curve(label, Look::EXACT, points);
@@ -75,17 +75,19 @@ impl Map {
         let area = self.chart.fixed_area();
         #[allow(clippy::cast_precision_loss)] // some hundred cells
         let part = |index: usize, count: usize| index as f64 / count as f64;
-        let x = |column: usize| MARGINS.0 + area.0 * part(column, self.columns);
-        let y = |row: usize| MARGINS.2 + area.1 * (1.0 - part(row, self.rows()));
+        let x = |column: usize| MARGINS.left + area.width * part(column, self.columns);
+        let y = |row: usize| MARGINS.top + area.height * (1.0 - part(row, self.rows()));
         let mut group = String::from("<g shape-rendering=\"crispEdges\">");
         // Writing to a string cannot fail.
         for class in classes {
             let _ = write!(group, "<path fill=\"{}\" d=\"", class.colour);
             for (row, cells) in self.cells.chunks(self.columns.max(1)).enumerate() {
-                let (bottom, top) = (y(row), y(row + 1));
+                let bottom = y(row);
+                let top = y(row + 1);
                 let mut column = 0;
                 for run in cells.chunk_by(PartialEq::eq) {
-                    let (left, right) = (x(column), x(column + run.len()));
+                    let left = x(column);
+                    let right = x(column + run.len());
                     if run.first() == Some(class) {
                         let _ = write!(group, "M{left:.2} {top:.2}H{right:.2}V{bottom:.2}H{left:.2}z");
                     }
@@ -152,7 +154,8 @@ mod tests {
             "{svg}"
         );
         assert!(svg.contains("<path fill=\"#222222\" d=\"M386.00 209.00H684.00V374.00H386.00z\"/>"), "{svg}");
-        let (cells, axis) = (svg.find("<g shape-rendering"), svg.find("<line "));
+        let cells = svg.find("<g shape-rendering");
+        let axis = svg.find("<line ");
         assert!(cells.is_some() && cells < axis, "the axes are drawn over the cells");
         assert!(svg.contains(">one</text>") && svg.contains(">theory</text>"));
     }

@@ -38,7 +38,9 @@ fn envelope(points: &[(f64, f64)]) -> Vec<usize> {
     let mut kept = Vec::new();
     let mut runs = points.iter().enumerate().peekable();
     while let Some((first, &(x, y))) = runs.next() {
-        let (mut low, mut high, mut last) = ((first, y), (first, y), first);
+        let mut low = (first, y);
+        let mut high = (first, y);
+        let mut last = first;
         while let Some((index, &(_, y))) = runs.next_if(|(_, (next, _))| column(*next) == column(x)) {
             if y < low.1 {
                 low = (index, y);

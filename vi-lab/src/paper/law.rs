@@ -84,7 +84,7 @@ where
     S: EnergyStepping<1> + Clone,
 {
     let q0 = SVector::from([q0]);
-    let second = second_point(&system, (0.0, q0, SVector::zeros()), h0)?;
+    let second = second_point(&system, 0.0, q0, SVector::zeros(), h0)?;
     let mut integrator = EnergyPreserving::from_points(system, (0.0, q0), second)?;
     let mut values = Vec::new();
     while integrator.state().t < UNTIL {

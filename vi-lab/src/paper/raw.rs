@@ -58,7 +58,8 @@ impl RawNode {
             let [r, e] = self.velocity_residuals(system, trial);
             ([r, e], self.velocity_newton(system, trial, [r, e]))
         });
-        let (middle, velocity) = (self.state.q + SVector::from([v * h / 2.0]), SVector::from([v]));
+        let middle = self.state.q + SVector::from([v * h / 2.0]);
+        let velocity = SVector::from([v]);
         let increment = system.extended_residual(&Node::new(self.state, self.energy), h, &velocity).increment;
         let t = self.state.t + h / 2.0;
         let p = system.momentum(t, &middle, &velocity) + increment.momentum / 2.0;
@@ -73,7 +74,8 @@ impl RawNode {
         system: &S,
         (v, h): (f64, f64),
     ) -> [f64; 2] {
-        let (node, velocity) = (Node::new(self.state, self.energy), SVector::from([v]));
+        let node = Node::new(self.state, self.energy);
+        let velocity = SVector::from([v]);
         let middle = self.state.q + velocity * (h / 2.0);
         let lost = -system.extended_residual(&node, h, &velocity).increment.energy / 2.0;
         let energy = system.energy(self.state.t + h / 2.0, &middle, &velocity);
@@ -97,7 +99,8 @@ impl RawNode {
     fn rows<S: EnergyStepping<1> + DiscreteLagrangian<1>>(&self, system: &S, v: f64, h: f64) -> [[f64; 2]; 2] {
         let ExtendedSystem { momentum, residual_dh, energy_dv, energy_dh, .. } =
             system.extended_system(&Node::new(self.state, self.energy), h, &SVector::from([v]));
-        let (r_v, r_h) = (momentum.jacobian.dense().x, residual_dh.x);
+        let r_v = momentum.jacobian.dense().x;
+        let r_h = residual_dh.x;
         [[r_v, r_h], [h * energy_dv.x + v * r_v, h * energy_dh + v * r_h]]
     }
 
@@ -137,8 +140,10 @@ impl RawNode {
         let v = (q1 - self.state.q.x) / h;
         // By the chain rule ∂v/∂q1 = 1/h, ∂v/∂t1 = −v/h, ∂h/∂t1 = 1.
         let [[r_v, r_h], [e_v, e_h]] = self.rows(system, v, h);
-        let (r_q, r_t) = (r_v / h, r_h - r_v * v / h);
-        let (e_q, e_t) = (e_v / h, e_h - e_v * v / h);
+        let r_q = r_v / h;
+        let r_t = r_h - r_v * v / h;
+        let e_q = e_v / h;
+        let e_t = e_h - e_v * v / h;
         let determinant = r_t * e_q - r_q * e_t;
         let correction = ((r_q * e - e_q * r) / determinant, (e_t * r - r_t * e) / determinant);
         (correction.0.is_finite() && correction.1.is_finite()).then_some(correction)
@@ -147,7 +152,8 @@ impl RawNode {
 
 /// Follows Newton's corrections from `guess` while the residual decreases.
 fn descend(guess: (f64, f64), equations: impl Fn((f64, f64)) -> ([f64; 2], Option<(f64, f64)>)) -> (f64, f64) {
-    let (mut end, mut least) = (guess, f64::INFINITY);
+    let mut end = guess;
+    let mut least = f64::INFINITY;
     let mut trial = guess;
     for _ in 0..20 {
         let ([r, e], correction) = equations(trial);

@@ -35,7 +35,8 @@ impl Page {
     /// Starts a section, and enters it into the table of contents.
     pub(crate) fn section(&mut self, heading: &str) {
         self.sections += 1;
-        let (number, heading) = (self.sections, escape(heading));
+        let number = self.sections;
+        let heading = escape(heading);
         let _ = writeln!(self.contents, "<li><a href=\"#section-{number}\">{heading}</a></li>");
         let _ = writeln!(self.body, "<h2 id=\"section-{number}\">{number}. {heading}</h2>");
     }
@@ -53,7 +54,8 @@ impl Page {
     /// A figure, and below it what it shows.
     pub(crate) fn figure(&mut self, figure: &Figure, caption: &str) {
         self.figures += 1;
-        let (number, name) = (self.figures, figure.name);
+        let number = self.figures;
+        let name = figure.name;
         let _ = writeln!(
             self.body,
             "<figure id=\"{name}\">{}\n<figcaption><b>Figure {number}.</b> {caption} \
@@ -65,7 +67,8 @@ impl Page {
     /// A table, and above it what it lists.
     pub(crate) fn table(&mut self, table: &Table, caption: &str) {
         self.tables += 1;
-        let (number, name) = (self.tables, table.name);
+        let number = self.tables;
+        let name = table.name;
         let _ = writeln!(
             self.body,
             "<p class=\"caption\" id=\"{name}\"><b>Table {number}.</b> {caption} \

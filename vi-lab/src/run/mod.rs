@@ -171,7 +171,8 @@ impl Course<'_> {
 
     /// Takes one step; an error says why the run ends here.
     fn advance(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
-        let (t, method) = (simulation.t(), self.request.plan.method);
+        let t = simulation.t();
+        let method = self.request.plan.method;
         if let Some(signal) = signal() {
             return Err(Failure::Interrupted { signal, reached: format!("{} steps at t = {}", self.steps, short(t)) });
         }

@@ -43,7 +43,8 @@ impl Npy {
     /// Writes the block, and then the number of rows into the head.
     fn flush(&mut self) -> Result<(), Failure> {
         let width = wide(8 * self.columns);
-        let (end, rows) = (wide(ROOM) + self.rows * width, self.rows + wide(self.block.len()) / width);
+        let end = wide(ROOM) + self.rows * width;
+        let rows = self.rows + wide(self.block.len()) / width;
         let written = put(&mut self.file, end, &self.block);
         if let Err(error) = written.and_then(|()| put(&mut self.file, 0, &head(rows, self.columns))) {
             // The head counts the rows up to here; half a row after them is cut off, or does no harm.

@@ -192,7 +192,8 @@ fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
 fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
     let (name, value) =
         text.split_once('=').ok_or_else(|| Failure::Input(format!("`--set {text}` must have the form NAME=VALUE")))?;
-    let (name, value) = (name.trim(), value.trim());
+    let name = name.trim();
+    let value = value.trim();
     let wrong = |what| Failure::Input(format!("`{value}` in `--set {text}` is not a number; {what}"));
     Ok((name, number(value).map_err(wrong)?))
 }

@@ -21,7 +21,8 @@ fn square(h: f64) -> Result<(), Failure> {
     if (h * h).is_normal() {
         return Ok(());
     }
-    let (smallest, largest) = (f64::MIN_POSITIVE.sqrt(), f64::MAX.sqrt());
+    let smallest = f64::MIN_POSITIVE.sqrt();
+    let largest = f64::MAX.sqrt();
     Err(Failure::Input(format!(
         "the step (--h) {} is out of range: its square is no normal number in double precision; give one from {} to {}",
         short(h),

@@ -11,8 +11,10 @@ use crate::report::Report;
 use crate::table::Table;
 use rayon::prelude::*;
 
-/// Rows of a map by its columns: cells are then nearly square.
-const SHAPE: (usize, usize) = (11, 20);
+/// Rows of a map for every [`COLUMNS`] of them: cells are then nearly square.
+const ROWS: usize = 11;
+/// Columns of a map for every [`ROWS`].
+const COLUMNS: usize = 20;
 
 /// The report, and how fine its maps are.
 #[derive(Debug)]
@@ -22,22 +24,45 @@ pub(super) struct Atlas {
     columns: usize,
 }
 
-/// Axes of a map, and its cells in a row and in a column.
+/// The two axes of a map, with their ranges.
 #[derive(Clone, Debug)]
-pub(super) struct Grid {
+pub(super) struct Axes {
     /// Horizontal axis.
     pub(super) x: Axis,
     /// Vertical axis.
     pub(super) y: Axis,
+}
+
+/// What is written about a map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Labels<'a> {
+    /// Stem of the file names.
+    pub(super) name: &'static str,
+    /// Line above the map, as text.
+    pub(super) title: &'a str,
+    /// What the map shows, as HTML.
+    pub(super) caption: &'a str,
+}
+
+/// Axes of a map, and its cells in a row and in a column.
+#[derive(Clone, Debug)]
+pub(super) struct Grid {
+    /// The axes.
+    pub(super) axes: Axes,
     columns: usize,
     rows: usize,
     equal_aspect: bool,
 }
 
+/// Rows of a map of so many columns.
+fn rows(columns: usize) -> usize {
+    (columns * ROWS).div_ceil(COLUMNS)
+}
+
 impl Grid {
     /// A grid of the given number of columns over two axes with ranges.
-    pub(super) fn new((x, y): (Axis, Axis), columns: usize) -> Self {
-        Self { x, y, columns, rows: (columns * SHAPE.0).div_ceil(SHAPE.1), equal_aspect: false }
+    pub(super) fn new(axes: Axes, columns: usize) -> Self {
+        Self { axes, columns, rows: rows(columns), equal_aspect: false }
     }
 
     /// The same with as many rows as columns, a unit having the same length on both axes.
@@ -45,11 +70,11 @@ impl Grid {
         Self { rows: self.columns, equal_aspect: true, ..self }
     }
 
-    /// The class of every cell, row by row; `done` is told of every row.
+    /// The class of every cell, row by row; `done` gets the number of cells after every row.
     pub(super) fn cells(&self, class: impl Fn(f64, f64) -> Class + Sync, mut done: impl FnMut(usize)) -> Vec<Class> {
-        let abscissas: Vec<f64> = middles(&self.x, self.columns).collect();
+        let abscissas: Vec<f64> = middles(&self.axes.x, self.columns).collect();
         let mut cells = Vec::with_capacity(self.columns * self.rows);
-        for y in middles(&self.y, self.rows) {
+        for y in middles(&self.axes.y, self.rows) {
             cells.par_extend(abscissas.par_iter().map(|&x| class(x, y)));
             done(self.columns);
         }
@@ -63,8 +88,9 @@ impl Grid {
             let count = count as f64;
             index / count
         };
-        let place =
-            |(column, row): (f64, f64)| (self.x.at(part(column, self.columns)), self.y.at(part(row, self.rows)));
+        let place = |(column, row): (f64, f64)| {
+            (self.axes.x.at(part(column, self.columns)), self.axes.y.at(part(row, self.rows)))
+        };
         let width = self.columns + 1;
         let values: Vec<f64> = (0..width * (self.rows + 1))
             .into_par_iter()
@@ -83,18 +109,18 @@ impl Atlas {
     /// An empty atlas of maps of so many columns, `maps` in all.
     pub(super) fn new(report: Report, columns: u16, maps: u32) -> Self {
         let columns = usize::from(columns);
-        let cells = columns * (columns * SHAPE.0).div_ceil(SHAPE.1);
+        let cells = columns * rows(columns);
         let progress = Progress::new(u64::from(maps) * u64::try_from(cells).unwrap_or(u64::MAX));
         Self { report, progress, columns }
     }
 
     /// A grid over two axes with ranges, as fine as the page's maps are.
-    pub(super) fn grid(&self, axes: (Axis, Axis)) -> Grid {
+    pub(super) fn grid(&self, axes: Axes) -> Grid {
         Grid::new(axes, self.columns)
     }
 
-    /// A grid of so many times fewer columns, for runs that are dear.
-    pub(super) fn coarse_grid(&self, axes: (Axis, Axis), times: usize) -> Grid {
+    /// A grid of so many times fewer columns, for runs that take long.
+    pub(super) fn coarse_grid(&self, axes: Axes, times: usize) -> Grid {
         Grid::new(axes, self.columns.div_ceil(times.max(1)))
     }
 
@@ -117,16 +143,17 @@ impl Atlas {
     /// A map with the curves over it, and its caption; returns its cells.
     pub(super) fn map(
         &mut self,
-        (name, title, caption): (&'static str, &str, &str),
+        labels: Labels<'_>,
         grid: &Grid,
         curves: Vec<Series>,
         class: impl Fn(f64, f64) -> Class + Sync,
     ) -> Result<Vec<Class>, Failure> {
         let cells = grid.cells(class, |count| self.progress.advance_by(u64::try_from(count).unwrap_or(0)));
-        let (x, y) = (grid.x.clone(), grid.y.clone());
-        let chart = Chart { name, title: title.to_owned(), x, y, equal_aspect: grid.equal_aspect, series: curves };
+        let Axes { x, y } = grid.axes.clone();
+        let title = labels.title.to_owned();
+        let chart = Chart { name: labels.name, title, x, y, equal_aspect: grid.equal_aspect, series: curves };
         let map = Map { chart, columns: grid.columns, cells };
-        self.report.figure(&map.figure(), caption)?;
+        self.report.figure(&map.figure(), labels.caption)?;
         Ok(map.cells)
     }
 
@@ -158,17 +185,19 @@ pub(super) mod tests {
         marked: Class,
         theory: impl Fn(f64, f64) -> bool,
     ) -> usize {
-        let (columns, rows) = (grid.columns, grid.rows);
+        let columns = grid.columns;
+        let rows = grid.rows;
         assert_eq!(cells.len(), columns * rows);
-        let abscissas: Vec<f64> = middles(&grid.x, columns).collect();
-        let expected: Vec<bool> = middles(&grid.y, rows)
+        let abscissas: Vec<f64> = middles(&grid.axes.x, columns).collect();
+        let expected: Vec<bool> = middles(&grid.axes.y, rows)
             .flat_map(|y| abscissas.iter().map(move |&x| (x, y)))
             .map(|(x, y)| theory(x, y))
             .collect();
         let share = expected.iter().filter(|inside| **inside).count();
         assert!(share * 20 > cells.len() && share * 20 < 19 * cells.len(), "{share} of {} cells", cells.len());
         let around = |index: usize| {
-            let (row, column) = (index / columns, index % columns);
+            let row = index / columns;
+            let column = index % columns;
             let near = (row.saturating_sub(1)..=(row + 1).min(rows - 1)).flat_map(move |row| {
                 (column.saturating_sub(1)..=(column + 1).min(columns - 1)).map(move |column| (row, column))
             });
@@ -180,7 +209,7 @@ pub(super) mod tests {
     #[test]
     fn a_shifted_boundary_is_noticed() {
         let class = |number| Class { number, label: "", colour: "" };
-        let grid = Grid::new((Axis::linear("x").over(0.0, 1.0), Axis::linear("y").over(0.0, 1.0)), 40);
+        let grid = Grid::new(Axes { x: Axis::linear("x").over(0.0, 1.0), y: Axis::linear("y").over(0.0, 1.0) }, 40);
         let cells = grid.cells(|x, _| class(u8::from(x > 0.5)), |_| ());
         assert_eq!(strays(&grid, &cells, class(1), |x, _| x > 0.52), 0);
         assert!(strays(&grid, &cells, class(1), |x, _| x > 0.56) > 0);

@@ -3,7 +3,7 @@
 //! Eight masses between walls on springs with the force r + r³. At small amplitude the fastest mode has
 //! `ω = 2 sin(4π/9)`: the trapezoidal rule is stable up to h = 2/ω = 1.0154. At larger amplitude the springs stiffen.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use super::trial::{Chain, TrapezoidalChain};
 use crate::chart::{Axis, Class, boundary};
@@ -26,19 +26,28 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     let linear = linear_limit();
     let line = boundary("linear limit, h = 1.015", vec![vec![(AMPLITUDES.0, linear), (AMPLITUDES.1, linear)]]);
     let grid = atlas.coarse_grid(
-        (Axis::log10("amplitude").over(AMPLITUDES.0, AMPLITUDES.1), Axis::linear("h").over(STEPS.0, STEPS.1)),
+        Axes {
+            x: Axis::log10("amplitude").over(AMPLITUDES.0, AMPLITUDES.1),
+            y: Axis::linear("h").over(STEPS.0, STEPS.1),
+        },
         2,
     );
     let caption = "Trapezoidal rule, 1000 steps. Dashed: 2/<i>ω</i><sub>max</sub> of the linear chain, which holds at small \
                    amplitude only.";
-    atlas.map(("chain-trapezoidal", "Chain of springs: trapezoidal rule", caption), &grid, line, |amplitude, h| {
-        class(TrapezoidalChain::default(), amplitude, h)
-    })?;
+    atlas.map(
+        Labels { name: "chain-trapezoidal", title: "Chain of springs: trapezoidal rule", caption },
+        &grid,
+        line,
+        |amplitude, h| class(TrapezoidalChain::default(), amplitude, h),
+    )?;
     let caption = "Midpoint rule, 1000 steps: no limit at small amplitude. The springs have no negative curvature, so that \
                    every step has one solution; yet a violent motion may still run away.";
-    atlas.map(("chain-midpoint", "Chain of springs: midpoint rule", caption), &grid, Vec::new(), |amplitude, h| {
-        class(Chain::default(), amplitude, h)
-    })?;
+    atlas.map(
+        Labels { name: "chain-midpoint", title: "Chain of springs: midpoint rule", caption },
+        &grid,
+        Vec::new(),
+        |amplitude, h| class(Chain::default(), amplitude, h),
+    )?;
     atlas.advice(
         "Take the highest frequency at the largest amplitude that will occur, not that of the chain at rest, and keep a \
          factor of two below its limit; or take the midpoint rule, whose steps cost one banded solve per iteration.",
@@ -58,7 +67,7 @@ fn class<S: FixedStepping<8>>(system: S, amplitude: f64, h: f64) -> Class {
         place += 1.0;
         amplitude * (PI * place / 9.0).sin()
     });
-    Course::fixed(system, (mode, [0.0; 8]), h, LIMIT).ending.class()
+    Course::fixed(system, mode, [0.0; 8], h, LIMIT).ending.class()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@
 //!
 //! A damped mode has `Re z < 0`; a negative weight then has its pole at `z = 2/γ`, on the side of damping.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, UNBOUNDED};
 use crate::chart::{Axis, Chart, Class, Look, Series, boundary};
 use crate::failure::Failure;
@@ -26,13 +26,25 @@ const REST: f64 = 1e-200;
 const DECAYS: Class = Class { label: "decays, as the motion", ..LASTING };
 /// What the chart shows of `c h`.
 const WIDEST: f64 = 6.0;
-/// What the map of each scheme shows: `c h` from and to, and `h ω` up to. The instability is a band beside a pole: the
-/// widest band of each scheme.
-const MAPS: [(Scheme, &str, (f64, f64), f64); 4] = [
-    (Scheme::TRIPLE_JUMP_4, "composed-triple", (1.1, 1.4), 0.6),
-    (Scheme::SUZUKI_4, "composed-suzuki", (3.0, 3.2), 0.6),
-    (Scheme::KAHAN_LI_6, "composed-kl6", (2.5, 4.0), 2.0),
-    (Scheme::KAHAN_LI_8, "composed-kl8", (4.5, 7.0), 3.0),
+/// What the map of a scheme shows. The instability is a band beside a pole; the map shows the widest band.
+#[derive(Clone, Copy)]
+struct Band {
+    scheme: Scheme,
+    /// Stem of the file names.
+    name: &'static str,
+    /// The least `c h`.
+    least: f64,
+    /// The largest `c h`.
+    largest: f64,
+    /// The largest `h ω`; the least is 0.
+    fastest: f64,
+}
+
+const BANDS: [Band; 4] = [
+    Band { scheme: Scheme::TRIPLE_JUMP_4, name: "composed-triple", least: 1.1, largest: 1.4, fastest: 0.6 },
+    Band { scheme: Scheme::SUZUKI_4, name: "composed-suzuki", least: 3.0, largest: 3.2, fastest: 0.6 },
+    Band { scheme: Scheme::KAHAN_LI_6, name: "composed-kl6", least: 2.5, largest: 4.0, fastest: 2.0 },
+    Band { scheme: Scheme::KAHAN_LI_8, name: "composed-kl8", least: 4.5, largest: 7.0, fastest: 3.0 },
 ];
 
 /// The section: the factor of a whole step, the largest stable steps, and a map for each scheme.
@@ -47,15 +59,16 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     let head = ["scheme", "order", "c h from the product", "c h of runs"];
     let mut table = Table::new("composed-limits", head);
     for scheme in Scheme::ALL {
-        let (theory, runs) = (limit(|ch| factor(scheme, (-ch, 0.0)) <= 1.0), limit(|ch| slows_down(scheme, ch)));
+        let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
+        let runs = limit(|ch| slows_down(scheme, ch));
         table.row([scheme.name.to_owned(), scheme.order.to_string(), format!("{theory:.4}"), format!("{runs:.4}")]);
     }
     atlas.table(
         &table,
         "The <i>ch</i> up to which each composition is stable, from the product and from runs of its steps.",
     )?;
-    for place in MAPS {
-        map(atlas, place)?;
+    for band in BANDS {
+        map(atlas, band)?;
     }
     atlas.advice(
         "Keep <i>ch</i>, the damping rate of the fastest decay times the whole step, below the limit of the scheme, and for \
@@ -72,7 +85,7 @@ fn factors(atlas: &mut Atlas) -> Result<(), Failure> {
     let places = |count: u32| (1..=count).map(move |i| WIDEST * f64::from(i) / f64::from(count));
     let mut series = vec![Series::line("limit: 1", Look::EXACT, vec![(0.0, 1.0), (WIDEST, 1.0)])];
     for (scheme, look) in looks {
-        let line = places(800).map(|ch| (ch, factor(scheme, (-ch, 0.0)))).collect();
+        let line = places(800).map(|ch| (ch, factor(scheme, -ch, 0.0))).collect();
         series.push(Series::line(scheme.name, look.line(), line));
         let dots = places(40).filter_map(|ch| Some((ch, after_one_step(scheme, ch)?))).collect();
         series.push(Series::scatter("", look.dots(3.0), dots).unlabelled());
@@ -93,30 +106,31 @@ fn factors(atlas: &mut Atlas) -> Result<(), Failure> {
     )
 }
 
-/// Axes of a map: `c h`, and `h ω`.
-fn axes((low, high): (f64, f64), fastest: f64) -> (Axis, Axis) {
-    (Axis::linear("c h").over(low, high), Axis::linear("h ω").over(0.0, fastest))
+impl Band {
+    /// `c h` across, `h ω` upwards.
+    fn axes(&self) -> Axes {
+        Axes { x: Axis::linear("c h").over(self.least, self.largest), y: Axis::linear("h ω").over(0.0, self.fastest) }
+    }
 }
 
 /// How runs of the damped oscillator end over `c h` and `h ω`, with the boundary of the product over them.
-fn map(
-    atlas: &mut Atlas,
-    (scheme, name, range, fastest): (Scheme, &'static str, (f64, f64), f64),
-) -> Result<(), Failure> {
-    let grid = atlas.coarse_grid(axes(range, fastest), 2);
+fn map(atlas: &mut Atlas, band: Band) -> Result<(), Failure> {
+    let Band { scheme, name, .. } = band;
+    let grid = atlas.coarse_grid(band.axes(), 2);
     let theory = boundary("|R| = 1", grid.zeros(|ch, h_omega| radius(scheme, ch, h_omega) - 1.0 - 1e-9));
     let title = format!("Damped oscillator: {}", scheme.name);
     let caption = "Runs of the composition on an oscillator: pale decays, as it should; orange grows. The band follows the \
                    faster of the two modes of an overdamped oscillator, <i>c</i> > 2<i>ω</i>.";
-    atlas.map((name, &title, caption), &grid, theory, |ch, h_omega| class(scheme, ch, h_omega))?;
+    atlas.map(Labels { name, title: &title, caption }, &grid, theory, |ch, h_omega| class(scheme, ch, h_omega))?;
     Ok(())
 }
 
 /// `|R(z)|`, `z` by its real and its imaginary part.
-fn factor(scheme: Scheme, (re, im): (f64, f64)) -> f64 {
+fn factor(scheme: Scheme, re: f64, im: f64) -> f64 {
     // |1 + γz/2| / |1 − γz/2|
     let of = |weight: &f64| {
-        let (re, im) = (weight * re / 2.0, weight * im / 2.0);
+        let re = weight * re / 2.0;
+        let im = weight * im / 2.0;
         (1.0 + re).hypot(im) / (1.0 - re).hypot(im)
     };
     scheme.weights.iter().map(of).product()
@@ -126,10 +140,10 @@ fn factor(scheme: Scheme, (re, im): (f64, f64)) -> f64 {
 fn radius(scheme: Scheme, ch: f64, h_omega: f64) -> f64 {
     let discriminant = ch * ch / 4.0 - h_omega * h_omega;
     if discriminant < 0.0 {
-        factor(scheme, (-ch / 2.0, (-discriminant).sqrt()))
+        factor(scheme, -ch / 2.0, (-discriminant).sqrt())
     } else {
         let root = discriminant.sqrt();
-        factor(scheme, (-ch / 2.0 - root, 0.0)).max(factor(scheme, (-ch / 2.0 + root, 0.0)))
+        factor(scheme, -ch / 2.0 - root, 0.0).max(factor(scheme, -ch / 2.0 + root, 0.0))
     }
 }
 
@@ -187,7 +201,8 @@ mod tests {
     #[test]
     fn the_product_and_the_runs_have_the_documented_limits() {
         for (scheme, documented) in Scheme::ALL.into_iter().zip([1.13, 3.02, 2.73, 3.30]) {
-            let (theory, runs) = (limit(|ch| factor(scheme, (-ch, 0.0)) <= 1.0), limit(|ch| slows_down(scheme, ch)));
+            let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
+            let runs = limit(|ch| slows_down(scheme, ch));
             // The documentation of the compositions has two decimals.
             assert!((theory - documented).abs() <= 0.005, "{}: {theory}", scheme.name);
             // Measured: both within the 1e-6 of the bisection.
@@ -199,7 +214,8 @@ mod tests {
     fn a_whole_step_is_the_product() {
         for scheme in Scheme::ALL {
             for ch in [0.1, 0.5, 1.0, 2.0, 3.5] {
-                let (run, product) = (after_one_step(scheme, ch).expect("a step"), factor(scheme, (-ch, 0.0)));
+                let run = after_one_step(scheme, ch).expect("a step");
+                let product = factor(scheme, -ch, 0.0);
                 assert!((run / product - 1.0).abs() < 1e-13, "{} at {ch}: {run}, {product}", scheme.name);
             }
         }
@@ -207,8 +223,9 @@ mod tests {
 
     #[test]
     fn the_maps_agree_with_the_product() {
-        for (scheme, name, range, fastest) in MAPS {
-            let grid = Grid::new(axes(range, fastest), 50);
+        for band in BANDS {
+            let Band { scheme, name, .. } = band;
+            let grid = Grid::new(band.axes(), 50);
             let cells = grid.cells(|ch, h_omega| class(scheme, ch, h_omega), |_| ());
             assert!(cells.iter().all(|cell| [DECAYS, UNBOUNDED].contains(cell)), "{name}");
             assert_eq!(strays(&grid, &cells, UNBOUNDED, |ch, h_omega| radius(scheme, ch, h_omega) > 1.0), 0, "{name}");

@@ -62,10 +62,13 @@ fn segments(values: &[f64], columns: usize) -> Vec<(Edge, Edge)> {
 
 /// Where the quantity vanishes on an edge.
 fn crossing(values: &[f64], columns: usize, (index, upright): Edge) -> Option<(f64, f64)> {
-    let (a, b) = (*values.get(index)?, *values.get(index + if upright { columns } else { 1 })?);
+    let a = *values.get(index)?;
+    let b = *values.get(index + if upright { columns } else { 1 })?;
     let part = a / (a - b);
     #[allow(clippy::cast_precision_loss)] // some hundred points
-    let (column, row) = ((index % columns) as f64, (index / columns) as f64);
+    let column = (index % columns) as f64;
+    #[allow(clippy::cast_precision_loss)]
+    let row = (index / columns) as f64;
     Some(if upright { (column, row + part) } else { (column + part, row) })
 }
 

@@ -1,7 +1,7 @@
 //! How runs end, and the colour of each end: the same in every map.
 //!
-//! In: an integrator and a [`Limit`]. Out: an [`Ending`] with the number of steps taken. A solver that fails is told from
-//! a motion that grows without bound: each typed error has a colour of its own.
+//! In: an integrator and a [`Limit`]. Out: a [`Course`]: the [`Ending`], the number of steps taken, the largest coordinate. A map
+//! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
 
 use crate::chart::Class;
 use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, SVector, State, StepError};
@@ -74,7 +74,7 @@ impl Ending {
 }
 
 impl Course {
-    /// A run that could not start.
+    /// The course of a run that could not start.
     fn none(error: StepError) -> Self {
         Self { ending: Ending::Failing(error), steps: 0, largest: 0.0 }
     }
@@ -107,7 +107,8 @@ impl Course {
     /// Runs the integrator with fixed step from the node `(q, p)`, p belonging to `v`.
     pub(super) fn fixed<S: FixedStepping<N>, const N: usize>(
         system: S,
-        (q, v): (impl Into<SVector<f64, N>>, impl Into<SVector<f64, N>>),
+        q: impl Into<SVector<f64, N>>,
+        v: impl Into<SVector<f64, N>>,
         h: f64,
         limit: Limit,
     ) -> Self {
@@ -121,7 +122,8 @@ impl Course {
     /// Runs the energy-preserving integrator from the midpoint `(q, v)` of the first interval.
     pub(super) fn energy<S: EnergyStepping<N>, const N: usize>(
         system: S,
-        (q, v): (impl Into<SVector<f64, N>>, impl Into<SVector<f64, N>>),
+        q: impl Into<SVector<f64, N>>,
+        v: impl Into<SVector<f64, N>>,
         h: f64,
         limit: Limit,
     ) -> Self {

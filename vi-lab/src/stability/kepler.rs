@@ -2,7 +2,7 @@
 //!
 //! On an orbit of eccentricity e, D vanishes somewhere iff e ≥ √(5/8): no first step, however short, leads around.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use crate::chart::{Axis, boundary};
 use crate::failure::Failure;
@@ -25,12 +25,16 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     let bound = boundary("e = √(5/8)", vec![vec![(BOUND, 0.01), (BOUND, 2.0)]]);
     let caption = "Energy-preserving: beyond <i>e</i> = √(5/8) = 0.7906 the step density <i>D</i> changes its sign on the \
                    orbit, and the run ends, however short the first step is. Larger first steps end earlier.";
-    atlas.map(("kepler-energy", "Kepler: energy-preserving", caption), &grid, bound, |e, h| energy(e, h).class())?;
+    atlas.map(
+        Labels { name: "kepler-energy", title: "Kepler: energy-preserving", caption },
+        &grid,
+        bound,
+        |e, h| energy(e, h).class(),
+    )?;
     let caption = "Fixed step of the midpoint rule: it runs at every eccentricity, until the pericentre is no longer \
                    resolved; then the equation has no solution, or the planet is thrown off its orbit.";
-    atlas.map(("kepler-fixed", "Kepler: fixed step", caption), &grid, Vec::new(), |e, h| {
-        let (q, v, h) = start(e, h);
-        Course::fixed(Kepler::default(), (q, v), h, LIMIT).ending.class()
+    atlas.map(Labels { name: "kepler-fixed", title: "Kepler: fixed step", caption }, &grid, Vec::new(), |e, h| {
+        Course::fixed(Kepler::default(), pericentre(e), velocity(e), length(e, h), LIMIT).ending.class()
     })?;
     atlas.advice(
         "Up to <i>e</i> = 0.78 the energy-preserving integrator is the better choice: it shortens its step at the pericentre \
@@ -40,18 +44,27 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     Ok(())
 }
 
-fn axes() -> (Axis, Axis) {
-    (Axis::linear("eccentricity e").over(0.0, 0.95), Axis::log10("h₀/(1 − e)^(3/2)").over(0.01, 2.0))
+fn axes() -> Axes {
+    Axes { x: Axis::linear("eccentricity e").over(0.0, 0.95), y: Axis::log10("h₀/(1 − e)^(3/2)").over(0.01, 2.0) }
 }
 
-/// Pericentre of the orbit with semi-major axis 1, and the step in units of time.
-fn start(e: f64, h: f64) -> ([f64; 2], [f64; 2], f64) {
-    ([1.0 - e, 0.0], [0.0, ((1.0 + e) / (1.0 - e)).sqrt()], h * (1.0 - e).powf(1.5))
+/// Pericentre of the orbit with semi-major axis 1.
+fn pericentre(e: f64) -> [f64; 2] {
+    [1.0 - e, 0.0]
+}
+
+/// Velocity at the pericentre.
+fn velocity(e: f64) -> [f64; 2] {
+    [0.0, ((1.0 + e) / (1.0 - e)).sqrt()]
+}
+
+/// The step in units of time, from one in the time scale of the pericentre.
+fn length(e: f64, h: f64) -> f64 {
+    h * (1.0 - e).powf(1.5)
 }
 
 fn energy(e: f64, h: f64) -> super::ending::Ending {
-    let (q, v, h) = start(e, h);
-    Course::energy(Kepler::default(), (q, v), h, LIMIT).ending
+    Course::energy(Kepler::default(), pericentre(e), velocity(e), length(e, h), LIMIT).ending
 }
 
 #[cfg(test)]
@@ -63,8 +76,9 @@ mod tests {
 
     #[test]
     fn runs_end_beyond_the_bound_for_short_steps() {
-        let (x, y) = (Axis::linear("e").over(0.0, 0.95), Axis::log10("h").over(0.01, 0.02));
-        let grid = Grid::new((x, y), 40);
+        let x = Axis::linear("e").over(0.0, 0.95);
+        let y = Axis::log10("h").over(0.01, 0.02);
+        let grid = Grid::new(Axes { x, y }, 40);
         let cells = grid.cells(|e, h| energy(e, h).class(), |_| ());
         assert_eq!(strays(&grid, &cells, LASTING, |e, _| e < BOUND), 0);
     }

@@ -4,7 +4,7 @@
 //! damping. The midpoint rule has no such limit. The energy-preserving step grows as the motion decays, and ends after
 //! about 1/(ζ ω h0) steps.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, OWN, UNBOUNDED};
 use super::trial::TrapezoidalOscillator;
 use crate::chart::{Axis, Class, boundary};
@@ -44,7 +44,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     let caption =
         "Fixed steps of the midpoint rule: no limit. What decays decays, what grows grows, at any step length.";
     atlas.map(
-        ("linear-midpoint", "Oscillator: fixed step, midpoint rule", caption),
+        Labels { name: "linear-midpoint", title: "Oscillator: fixed step, midpoint rule", caption },
         &grid,
         Vec::new(),
         |h, zeta| class(DampedOscillator { m: 1.0, k: 1.0, c: 2.0 * zeta }, h, zeta),
@@ -53,7 +53,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     let caption = "Fixed steps of the trapezoidal rule (Verlet’s method where there is no damping): unstable beyond \
                    <i>hω</i> = 2. The dashed line is the boundary from the characteristic polynomial.";
     atlas.map(
-        ("linear-trapezoidal", "Oscillator: fixed step, trapezoidal rule", caption),
+        Labels { name: "linear-trapezoidal", title: "Oscillator: fixed step, trapezoidal rule", caption },
         &grid,
         theory,
         |h, zeta| class(TrapezoidalOscillator { c: 2.0 * zeta }, h, zeta),
@@ -68,8 +68,8 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
 }
 
 /// Step and damping.
-fn axes() -> (Axis, Axis) {
-    (Axis::linear("h ω").over(0.0, 3.0), Axis::linear("damping ratio ζ").over(-0.25, 1.25))
+fn axes() -> Axes {
+    Axes { x: Axis::linear("h ω").over(0.0, 3.0), y: Axis::linear("damping ratio ζ").over(-0.25, 1.25) }
 }
 
 /// How fixed steps end.
@@ -97,7 +97,9 @@ fn class<S: FixedStepping<1>>(system: S, h: f64, zeta: f64) -> Class {
 
 /// Logarithm of the spectral radius of the trapezoidal rule, less the growth that is allowed to it in one step.
 fn excess(h: f64, zeta: f64) -> f64 {
-    let (a, b, c) = (1.0 + zeta * h, h * h - 2.0, 1.0 - zeta * h);
+    let a = 1.0 + zeta * h;
+    let b = h * h - 2.0;
+    let c = 1.0 - zeta * h;
     let discriminant = b * b - 4.0 * a * c;
     let radius = if discriminant < 0.0 { (c / a).sqrt() } else { (b.abs() + discriminant.sqrt()) / (2.0 * a) };
     // Without damping the radius is 1 but for rounding.
@@ -105,15 +107,15 @@ fn excess(h: f64, zeta: f64) -> f64 {
 }
 
 fn energy(atlas: &mut Atlas) -> Result<(), Failure> {
-    let (_, damping) = axes();
-    let grid = atlas.grid((Axis::log10("h₀ ω").over(1e-3, 3.0), damping));
+    let damping = axes().y;
+    let grid = atlas.grid(Axes { x: Axis::log10("h₀ ω").over(1e-3, 3.0), y: damping });
     let laws = SURVIVAL.iter().flat_map(|&(steps, _)| grid.zeros(move |h, zeta| zeta * h * f64::from(steps) - 1.0));
     let theory = boundary("1/(ζ ω h₀) = 10, 100, 1000", laws.collect());
     let caption = "The energy-preserving integrator: how many steps it takes before none exists. Damping takes energy out \
                    of the motion, the steps grow as e<sup><i>ζωt</i></sup> to take it out faster, and the end comes \
                    after about 1/(<i>ζωh</i><sub>0</sub>) of them. Without damping, and with negative damping, it goes on.";
     let title = "Oscillator: energy-preserving, steps until it ends";
-    atlas.map(("linear-energy", title, caption), &grid, theory, |h, zeta| survival(h, zeta).1)?;
+    atlas.map(Labels { name: "linear-energy", title, caption }, &grid, theory, |h, zeta| survival(h, zeta).1)?;
     Ok(())
 }
 
@@ -121,7 +123,7 @@ fn energy(atlas: &mut Atlas) -> Result<(), Failure> {
 fn survival(h: f64, zeta: f64) -> (u32, Class) {
     let limit = Limit { steps: 1000, until: f64::INFINITY, bound: f64::INFINITY };
     let system = DampedOscillator { m: 1.0, k: 1.0, c: 2.0 * zeta };
-    let course = Course::energy(system, ([1.0], [0.0]), h, limit);
+    let course = Course::energy(system, [1.0], [0.0], h, limit);
     let class = match course.ending {
         Ending::Failing(StepError::NoForwardStep { .. } | StepError::StepRatio { .. }) => {
             SURVIVAL.into_iter().find(|(steps, _)| course.steps < *steps).map_or(SURVIVES, |(_, class)| class)

@@ -2,8 +2,8 @@
 //!
 //! In: a folder, and perhaps a system. Out: in the folder a page `index.html`, and for every map and chart an SVG and a CSV
 //! file. Without a system the page goes through the ways of failing one by one, the boundary that theory gives drawn over
-//! what the runs did; with one it maps how the runs of that system end. A solver that finds no step is told from a
-//! motion that grows without bound, by colour and by name.
+//! what the runs did; with one it maps how the runs of that system end. Colours and names distinguish
+//! a solver that finds no step from a motion that grows without bound.
 //!
 //! | module | what it makes |
 //! |---|---|

@@ -4,7 +4,7 @@
 //! `tan(φ/2) = hω/2` for the midpoint rule. At φ = 2π/3 and π/2 the terms of second and third order act at the same
 //! phase every time: h ω = √3 and √2, and 2√3 and 2.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, OWN};
 use super::trial::{Bent, TrapezoidalBent};
 use crate::chart::{Axis, Class, boundary};
@@ -33,21 +33,21 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
          driven away for 0 &lt; <i>b</i> &lt; 2<i>a</i>² (Verlet) and <i>a</i>² &lt; <i>b</i> &lt; 2<i>a</i>² (midpoint rule), \
          and bounded beyond.",
     );
-    let grid = atlas.grid((Axis::linear("h ω").over(0.0, 2.2), amplitudes()));
+    let grid = atlas.grid(Axes { x: Axis::linear("h ω").over(0.0, 2.2), y: amplitudes() });
     let lines = vertical(&[2_f64.sqrt(), 3_f64.sqrt(), 2.0]);
     let caption = "Verlet’s method: largest amplitude over 2000 steps, relative to the first. Dashed: the resonances 1:4 at \
                    <i>hω</i> = √2 and 1:3 at √3, and the linear limit 2.";
     atlas.map(
-        ("resonance-trapezoidal", "Resonances of the trapezoidal rule", caption),
+        Labels { name: "resonance-trapezoidal", title: "Resonances of the trapezoidal rule", caption },
         &grid,
         boundary("hω = √2, √3, 2", lines),
         |h, a| class(TrapezoidalBent::default(), h, a),
     )?;
-    let grid = atlas.grid((Axis::linear("h ω").over(0.0, 4.4), amplitudes()));
+    let grid = atlas.grid(Axes { x: Axis::linear("h ω").over(0.0, 4.4), y: amplitudes() });
     let caption = "The midpoint rule has its resonances at <i>hω</i> = 2 (1:4) and 2√3 (1:3), though its linear limit is \
                    none.";
     atlas.map(
-        ("resonance-midpoint", "Resonances of the midpoint rule", caption),
+        Labels { name: "resonance-midpoint", title: "Resonances of the midpoint rule", caption },
         &grid,
         boundary("hω = 2, 2√3", vertical(&[2.0, 2.0 * 3_f64.sqrt()])),
         |h, a| class(Bent::default(), h, a),
@@ -70,7 +70,7 @@ fn vertical(steps: &[f64]) -> Vec<Vec<(f64, f64)>> {
 /// How much the amplitude grows.
 fn class<S: FixedStepping<1>>(system: S, h: f64, amplitude: f64) -> Class {
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: 100.0 };
-    let course = Course::fixed(system, ([amplitude], [0.0]), h, limit);
+    let course = Course::fixed(system, [amplitude], [0.0], h, limit);
     let growth = course.largest / amplitude;
     match course.ending {
         Ending::Lasting => GROWTH.into_iter().find(|(most, _)| growth <= *most).map_or(LASTING, |(_, class)| class),

@@ -3,7 +3,7 @@
 //! In: an entry of the catalogue and two axes. Out: a map for the energy-preserving integrator, with the curve D = 0 of
 //! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
 
-use super::atlas::{Atlas, Grid};
+use super::atlas::{Atlas, Axes, Grid, Labels};
 use super::ending::{Course, Ending, Limit};
 use super::quantity::{Quantity, Span};
 use crate::catalogue::{Entry, kebab};
@@ -69,12 +69,14 @@ pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result
     let title = format!("{name}: energy-preserving");
     let caption = "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
                    <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.";
-    energy(atlas, ("energy", &title, caption), entry, axes)?;
+    energy(atlas, Labels { name: "energy", title: &title, caption }, entry, axes)?;
     atlas.section("Fixed steps");
     let caption = "The same with fixed steps: no step density limits them, but the equation may have no solution, and a \
                    motion may grow without bound.";
     let title = format!("{name}: fixed step");
-    atlas.map(("fixed", &title, caption), &grid, Vec::new(), |a, b| class(entry, axes, (a, b), Method::Fixed))?;
+    atlas.map(Labels { name: "fixed", title: &title, caption }, &grid, Vec::new(), |a, b| {
+        class(entry, axes, (a, b), Method::Fixed)
+    })?;
     atlas.advice(
         "Start where both maps are pale, and away from the dashed curve. Where only the second is, take fixed steps. Where \
          neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
@@ -84,17 +86,12 @@ pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result
 
 /// The grid of a system's maps: coarser for many degrees of freedom, whose steps take long.
 fn grid(atlas: &Atlas, entry: &Entry, [x, y]: &[Span; 2]) -> Grid {
-    atlas.coarse_grid((x.axis(), y.axis()), entry.q.len() / 2)
+    atlas.coarse_grid(Axes { x: x.axis(), y: y.axis() }, entry.q.len() / 2)
 }
 
 /// The map of the energy-preserving integrator: how runs end, the curve D = 0, and in the phase plane of one degree of
 /// freedom the middles of the last steps of some runs.
-pub(super) fn energy(
-    atlas: &mut Atlas,
-    names: (&'static str, &str, &str),
-    entry: &Entry,
-    axes: &[Span; 2],
-) -> Result<(), Failure> {
+pub(super) fn energy(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
     let [x, y] = axes;
     let grid = grid(atlas, entry, axes);
     let zeros = grid.zeros(|a, b| {
@@ -103,8 +100,8 @@ pub(super) fn energy(
     });
     let mut curves = boundary("D = 0", zeros);
     if entry.q.len() == 1 && (&x.quantity, &y.quantity) == (&Quantity::Coordinate(0), &Quantity::Velocity(0)) {
-        let ends: Vec<(f64, f64)> = middles(&grid.y, ENDS.1)
-            .flat_map(|v| middles(&grid.x, ENDS.0).map(move |q| (q, v)))
+        let ends: Vec<(f64, f64)> = middles(&grid.axes.y, ENDS.1)
+            .flat_map(|v| middles(&grid.axes.x, ENDS.0).map(move |q| (q, v)))
             .filter_map(|place| last_middle(entry, axes, place))
             .filter(|(q, v)| x.contains(*q) && y.contains(*v))
             .collect();
@@ -112,7 +109,7 @@ pub(super) fn energy(
             curves.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
         }
     }
-    atlas.map(names, &grid, curves, |a, b| class(entry, axes, (a, b), Method::Energy))?;
+    atlas.map(labels, &grid, curves, |a, b| class(entry, axes, (a, b), Method::Energy))?;
     Ok(())
 }
 
@@ -137,7 +134,8 @@ fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f6
 /// The system and the plan of the cell at `place`.
 fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> (Box<dyn System>, Plan) {
     let mut system = entry.system.copy();
-    let (q, v) = (entry.q.clone(), entry.v.clone());
+    let q = entry.q.clone();
+    let v = entry.v.clone();
     let mut plan = Plan { method, start: Start::Midpoint, h: entry.h, t: 0.0, q, v };
     for (span, value) in axes.iter().zip([place.0, place.1]) {
         match &span.quantity {

@@ -66,8 +66,9 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
 }
 
 fn rung(h0: f64) -> Result<Rung, StepError> {
-    let (system, q0) = (DoubleWell::default(), SVector::from([Q0]));
-    let second = second_point(&system, (0.0, q0, SVector::zeros()), h0)?;
+    let system = DoubleWell::default();
+    let q0 = SVector::from([Q0]);
+    let second = second_point(&system, 0.0, q0, SVector::zeros(), h0)?;
     let mut run = EnergyPreserving::from_points(system, (0.0, q0), second)?;
     let energy = run.energy();
     let [points, velocity] = [Unknowns::Points, Unknowns::Velocity].map(|unknowns| {

@@ -10,8 +10,10 @@ pub(super) const NAME: &str = "wall-clock time";
 #[cfg(any(target_os = "linux", target_os = "macos"))]
 fn now() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
-    #[allow(clippy::cast_precision_loss)] // seconds of a process, and nanoseconds below 10⁹
-    let (seconds, nanoseconds) = (time.tv_sec as f64, time.tv_nsec as f64);
+    #[allow(clippy::cast_precision_loss)] // seconds of a process
+    let seconds = time.tv_sec as f64;
+    #[allow(clippy::cast_precision_loss)] // below 10⁹
+    let nanoseconds = time.tv_nsec as f64;
     seconds + 1e-9 * nanoseconds
 }
 

@@ -16,10 +16,10 @@ use core::cell::Cell;
 
 /// Tolerances of DOP853.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
-/// Nodes of a run at which the energy is looked at.
+/// Nodes of a run at which the energy is evaluated.
 const SAMPLES: u64 = 200_000;
-/// The same where every look follows the reference to that time.
-const DEAR_SAMPLES: u64 = 400;
+/// The same where the reference has to be followed to the time of every node.
+const REFERENCE_SAMPLES: u64 = 400;
 
 /// The energy error of one run.
 #[derive(Clone, Debug)]
@@ -121,7 +121,7 @@ fn run(
     watch: &mut Watch<'_>,
 ) -> Result<(), Ended> {
     let count = task.steps();
-    let samples = if watch.reference.is_some() { DEAR_SAMPLES } else { SAMPLES };
+    let samples = if watch.reference.is_some() { REFERENCE_SAMPLES } else { SAMPLES };
     let between = (count / samples).max(1);
     let mut run = watch.system.begin_counted(&task.plan(method), evaluations)?;
     let finds_its_step = method == simulation::Method::Energy;
@@ -173,7 +173,8 @@ mod tests {
         let system = catalogue::find("kepler").expect("the system").system;
         let found = all(system.as_ref(), &start, 0.005, 600.0, None, &mut Progress::new(8)).expect("an energy");
         for drift in &found {
-            let ((t, error), growth) = (drift.last().expect("points"), drift.growth().expect("a growth"));
+            let (t, error) = drift.last().expect("points");
+            let growth = drift.growth().expect("a growth");
             assert!(t > 580.0 && drift.ended.is_none(), "{drift:?}");
             match drift.method {
                 Method::Rival if drift.setting > 1e-10 => assert!(growth > 0.8, "{growth}"),

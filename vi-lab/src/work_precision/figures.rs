@@ -173,7 +173,8 @@ impl Findings {
         let head = ["method", "setting", "error", "evaluations", "seconds, least", "seconds, median", "ended"];
         let mut table = Table::new("runs", head);
         for run in &self.runs {
-            let (name, setting) = (run.method.name().to_owned(), format!("{:e}", run.setting));
+            let name = run.method.name().to_owned();
+            let setting = format!("{:e}", run.setting);
             table.row(match &run.outcome {
                 Ok(point) => [
                     name,
@@ -278,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_1e_12_and_1e_14_are_told_apart() {
+    fn errors_of_1e_12_and_1e_14_are_distinguished() {
         let figure = findings().time("test").figure();
         // The marker of the legend is the last circle.
         let places: Vec<f64> = figure

@@ -211,7 +211,8 @@ mod tests {
     #[test]
     fn only_the_seconds_differ_between_two_studies() {
         let found = || quick("double-pendulum", &[0.5, 0.3]);
-        let (one, other) = (found(), found());
+        let one = found();
+        let other = found();
         let plain = |found: &Findings| -> Vec<_> {
             found.runs.iter().map(|run| run.outcome.map(|point| (point.error, point.evaluations))).collect()
         };

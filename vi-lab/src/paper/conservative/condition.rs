@@ -66,7 +66,8 @@ fn along(case: Case, length: u32) -> Result<Vec<Condition>, StepError> {
     let system = *integrator.system();
     let mut numbers = Vec::new();
     for _ in 0..length {
-        let (node, before) = (*integrator.node(), integrator.h());
+        let node = *integrator.node();
+        let before = integrator.h();
         let step = integrator.step()?;
         let (_, _, v) = step.midpoint;
         let equations = system.extended_system(&node, step.h, &v);

@@ -58,7 +58,9 @@ pub(super) fn section(book: &mut Book, study: Study) -> Result<(), Failure> {
 impl Rung {
     fn of(case: Case, study: Study) -> Result<Self, StepError> {
         let mut integrator = case.start()?;
-        let (system, state, e1) = (*integrator.system(), integrator.state(), integrator.energy());
+        let system = *integrator.system();
+        let state = integrator.state();
+        let e1 = integrator.energy();
         let length = steps(case.h0, study);
         let mut raw = Some(RawNode::first(&integrator));
         let mut rung = Self { h0: case.h0, energy: 0.0, raw: 0.0, steps: (case.h0, case.h0), trajectory: None };
@@ -93,8 +95,8 @@ fn steps(h0: f64, study: Study) -> usize {
 
 /// Distance from the exact motion at time `t`.
 fn error(q0: f64, t: f64, q: f64) -> Result<f64, StepError> {
-    let start = (0.0, SVector::from([q0]), SVector::zeros());
-    let (deviation, _) = motion(&DoubleWell::default(), start, t, SUBSTEPS)?;
+    let start = SVector::from([q0]);
+    let (deviation, _) = motion(&DoubleWell::default(), 0.0, start, SVector::zeros(), t, SUBSTEPS)?;
     Ok((q - (q0 + deviation.x)).abs())
 }
 
@@ -143,7 +145,8 @@ fn trajectory(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failu
         let points = |pick: fn((f64, f64)) -> f64| {
             rungs.iter().filter_map(|rung| Some((rung.h0, pick(rung.trajectory?)))).collect::<Vec<_>>()
         };
-        let (adaptive, fixed) = (points(|pair| pair.0), points(|pair| pair.1));
+        let adaptive = points(|pair| pair.0);
+        let fixed = points(|pair| pair.1);
         // Above 0.01 the leading term is not yet alone.
         let fine: Vec<(f64, f64)> = adaptive.iter().copied().filter(|(h0, _)| *h0 < 0.02).collect();
         if fine.len() > 2 {

@@ -58,7 +58,8 @@ fn figure(book: &mut Book, portrait: &Portrait, run: &Run) -> Result<(), Failure
         let oscillation = samples.iter().take_while(|sample| sample.t < portrait.until);
         oscillation.map(|sample| (sample.q, sample.v)).collect::<Vec<_>>()
     };
-    let (fixed, adaptive) = (points(&run.fixed.samples), points(&run.energy.samples));
+    let fixed = points(&run.fixed.samples);
+    let adaptive = points(&run.energy.samples);
     let caption = format!(
         "Midpoints of the steps of about one oscillation: {} energy-preserving, {} fixed. In grey level sets of <i>H</i>.",
         adaptive.len(),
@@ -83,7 +84,8 @@ fn figure(book: &mut Book, portrait: &Portrait, run: &Run) -> Result<(), Failure
 fn level_set(level: f64) -> Vec<Vec<(f64, f64)>> {
     // With s = q²: s² − s − 2H = 0 at the turning points.
     let root = (1.0 + 8.0 * level).sqrt();
-    let (inner, outer) = (((1.0 - root) / 2.0).max(0.0).sqrt(), f64::midpoint(1.0, root).sqrt());
+    let inner = ((1.0 - root) / 2.0).max(0.0).sqrt();
+    let outer = f64::midpoint(1.0, root).sqrt();
     // Below the separatrix a branch starts at the inner turning point, above it at the border of the figure.
     let start = if level > 0.0 { -outer } else { inner };
     let branch = |sign: f64| {

@@ -68,8 +68,9 @@ impl Case {
 
     /// The energy-preserving integrator at the paper's start.
     pub(super) fn start(&self) -> Result<EnergyPreserving<DoubleWell, 1>, StepError> {
-        let (system, q0) = (DoubleWell::default(), SVector::from([self.q0]));
-        let second = second_point(&system, (0.0, q0, SVector::zeros()), self.h0)?;
+        let system = DoubleWell::default();
+        let q0 = SVector::from([self.q0]);
+        let second = second_point(&system, 0.0, q0, SVector::zeros(), self.h0)?;
         EnergyPreserving::from_points(system, (0.0, q0), second)
     }
 }
@@ -78,7 +79,9 @@ impl Run {
     /// Runs both integrators over `steps` steps.
     pub(super) fn of(case: Case, steps: u32, progress: &mut Progress) -> Result<Self, StepError> {
         let mut integrator = case.start()?;
-        let (system, state, energy) = (*integrator.system(), integrator.state(), integrator.energy());
+        let system = *integrator.system();
+        let state = integrator.state();
+        let energy = integrator.energy();
         let mut adaptive = Track::new(case.h0);
         for index in 1..=steps {
             let step = integrator.step()?;

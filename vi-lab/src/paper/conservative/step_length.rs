@@ -77,7 +77,8 @@ fn predicted(run: &Run) -> Result<Vec<(f64, f64)>, Failure> {
     let mut first = None;
     let mut points = Vec::new();
     for (sample, k) in run.energy.samples.iter().zip(1_u32..) {
-        let (q, v) = (SVector::from([sample.q]), SVector::from([sample.v]));
+        let q = SVector::from([sample.q]);
+        let v = SVector::from([sample.v]);
         let density = system.step_density(sample.t, &q, &v).map_err(unexpected("step law"))?;
         let (d0, h0) = *first.get_or_insert((density, sample.h));
         points.push((f64::from(k), h0 / run.case.h0 * (d0 / density).cbrt()));

@@ -134,7 +134,8 @@ fn table(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
     let mut ends = Vec::new();
     let mut as_predicted = true;
     for (zeta, run) in runs {
-        let (last, predicted) = (run.samples.len(), 1.0 / (zeta * OMEGA * H0));
+        let last = run.samples.len();
+        let predicted = 1.0 / (zeta * OMEGA * H0);
         #[allow(clippy::cast_precision_loss)] // at most 200 000
         let near = (last as f64 / predicted - 1.0).abs() < 0.01;
         as_predicted &= near && run.end.is_some();

@@ -94,7 +94,8 @@ mod tests {
     #[test]
     fn the_exact_motion_satisfies_the_equation() {
         for zeta in [0.001, 0.01, -0.01] {
-            let (h, t) = (1e-3, 3.7);
+            let h = 1e-3;
+            let t = 3.7;
             let [(before, _), (q, v), (after, _)] = [t - h, t, t + h].map(|t| exact(zeta, t));
             let acceleration = (after - 2.0 * q + before) / (h * h);
             let residual = acceleration + 2.0 * zeta * OMEGA * v + OMEGA * OMEGA * q;
