@@ -108,7 +108,8 @@ fn parameters_and_initial_values_are_set() {
     let (status, csv, errors) = lab(&[run.as_slice(), &set].concat());
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     let last = rows(&csv).pop().expect("rows");
-    let (omega, t) = (1.5_f64, 0.5);
+    let omega = 1.5_f64;
+    let t = 0.5;
     let exact = -2.0 * (omega * t).cos() + 0.75 / omega * (omega * t).sin();
     assert!((last[0] - t).abs() < 1e-12, "ends at {}", last[0]);
     // Measured 2.4e-7: the phase error ω³h²t/12 = 1.4e-7 times v/ω = 1.7.
@@ -296,7 +297,8 @@ fn the_two_energies_have_columns_of_their_own() {
     // H = p²/2 + (q⁴ − q²)/2, and H − E = h²D/8 with D = V'² + v²V'' to leading order.
     let by_hand = |row: &[f64]| (row[2].powi(2) + row[1].powi(4) - row[1].powi(2)) / 2.0;
     let density = |row: &[f64]| {
-        let (q, p) = (row[1], row[2]);
+        let q = row[1];
+        let p = row[2];
         (2.0 * q.powi(3) - q).powi(2) + p * p * (6.0 * q * q - 1.0)
     };
     assert!((fixed[0][3] - by_hand(&fixed[0])).abs() < 1e-16);
@@ -340,7 +342,8 @@ fn a_singular_mass_matrix_is_status_1_with_the_initial_state() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_whole_rows() {
-    let (csv, npy) = (temporary("interrupted.csv"), temporary("interrupted.npy"));
+    let csv = temporary("interrupted.csv");
+    let npy = temporary("interrupted.npy");
     // Longer than any test lasts.
     let run = ["run", "kepler", "--steps", "1e10", "--every", "100", "--large-output"];
     for (signal, name, status) in [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143)] {
@@ -379,7 +382,8 @@ fn an_interrupted_run_leaves_whole_rows() {
 #[cfg(unix)]
 #[test]
 fn a_disk_that_is_full_leaves_whole_rows() {
-    let (csv, npy) = (temporary("full.csv"), temporary("full.npy"));
+    let csv = temporary("full.csv");
+    let npy = temporary("full.npy");
     for file in [&csv, &npy] {
         // A file may have 200 blocks of 512 bytes, and what is written beyond fails.
         let limited = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
@@ -400,7 +404,8 @@ fn a_disk_that_is_full_leaves_whole_rows() {
 #[cfg(unix)]
 #[test]
 fn an_npy_file_cannot_be_a_pipe_and_a_csv_file_can() {
-    let (csv, npy) = (temporary("pipe.csv"), temporary("pipe.npy"));
+    let csv = temporary("pipe.csv");
+    let npy = temporary("pipe.npy");
     for pipe in [&csv, &npy] {
         assert!(Command::new("mkfifo").arg(pipe).status().expect("mkfifo runs").success());
     }
@@ -447,7 +452,8 @@ fn a_run_of_days_says_so() {
 
 #[test]
 fn npy_holds_the_numbers_of_csv() {
-    let (csv, npy) = (temporary("same.csv"), temporary("same.npy"));
+    let csv = temporary("same.csv");
+    let npy = temporary("same.npy");
     for file in [&csv, &npy] {
         let (status, _, errors) = lab(&["run", "kepler", "--steps", "20", "-o", path(file)]);
         assert_eq!((status, errors.as_str()), (Some(0), ""));

@@ -34,6 +34,12 @@ struct Rung {
     trajectory: Option<(f64, f64)>,
 }
 
+/// The runs from one amplitude, by their initial steps.
+struct Ladder {
+    q0: f64,
+    rungs: Vec<Rung>,
+}
+
 /// The section: a ladder of initial steps for both amplitudes.
 pub(super) fn section(book: &mut Book, study: Study) -> Result<(), Failure> {
     book.section("The initial step");
@@ -48,7 +54,7 @@ pub(super) fn section(book: &mut Book, study: Study) -> Result<(), Failure> {
     let mut ladders = Vec::new();
     for q0 in [0.74, 0.995] {
         let rungs = LADDER.map(|h0| Rung::of(Case { q0, h0 }, study).map_err(unexpected("initial step")));
-        ladders.push((q0, rungs.into_iter().collect::<Result<Vec<_>, _>>()?));
+        ladders.push(Ladder { q0, rungs: rungs.into_iter().collect::<Result<_, _>>()? });
     }
     energy(book, &ladders)?;
     trajectory(book, &ladders)?;
@@ -101,13 +107,13 @@ fn error(q0: f64, t: f64, q: f64) -> Result<f64, StepError> {
 }
 
 /// Energy error against h0, solved in both ways.
-fn energy(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> {
+fn energy(book: &mut Book, ladders: &[Ladder]) -> Result<(), Failure> {
     let mut series = Vec::new();
-    for ((q0, rungs), raw_look) in ladders.iter().zip(Look::OTHERS) {
+    for (Ladder { q0, rungs }, raw_look) in ladders.iter().zip(Look::OTHERS) {
         let raw = rungs.iter().map(|rung| (rung.h0, rung.raw)).collect();
         series.push(Series::line(format!("as written, q₀ = {q0}"), raw_look, raw));
     }
-    for ((q0, rungs), marked) in ladders.iter().zip([Look::ENERGY, Look::ENERGY.dashed()]) {
+    for (Ladder { q0, rungs }, marked) in ladders.iter().zip([Look::ENERGY, Look::ENERGY.dashed()]) {
         let ours = rungs.iter().map(|rung| (rung.h0, rung.energy)).collect();
         series.push(Series::line(format!("this project, q₀ = {q0}"), marked, ours));
     }
@@ -119,7 +125,7 @@ fn energy(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> 
         equal_aspect: false,
         series,
     };
-    let all = || ladders.iter().flat_map(|(_, rungs)| rungs);
+    let all = || ladders.iter().flat_map(|ladder| &ladder.rungs);
     let (_, worst) = extremes(all().map(|rung| rung.energy));
     let raw = extremes(all().filter(|rung| rung.h0 <= 1e-4).map(|rung| rung.raw)).1;
     book.figure(
@@ -138,10 +144,10 @@ fn energy(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> 
 }
 
 /// Error of the trajectory against h0.
-fn trajectory(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> {
+fn trajectory(book: &mut Book, ladders: &[Ladder]) -> Result<(), Failure> {
     let mut series = Vec::new();
     let mut orders = Vec::new();
-    for (q0, rungs) in ladders {
+    for Ladder { q0, rungs } in ladders {
         let points = |pick: fn((f64, f64)) -> f64| {
             rungs.iter().filter_map(|rung| Some((rung.h0, pick(rung.trajectory?)))).collect::<Vec<_>>()
         };
@@ -186,11 +192,11 @@ fn trajectory(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failu
     Ok(())
 }
 
-fn table(book: &mut Book, ladders: &[(f64, Vec<Rung>)]) -> Result<(), Failure> {
+fn table(book: &mut Book, ladders: &[Ladder]) -> Result<(), Failure> {
     let head =
         ["q₀", "h₀", "h_min/h₀", "h_max/h₀", "max |Eₖ − E₁|", "as written", "|q − q(t)|, energy", "|q − q(t)|, fixed"];
     let mut table = Table::new("initial-step", head);
-    for (q0, rungs) in ladders {
+    for Ladder { q0, rungs } in ladders {
         for rung in rungs {
             let (adaptive, fixed) =
                 rung.trajectory.map_or_else(Default::default, |(a, f)| (scientific(a), scientific(f)));
