@@ -5,7 +5,7 @@ use core::any::type_name;
 use vi_core::linear::Matrix;
 use vi_core::{
     DiscreteLagrangian, EnergyPreserving, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStep, FixedStepping,
-    Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Rounding, SMatrix, SVector, State, StepError,
+    Flow, Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Rounding, SMatrix, SVector, State, StepError,
     lagrangian,
 };
 use vi_systems::FpuChain;
@@ -124,6 +124,10 @@ impl<const N: usize, S: Lagrangian<N>> Lagrangian<N> for Dense<S> {
 
     fn acceleration(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<SVector<f64, N>, StepError> {
         self.0.acceleration(t, q, v)
+    }
+
+    fn flow(&self, t: f64, q: &SVector<f64, N>, p: &SVector<f64, N>) -> Result<Flow<N>, StepError> {
+        self.0.flow(t, q, p)
     }
 
     fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {

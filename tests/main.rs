@@ -7,6 +7,7 @@ mod declarations;
 mod derivatives;
 mod extremes;
 mod failures;
+mod flow;
 mod forms;
 mod hunt;
 mod invariants;

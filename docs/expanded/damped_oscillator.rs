@@ -45,14 +45,15 @@ const _: () = {
     use ::core::convert::{identity as q, identity as v, identity as x_dot};
     use ::core::convert::{identity as x, identity as real, identity as time};
     use ::core::convert::{identity as mass, identity as applied, identity as x_ddot};
-    use ::core::convert::{identity as values, identity as value, identity as text};
-    use ::core::convert::{identity as interval, identity as h, identity as x0};
-    use ::core::convert::{identity as x1, identity as x_mid, identity as node};
-    use ::core::convert::{identity as x0_low, identity as p0_x, identity as p0_x_low};
-    use ::core::convert::{identity as s1, identity as energy0, identity as energy0_low};
-    use ::core::convert::{identity as s2, identity as s3, identity as s4};
-    use ::core::convert::{identity as s5, identity as s6, identity as systems};
-    use ::core::convert::identity as rows;
+    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
+    use ::core::convert::{identity as force, identity as power, identity as values};
+    use ::core::convert::{identity as value, identity as text, identity as interval};
+    use ::core::convert::{identity as h, identity as x0, identity as x1};
+    use ::core::convert::{identity as x_mid, identity as node, identity as x0_low};
+    use ::core::convert::{identity as p0_x, identity as p0_x_low, identity as s1};
+    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s2};
+    use ::core::convert::{identity as s3, identity as s4, identity as s5};
+    use ::core::convert::{identity as s6, identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for DampedOscillator<f64> {
@@ -192,6 +193,45 @@ const _: () = {
             ::core::result::Result::Ok(
                 self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
             )
+        }
+
+        /// The v with `∂L/∂v = p`, and
+        ///
+        /// `dp_x/dt = -c*dot(x) - k*x`
+        ///
+        /// `dE/dt = -c*dot(x)^2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn flow(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            p: &::vi_core::SVector<T, 1>,
+        ) -> ::core::result::Result<::vi_core::Flow<1, T>, ::vi_core::StepError> {
+            let mass: ::vi_core::SMatrix<T, 1, 1> = {
+                ::vi_core::SMatrix::from_row_slice(&[self.m])
+            };
+            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let velocity = ::vi_core::support::velocity_by_mass(
+                t,
+                &mass,
+                &(p - at_rest),
+            )?;
+            let (force, power) = {
+                let v = &velocity;
+                let [x_dot]: [T; 1] = (*v).into();
+                let [x]: [T; 1] = (*q).into();
+                (
+                    ::vi_core::SVector::from([-(self.c * x_dot + self.k * x)]),
+                    -(self.c * (x_dot * x_dot)),
+                )
+            };
+            ::core::result::Result::Ok(::vi_core::Flow {
+                velocity,
+                force,
+                power,
+            })
         }
 
         /// The first of what L and f are made of that is not finite here.

@@ -65,32 +65,36 @@ const _: () = {
     use ::core::convert::{identity as s7, identity as s8, identity as s9};
     use ::core::convert::{identity as s10, identity as s11, identity as s12};
     use ::core::convert::{identity as s13, identity as s14, identity as s15};
-    use ::core::convert::{identity as values, identity as value, identity as text};
-    use ::core::convert::{identity as interval, identity as h, identity as θ1_0};
-    use ::core::convert::{identity as θ2_0, identity as θ1_1, identity as θ2_1};
-    use ::core::convert::{identity as θ1_mid, identity as θ2_mid, identity as sin4};
-    use ::core::convert::{identity as cos4, identity as sin5, identity as cos5};
+    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
+    use ::core::convert::{identity as force, identity as power, identity as values};
+    use ::core::convert::{identity as value, identity as text, identity as interval};
+    use ::core::convert::{identity as h, identity as θ1_0, identity as θ2_0};
+    use ::core::convert::{identity as θ1_1, identity as θ2_1, identity as θ1_mid};
+    use ::core::convert::{identity as θ2_mid, identity as sin4, identity as cos4};
+    use ::core::convert::{identity as sin5, identity as cos5, identity as node};
     use ::core::convert::{
-        identity as node, identity as θ1_0_low, identity as θ2_0_low,
+        identity as θ1_0_low, identity as θ2_0_low, identity as p0_θ1,
     };
 
     use ::core::convert::{
-        identity as p0_θ1, identity as p0_θ2, identity as p0_θ1_low,
+        identity as p0_θ2, identity as p0_θ1_low, identity as p0_θ2_low,
     };
 
-    use ::core::convert::{identity as p0_θ2_low, identity as sin6, identity as cos6};
-    use ::core::convert::{identity as s16, identity as s17, identity as s18};
-    use ::core::convert::{identity as s19, identity as energy0, identity as energy0_low};
-    use ::core::convert::{identity as sin8, identity as cos8, identity as sin9};
-    use ::core::convert::{identity as cos9, identity as s20, identity as s21};
-    use ::core::convert::{identity as s22, identity as s23, identity as s24};
-    use ::core::convert::{identity as s25, identity as s26, identity as s27};
-    use ::core::convert::{identity as s28, identity as s29, identity as s30};
-    use ::core::convert::{identity as s31, identity as s32, identity as s33};
-    use ::core::convert::{identity as s34, identity as s35, identity as s36};
-    use ::core::convert::{identity as s37, identity as s38, identity as s39};
-    use ::core::convert::{identity as sin7, identity as cos7, identity as systems};
-    use ::core::convert::identity as rows;
+    use ::core::convert::{identity as sin6, identity as cos6, identity as s16};
+    use ::core::convert::{identity as s17, identity as s18, identity as s19};
+    use ::core::convert::{
+        identity as energy0, identity as energy0_low, identity as sin8,
+    };
+
+    use ::core::convert::{identity as cos8, identity as sin9, identity as cos9};
+    use ::core::convert::{identity as s20, identity as s21, identity as s22};
+    use ::core::convert::{identity as s23, identity as s24, identity as s25};
+    use ::core::convert::{identity as s26, identity as s27, identity as s28};
+    use ::core::convert::{identity as s29, identity as s30, identity as s31};
+    use ::core::convert::{identity as s32, identity as s33, identity as s34};
+    use ::core::convert::{identity as s35, identity as s36, identity as s37};
+    use ::core::convert::{identity as s38, identity as s39, identity as sin7};
+    use ::core::convert::{identity as cos7, identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for DoublePendulum<f64> {
@@ -285,6 +289,63 @@ const _: () = {
                     * (s5 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s7 + s8 * cos1) - s12
                         - s13);
             ::core::result::Result::Ok(s15 - s14)
+        }
+
+        /// The v with `∂L/∂v = p`, and
+        ///
+        /// `dp_θ1/dt = -m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1)`
+        ///
+        /// `dp_θ2/dt = m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)`
+        ///
+        /// `dE/dt = 0`
+        ///
+        /// 22 operations.
+        #[inline]
+        fn flow(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            p: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
+            let mass: ::vi_core::SMatrix<T, 2, 2> = {
+                let [θ1, θ2]: [T; 2] = (*q).into();
+                let s1 = self.m2 * self.l1 * self.l2 * (θ1 - θ2).cos();
+                ::vi_core::SMatrix::from_row_slice(
+                    &[
+                        self.l1 * self.l1 * (self.m1 + self.m2),
+                        s1,
+                        s1,
+                        self.m2 * (self.l2 * self.l2),
+                    ],
+                )
+            };
+            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let velocity = ::vi_core::support::velocity_by_mass(
+                t,
+                &mass,
+                &(p - at_rest),
+            )?;
+            let (force, power) = {
+                let v = &velocity;
+                let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+                let [θ1, θ2]: [T; 2] = (*q).into();
+                let real = T::real;
+                let [(sin1, cos1), (sin2, cos2)] = T::sin_cos_each([θ1, θ2]);
+                let s3 = self.m2 * self.l1 * self.l2 * θ1_dot * θ2_dot
+                    * (sin1 * cos2 - cos1 * sin2);
+                (
+                    ::vi_core::SVector::from([
+                        -(s3 + self.l1 * self.g * (self.m1 + self.m2) * sin1),
+                        s3 - self.m2 * self.l2 * self.g * sin2,
+                    ]),
+                    real(0.0),
+                )
+            };
+            ::core::result::Result::Ok(::vi_core::Flow {
+                velocity,
+                force,
+                power,
+            })
         }
 
         /// The first of what L and f are made of that is not finite here.

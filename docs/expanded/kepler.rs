@@ -44,18 +44,20 @@ const _: () = {
     use ::core::convert::{identity as s4, identity as s5, identity as s6};
     use ::core::convert::{identity as s7, identity as s8, identity as s9};
     use ::core::convert::{identity as s10, identity as s11, identity as s12};
-    use ::core::convert::{identity as values, identity as value, identity as text};
-    use ::core::convert::{identity as interval, identity as h, identity as x0};
-    use ::core::convert::{identity as y0, identity as x1, identity as y1};
-    use ::core::convert::{identity as x_mid, identity as y_mid, identity as node};
-    use ::core::convert::{identity as x0_low, identity as y0_low, identity as p0_x};
-    use ::core::convert::{identity as p0_y, identity as p0_x_low, identity as p0_y_low};
-    use ::core::convert::{identity as s13, identity as energy0, identity as energy0_low};
-    use ::core::convert::{identity as s14, identity as s15, identity as s16};
-    use ::core::convert::{identity as s17, identity as s18, identity as s19};
-    use ::core::convert::{identity as s20, identity as s21, identity as s22};
-    use ::core::convert::{identity as s23, identity as s24, identity as s25};
-    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
+    use ::core::convert::{identity as force, identity as power, identity as values};
+    use ::core::convert::{identity as value, identity as text, identity as interval};
+    use ::core::convert::{identity as h, identity as x0, identity as y0};
+    use ::core::convert::{identity as x1, identity as y1, identity as x_mid};
+    use ::core::convert::{identity as y_mid, identity as node, identity as x0_low};
+    use ::core::convert::{identity as y0_low, identity as p0_x, identity as p0_y};
+    use ::core::convert::{identity as p0_x_low, identity as p0_y_low, identity as s13};
+    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s14};
+    use ::core::convert::{identity as s15, identity as s16, identity as s17};
+    use ::core::convert::{identity as s18, identity as s19, identity as s20};
+    use ::core::convert::{identity as s21, identity as s22, identity as s23};
+    use ::core::convert::{identity as s24, identity as s25, identity as systems};
+    use ::core::convert::identity as rows;
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Kepler<f64> {
@@ -220,6 +222,53 @@ const _: () = {
                     * (s10 * x_dot * real(3.0)
                         + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
             ::core::result::Result::Ok(-s12)
+        }
+
+        /// The v with `∂L/∂v = p`, and
+        ///
+        /// `dp_x/dt = -mu*x/(x^2 + y^2)^(3/2)`
+        ///
+        /// `dp_y/dt = -mu*y/(x^2 + y^2)^(3/2)`
+        ///
+        /// `dE/dt = 0`
+        ///
+        /// 13 operations.
+        #[inline]
+        fn flow(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            p: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
+            let mass: ::vi_core::linear::Banded<2, 1, T> = {
+                let real = T::real;
+                ::vi_core::linear::Banded {
+                    rows: [[real(1.0)], [real(1.0)]],
+                }
+            };
+            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let velocity = ::vi_core::support::velocity_by_mass(
+                t,
+                &mass,
+                &(p - at_rest),
+            )?;
+            let (force, power) = {
+                let v = &velocity;
+                let [x, y]: [T; 2] = (*q).into();
+                let real = T::real;
+                let s1 = x * x + y * y;
+                let s2 = s1.recip();
+                let s3 = s2 * s2 * s1.sqrt();
+                (
+                    ::vi_core::SVector::from([-(self.mu * x * s3), -(self.mu * y * s3)]),
+                    real(0.0),
+                )
+            };
+            ::core::result::Result::Ok(::vi_core::Flow {
+                velocity,
+                force,
+                power,
+            })
         }
 
         /// The first of what L and f are made of that is not finite here.

@@ -20,7 +20,7 @@ use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
-use crate::momentum::{Steps, Way};
+use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::state::State;
@@ -115,7 +115,7 @@ where
     substeps: Vec<Steps<N, T>>,
     /// The substeps after the whole step that is under way.
     following: Vec<Steps<N, T>>,
-    ways: Vec<Way<S::Jacobian, N, T>>,
+    correctors: Vec<Corrector<S::Jacobian, N, T>>,
     failure: Option<StepError>,
 }
 
@@ -134,8 +134,8 @@ where
         let v = state.velocity(&system)?;
         let lengths = scheme.weights.iter().map(|weight| h * T::real(*weight));
         let substeps: Vec<_> = lengths.map(|h| Steps::new(h, v)).collect();
-        let ways = substeps.iter().map(|substep| Way::of(&Called(system), substep.h)).collect();
-        Ok(Self { system, scheme, node, following: substeps.clone(), substeps, ways, failure: None })
+        let correctors = substeps.iter().map(|substep| Corrector::of(&Called(system), substep.h)).collect();
+        Ok(Self { system, scheme, node, following: substeps.clone(), substeps, correctors, failure: None })
     }
 
     /// Takes one whole step and returns the state reached.
@@ -182,12 +182,12 @@ where
         // Before the first whole step the velocities of the substeps are not known: each follows the one before.
         let mut before = None;
         self.following.copy_from_slice(&self.substeps);
-        for (substep, way) in self.following.iter_mut().zip(&self.ways) {
+        for (substep, corrector) in self.following.iter_mut().zip(&self.correctors) {
             if let Some(v) = before.filter(|_| substep.is_new()) {
                 *substep = Steps::new(substep.h, v);
             }
             let h = substep.h;
-            let solved = match substep.corrected(system, &node, way, substep.guess()) {
+            let solved = match substep.corrected(system, &node, corrector, substep.guess()) {
                 Some(solved) => solved,
                 None => substep
                     .searched(called, &node, Branch::Nearest)

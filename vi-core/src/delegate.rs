@@ -4,7 +4,7 @@
 use crate::called::Called;
 use crate::discrete::DiscreteLagrangian;
 use crate::error::StepError;
-use crate::lagrangian::{Lagrangian, Parameters};
+use crate::lagrangian::{Flow, Lagrangian, Parameters};
 use crate::node::Node;
 use crate::real::Real;
 use crate::rules::{By, Own, Rule};
@@ -58,6 +58,11 @@ macro_rules! lagrangian {
             #[inline]
             fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
                 S::step_density(self, t, q, v)
+            }
+
+            #[inline]
+            fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
+                S::flow(self, t, q, p)
             }
 
             fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {

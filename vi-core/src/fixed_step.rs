@@ -18,7 +18,7 @@
 use crate::called::Called;
 use crate::checkpoint;
 use crate::error::StepError;
-use crate::momentum::{Steps, Way};
+use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
 use crate::state::State;
@@ -34,7 +34,7 @@ where
     T: Real,
 {
     system: S,
-    way: Way<S::Jacobian, N, T>,
+    corrector: Corrector<S::Jacobian, N, T>,
     run: Run<N, T>,
     failure: Option<StepError>,
     /// Whether a step is not predicted: by the branch, or after a failure. One question before a step instead of two.
@@ -112,9 +112,9 @@ where
 
     /// With what is the same in every step.
     fn prepared(system: S, run: Run<N, T>) -> Self {
-        let way = Way::of(&Called(system), run.steps.h);
+        let corrector = Corrector::of(&Called(system), run.steps.h);
         let is_searched = run.branch != Branch::Nearest;
-        Self { system, way, run, failure: None, is_searched }
+        Self { system, corrector, run, failure: None, is_searched }
     }
 
     /// Takes one step and returns the state reached.
@@ -124,10 +124,10 @@ where
     /// spent; [`StepError::NonFinite`], [`StepError::Singular`]. The same error again after an error.
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
-        let Self { system, way, run, is_searched, .. } = self;
+        let Self { system, corrector, run, is_searched, .. } = self;
         if run.steps.is_common::<S>()
             && !*is_searched
-            && let Some(solved) = run.steps.common(system, &run.node, way)
+            && let Some(solved) = run.steps.common(system, &run.node, corrector)
         {
             let h = run.steps.h;
             if run.node.stays_finite(h, &solved.v, &solved.increment) {
@@ -140,7 +140,7 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        let (run, outcome) = uncommon(self.system, self.way, self.run.apart());
+        let (run, outcome) = uncommon(self.system, self.corrector, self.run.apart());
         let run = run.apart();
         match outcome {
             Ok(()) => self.run = run,
@@ -215,13 +215,17 @@ impl<const N: usize, T: Scalar> Run<N, T> {
     }
 
     /// Takes a step that is not the common one.
-    fn take<S: FixedStepping<N, T>>(&mut self, system: &S, way: &Way<S::Jacobian, N, T>) -> Result<(), StepError> {
+    fn take<S: FixedStepping<N, T>>(
+        &mut self,
+        system: &S,
+        corrector: &Corrector<S::Jacobian, N, T>,
+    ) -> Result<(), StepError> {
         let (t, h) = (self.node.t, self.steps.h);
         // A common step that was not at the floor has been corrected as often as it is worth.
         let is_corrected = self.steps.is_common::<S>() && !S::CLOSED_FORM;
         let is_searched = is_corrected || self.branch != Branch::Nearest;
         let corrected =
-            if is_searched { None } else { self.steps.corrected(system, &self.node, way, self.steps.guess()) };
+            if is_searched { None } else { self.steps.corrected(system, &self.node, corrector, self.steps.guess()) };
         let solved = match corrected {
             Some(solved) => solved,
             None => self.steps.searched(system, &self.node, self.branch)?,
@@ -238,11 +242,11 @@ impl<const N: usize, T: Scalar> Run<N, T> {
 #[inline(never)]
 fn uncommon<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     system: S,
-    way: Way<S::Jacobian, N, T>,
+    corrector: Corrector<S::Jacobian, N, T>,
     before: Run<N, T>,
 ) -> (Run<N, T>, Result<(), StepError>) {
     let mut run = before;
-    let outcome = run.take(&Called(system), &way);
+    let outcome = run.take(&Called(system), &corrector);
     let v = before.steps.v();
     (run, outcome.map_err(|failure| failure.explained(&system, &before.node, before.steps.h, &v)))
 }

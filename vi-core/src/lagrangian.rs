@@ -42,11 +42,29 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
     /// # Errors
     /// [`StepError::Singular`] where the mass matrix cannot be inverted.
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError>;
+    /// The flow at `(t, q, p)`: the velocity that belongs to p, and the rates of change of p and E. Where L is quadratic in the
+    /// velocities v follows from p by the mass matrix; else by Newton's iteration, from rest.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NotConverged`] where no velocity has these momenta,
+    /// [`StepError::NonFinite`].
+    fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError>;
     /// Where a value was lost: the first of what L and f are made of that is not finite at `(t, q, v)`, as text; parts
     /// before wholes. `None` where everything is finite, and for a system that does not say.
     fn non_finite(&self, _t: T, _q: &SVector<T, N>, _v: &SVector<T, N>) -> Option<&'static str> {
         None
     }
+}
+
+/// The rates of change at `(t, q, p)`: Hamilton's equations with a force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flow<const N: usize, T = f64> {
+    /// `dq/dt = v`, the root of `∂L/∂v(t, q, v) = p`.
+    pub velocity: SVector<T, N>,
+    /// `dp/dt = L_q + f`.
+    pub force: SVector<T, N>,
+    /// `dE/dt = −L_t + f·v`.
+    pub power: T,
 }
 
 /// The parameters of a system, by name; [`Lagrangian::PARAMETERS`] lists them.

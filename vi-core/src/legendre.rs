@@ -5,11 +5,10 @@
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{self, Matrix};
-use crate::momentum;
+use crate::newton::{self, Equations, Failure, worst};
 use crate::node::Node;
-use crate::real::{Real, Scalar};
+use crate::real::{Real, Rounded, Scalar};
 use crate::state::State;
-use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 
 impl<const N: usize, T: Real> State<N, T> {
@@ -28,13 +27,11 @@ impl<const N: usize, T: Scalar> State<N, T> {
     /// # Errors
     /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NotConverged`] where no velocity has
     /// these momenta, [`StepError::NonFinite`].
-    pub fn velocity<S: FixedStepping<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
+    pub fn velocity<S: Lagrangian<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
         let node = Node::new(*self, T::zero());
-        let explained = |failure: StepError| failure.explained(system, &node, T::zero(), &SVector::zeros());
-        node.check_finite(T::zero()).map_err(explained)?;
-        // Most Lagrangians give the velocity in one iteration from rest; where the mass matrix vanishes there,
-        // any other start will do.
-        momentum::velocity(system, &node, [SVector::zeros(), self.p]).map_err(explained)
+        let flow = node.check_finite(T::zero()).and_then(|()| system.flow(self.t, &self.q, &self.p));
+        let velocity = flow.map(|flow| flow.velocity);
+        velocity.map_err(|failure| failure.explained(system, &node, T::zero(), &SVector::zeros()))
     }
 
     /// The energy `H = v·∂L/∂v − L` at this node, in the units of L, v the velocity that belongs to its momenta.
@@ -44,7 +41,7 @@ impl<const N: usize, T: Scalar> State<N, T> {
     ///
     /// # Errors
     /// Those of [`State::velocity`]; [`StepError::NonFinite`] where L is not finite, though its forces may be.
-    pub fn energy<S: FixedStepping<N, T>>(&self, system: &S) -> Result<T, StepError> {
+    pub fn energy<S: Lagrangian<N, T>>(&self, system: &S) -> Result<T, StepError> {
         let v = self.velocity(system)?;
         let energy = system.energy(self.t, &self.q, &v);
         if energy.is_finite() {
@@ -55,7 +52,7 @@ impl<const N: usize, T: Scalar> State<N, T> {
     }
 }
 
-/// The acceleration a with `mass · a = applied`, as generated code asks for it.
+/// The acceleration a with `mass · a = applied`.
 ///
 /// # Errors
 /// [`StepError::Singular`] where the mass matrix cannot be inverted at the time `t`.
@@ -66,4 +63,90 @@ pub fn acceleration<T: Real, const N: usize>(
     applied: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
     linear::solve(mass, applied).ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
+}
+
+/// The v with `mass · v = momentum`, the momentum less that at rest.
+///
+/// # Errors
+/// [`StepError::Singular`] where the mass matrix cannot be inverted at the time `t`, [`StepError::NonFinite`] where it or the momentum
+/// is not finite.
+#[inline]
+pub fn velocity_by_mass<T: Real, const N: usize>(
+    t: T,
+    mass: &impl Matrix<N, T>,
+    momentum: &SVector<T, N>,
+) -> Result<SVector<T, N>, StepError> {
+    linear::solve(mass, momentum).ok_or_else(|| {
+        let is_finite = momentum.iter().chain(mass.dense().iter()).all(|entry| entry.is_finite());
+        let failure = if is_finite { Failure::Singular } else { Failure::NonFinite };
+        failure.at(t.to_f64(), 0.0, "mass matrix")
+    })
+}
+
+/// The equation `∂L/∂v(t, q, v) − p = 0` in v.
+struct Momentum<'a, const N: usize, T, S, R, F> {
+    system: &'a S,
+    /// The same system in numbers that carry a bound of their rounding.
+    rounded: &'a R,
+    mass: F,
+    t: T,
+    q: &'a SVector<T, N>,
+    p: &'a SVector<T, N>,
+}
+
+/// That equation at some velocity.
+struct Evaluated<const N: usize, T, M> {
+    residual: SVector<T, N>,
+    mass: M,
+    scale: SVector<T, N>,
+}
+
+impl<const N: usize, T: Real, S, R, M, F> Equations<T> for Momentum<'_, N, T, S, R, F>
+where
+    S: Lagrangian<N, T>,
+    R: Lagrangian<N, Rounded>,
+    M: Matrix<N, T>,
+    F: Fn(&SVector<T, N>) -> M,
+{
+    type Unknowns = SVector<T, N>;
+    type Evaluation = Evaluated<N, T, M>;
+
+    fn at(&self, v: &SVector<T, N>) -> Self::Evaluation {
+        let Self { t, q, p, .. } = self;
+        let exact = |number: T| Rounded::exact(number.to_f64());
+        let nearest = v.map(|number| Rounded::nearest(number.to_f64()));
+        let rounded = self.rounded.momentum(exact(*t), &q.map(exact), &nearest) - p.map(exact);
+        Evaluated {
+            residual: self.system.momentum(*t, q, v) - *p,
+            mass: (self.mass)(v),
+            // Bounds are in halves of an ulp.
+            scale: rounded.map(|number| T::real(0.5 * number.error())),
+        }
+    }
+
+    fn roundings(&self, of: &Self::Evaluation, scales: &Self::Evaluation) -> [f64; 2] {
+        [worst(&of.residual, &scales.scale), 0.0]
+    }
+
+    fn correction(&self, jacobian: &Self::Evaluation, residual: &Self::Evaluation) -> Result<SVector<T, N>, Failure> {
+        let finite = |mass: &M| mass.dense().iter().all(|entry| entry.is_finite());
+        let failure = || if finite(&jacobian.mass) { Failure::Singular } else { Failure::NonFinite };
+        linear::solve(&jacobian.mass, &residual.residual).ok_or_else(failure)
+    }
+}
+
+/// The v with `∂L/∂v(t, q, v) = p` of a system, given also in numbers that carry a bound of their rounding, and its mass matrix: by
+/// Newton's iteration from rest. Where the mass matrix vanishes there, any other start will do.
+///
+/// # Errors
+/// [`StepError::Singular`], [`StepError::NonFinite`] or [`StepError::NotConverged`] from the last guess.
+pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
+    system: &impl Lagrangian<N, T>,
+    rounded: &impl Lagrangian<N, Rounded>,
+    mass: impl Fn(&SVector<T, N>) -> M,
+    (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),
+) -> Result<SVector<T, N>, StepError> {
+    let equations = Momentum { system, rounded, mass, t, q, p };
+    let root = newton::solve(&equations, SVector::zeros()).or_else(|_| newton::solve(&equations, *p));
+    root.map(|root| root.u).map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))
 }

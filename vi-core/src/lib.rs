@@ -45,6 +45,7 @@ pub mod lagrangian;
 mod legendre;
 pub mod linear;
 mod momentum;
+mod newton;
 pub mod node;
 mod predictor;
 pub mod real;
@@ -53,13 +54,14 @@ pub mod state;
 pub mod stepping;
 #[doc(hidden)]
 pub mod support;
+mod vector;
 
 pub use composition::{Composition, Scheme};
 pub use discrete::DiscreteLagrangian;
 pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
 pub use error::{Residuals, StepError};
 pub use fixed_step::FixedStep;
-pub use lagrangian::{Lagrangian, Parameters};
+pub use lagrangian::{Flow, Lagrangian, Parameters};
 pub use nalgebra;
 pub use nalgebra::{SMatrix, SVector};
 pub use node::Node;

@@ -13,22 +13,40 @@
 //! poor to use, [`Predictor::restart`] takes the degree that would have been the best there.
 
 use crate::real::{Real, Scalar};
+use crate::vector::length_squared;
 use nalgebra::SVector;
 
 /// Highest degree of the polynomial.
 const HIGHEST: usize = 6;
 /// The weights of each degree, the newest first.
-const WEIGHTS: [[f64; HIGHEST + 1]; HIGHEST + 1] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [2.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-    [4.0, -6.0, 4.0, -1.0, 0.0, 0.0, 0.0],
-    [5.0, -10.0, 10.0, -5.0, 1.0, 0.0, 0.0],
-    [6.0, -15.0, 20.0, -15.0, 6.0, -1.0, 0.0],
-    [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0],
-];
+const WEIGHTS: [[f64; HIGHEST + 1]; HIGHEST + 1] = {
+    let mut all = [[0.0; HIGHEST + 1]; HIGHEST + 1];
+    let mut degree = 0;
+    while degree <= HIGHEST {
+        all[degree] = weights(degree);
+        degree += 1;
+    }
+    all
+};
 /// Part of u, in roundings, that an error of the guess may be before it is told from what extrapolation makes of roundings.
 const NOISE: f64 = 128.0;
+
+/// The weights `(−1)^i C(degree + 1, i + 1)` of the last steps in a guess, the newest first; zero beyond i = degree.
+#[must_use]
+pub const fn weights<const K: usize>(degree: usize) -> [f64; K] {
+    let mut weights = [0.0; K];
+    let (mut i, mut binomial, mut sign) = (0, 1, 1.0);
+    while i <= degree && i < K {
+        binomial = binomial * (degree + 1 - i) / (i + 1);
+        // Below 2⁵³.
+        #[allow(clippy::cast_precision_loss)]
+        let weight = sign * binomial as f64;
+        weights[i] = weight;
+        sign = -sign;
+        i += 1;
+    }
+    weights
+}
 
 /// Guesses of the next M unknowns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,15 +149,9 @@ impl<const M: usize, T: Scalar> Predictor<M, T> {
     }
 }
 
-/// |u|².
-#[inline(always)]
-pub(crate) fn length_squared<const M: usize, T: Real>(u: &SVector<T, M>) -> T {
-    u.iter().fold(T::zero(), |sum, entry| sum + *entry * *entry)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{HIGHEST, Predictor};
+    use super::{HIGHEST, Predictor, WEIGHTS, weights};
     use nalgebra::SVector;
 
     fn one(u: f64) -> SVector<f64, 1> {
@@ -151,6 +163,19 @@ mod tests {
         let mut predictor = Predictor::new(one(sequence(0.0)));
         (1..=20).for_each(|step| predictor.push(one(sequence(f64::from(step)))));
         predictor
+    }
+
+    #[test]
+    fn weights_are_binomials_with_alternating_signs() {
+        assert_eq!(WEIGHTS[2], [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(WEIGHTS[6], [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0]);
+        for degree in 0..=10_u32 {
+            let weights: [f64; 11] = weights(degree as usize);
+            let power = |t: f64| t.powi(i32::try_from(degree).unwrap_or(0));
+            let guess: f64 = weights.iter().zip(1..).map(|(weight, j)| weight * power(-f64::from(j))).sum();
+            // Integers: no rounding.
+            assert_eq!(guess.to_bits(), power(0.0).to_bits(), "{degree}");
+        }
     }
 
     #[test]

@@ -2,13 +2,14 @@
 
 pub use crate::compensated::two_sum;
 pub use crate::fixed_step::check_step;
-pub use crate::legendre::acceleration;
+pub use crate::legendre::{acceleration, velocity, velocity_by_mass};
+pub use crate::predictor::weights;
 pub use crate::stepping::{extended_rounding, momentum_rounding};
 
 use crate::branch::Branch;
 use crate::called::Called;
 use crate::error::StepError;
-use crate::momentum::Steps;
+use crate::momentum::steps::Steps;
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::FixedStepping;

@@ -15,7 +15,7 @@ use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
 use crate::sweep::{Elapsed, Extrapolate, Fixed, Sweep, Verdict};
 use nalgebra::SVector;
-use vi_core::support::step_alone;
+use vi_core::support::{step_alone, weights as extrapolation};
 use vi_core::{Batch, FixedStep, Node, State, StepError};
 
 /// Velocities that the next one is extrapolated from, at most. Of coupled pendula (h = 0.01, amplitude 1) a polynomial of degree 6 is
@@ -135,7 +135,8 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let Some((velocity, known)) = velocities.split_last_mut() else { return };
         // One velocity is known before the first step, and one more after each.
         if weights.len() < known.len() {
-            *weights = alternating_binomials(weights.len() + 1);
+            let degree = weights.len();
+            *weights = extrapolation::<DEPTH>(degree)[..=degree].to_vec();
         }
         instructions.run(Extrapolate { weights, velocities: known, guess: velocity });
         let refused = instructions.run(Sweep::<S, N, false> { fixed, elapsed, before, after, velocity, verdict })
@@ -162,49 +163,22 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
                 Ok((next, v)) => {
                     self.nodes[1].set(lane, &next);
                     self.nodes[1].remainder.set(lane, &SVector::<f64, N>::zeros());
-                    self.leap(lane, v, v - last);
+                    self.restart(lane, v, v - last);
                 }
                 Err(error) => self.end(number, node.state(), error),
             }
         }
     }
 
-    /// Makes the velocities of a trajectory a line that ends in v: what was before a leap says nothing of what comes after it.
-    fn leap(&mut self, lane: LaneIndex, v: SVector<f64, N>, change: SVector<f64, N>) {
+    /// Makes the velocities of a trajectory a line that ends in v, which extrapolation of any degree continues: those before a step that
+    /// could not be predicted say nothing of what comes after it, and all trajectories of a block share the degree.
+    fn restart(&mut self, lane: LaneIndex, v: SVector<f64, N>, change: SVector<f64, N>) {
         let Some((newest, known)) = self.velocities.split_last_mut() else { return };
         newest.set(lane, &v);
         let mut before = v;
         for velocities in known {
             before -= change;
             velocities.set(lane, &before);
-        }
-    }
-}
-
-/// The weights of so many velocities, the newest first: their binomial coefficients with alternating signs.
-fn alternating_binomials(count: usize) -> Vec<f64> {
-    let mut weights = Vec::with_capacity(count);
-    let mut binomial = 1.0;
-    for (taken, left) in (1_u32..).zip((1..=u32::try_from(count).unwrap_or(u32::MAX)).rev()) {
-        binomial = binomial * f64::from(left) / f64::from(taken);
-        weights.push(if taken % 2 == 1 { binomial } else { -binomial });
-    }
-    weights
-}
-
-#[cfg(test)]
-mod tests {
-    use super::alternating_binomials;
-
-    #[test]
-    fn a_polynomial_is_extrapolated() {
-        for count in 1..=11_u32 {
-            let weights = alternating_binomials(count as usize);
-            assert_eq!(weights.len(), count as usize);
-            let power = |t: f64| t.powi(i32::try_from(count).unwrap_or(0) - 1);
-            let guess: f64 = weights.iter().zip(1..).map(|(weight, j)| weight * power(-f64::from(j))).sum();
-            // Integers: no rounding.
-            assert_eq!(guess.to_bits(), power(0.0).to_bits(), "{count}");
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use core::cell::Cell;
 use vi_core::{
-    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Interval, Lagrangian,
+    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Interval, Lagrangian,
     MomentumEquation, MomentumResidual, Node, Rounding, SVector, StepError,
 };
 
@@ -54,6 +54,10 @@ impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<'_, S> {
 
     fn acceleration(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<SVector<f64, N>, StepError> {
         self.counted().acceleration(t, q, v)
+    }
+
+    fn flow(&self, t: f64, q: &SVector<f64, N>, p: &SVector<f64, N>) -> Result<Flow<N>, StepError> {
+        self.system.flow(t, q, p)
     }
 
     fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {

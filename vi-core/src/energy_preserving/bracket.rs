@@ -10,14 +10,15 @@
 //! φ starts with the sign of D and the forward step is its first change of sign. Between two points of the search φ can
 //! change its sign twice, where D is about to vanish: an extremum of φ that points to zero is followed to its bottom.
 
-use super::newton::{self, Failure, Root, Trial};
-use super::{Last, RATIO};
-use crate::error::Residuals;
+use super::equations::{self, EnergyStep, NoStep};
+use super::interval::{Last, RATIO};
 use crate::error::StepError;
-use crate::momentum;
+use crate::momentum::newton as momentum;
+use crate::newton::{Failure, roundings};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::EnergyStepping;
+use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
 /// φ is looked at from `h_last/REACH` to `REACH · h_last`: wide enough to tell a step beyond the factor from none.
@@ -41,19 +42,14 @@ struct Point<const N: usize, T> {
 
 impl<const N: usize, T: Scalar> Point<N, T> {
     /// The point at `h`, v by Newton's iteration from `guess`.
-    fn at<S: EnergyStepping<N, T>>(
-        system: &S,
-        node: &Node<N, T>,
-        h: T,
-        guess: SVector<T, N>,
-    ) -> Result<Self, momentum::Failure> {
-        let v = momentum::solve(system, node, h, guess)?.v;
+    fn at<S: EnergyStepping<N, T>>(system: &S, node: &Node<N, T>, h: T, guess: SVector<T, N>) -> Result<Self, Failure> {
+        let v = momentum::solve(system, node, h, guess)?.u;
         let equations = system.extended_system(node, h, &v);
         let scale = system.extended_rounding(node, h, &v).energy_residual;
-        let size = momentum::roundings(equations.energy_residual, scale);
+        let size = roundings(equations.energy_residual, scale);
         let negative = equations.energy_residual.to_f64() < 0.0;
         let roundings = if negative { -size } else { size };
-        if size.is_finite() { Ok(Self { v, h, roundings }) } else { Err(momentum::Failure::NonFinite) }
+        if size.is_finite() { Ok(Self { v, h, roundings }) } else { Err(Failure::NonFinite) }
     }
 
     /// −1 or 1; 0 where φ is not to be told from rounding.
@@ -91,7 +87,7 @@ pub(super) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
-) -> Result<Root<N, T>, StepError> {
+) -> Result<EnergyStep<N, T>, StepError> {
     let (t, h) = (node.t.to_f64(), last.h.to_f64());
     let v = momentum::velocity(system, node, [last.v, node.p])?;
     let energy = system.energy(node.t, &node.q, &v);
@@ -133,7 +129,7 @@ fn first_change<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
         // Where the momentum equation has no solution the curve ends, and with it the search.
         let point = match Point::at(system, node, h, before.v) {
             Ok(point) => point,
-            Err(momentum::Failure::NonFinite) => return Search::NonFinite(h),
+            Err(Failure::NonFinite) => return Search::NonFinite(h),
             Err(_) => return Search::NoChange,
         };
         if known * point.sign() < 0 {
@@ -191,7 +187,7 @@ fn polished<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     last: &Last<N, T>,
     mut before: Point<N, T>,
     mut after: Point<N, T>,
-) -> Result<Root<N, T>, StepError> {
+) -> Result<EnergyStep<N, T>, StepError> {
     let (t, previous) = (node.t.to_f64(), last.h.to_f64());
     let upper = after.sign();
     for _ in 0..BISECTIONS {
@@ -209,18 +205,16 @@ fn polished<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     let beyond = |found: f64| found * RATIO < previous || found > previous * RATIO;
     let h = after.h.to_f64();
     let half = T::real(0.5);
-    let mut residuals = Residuals::new();
-    let trial = Trial { v: after.v, h: after.h };
+    let trial = VelocityStep { v: after.v, h: after.h };
     let range = (after.h * half, after.h / half);
-    let root = newton::solve(system, node, trial, range, &mut |residual| residuals.push(residual));
-    let root = root.map_err(|failure| match failure {
-        Failure::Degenerate { h, density } => StepError::DegenerateStep { t, h: h.to_f64(), density: density.to_f64() },
-        Failure::NoRoot if beyond(h) => StepError::StepRatio { t, previous, found: h },
-        Failure::NoRoot => {
+    let step = equations::solve(system, node, trial, range).map_err(|no_step| match no_step {
+        NoStep::Degenerate { h, density } => StepError::DegenerateStep { t, h: h.to_f64(), density: density.to_f64() },
+        NoStep::NoRoot(_) if beyond(h) => StepError::StepRatio { t, previous, found: h },
+        NoStep::NoRoot(residuals) => {
             let residual = residuals.iter().last().unwrap_or(after.roundings.abs());
             StepError::NotConverged { t, h, iterations: BISECTIONS, residual, residuals }
         }
     })?;
-    let found = root.h.to_f64();
-    if beyond(found) { Err(StepError::StepRatio { t, previous, found }) } else { Ok(root) }
+    let found = step.h.to_f64();
+    if beyond(found) { Err(StepError::StepRatio { t, previous, found }) } else { Ok(step) }
 }

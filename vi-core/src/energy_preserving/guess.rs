@@ -4,11 +4,12 @@
 //! momentum equation at the last h; then h by the step law, `h = h_last (D_last/D)^(1/3)`, within the factor allowed;
 //! then v carried along `dv/dh` of the momentum equation. No prediction is made where D has changed its sign.
 
-use super::newton::{Elimination, Trial};
-use super::{Last, RATIO};
+use super::equations::Elimination;
+use super::interval::{Last, RATIO};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::EnergyStepping;
+use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
 /// The trial that follows `last`.
@@ -16,10 +17,10 @@ pub(super) fn predict<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
-) -> Trial<N, T> {
-    let extrapolated = Trial { v: last.v + last.slope() * last.h, h: last.h };
+) -> VelocityStep<N, T> {
+    let extrapolated = VelocityStep { v: last.v + last.slope() * last.h, h: last.h };
     improve(system, node, last, extrapolated)
-        .or_else(|| improve(system, node, last, Trial { v: last.v, h: last.h }))
+        .or_else(|| improve(system, node, last, VelocityStep { v: last.v, h: last.h }))
         .unwrap_or(extrapolated)
 }
 
@@ -27,13 +28,13 @@ fn improve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,
-    trial: Trial<N, T>,
-) -> Option<Trial<N, T>> {
+    trial: VelocityStep<N, T>,
+) -> Option<VelocityStep<N, T>> {
     let equations = system.extended_system(node, trial.h, &trial.v);
     let elimination = Elimination::finite(&equations)?;
     let ratio = last.density.to_f64() / elimination.density()?.to_f64();
     let factor = if ratio > 0.0 && ratio.is_finite() { ratio.cbrt().clamp(1.0 / RATIO, RATIO) } else { 1.0 };
     let h = last.h * T::real(factor);
     let v: SVector<T, N> = trial.v - elimination.residual - elimination.residual_dh * (h - trial.h);
-    Some(Trial { v, h })
+    Some(VelocityStep { v, h })
 }

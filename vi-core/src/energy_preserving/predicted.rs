@@ -14,31 +14,37 @@
 //! is `4 ε E/(h² D)` of h.
 //! AFTER A STEP both residuals were measured at the (v, h) that was taken.
 
-use super::newton::{Elimination, Root, Trial};
-use super::{Last, RATIO};
-use crate::momentum::{FLOOR, roundings, worse, worst};
+use super::equations::{Elimination, EnergyStep};
+use super::interval::{Last, RATIO};
+use crate::newton::{are_at_floor, roundings, worst};
 use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::Scalar;
 use crate::stepping::{EnergyStepping, ExtendedResidual, Increment, Rounding};
+use crate::vector::{Vector, VelocityStep, length_squared, worse};
 use nalgebra::SVector;
 
 /// Newton steps that may follow a guess.
 const ATTEMPTS: u32 = 3;
+/// Roundings that a momentum row may leave with what is carried to it.
+const REMAINING: f64 = 1.0;
 /// Roundings that may be left of the energy row.
 const ENERGY_FLOOR: f64 = 0.5;
+/// Part of v and h that a short change is at most.
+const SHORT: f64 = 1e-6;
 
-/// The predictors of v and h.
+/// The predictors of v and of h, and what the last step left. Each has a degree of its own: h follows from a small difference, and its
+/// roundings, which extrapolation enlarges, are larger. Measured in `f32`, with one degree for both: four times the error of the energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "T: crate::Real + serde::Serialize",
-        deserialize = "T: crate::Real + serde::Deserialize<'de>"
+        serialize = "T: crate::real::Real + serde::Serialize",
+        deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
-pub(super) struct Predictors<const N: usize, T> {
+pub(super) struct Prediction<const N: usize, T> {
     v: Predictor<N, T>,
     h: Predictor<1, T>,
     /// What the last step left of its momentum rows.
@@ -49,14 +55,14 @@ pub(super) struct Predictors<const N: usize, T> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Predicted<const N: usize, T> {
     /// What solves the equations.
-    pub(super) root: Root<N, T>,
+    pub(super) step: EnergyStep<N, T>,
     /// What momentum and energy gain over it.
     pub(super) increment: Increment<N, T>,
     /// What it leaves of its momentum rows.
     remainder: SVector<T, N>,
 }
 
-impl<const N: usize, T: Scalar> Predictors<N, T> {
+impl<const N: usize, T: Scalar> Prediction<N, T> {
     /// Before the first step, which follows the interval `(v, h)`.
     pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
         Self { v: Predictor::new(v), h: Predictor::new(SVector::repeat(h)), remainder: SVector::zeros() }
@@ -64,46 +70,48 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
 
     /// Whether every number is finite.
     pub(super) fn is_finite(&self) -> bool {
-        self.v.is_finite() && self.h.is_finite() && self.remainder.iter().all(|entry| entry.is_finite())
+        self.v.is_finite() && self.h.is_finite() && Vector::is_finite(&self.remainder)
     }
 
     /// Whether both guesses are of the highest degree.
     #[inline(always)]
-    pub(super) fn are_highest(&self) -> bool {
+    pub(super) fn is_highest(&self) -> bool {
         self.v.is_highest() && self.h.is_highest()
     }
 
-    /// Takes a step that was predicted from guesses of the highest degree.
+    /// Takes a step that was predicted from a guess of the highest degree.
     #[inline(always)]
-    pub(super) fn push_common(&mut self, step: &Predicted<N, T>) {
-        self.v.push_highest(step.root.v);
-        self.h.push_highest(SVector::repeat(step.root.h));
-        self.remainder = step.remainder;
+    pub(super) fn push_common(&mut self, predicted: &Predicted<N, T>) {
+        let EnergyStep { v, h, .. } = predicted.step;
+        self.v.push_highest(v);
+        self.h.push_highest(SVector::repeat(h));
+        self.remainder = predicted.remainder;
     }
 
     /// Takes a step that was predicted.
-    pub(super) fn push(&mut self, step: &Predicted<N, T>) {
-        self.v.push(step.root.v);
-        self.h.push(SVector::repeat(step.root.h));
-        self.remainder = step.remainder;
+    pub(super) fn push(&mut self, predicted: &Predicted<N, T>) {
+        let EnergyStep { v, h, .. } = predicted.step;
+        self.v.push(v);
+        self.h.push(SVector::repeat(h));
+        self.remainder = predicted.remainder;
     }
 
     /// Takes a step that was searched.
-    pub(super) fn restart(&mut self, root: &Root<N, T>) {
-        self.v.restart(root.v);
-        self.h.restart(SVector::repeat(root.h));
+    pub(super) fn restart(&mut self, step: &EnergyStep<N, T>) {
+        self.v.restart(step.v);
+        self.h.restart(SVector::repeat(step.h));
         self.remainder = SVector::zeros();
     }
 
     /// The unknowns that the last steps give.
-    pub(super) fn guess(&self) -> Trial<N, T> {
-        Trial { v: self.v.guess(), h: self.h.guess()[0] }
+    pub(super) fn guess(&self) -> VelocityStep<N, T> {
+        VelocityStep { v: self.v.guess(), h: self.h.guess()[0] }
     }
 
     /// The same at the highest degree.
     #[inline(always)]
-    pub(super) fn guess_highest(&self) -> Trial<N, T> {
-        Trial { v: self.v.guess_highest(), h: self.h.guess_highest()[0] }
+    pub(super) fn guess_highest(&self) -> VelocityStep<N, T> {
+        VelocityStep { v: self.v.guess_highest(), h: self.h.guess_highest()[0] }
     }
 
     /// The step from `node` after the interval `last`, from a trial.
@@ -113,28 +121,29 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         system: &S,
         node: &Node<N, T>,
         last: &Last<N, T>,
-        mut trial: Trial<N, T>,
+        mut trial: VelocityStep<N, T>,
     ) -> Option<Predicted<N, T>> {
         for iterations in 1..=ATTEMPTS {
             let mut equations = system.extended_system(node, trial.h, &trial.v);
             equations.momentum.residual += self.remainder;
             let elimination = Elimination::of(&equations);
-            let step = elimination.step(&equations, &trial);
-            trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
+            let change = elimination.change(&equations, &trial);
+            trial = VelocityStep { v: trial.v + change.v, h: trial.h + change.h };
             // D is that of the trial before, which has to be next to the root for it.
-            if !step.is_short(&trial) {
+            if !is_short(&change, &trial) {
                 continue;
             }
             let at = system.extended_residual(node, trial.h, &trial.v);
             let Some((remainder, residual)) = self.measured(node, &trial.v, &at) else {
                 continue;
             };
-            let (Trial { v, h }, density) = (trial, elimination.density_or_infinite());
+            let VelocityStep { v, h } = trial;
+            let density = elimination.density_or_infinite();
             let in_range = h * T::real(RATIO) >= last.h && h <= last.h * T::real(RATIO);
             // At the smallest root D has the sign that it had: past a change of sign lies another root.
             let forward = density * last.density > T::zero() && !elimination.is_degenerate();
-            let root = Root { v, h, density, iterations, residual };
-            return (in_range && forward).then_some(Predicted { root, increment: at.increment, remainder });
+            let step = EnergyStep { v, h, density, iterations, residual };
+            return (in_range && forward).then_some(Predicted { step, increment: at.increment, remainder });
         }
         None
     }
@@ -152,13 +161,8 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         let is_at_floor = |scale: &Rounding<N, T>| {
             let rounding = scale.energy_residual * T::real(T::EPSILON);
             // A scale that overflows proves nothing.
-            let mut all = at.energy_residual.abs() <= rounding * T::real(ENERGY_FLOOR) && rounding.is_finite();
-            for i in 0..N {
-                let rounding = scale.residual[i] * T::real(T::EPSILON);
-                all &= at.residual[i].abs() <= rounding * T::real(FLOOR);
-                all &= remainder[i].abs() <= rounding && rounding.is_finite();
-            }
-            all
+            let energy = at.energy_residual.abs() <= rounding * T::real(ENERGY_FLOOR) && rounding.is_finite();
+            energy & are_at_floor(&at.residual, &self.remainder, &scale.residual, REMAINING)
         };
         let own = node.energy.abs() + at.increment.energy.abs();
         let mut scale = Rounding {
@@ -175,4 +179,12 @@ impl<const N: usize, T: Scalar> Predictors<N, T> {
         let rows = worst(&at.residual, &scale.residual);
         Some((remainder, worse(rows, roundings(at.energy_residual, scale.energy_residual))))
     }
+}
+
+/// Whether a change is less than a millionth of the trial that it leads to.
+#[inline(always)]
+fn is_short<const N: usize, T: Scalar>(change: &VelocityStep<N, T>, trial: &VelocityStep<N, T>) -> bool {
+    let part = T::real(SHORT);
+    let (length, whole) = (length_squared(&change.v), length_squared(&trial.v));
+    change.h.abs() <= trial.h.abs() * part && length <= whole * (part * part)
 }

@@ -3,8 +3,11 @@
 //! In: the middle of the first interval, or its two ends, or the state of an earlier run. Out: an integrator whose node is
 //! the end of that interval, with the p1 and E1 of the slot derivatives.
 
-use super::newton::Elimination;
-use super::{EnergyPreserving, Last, Run};
+use super::equations::Elimination;
+use super::fallback::check_step;
+use super::interval::Last;
+use super::run::Run;
+use super::stepper::EnergyPreserving;
 use crate::called::Called;
 use crate::error::StepError;
 use crate::node::Node;
@@ -114,14 +117,4 @@ fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
     let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
     Ok(Run::new(node, Last { v, h, previous: h, density, change: acceleration * h }))
-}
-
-/// A step must lead forward.
-pub(super) fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
-    let value = h.to_f64();
-    if value.is_normal() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(StepError::InvalidInput { input, allowed: "positive, finite and not subnormal", value })
-    }
 }

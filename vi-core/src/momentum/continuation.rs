@@ -5,10 +5,10 @@
 //! singular derivative of the equation, no part is small enough and the step has no such root. On the way there the
 //! determinant of the derivative keeps its sign, and beyond the turn it has the other one.
 
-use super::{FLOOR, Failure, Solution, newton};
-use crate::error::Residuals;
-use crate::error::StepError;
+use super::newton;
+use crate::error::{Residuals, StepError};
 use crate::linear::{self, Matrix};
+use crate::newton::Failure;
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::FixedStepping;
@@ -34,6 +34,13 @@ impl Pace {
         Self { largest_part: 1.0 / 16.0, least_part: 1.0 / 65536.0, iterations: 3, signed: true };
 }
 
+/// A velocity, and the iterations that it took.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reached<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    pub(crate) iterations: u32,
+}
+
 /// The root that Newton's iteration reaches from `guess`; where it fails, the root at `h` on the branch connected with
 /// h = 0, where v is near `start`.
 ///
@@ -46,8 +53,11 @@ pub(crate) fn nearest<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     guess: SVector<T, N>,
     start: SVector<T, N>,
-) -> Result<Solution<N, T>, StepError> {
-    newton::solve(system, node, h, guess).or_else(|_| solve(system, node, h, start, Pace::RESCUE))
+) -> Result<Reached<N, T>, StepError> {
+    match newton::solve(system, node, h, guess) {
+        Ok(root) => Ok(Reached { v: root.u, iterations: root.iterations }),
+        Err(_) => solve(system, node, h, start, Pace::RESCUE),
+    }
 }
 
 /// The root at `h` on the branch connected with h = 0.
@@ -61,7 +71,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     h: T,
     guess: SVector<T, N>,
     pace: Pace,
-) -> Result<Solution<N, T>, StepError> {
+) -> Result<Reached<N, T>, StepError> {
     let mut v = newton::velocity(system, node, [guess, node.p])?;
     let sign = |h: T, v: &SVector<T, N>| {
         if pace.signed { linear::determinant_sign(&system.momentum_equation(node, h, v).jacobian.dense()) } else { 1 }
@@ -70,39 +80,31 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
     let (mut reached, mut part, mut spent) = (0.0, pace.largest_part, 0);
     while reached < 1.0 {
         let target = f64::min(reached + part, 1.0);
-        let (mut residuals, mut iterations) = (Residuals::new(), 0);
-        let mut observe = |residual| {
-            residuals.push(residual);
-            iterations += u32::from(residual > FLOOR);
-        };
         let at = h * T::real(target);
-        let solution = newton::observed(system, node, at, v, &mut observe);
-        match solution {
-            Ok(solution) if iterations <= pace.iterations && sign(at, &solution.v) == forward => {
-                (v, reached, part) = (solution.v, target, pace.largest_part.min(2.0 * part));
-                spent += solution.iterations;
+        let root = newton::solve(system, node, at, v);
+        match root {
+            Ok(root) if root.above_floor <= pace.iterations && sign(at, &root.u) == forward => {
+                (v, reached, part) = (root.u, target, pace.largest_part.min(2.0 * part));
+                spent += root.iterations;
             }
-            Ok(_) if part <= pace.least_part => {
+            _ if part > pace.least_part => part /= 2.0,
+            _ => {
+                // What the last root leaves of the whole step. Where the iteration stalled on the way, what it left there.
                 let residual = newton::residual(system, node, h, &v);
-                let failure = Failure::Stalled { iterations: spent, residual };
-                return Err(failure.at(node.t.to_f64(), h.to_f64(), "derivative of the momentum equation", residuals));
-            }
-            Err(failure) if part <= pace.least_part => {
-                let failure = match failure {
+                let failure = match root {
+                    Ok(root) => Failure::Stalled { iterations: spent, residual, residuals: root.residuals },
                     // On the way to the last root the Jacobian loses its inverse: there is no root beyond.
-                    Failure::Singular => match newton::residual(system, node, h, &v) {
-                        residual if residual.is_finite() => Failure::Stalled { iterations: spent, residual },
-                        _ => Failure::NonFinite,
-                    },
-                    Failure::Stalled { iterations, residual } => {
-                        Failure::Stalled { iterations: spent + iterations, residual }
+                    Err(Failure::Singular) if residual.is_finite() => {
+                        Failure::Stalled { iterations: spent, residual, residuals: Residuals::new() }
                     }
-                    Failure::NonFinite => failure,
+                    Err(Failure::Stalled { iterations, residual, residuals }) => {
+                        Failure::Stalled { iterations: spent + iterations, residual, residuals }
+                    }
+                    Err(_) => Failure::NonFinite,
                 };
-                return Err(failure.at(node.t.to_f64(), h.to_f64(), "derivative of the momentum equation", residuals));
+                return Err(failure.at(node.t.to_f64(), h.to_f64(), "derivative of the momentum equation"));
             }
-            _ => part /= 2.0,
         }
     }
-    Ok(Solution { v, iterations: spent })
+    Ok(Reached { v, iterations: spent })
 }

@@ -6,13 +6,10 @@
 //! |---|---|
 //! | `steps` | steps of one length: predicted, corrected, measured |
 //! | `closed_form` | a linear step as one matrix |
-//! | `newton` | Newton's iteration to the rounding floor |
+//! | `newton` | the equation for Newton's iteration |
 //! | `continuation` | the root followed from h = 0 |
 
 pub(crate) mod closed_form;
 pub(crate) mod continuation;
 pub(crate) mod newton;
 pub(crate) mod steps;
-
-pub(crate) use newton::{FLOOR, Failure, Solution, is_at_floor, residual, roundings, solve, velocity, worse, worst};
-pub(crate) use steps::{Steps, Way};

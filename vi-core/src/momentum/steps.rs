@@ -20,10 +20,11 @@
 //! AFTER A STEP the residual was measured at the velocity that was taken.
 
 use super::closed_form::ClosedForm;
-use super::{FLOOR, Solution, continuation, newton};
+use super::continuation::{self, Reached};
 use crate::branch::Branch;
 use crate::error::StepError;
 use crate::linear::Matrix;
+use crate::newton::{are_at_floor, worst};
 use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::{Real, Scalar};
@@ -32,10 +33,12 @@ use nalgebra::SVector;
 
 /// Corrections that may follow a guess.
 const CORRECTIONS: u32 = 3;
+/// Roundings that a row may leave with what is carried to it.
+const REMAINING: f64 = 2.0;
 
 /// How a step is corrected. It depends on the system, its parameters and h alone.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Way<J: Matrix<N, T>, const N: usize, T: Real> {
+pub(crate) enum Corrector<J: Matrix<N, T>, const N: usize, T: Real> {
     /// The whole step is one matrix; A is constant.
     ClosedForm(ClosedForm<T>, J::Inverse),
     /// By the inverse of A, which is constant.
@@ -44,7 +47,7 @@ pub(crate) enum Way<J: Matrix<N, T>, const N: usize, T: Real> {
     Newton,
 }
 
-impl<J: Matrix<N, T>, const N: usize, T: Scalar> Way<J, N, T> {
+impl<J: Matrix<N, T>, const N: usize, T: Scalar> Corrector<J, N, T> {
     /// That of steps of length h.
     pub(crate) fn of<S: FixedStepping<N, T, Jacobian = J>>(system: &S, h: T) -> Self {
         if !S::CONSTANT_JACOBIAN {
@@ -88,24 +91,15 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
         Self { residual: SVector::zeros(), scale: SVector::zeros() }
     }
 
-    /// Whether each row is at most [`FLOOR`] roundings, and with what is carried to it half as many.
+    /// Whether each row is at most [`FLOOR`](crate::newton::FLOOR) roundings, and with what is carried to it half as many.
     #[inline(always)]
     fn is_at_floor(&self, carried: &SVector<T, N>) -> bool {
-        // A mask: a loop over booleans does not become vector instructions.
-        let mut above = 0_u64;
-        for i in 0..N {
-            let bound = self.scale[i] * T::real(FLOOR * T::EPSILON);
-            let sum = self.residual[i] + carried[i];
-            // A scale that overflows proves nothing.
-            let is_below = self.residual[i].abs() <= bound && (sum + sum).abs() <= bound && bound.is_finite();
-            above |= if is_below { 0 } else { u64::MAX };
-        }
-        above == 0
+        are_at_floor(&self.residual, carried, &self.scale, REMAINING)
     }
 
     /// The largest residual in roundings.
     pub(crate) fn roundings(&self) -> f64 {
-        newton::worst(&self.residual, &self.scale)
+        worst(&self.residual, &self.scale)
     }
 }
 
@@ -195,11 +189,11 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         &self,
         system: &S,
         node: &Node<N, T>,
-        way: &Way<S::Jacobian, N, T>,
+        corrector: &Corrector<S::Jacobian, N, T>,
     ) -> Option<Solved<N, T>> {
-        match way {
-            Way::ClosedForm(form, _) if S::CLOSED_FORM => self.by_matrix(system, node, form),
-            _ => self.corrected(system, node, way, self.predictor.guess_highest()),
+        match corrector {
+            Corrector::ClosedForm(form, _) if S::CLOSED_FORM => self.by_matrix(system, node, form),
+            _ => self.corrected(system, node, corrector, self.predictor.guess_highest()),
         }
     }
 
@@ -214,13 +208,13 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         &self,
         system: &S,
         node: &Node<N, T>,
-        way: &Way<S::Jacobian, N, T>,
+        corrector: &Corrector<S::Jacobian, N, T>,
         mut v: SVector<T, N>,
     ) -> Option<Solved<N, T>> {
-        // So that the compiler sees which way it is.
-        let way = if S::CONSTANT_JACOBIAN { way } else { &Way::Newton };
+        // So that the compiler sees which one it is.
+        let corrector = if S::CONSTANT_JACOBIAN { corrector } else { &Corrector::Newton };
         for iterations in 1..=CORRECTIONS {
-            let solved = self.corrected_once(system, node, way, &mut v, iterations);
+            let solved = self.corrected_once(system, node, corrector, &mut v, iterations);
             if solved.is_some() {
                 return solved;
             }
@@ -234,12 +228,12 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         &self,
         system: &S,
         node: &Node<N, T>,
-        way: &Way<S::Jacobian, N, T>,
+        corrector: &Corrector<S::Jacobian, N, T>,
         v: &mut SVector<T, N>,
         iterations: u32,
     ) -> Option<Solved<N, T>> {
         let equation = system.momentum_equation(node, self.h, v);
-        *v -= way.correction(&equation.jacobian, &(equation.residual + self.remainder));
+        *v -= corrector.correction(&equation.jacobian, &(equation.residual + self.remainder));
         let MomentumResidual { residual, scale, increment } = system.momentum_residual(node, self.h, v);
         // Long functions have computed the scales of their terms; short ones are inlined, and compute them where they are needed: where
         // momenta vanish, and what they are sums of does not.
@@ -284,7 +278,7 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         branch: Branch,
     ) -> Result<Solved<N, T>, StepError> {
         let (h, start) = (self.h, self.v());
-        let Solution { v, iterations } = match branch {
+        let Reached { v, iterations } = match branch {
             Branch::Nearest => continuation::nearest(system, node, h, start, start)?,
             Branch::Connected => continuation::solve(system, node, h, start, continuation::Pace::CLOSE)?,
         };

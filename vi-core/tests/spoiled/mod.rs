@@ -3,7 +3,7 @@
 
 use vi_core::linear::Matrix;
 use vi_core::{
-    Convertible, DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment,
+    Convertible, DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Increment,
     Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Parameters, Real, Rounding, SMatrix, SVector,
     StepError,
 };
@@ -127,6 +127,9 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
         let right = self.system.acceleration(t, q, v)?;
         Ok(self.unless(Fault::Acceleration, right, |a| a * T::real(1.001)))
+    }
+    fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
+        self.system.flow(t, q, p)
     }
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
         let right = self.system.step_density(t, q, v)?;

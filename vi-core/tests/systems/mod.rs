@@ -13,7 +13,7 @@
 
 use vi_core::real::Rounded;
 use vi_core::{
-    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, Interval,
+    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Increment, Interval,
     Lagrangian, MomentumEquation, MomentumResidual, Node, Real, Rounding, SMatrix, SVector, StepError, support,
 };
 
@@ -211,6 +211,15 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Lagrangian<N, T> for UnitMass<
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
         let fields = self.0.fields(t, q, v);
         Ok(fields.force - fields.gradient)
+    }
+
+    fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
+        let fields = self.0.fields(t, q, p);
+        Ok(Flow {
+            velocity: *p,
+            force: fields.force - fields.gradient,
+            power: fields.potential_t + fields.force.dot(p),
+        })
     }
 
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {

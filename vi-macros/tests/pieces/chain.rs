@@ -66,7 +66,9 @@ const _: () = {
     use ::core::convert::{identity as s27, identity as s28, identity as s29};
     use ::core::convert::{identity as s30, identity as mass, identity as applied};
     use ::core::convert::{identity as a, identity as sin1, identity as i};
-    use ::core::convert::{identity as sum, identity as values, identity as value};
+    use ::core::convert::{identity as sum, identity as p, identity as at_rest};
+    use ::core::convert::{identity as velocity, identity as force, identity as power};
+    use ::core::convert::{identity as cos10, identity as values, identity as value};
     use ::core::convert::{identity as text, identity as interval, identity as t0};
     use ::core::convert::{identity as t1, identity as h, identity as q_0_0};
     use ::core::convert::{identity as q_1_0, identity as q_2_0, identity as q_3_0};
@@ -489,7 +491,7 @@ const _: () = {
             ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
-        /// `D = (k*cos(q[0]) + k*(q[1] - q[0])^3 - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-3*k*(q[1] - q[0])^2 - (sin(t)/3 + 1)*cos(q[0])) - sin(q[0])*cos(t)/3 + 3*k*(q[1] - q[0])^2*dot(q[1])) + dot(q[0])*sin(q[0])*cos(t)/3 + dot(dot(q[1]))*(k*cos(q[1]) - k*(4*(q[1] - q[0])^3 - 4*(q[2] - q[1])^3)/4 - (sin(t)/3 + 1)*sin(q[1])) - dot(q[1])*(3*k*(q[1] - q[0])^2*dot(q[0]) - …`
+        /// `D = (k*cos(q[0]) + k*(q[1] - q[0])^3 - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-3*k*(q[1] - q[0])^2 - (sin(t)/3 + 1)*cos(q[0])) - cos(t)*sin(q[0])/3 + 3*k*(q[1] - q[0])^2*dot(q[1])) + dot(q[0])*cos(t)*sin(q[0])/3 + dot(dot(q[1]))*(k*cos(q[1]) - k*(4*(q[1] - q[0])^3 - 4*(q[2] - q[1])^3)/4 - (sin(t)/3 + 1)*sin(q[1])) - dot(q[1])*(3*k*(q[1] - q[0])^2*dot(q[0]) - …`
         ///
         /// 322 operations.
         #[inline]
@@ -534,47 +536,172 @@ const _: () = {
             for i in 0..10 {
                 s10[i] = s2 * s4[i].1;
             }
-            let mut s11 = [real(0.0); 9];
-            for i in 0..9 {
-                s11[i] = s9[i] * v[i + 1] * real(3.0);
-            }
-            let mut s12 = [real(0.0); 10];
+            let mut s11 = [real(0.0); 10];
             for i in 0..10 {
-                s12[i] = v[i] * s4[i].0;
+                s11[i] = cos1 * s4[i].0 * real(0.3333333333333333);
+            }
+            let mut s12 = [real(0.0); 9];
+            for i in 0..9 {
+                s12[i] = s9[i] * v[i + 1] * real(3.0);
             }
             let mut s13 = [real(0.0); 9];
             for i in 0..9 {
-                s13[i] = cos1 * s4[i + 1].0 * real(0.3333333333333333);
+                s13[i] = s9[i] * v[i] * real(3.0);
             }
-            let mut s14 = [real(0.0); 9];
-            for i in 0..9 {
-                s14[i] = s9[i] * v[i] * real(3.0);
+            let mut s14 = [real(0.0); 8];
+            for i in 0..8 {
+                s14[i] = a[i + 1]
+                    * (s5[i + 1] - self.k * (s7[i] - s7[i + 1]) - s8[i + 1]);
             }
             let mut s15 = [real(0.0); 8];
             for i in 0..8 {
-                s15[i] = a[i + 1]
-                    * (s5[i + 1] - self.k * (s7[i] - s7[i + 1]) - s8[i + 1]);
+                s15[i] = v[i + 1]
+                    * (s13[i] - v[i + 1] * (s3 * (s6[i] + s6[i + 1]) + s10[i + 1])
+                        + s12[i + 1] - s11[i + 1]);
             }
-            let mut s16 = [real(0.0); 8];
-            for i in 0..8 {
-                s16[i] = v[i + 1]
-                    * (s14[i] - v[i + 1] * (s3 * (s6[i] + s6[i + 1]) + s10[i + 1])
-                        + s11[i + 1] - s13[i]);
+            let mut s16 = [real(0.0); 10];
+            for i in 0..10 {
+                s16[i] = v[i] * s4[i].0;
             }
             let s17 = (0..8)
-                .fold((s5[0] + self.k * s7[0] - s8[0]) * a[0], |sum, i| sum + s15[i])
+                .fold((s5[0] + self.k * s7[0] - s8[0]) * a[0], |sum, i| sum + s14[i])
                 - a[9] * (self.k * s7[8] + s8[9])
                 + sin1 * (1..10).fold(s4[0].1, |sum, i| sum + s4[i].1)
                     * real(0.3333333333333333)
-                - v[0]
-                    * (s11[0] - v[0] * (s9[0] * real(3.0) + s10[0])
-                        - s4[0].0 * cos1 * real(0.3333333333333333));
+                - v[0] * (s12[0] - v[0] * (s9[0] * real(3.0) + s10[0]) - s11[0]);
             ::core::result::Result::Ok(
-                (0..8).fold(s17, |sum, i| sum - s16[i])
-                    - v[9] * (s14[8] - v[9] * (s9[8] * real(3.0) + s10[9]) - s13[8])
-                    + (1..10).fold(s12[0], |sum, i| sum + s12[i]) * cos1
+                (0..8).fold(s17, |sum, i| sum - s15[i])
+                    - v[9] * (s13[8] - v[9] * (s9[8] * real(3.0) + s10[9]) - s11[9])
+                    + (1..10).fold(s16[0], |sum, i| sum + s16[i]) * cos1
                         * real(0.3333333333333333),
             )
+        }
+
+        /// The v with `∂L/∂v = p`, and
+        ///
+        /// `dp_q[0]/dt = k*cos(q[0]) + k*(q[1] - q[0])^3 - (sin(t)/3 + 1)*sin(q[0])`
+        ///
+        /// `dp_q[1]/dt = k*cos(q[1]) - k*(4*(q[1] - q[0])^3 - 4*(q[2] - q[1])^3)/4 - (sin(t)/3 + 1)*sin(q[1])`
+        ///
+        /// `dp_q[2]/dt = k*cos(q[2]) - k*(4*(q[2] - q[1])^3 - 4*(q[3] - q[2])^3)/4 - (sin(t)/3 + 1)*sin(q[2])`
+        ///
+        /// `dp_q[3]/dt = k*cos(q[3]) - k*(4*(q[3] - q[2])^3 - 4*(q[4] - q[3])^3)/4 - (sin(t)/3 + 1)*sin(q[3])`
+        ///
+        /// `dp_q[4]/dt = k*cos(q[4]) - k*(4*(q[4] - q[3])^3 - 4*(q[5] - q[4])^3)/4 - (sin(t)/3 + 1)*sin(q[4])`
+        ///
+        /// `dp_q[5]/dt = k*cos(q[5]) - k*(4*(q[5] - q[4])^3 - 4*(q[6] - q[5])^3)/4 - (sin(t)/3 + 1)*sin(q[5])`
+        ///
+        /// `dp_q[6]/dt = k*cos(q[6]) - k*(4*(q[6] - q[5])^3 - 4*(q[7] - q[6])^3)/4 - (sin(t)/3 + 1)*sin(q[6])`
+        ///
+        /// `dp_q[7]/dt = k*cos(q[7]) - k*(4*(q[7] - q[6])^3 - 4*(q[8] - q[7])^3)/4 - (sin(t)/3 + 1)*sin(q[7])`
+        ///
+        /// `dp_q[8]/dt = k*cos(q[8]) - k*(4*(q[8] - q[7])^3 - 4*(q[9] - q[8])^3)/4 - (sin(t)/3 + 1)*sin(q[8])`
+        ///
+        /// `dp_q[9]/dt = -k*(q[9] - q[8])^3 - (sin(t)/3 + 1)*sin(q[9])`
+        ///
+        /// `dE/dt = k*dot(q[0])*cos(q[0]) - (cos(q[0]) + cos(q[1]) + cos(q[2]) + cos(q[3]) + cos(q[4]) + cos(q[5]) + cos(q[6]) + cos(q[7]) + cos(q[8]) + cos(q[9]))*cos(t)/3 + k*dot(q[1])*cos(q[1]) + k*dot(q[2])*cos(q[2]) + k*dot(q[3])*cos(q[3]) + k*dot(q[4])*cos(q[4]) + k*dot(q[5])*cos(q[5]) + k*dot(q[6])*cos(q[6]) + k*dot(q[7])*cos(q[7]) + k*dot(q[8])*cos(q[8])`
+        ///
+        /// 146 operations.
+        #[inline]
+        fn flow(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 10>,
+            p: &::vi_core::SVector<T, 10>,
+        ) -> ::core::result::Result<::vi_core::Flow<10, T>, ::vi_core::StepError> {
+            let mass: ::vi_core::linear::Banded<10, 1, T> = {
+                let real = T::real;
+                ::vi_core::linear::Banded {
+                    rows: [
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                    ],
+                }
+            };
+            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let velocity = ::vi_core::support::velocity_by_mass(
+                t,
+                &mass,
+                &(p - at_rest),
+            )?;
+            let (force, power) = {
+                let v = &velocity;
+                let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot,
+                q_7_dot, q_8_dot, _]: [T; 10] = (*v).into();
+                let [q_0, q_1, q_2, q_3, q_4, q_5, q_6, q_7, q_8, q_9]: [T; 10] = (*q)
+                    .into();
+                let real = T::real;
+                let s1 = q_1 - q_0;
+                let s2 = q_2 - q_1;
+                let s3 = q_3 - q_2;
+                let s4 = q_4 - q_3;
+                let s5 = q_5 - q_4;
+                let s6 = q_6 - q_5;
+                let s7 = q_7 - q_6;
+                let s8 = q_8 - q_7;
+                let s9 = q_9 - q_8;
+                let [(sin10, cos10), (sin11, cos11), (sin12, cos12), (sin13, cos13)] = T::sin_cos_each([
+                    t,
+                    q_0,
+                    q_1,
+                    q_2,
+                ]);
+                let s14 = sin10 * real(0.3333333333333333) + real(1.0);
+                let [(sin15, cos15), (sin16, cos16), (sin17, cos17), (sin18, cos18)] = T::sin_cos_each([
+                    q_3,
+                    q_4,
+                    q_5,
+                    q_6,
+                ]);
+                let [(sin19, cos19), (sin20, cos20), (sin21, cos21)] = T::sin_cos_each([
+                    q_7,
+                    q_8,
+                    q_9,
+                ]);
+                let s22 = s1 * s1 * s1;
+                let s23 = s2 * s2 * s2;
+                let s24 = s3 * s3 * s3;
+                let s25 = s4 * s4 * s4;
+                let s26 = s5 * s5 * s5;
+                let s27 = s6 * s6 * s6;
+                let s28 = s7 * s7 * s7;
+                let s29 = s8 * s8 * s8;
+                let s30 = s9 * s9 * s9;
+                let s31 = (cos11 + cos12 + cos13 + cos15 + cos16 + cos17 + cos18 + cos19
+                    + cos20 + cos21) * cos10 * real(0.3333333333333333);
+                let s32 = self.k * q_0_dot * cos11 + self.k * q_1_dot * cos12
+                    + self.k * q_2_dot * cos13 + self.k * q_3_dot * cos15;
+                let s33 = s32 + self.k * q_4_dot * cos16 + self.k * q_5_dot * cos17
+                    + self.k * q_6_dot * cos18 + self.k * q_7_dot * cos19;
+                (
+                    ::vi_core::SVector::from([
+                        self.k * cos11 + self.k * s22 - s14 * sin11,
+                        self.k * cos12 - self.k * (s22 - s23) - s14 * sin12,
+                        self.k * cos13 - self.k * (s23 - s24) - s14 * sin13,
+                        self.k * cos15 - self.k * (s24 - s25) - s14 * sin15,
+                        self.k * cos16 - self.k * (s25 - s26) - s14 * sin16,
+                        self.k * cos17 - self.k * (s26 - s27) - s14 * sin17,
+                        self.k * cos18 - self.k * (s27 - s28) - s14 * sin18,
+                        self.k * cos19 - self.k * (s28 - s29) - s14 * sin19,
+                        self.k * cos20 - self.k * (s29 - s30) - s14 * sin20,
+                        -(self.k * s30 + s14 * sin21),
+                    ]),
+                    s33 + self.k * q_8_dot * cos20 - s31,
+                )
+            };
+            ::core::result::Result::Ok(::vi_core::Flow {
+                velocity,
+                force,
+                power,
+            })
         }
 
         /// The first of what L and f are made of that is not finite here.

@@ -46,6 +46,8 @@ const _: () = {
     use ::core::convert::{identity as values, identity as s9, identity as s10};
     use ::core::convert::{identity as s11, identity as s12, identity as s13};
     use ::core::convert::{identity as s14, identity as s15, identity as s16};
+    use ::core::convert::{identity as p, identity as s2, identity as at_rest};
+    use ::core::convert::{identity as velocity, identity as force, identity as power};
     use ::core::convert::{identity as value, identity as text, identity as interval};
     use ::core::convert::{identity as t0, identity as t1, identity as h};
     use ::core::convert::{identity as q_0_0, identity as q_1_0, identity as q_0_1};
@@ -61,22 +63,22 @@ const _: () = {
 
     use ::core::convert::{identity as p0_q_1_low, identity as s17, identity as s18};
     use ::core::convert::{identity as s19, identity as s20, identity as s21};
-    use ::core::convert::{identity as s22, identity as s23, identity as s2};
-    use ::core::convert::{identity as sin5, identity as s24, identity as s25};
-    use ::core::convert::{identity as s26, identity as s27, identity as cos5};
-    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s28};
-    use ::core::convert::{identity as s29, identity as s30, identity as s31};
-    use ::core::convert::{identity as s32, identity as s33, identity as s34};
-    use ::core::convert::{identity as s35, identity as s36, identity as s37};
-    use ::core::convert::{identity as s38, identity as s39, identity as s40};
-    use ::core::convert::{identity as s41, identity as s42, identity as s43};
-    use ::core::convert::{identity as s44, identity as s45, identity as s46};
-    use ::core::convert::{identity as s47, identity as s48, identity as s49};
-    use ::core::convert::{identity as s50, identity as s51, identity as s52};
-    use ::core::convert::{identity as s53, identity as s54, identity as s55};
-    use ::core::convert::{identity as s3, identity as sin6, identity as cos6};
-    use ::core::convert::{identity as sin7, identity as cos7, identity as sin8};
-    use ::core::convert::{identity as cos8, identity as systems, identity as rows};
+    use ::core::convert::{identity as s22, identity as s23, identity as sin5};
+    use ::core::convert::{identity as s24, identity as s25, identity as s26};
+    use ::core::convert::{identity as s27, identity as cos5, identity as energy0};
+    use ::core::convert::{identity as energy0_low, identity as s28, identity as s29};
+    use ::core::convert::{identity as s30, identity as s31, identity as s32};
+    use ::core::convert::{identity as s33, identity as s34, identity as s35};
+    use ::core::convert::{identity as s36, identity as s37, identity as s38};
+    use ::core::convert::{identity as s39, identity as s40, identity as s41};
+    use ::core::convert::{identity as s42, identity as s43, identity as s44};
+    use ::core::convert::{identity as s45, identity as s46, identity as s47};
+    use ::core::convert::{identity as s48, identity as s49, identity as s50};
+    use ::core::convert::{identity as s51, identity as s52, identity as s53};
+    use ::core::convert::{identity as s54, identity as s55, identity as s3};
+    use ::core::convert::{identity as sin6, identity as cos6, identity as sin7};
+    use ::core::convert::{identity as cos7, identity as sin8, identity as cos8};
+    use ::core::convert::{identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Pendula<f64> {
@@ -230,7 +232,7 @@ const _: () = {
             ::vi_core::support::acceleration(time, &mass, &applied)
         }
 
-        /// `D = (-b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-k - dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - (sin(t)/3 + 1)*cos(q[0])) - sin(q[0])*cos(t)/3 - dot(q[1])*sin(q[0] - q[1])*dot(dot(q[0]))/4 + dot(q[1])*(k + dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4) - dot(q[0])*sin(q[0] - q[1])*dot(dot(q[1]))/4) + …`
+        /// `D = (-b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0]))*dot(dot(q[0])) - dot(q[0])*(dot(q[0])*(-k - dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4 - (sin(t)/3 + 1)*cos(q[0])) - cos(t)*sin(q[0])/3 - dot(q[1])*sin(q[0] - q[1])*dot(dot(q[0]))/4 + dot(q[1])*(k + dot(q[0])*dot(q[1])*cos(q[0] - q[1])/4) - dot(q[0])*sin(q[0] - q[1])*dot(dot(q[1]))/4) + …`
         ///
         /// 78 operations.
         #[inline]
@@ -269,7 +271,7 @@ const _: () = {
                 let s6 = system.k * (q_0 - q_1);
                 let s7 = sin3 * real(0.3333333333333333) + real(1.0);
                 let s8 = (-((system.b + s5 * real(0.25)) * q_0_dot) - (s6 + s7 * sin1))
-                    * q_0_ddot + q_0_dot * sin1 * cos3 * real(0.3333333333333333);
+                    * q_0_ddot + q_0_dot * cos3 * sin1 * real(0.3333333333333333);
                 let s9 = q_0_dot * s4;
                 let s10 = s8
                     + q_1_ddot
@@ -314,7 +316,7 @@ const _: () = {
                 let s13 = s9 * q_1_ddot * real(0.25);
                 let s14 = q_0_dot
                     * (q_1_dot * s11 - q_0_dot * (s11 + s7 * cos1)
-                        - sin1 * cos3 * real(0.3333333333333333) - s12 - s13);
+                        - cos3 * sin1 * real(0.3333333333333333) - s12 - s13);
                 let s15 = q_1_dot
                     * (s12 + s13 + q_0_dot * s11 - q_1_dot * (s11 + s7 * cos2)
                         - cos3 * sin2 * real(0.3333333333333333));
@@ -328,6 +330,65 @@ const _: () = {
             step_density_part_1(system, &inputs, &mut values);
             step_density_part_2(system, &inputs, &mut values);
             ::core::result::Result::Ok(values[0])
+        }
+
+        /// The v with `∂L/∂v = p`, and
+        ///
+        /// `dp_q[0]/dt = -b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0])`
+        ///
+        /// `dp_q[1]/dt = dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - b*dot(q[1]) + k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[1])`
+        ///
+        /// `dE/dt = -(cos(q[0]) + cos(q[1]))*cos(t)/3 - b*dot(q[0])^2 - b*dot(q[1])^2`
+        ///
+        /// 38 operations.
+        #[inline]
+        fn flow(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            p: &::vi_core::SVector<T, 2>,
+        ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
+            let mass: ::vi_core::SMatrix<T, 2, 2> = {
+                let [q_0, q_1]: [T; 2] = (*q).into();
+                let real = T::real;
+                let s1 = self.m * real(2.0);
+                let s2 = (q_0 - q_1).cos() * real(0.25);
+                ::vi_core::SMatrix::from_row_slice(&[s1, s2, s2, s1])
+            };
+            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let velocity = ::vi_core::support::velocity_by_mass(
+                t,
+                &mass,
+                &(p - at_rest),
+            )?;
+            let (force, power) = {
+                let v = &velocity;
+                let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+                let [q_0, q_1]: [T; 2] = (*q).into();
+                let real = T::real;
+                let [(sin1, cos1), (sin2, cos2), (sin3, cos3)] = T::sin_cos_each([
+                    t,
+                    q_0,
+                    q_1,
+                ]);
+                let s4 = sin1 * real(0.3333333333333333) + real(1.0);
+                let s5 = sin2 * cos3 - cos2 * sin3;
+                let s6 = self.k * (q_0 - q_1);
+                (
+                    ::vi_core::SVector::from([
+                        -((self.b + q_1_dot * s5 * real(0.25)) * q_0_dot)
+                            - (s6 + s4 * sin2),
+                        s6 - s4 * sin3 + (q_0_dot * s5 * real(0.25) - self.b) * q_1_dot,
+                    ]),
+                    -((cos2 + cos3) * cos1 * real(0.3333333333333333)
+                        + self.b * (q_0_dot * q_0_dot) + self.b * (q_1_dot * q_1_dot)),
+                )
+            };
+            ::core::result::Result::Ok(::vi_core::Flow {
+                velocity,
+                force,
+                power,
+            })
         }
 
         /// The first of what L and f are made of that is not finite here.

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! momentum p = L_v          energy = v·L_v − L          mass M = L_vv
-//! M a = L_q + f − L_vt − L_vq v
+//! M a = L_q + f − L_vt − L_vq v        dp/dt = L_q + f        dE/dt = −L_t + f·v
 //! D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
 //! ```
 
@@ -28,6 +28,12 @@ pub struct Continuous {
     pub mass: Vec<Vec<Expr>>,
     /// M a.
     pub mass_times_acceleration: Vec<Expr>,
+    /// L_q + f.
+    pub applied_force: Vec<Expr>,
+    /// dE/dt = −L_t + f·v.
+    pub power: Expr,
+    /// L is quadratic in the velocities, p = M v + p(v = 0).
+    pub quadratic: bool,
     /// D.
     pub step_density: Expr,
     /// What can lose its value first: variables and parameters, calls, roots and quotients, then L and f; parts before
@@ -49,6 +55,9 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let mut mass = Vec::with_capacity(dimension);
     let mut mass_times_acceleration = Vec::with_capacity(dimension);
     let mut density = Vec::new();
+    let mut applied_force = Vec::with_capacity(dimension);
+    let lt = fields.lagrangian(pool, &[Variable::Time]);
+    let mut power = vec![pool.neg(lt)];
     for i in 0..dimension {
         bounded(pool)?;
         // Most second derivatives of a long chain are zero, and not looked for.
@@ -61,6 +70,9 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         let (lq, lvt) =
             (fields.lagrangian(pool, &[coordinate(i)]), fields.lagrangian(pool, &[velocity(i), Variable::Time]));
         let applied = pool.add(lq, model.forces[i]);
+        applied_force.push(applied);
+        let v = moving(pool, i);
+        power.push(pool.mul(model.forces[i], v));
         let mut inertial = vec![lvt];
         let mut along = vec![fields.lagrangian(pool, &[coordinate(i), Variable::Time])];
         let by_coordinate = fields.variables(pool, coordinate(i));
@@ -94,12 +106,16 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let ltt = fields.lagrangian(pool, &[Variable::Time, Variable::Time]);
     density.push(pool.neg(ltt));
     let (forced_time, autonomous) = dependence(pool, model);
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     Ok(Continuous {
         lagrangian: model.lagrangian,
         energy: energy(pool, model.lagrangian, dimension),
         cyclic: cyclic(pool, model),
         watched: watched(pool, model),
         force: model.forces.clone(),
+        quadratic: !mass.iter().flatten().any(|entry| pool.depends_on(*entry, &moves)),
+        applied_force,
+        power: pool.sum(&power),
         momentum,
         mass,
         mass_times_acceleration,

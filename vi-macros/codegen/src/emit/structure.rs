@@ -197,6 +197,7 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
     let vector = quote!(::vi_core::SVector<T, #n>);
     let or_error = |what: TokenStream| quote!(::core::result::Result<#what, ::vi_core::StepError>);
     let (or_vector, or_number) = (or_error(vector.clone()), or_error(quote!(T)));
+    let or_flow = or_error(quote!(::vi_core::Flow<#n, T>));
     quote! {
         impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
             const NAME: &'static str = "";
@@ -210,6 +211,7 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn force(#at) -> #vector #none
             fn acceleration(#at) -> #or_vector #none
             fn step_density(#at) -> #or_number #none
+            fn flow(#at) -> #or_flow #none
         }
         impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#n, T> for #name<T> {
             fn ld(#over) -> T #none

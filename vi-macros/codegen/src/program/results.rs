@@ -18,6 +18,10 @@ pub enum FunctionId {
     Acceleration,
     /// D.
     StepDensity,
+    /// M.
+    Mass,
+    /// L_q + f and dE/dt.
+    Flow,
     /// What L and f are made of.
     NonFinite,
     /// L_d.
@@ -61,6 +65,8 @@ impl FunctionId {
             Self::Force => "force",
             Self::Acceleration => "acceleration",
             Self::StepDensity => "step_density",
+            Self::Mass => "mass",
+            Self::Flow => "flow",
             Self::NonFinite => "non_finite",
             Self::Ld => "ld",
             Self::D1Ld => "d1_ld",
@@ -89,6 +95,10 @@ pub enum Output {
     Mass,
     /// M a, for the acceleration a.
     MassTimesAcceleration,
+    /// L_q + f.
+    AppliedForce,
+    /// dE/dt.
+    Power,
     /// r, the momentum row.
     Residual,
     /// A = ∂r/∂v.

@@ -1,4 +1,4 @@
-//! Newton's iteration on the n + 1 equations.
+//! The n + 1 equations for Newton's iteration.
 //!
 //! In: a trial `(v, h)` and the range that h must keep to. Out: the root with momentum and energy equation at the rounding
 //! floor. With `a = A⁻¹ r`, `b = A⁻¹ ∂r/∂h` the combined and scaled rows of [`ExtendedSystem`] leave one equation for
@@ -12,31 +12,22 @@
 //! and S is the step density besides. The term `½ a·r` is not Newton's: it is `½ δv·A δv`, by which the energy is curved along v
 //! (to leading order in h, and all of it where the mass is constant). Without it that is what δh is off by after a step.
 
+use crate::error::Residuals;
 use crate::linear::{self, Matrix};
-use crate::momentum;
+use crate::newton::{self, Equations, roundings, worst};
 use crate::node::Node;
-use crate::predictor::length_squared;
 use crate::real::Scalar;
-use crate::stepping::{EnergyStepping, ExtendedSystem};
+use crate::stepping::{EnergyStepping, ExtendedResidual, ExtendedSystem, Rounding};
+use crate::vector::{VelocityStep, worse};
 use core::cmp::Ordering;
 use nalgebra::{SMatrix, SVector};
 
-const ITERATIONS: u32 = 20;
 /// Roundings of its terms below which S counts as zero.
 const VANISHING: f64 = 64.0;
-/// Part of v and h that a short Newton step is at most.
-const SHORT: f64 = 1e-6;
-
-/// A velocity and a step length to try.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Trial<const N: usize, T> {
-    pub(super) v: SVector<T, N>,
-    pub(super) h: T,
-}
 
 /// A step that solves the equations.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Root<const N: usize, T> {
+pub(super) struct EnergyStep<const N: usize, T> {
     pub(super) v: SVector<T, N>,
     pub(super) h: T,
     pub(super) density: T,
@@ -44,13 +35,13 @@ pub(super) struct Root<const N: usize, T> {
     pub(super) residual: f64,
 }
 
-/// Why there is no root here.
+/// Why there is no step here.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Failure<T> {
+pub(super) enum NoStep<T> {
     /// The equations hold, and would for other lengths too.
     Degenerate { h: T, density: T },
-    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor.
-    NoRoot,
+    /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor: its last residuals.
+    NoRoot(Residuals),
 }
 
 /// The momentum rows eliminated from the energy row; everything times the determinant of A where that is solved by one
@@ -104,9 +95,13 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         Self { residual, residual_dh, schur, schur_magnitude, determinant, reciprocal: determinant.recip() }
     }
 
-    /// The trial that follows, `(δv, δh)` taken.
+    /// The change `(δv, δh)` that follows from the trial.
     #[inline]
-    pub(super) fn step(&self, equations: &ExtendedSystem<N, T, impl Matrix<N, T>>, trial: &Trial<N, T>) -> Step<N, T> {
+    pub(super) fn change(
+        &self,
+        equations: &ExtendedSystem<N, T, impl Matrix<N, T>>,
+        trial: &VelocityStep<N, T>,
+    ) -> VelocityStep<N, T> {
         let mut known = T::zero();
         for i in 0..N {
             known +=
@@ -115,7 +110,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
         // The bent row over h, and S, both times h: one quotient, where two would wait for each other.
         let energy = equations.energy_residual * self.determinant - known;
         let dh = -(energy / (self.schur * trial.h));
-        Step { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
+        VelocityStep { v: -(self.residual + self.residual_dh * dh) * self.reciprocal, h: dh }
     }
 
     /// −4 S, the step density D of the interval.
@@ -139,80 +134,79 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     }
 }
 
-/// A Newton step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Step<const N: usize, T> {
-    /// δv.
-    pub(super) v: SVector<T, N>,
-    /// δh.
-    pub(super) h: T,
+/// Both equations of a step whose length lies in a range.
+struct Extended<'a, const N: usize, T, S> {
+    system: &'a S,
+    node: &'a Node<N, T>,
+    range: (T, T),
 }
 
-impl<const N: usize, T: Scalar> Step<N, T> {
-    /// Whether it changes the trial that it leads to by less than a millionth.
-    #[inline(always)]
-    pub(super) fn is_short(&self, trial: &Trial<N, T>) -> bool {
-        let part = T::real(SHORT);
-        let (step, whole) = (length_squared(&self.v), length_squared(&trial.v));
-        self.h.abs() <= trial.h.abs() * part && step <= whole * (part * part)
+/// The equations at a trial, with what their rounding is measured in.
+struct Evaluated<const N: usize, T, J> {
+    trial: VelocityStep<N, T>,
+    system: ExtendedSystem<N, T, J>,
+    measured: ExtendedResidual<N, T>,
+    scale: Rounding<N, T>,
+}
+
+impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extended<'_, N, T, S> {
+    type Unknowns = VelocityStep<N, T>;
+    type Evaluation = Evaluated<N, T, S::Jacobian>;
+
+    fn at(&self, trial: &VelocityStep<N, T>) -> Self::Evaluation {
+        let (node, VelocityStep { v, h }) = (self.node, trial);
+        Evaluated {
+            trial: *trial,
+            system: self.system.extended_system(node, *h, v),
+            measured: self.system.extended_residual(node, *h, v),
+            scale: self.system.extended_rounding(node, *h, v),
+        }
+    }
+
+    fn roundings(&self, of: &Self::Evaluation, scales: &Self::Evaluation) -> [f64; 2] {
+        let momentum = worst(&of.measured.residual, &scales.scale.residual);
+        [momentum, roundings(of.measured.energy_residual, scales.scale.energy_residual)]
+    }
+
+    fn correction(
+        &self,
+        jacobian: &Self::Evaluation,
+        residual: &Self::Evaluation,
+    ) -> Result<VelocityStep<N, T>, newton::Failure> {
+        let mut system = jacobian.system;
+        system.momentum.residual = residual.system.momentum.residual;
+        system.energy_residual = residual.system.energy_residual;
+        let elimination = Elimination::finite(&system).ok_or(newton::Failure::Singular)?;
+        let change = elimination.change(&system, &jacobian.trial);
+        // A Newton step is taken off.
+        Ok(VelocityStep { v: -change.v, h: -change.h })
+    }
+
+    fn admits(&self, trial: &VelocityStep<N, T>) -> bool {
+        let (shortest, longest) = self.range;
+        trial.h >= shortest && trial.h <= longest
     }
 }
 
-/// The root that Newton's iteration reaches from `trial` with h inside `range`; `observe` is told the larger residual of
-/// the rows before each iteration, in roundings.
+/// The step that Newton's iteration reaches from `trial` with h inside `range`.
 pub(super) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
-    mut trial: Trial<N, T>,
-    (shortest, longest): (T, T),
-    observe: &mut dyn FnMut(f64),
-) -> Result<Root<N, T>, Failure<T>> {
-    let mut before = Rows { momentum: f64::INFINITY, energy: f64::INFINITY };
-    for iterations in 0..=ITERATIONS {
-        let equations = system.extended_system(node, trial.h, &trial.v);
-        let elimination = Elimination::finite(&equations).ok_or(Failure::NoRoot)?;
-        let rows = Rows::of(system, node, &trial);
-        observe(momentum::worse(rows.momentum, rows.energy));
-        let density = elimination.density().ok_or(Failure::NoRoot)?;
-        if rows.are_at_floor(&before) {
-            let (Trial { v, h }, residual) = (trial, momentum::worse(rows.momentum, rows.energy));
-            let root = Root { v, h, density, iterations, residual };
-            return if elimination.is_degenerate() { Err(Failure::Degenerate { h, density }) } else { Ok(root) };
-        }
-        let step = elimination.step(&equations, &trial);
-        trial = Trial { v: trial.v + step.v, h: trial.h + step.h };
-        if !(trial.h >= shortest && trial.h <= longest) {
-            return Err(Failure::NoRoot);
-        }
-        before = rows;
+    trial: VelocityStep<N, T>,
+    range: (T, T),
+) -> Result<EnergyStep<N, T>, NoStep<T>> {
+    let root = newton::solve(&Extended { system, node, range }, trial).map_err(|failure| match failure {
+        newton::Failure::Stalled { residuals, .. } => NoStep::NoRoot(residuals),
+        _ => NoStep::NoRoot(Residuals::new()),
+    })?;
+    let VelocityStep { v, h } = root.u;
+    let no_root = NoStep::NoRoot(root.residuals);
+    let elimination = Elimination::finite(&root.at.system).ok_or(no_root)?;
+    let density = elimination.density().ok_or(no_root)?;
+    if elimination.is_degenerate() {
+        return Err(NoStep::Degenerate { h, density });
     }
-    Err(Failure::NoRoot)
-}
-
-/// The residuals of the rows, in roundings.
-#[derive(Clone, Copy, Debug)]
-struct Rows {
-    momentum: f64,
-    energy: f64,
-}
-
-impl Rows {
-    fn of<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
-        system: &S,
-        node: &Node<N, T>,
-        trial: &Trial<N, T>,
-    ) -> Self {
-        let (at, rounding) =
-            (system.extended_residual(node, trial.h, &trial.v), system.extended_rounding(node, trial.h, &trial.v));
-        Self {
-            momentum: momentum::worst(&at.residual, &rounding.residual),
-            energy: momentum::roundings(at.energy_residual, rounding.energy_residual),
-        }
-    }
-
-    /// Each row for itself: the rounding of one must not hide that the other still gains.
-    #[inline]
-    fn are_at_floor(&self, before: &Self) -> bool {
-        momentum::is_at_floor(self.momentum, before.momentum) && momentum::is_at_floor(self.energy, before.energy)
-    }
+    let momentum = worst(&root.at.measured.residual, &root.at.scale.residual);
+    let energy = roundings(root.at.measured.energy_residual, root.at.scale.energy_residual);
+    Ok(EnergyStep { v, h, density, iterations: root.iterations, residual: worse(momentum, energy) })
 }

@@ -1,0 +1,213 @@
+//! Newton's iteration to the rounding floor.
+//!
+//! In: equations `r(u) = 0` with their Jacobian J, and a guess of u. Out: the root, with every residual at the floor: at most one
+//! rounding, or no longer lessened by a Newton step and within [`FLOOR`] of them. A rounding is what evaluating the row loses at most,
+//! by running error analysis, with u the numbers nearest to the root.
+//!
+//! ```text
+//! u ← u − J⁻¹ r(u)        halved while that does not lessen the residuals, or leaves the domain
+//! ```
+//!
+//! An absolute tolerance is used nowhere. AFTER IT J at the root has an inverse.
+
+use crate::error::{Residuals, StepError};
+use crate::real::{Real, Scalar};
+use crate::vector::{Vector, worse};
+use nalgebra::SVector;
+
+/// Residual, in roundings, below which an iteration that no longer gains is at the floor.
+pub(crate) const FLOOR: f64 = 4.0;
+const ITERATIONS: u32 = 40;
+const HALVINGS: u32 = 12;
+
+/// Equations in unknowns U.
+pub(crate) trait Equations<T: Real> {
+    /// The unknowns, and changes of them.
+    type Unknowns: Vector<T>;
+    /// Residuals, Jacobian and rounding scales at some u.
+    type Evaluation;
+
+    /// The equations at u.
+    fn at(&self, u: &Self::Unknowns) -> Self::Evaluation;
+    /// The largest residual of each of two groups of rows, in roundings by the scales of `scales`: groups that are solved each to its
+    /// own floor. Not a number where one is not finite.
+    fn roundings(&self, of: &Self::Evaluation, scales: &Self::Evaluation) -> [f64; 2];
+    /// `J⁻¹ r`, J at one u and r at another.
+    ///
+    /// # Errors
+    /// [`Failure::Singular`] or [`Failure::NonFinite`] where there is none.
+    fn correction(&self, jacobian: &Self::Evaluation, residual: &Self::Evaluation) -> Result<Self::Unknowns, Failure>;
+    /// The same with pivoting, where [`Equations::correction`] does without.
+    fn pivoted(&self, _: &Self::Evaluation) -> Option<Self::Unknowns> {
+        None
+    }
+    /// Whether u may be tried.
+    fn admits(&self, _: &Self::Unknowns) -> bool {
+        true
+    }
+}
+
+/// A root.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Root<U, E> {
+    pub(crate) u: U,
+    /// The equations there.
+    pub(crate) at: E,
+    pub(crate) iterations: u32,
+    /// Iterations from a residual above the floor.
+    pub(crate) above_floor: u32,
+    pub(crate) residuals: Residuals,
+}
+
+/// Why no root was found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Failure {
+    Singular,
+    NonFinite,
+    Stalled { iterations: u32, residual: f64, residuals: Residuals },
+}
+
+impl Failure {
+    /// The error that this is, for the step h from time t.
+    pub(crate) fn at(self, t: f64, h: f64, matrix: &'static str) -> StepError {
+        match self {
+            Self::Singular => StepError::Singular { t, matrix },
+            Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation", expression: None },
+            Self::Stalled { iterations, residual, residuals } => {
+                StepError::NotConverged { t, h, iterations, residual, residuals }
+            }
+        }
+    }
+}
+
+/// The root of `equations` from a guess.
+pub(crate) fn solve<T: Real, E: Equations<T>>(
+    equations: &E,
+    guess: E::Unknowns,
+) -> Result<Root<E::Unknowns, E::Evaluation>, Failure> {
+    let mut u = guess;
+    let mut at = equations.at(&u);
+    let (mut iterations, mut above_floor, mut residuals) = (0, 0, Residuals::new());
+    loop {
+        let residual = largest(equations.roundings(&at, &at));
+        residuals.push(residual);
+        above_floor += u32::from(residual > FLOOR);
+        if !residual.is_finite() {
+            return Err(Failure::NonFinite);
+        }
+        let correction = equations.correction(&at, &at)?;
+        let is_spent = iterations == ITERATIONS && residual <= FLOOR;
+        if residual <= 1.0 || is_spent {
+            return Ok(Root { u, at, iterations, above_floor, residuals });
+        }
+        if iterations == ITERATIONS {
+            return Err(Failure::Stalled { iterations, residual, residuals });
+        }
+        iterations += 1;
+        match lessened(equations, &u, &at, correction) {
+            Some(next) => (u, at) = next,
+            None if residual <= FLOOR => return Ok(Root { u, at, iterations, above_floor, residuals }),
+            None => return Err(Failure::Stalled { iterations, residual, residuals }),
+        }
+    }
+}
+
+/// Where a part of the correction leads that lessens the residuals; none where none does.
+fn lessened<T: Real, E: Equations<T>>(
+    equations: &E,
+    u: &E::Unknowns,
+    last: &E::Evaluation,
+    mut correction: E::Unknowns,
+) -> Option<(E::Unknowns, E::Evaluation)> {
+    let before = equations.roundings(last, last);
+    let (mut halvings, mut pivoted) = (0, false);
+    loop {
+        let next = u.zip_map(&correction, |u, correction| u - correction);
+        if equations.admits(&next) {
+            let at = equations.at(&next);
+            // Measured in the scales at u: those far away would make any residual look small. One group at its floor must not hide
+            // that the other still gains: so the sum; and within the floor a half of either.
+            let [momentum, energy] = equations.roundings(&at, last);
+            let is_finite = largest(equations.roundings(&at, &at)).is_finite();
+            let halves_one = momentum < 0.5 * before[0] || energy < 0.5 * before[1];
+            let is_less = momentum + energy < before[0] + before[1];
+            if is_finite && (is_less || halves_one && largest([momentum, energy]) <= FLOOR) {
+                return Some((next, at));
+            }
+            if largest(before) <= FLOOR {
+                return None;
+            }
+            if halvings == 0 && is_finite && contracts(equations, last, &at, &correction) {
+                return Some((next, at));
+            }
+        }
+        if halvings == HALVINGS {
+            return None;
+        }
+        // A pivot may have been lost, before the step is too long.
+        match if pivoted { None } else { equations.pivoted(last) } {
+            Some(other) if other != correction => correction = other,
+            _ => {
+                halvings += 1;
+                correction = correction.map(|entry| entry * T::real(0.5));
+            }
+        }
+        pivoted = true;
+    }
+}
+
+/// Whether the correction that would follow, by the same matrix, is less than half as long: Newton's own measure (Deuflhard,
+/// Newton Methods for Nonlinear Problems, section 3.3). It judges where a row has no terms at u, as at rest at the bottom
+/// of a potential, and so no scale to measure its residual in.
+#[cold]
+fn contracts<T: Real, E: Equations<T>>(
+    equations: &E,
+    last: &E::Evaluation,
+    at: &E::Evaluation,
+    correction: &E::Unknowns,
+) -> bool {
+    let next = equations.correction(last, at);
+    next.is_ok_and(|next| next.longest() < 0.5 * correction.longest())
+}
+
+/// Whether each row leaves at most [`FLOOR`] roundings of its scale, and with what is carried to it `remaining` ones.
+#[inline(always)]
+pub(crate) fn are_at_floor<T: Scalar, const N: usize>(
+    residual: &SVector<T, N>,
+    carried: &SVector<T, N>,
+    scale: &SVector<T, N>,
+    remaining: f64,
+) -> bool {
+    // A mask: a loop over booleans does not become vector instructions.
+    let mut above = 0_u64;
+    for i in 0..N {
+        let bound = scale[i] * T::real(FLOOR * T::EPSILON);
+        let sum = (residual[i] + carried[i]) * T::real(FLOOR / remaining);
+        // A scale that overflows proves nothing.
+        let is_below = residual[i].abs() <= bound && sum.abs() <= bound && bound.is_finite();
+        above |= if is_below { 0 } else { u64::MAX };
+    }
+    above == 0
+}
+
+/// `|residual|` in units of one ulp of `scale`. Not a number where either is not finite.
+#[inline]
+pub(crate) fn roundings<T: Real>(residual: T, scale: T) -> f64 {
+    let (residual, scale) = (residual.to_f64().abs(), scale.to_f64());
+    if residual == 0.0 && scale.is_finite() {
+        return 0.0;
+    }
+    // ∞/∞ is not a number, and x/∞ shall be none either: a scale that overflows proves nothing about x.
+    if scale.is_finite() { residual / scale / T::EPSILON } else { f64::NAN }
+}
+
+/// The largest of two groups.
+fn largest([momentum, energy]: [f64; 2]) -> f64 {
+    worse(momentum, energy)
+}
+
+/// The largest residual in units of one ulp of its scale.
+#[inline]
+pub(crate) fn worst<T: Real, const N: usize>(residual: &SVector<T, N>, scale: &SVector<T, N>) -> f64 {
+    residual.iter().zip(scale.iter()).fold(0.0, |worst, (r, s)| worse(roundings(*r, *s), worst))
+}

@@ -1,0 +1,70 @@
+//! The unknowns of a step as one vector: the velocity v, or (v, h).
+//!
+//! In: numbers by their names. Out: the same numbers entry by entry, for Newton's iteration.
+
+use crate::real::Real;
+use nalgebra::SVector;
+
+/// A vector of numbers T.
+pub(crate) trait Vector<T: Real>: Copy + PartialEq {
+    /// Entry by entry.
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self;
+    /// The largest entry, without its sign; not a number where one is not.
+    fn longest(&self) -> f64;
+    /// Whether every entry is finite.
+    fn is_finite(&self) -> bool {
+        self.longest().is_finite()
+    }
+
+    /// Entry by entry.
+    #[inline(always)]
+    fn map(&self, f: impl Fn(T) -> T) -> Self {
+        self.zip_map(self, |entry, _| f(entry))
+    }
+}
+
+impl<const N: usize, T: Real> Vector<T> for SVector<T, N> {
+    #[inline(always)]
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
+        let mut result = *self;
+        for i in 0..N {
+            result[i] = f(self[i], other[i]);
+        }
+        result
+    }
+
+    fn longest(&self) -> f64 {
+        self.iter().fold(0.0, |longest, entry| worse(entry.to_f64().abs(), longest))
+    }
+}
+
+/// The larger of two numbers; not a number where either is not.
+#[inline]
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if a > b || a.is_nan() { a } else { b }
+}
+
+/// |u|².
+#[inline(always)]
+pub(crate) fn length_squared<const N: usize, T: Real>(u: &SVector<T, N>) -> T {
+    u.iter().fold(T::zero(), |sum, entry| sum + *entry * *entry)
+}
+
+/// A velocity and the length of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VelocityStep<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    pub(crate) h: T,
+}
+
+impl<const N: usize, T: Real> Vector<T> for VelocityStep<N, T> {
+    #[inline(always)]
+    fn zip_map(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
+        let h = f(self.h, other.h);
+        Self { v: Vector::zip_map(&self.v, &other.v, f), h }
+    }
+
+    fn longest(&self) -> f64 {
+        worse(self.h.to_f64().abs(), self.v.longest())
+    }
+}
