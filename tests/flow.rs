@@ -29,14 +29,14 @@ fn flow<const N: usize, S: Lagrangian<N>>(scene: Scene<S, N>) {
         let force = (after.0 - before.0) / (2.0 * TIME);
         let power = (after.1 - before.1) / (2.0 * TIME);
         let differences = [
-            (flow.velocity - v).amax() / v.amax().max(f64::MIN_POSITIVE),
+            (flow.v - v).amax() / v.amax().max(f64::MIN_POSITIVE),
             (flow.force - force).amax() / (force.amax() + state.p.amax()),
             (flow.power - power).abs() / (power.abs() + after.1.abs()),
         ];
         worst = core::array::from_fn(|index| worst[index].max(differences[index]));
         moved = moved.max(flow.force.amax());
-        assert_eq!(state.velocity(system), Ok(flow.velocity), "{}", S::NAME);
-        assert_eq!(state.energy(system), Ok(system.energy(t, &q, &flow.velocity)), "{}", S::NAME);
+        assert_eq!(state.velocity(system), Ok(flow.v), "{}", S::NAME);
+        assert_eq!(state.energy(system), Ok(system.energy(t, &q, &flow.v)), "{}", S::NAME);
     }
     println!("{}: {worst:?}", S::NAME);
     // Measured: 5e-14 at most in the velocity, 2e-6 in the differences.
@@ -65,11 +65,11 @@ fn a_velocity_that_is_not_linear_in_the_momenta_is_found_by_iteration() {
         let found = system.flow(0.5, &[0.3, 0.2].into(), &p).unwrap_or_else(|error| panic!("{size}: {error}"));
         // v = p/√(m² + p²/c²), c = 1.
         let wanted = p / f64::hypot(1.3, size);
-        println!("{size}: {:e}", (found.velocity - wanted).amax());
-        assert!((found.velocity - wanted).amax() <= 4.0 * f64::EPSILON, "{size}: {:?}, {wanted:?}", found.velocity);
-        let force = found.velocity[0] * -0.2 + f64::sin(0.5);
+        println!("{size}: {:e}", (found.v - wanted).amax());
+        assert!((found.v - wanted).amax() <= 4.0 * f64::EPSILON, "{size}: {:?}, {wanted:?}", found.v);
+        let force = found.v[0] * -0.2 + f64::sin(0.5);
         assert!((found.force - SVector::from([-0.7 * 0.3 + force, -0.7 * 0.2])).amax() <= 1e-15);
-        assert!((found.power - force * found.velocity[0]).abs() <= 1e-15);
+        assert!((found.power - force * found.v[0]).abs() <= 1e-15);
     }
 }
 

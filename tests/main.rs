@@ -9,6 +9,7 @@ mod extremes;
 mod failures;
 mod flow;
 mod forms;
+mod gauss;
 mod hunt;
 mod invariants;
 mod iterations;

@@ -195,13 +195,6 @@ const _: () = {
             )
         }
 
-        /// The v with `∂L/∂v = p`, and
-        ///
-        /// `dp_x/dt = -c*dot(x) - k*x`
-        ///
-        /// `dE/dt = -c*dot(x)^2`
-        ///
-        /// 7 operations.
         #[inline]
         fn flow(
             &self,
@@ -209,24 +202,25 @@ const _: () = {
             q: &::vi_core::SVector<T, 1>,
             p: &::vi_core::SVector<T, 1>,
         ) -> ::core::result::Result<::vi_core::Flow<1, T>, ::vi_core::StepError> {
-            let mass: ::vi_core::SMatrix<T, 1, 1> = {
-                ::vi_core::SMatrix::from_row_slice(&[self.m])
-            };
-            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let at_rest = ::vi_core::collocation::Collocation::point(
+                self,
+                t,
+                q,
+                &::vi_core::SVector::zeros(),
+            );
             let velocity = ::vi_core::support::velocity_by_mass(
                 t,
-                &mass,
-                &(p - at_rest),
+                &at_rest.mass,
+                &(p - at_rest.momentum),
             )?;
-            let (force, power) = {
-                let v = &velocity;
-                let [x_dot]: [T; 1] = (*v).into();
-                let [x]: [T; 1] = (*q).into();
-                (
-                    ::vi_core::SVector::from([-(self.c * x_dot + self.k * x)]),
-                    -(self.c * (x_dot * x_dot)),
-                )
-            };
+            let force = ::vi_core::collocation::Collocation::point(self, t, q, &velocity)
+                .force;
+            let power = ::vi_core::collocation::Collocation::power(
+                self,
+                t,
+                q,
+                &velocity,
+            );
             ::core::result::Result::Ok(::vi_core::Flow {
                 velocity,
                 force,
@@ -263,6 +257,47 @@ const _: () = {
                 .into_iter()
                 .find(|(_, value)| !value.is_finite())
                 .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Collocation<1, T> for DampedOscillator<T> {
+        type Mass = ::vi_core::SMatrix<T, 1, 1>;
+        const CONSTANT_MASS: bool = true;
+        const SEPARABLE: bool = false;
+
+        /// L_v, M, and
+        ///
+        /// `L_q + f_x = -c*dot(x) - k*x`
+        ///
+        /// 5 operations.
+        #[inline(always)]
+        fn point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::collocation::Point<1, T, Self::Mass> {
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            ::vi_core::collocation::Point {
+                momentum: ::vi_core::SVector::from([self.m * x_dot]),
+                force: ::vi_core::SVector::from([-(self.c * x_dot + self.k * x)]),
+                mass: ::vi_core::SMatrix::from_row_slice(&[self.m]),
+            }
+        }
+
+        /// `dE/dt = -c*dot(x)^2`
+        ///
+        /// 3 operations.
+        #[inline]
+        fn power(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> T {
+            let [x_dot]: [T; 1] = (*v).into();
+            -(self.c * (x_dot * x_dot))
         }
     }
 

@@ -291,15 +291,6 @@ const _: () = {
             ::core::result::Result::Ok(s15 - s14)
         }
 
-        /// The v with `∂L/∂v = p`, and
-        ///
-        /// `dp_θ1/dt = -m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1)`
-        ///
-        /// `dp_θ2/dt = m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)`
-        ///
-        /// `dE/dt = 0`
-        ///
-        /// 22 operations.
         #[inline]
         fn flow(
             &self,
@@ -307,40 +298,25 @@ const _: () = {
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
         ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
-            let mass: ::vi_core::SMatrix<T, 2, 2> = {
-                let [θ1, θ2]: [T; 2] = (*q).into();
-                let s1 = self.m2 * self.l1 * self.l2 * (θ1 - θ2).cos();
-                ::vi_core::SMatrix::from_row_slice(
-                    &[
-                        self.l1 * self.l1 * (self.m1 + self.m2),
-                        s1,
-                        s1,
-                        self.m2 * (self.l2 * self.l2),
-                    ],
-                )
-            };
-            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let at_rest = ::vi_core::collocation::Collocation::point(
+                self,
+                t,
+                q,
+                &::vi_core::SVector::zeros(),
+            );
             let velocity = ::vi_core::support::velocity_by_mass(
                 t,
-                &mass,
-                &(p - at_rest),
+                &at_rest.mass,
+                &(p - at_rest.momentum),
             )?;
-            let (force, power) = {
-                let v = &velocity;
-                let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
-                let [θ1, θ2]: [T; 2] = (*q).into();
-                let real = T::real;
-                let [(sin1, cos1), (sin2, cos2)] = T::sin_cos_each([θ1, θ2]);
-                let s3 = self.m2 * self.l1 * self.l2 * θ1_dot * θ2_dot
-                    * (sin1 * cos2 - cos1 * sin2);
-                (
-                    ::vi_core::SVector::from([
-                        -(s3 + self.l1 * self.g * (self.m1 + self.m2) * sin1),
-                        s3 - self.m2 * self.l2 * self.g * sin2,
-                    ]),
-                    real(0.0),
-                )
-            };
+            let force = ::vi_core::collocation::Collocation::point(self, t, q, &velocity)
+                .force;
+            let power = ::vi_core::collocation::Collocation::power(
+                self,
+                t,
+                q,
+                &velocity,
+            );
             ::core::result::Result::Ok(::vi_core::Flow {
                 velocity,
                 force,
@@ -390,6 +366,64 @@ const _: () = {
                 .into_iter()
                 .find(|(_, value)| !value.is_finite())
                 .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Collocation<2, T> for DoublePendulum<T> {
+        type Mass = ::vi_core::SMatrix<T, 2, 2>;
+        const CONSTANT_MASS: bool = false;
+        const SEPARABLE: bool = false;
+
+        /// L_v, M, and
+        ///
+        /// `L_q + f_θ1 = -m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - l1*g*(m1 + m2)*sin(θ1)`
+        ///
+        /// `L_q + f_θ2 = m2*l1*l2*dot(θ1)*dot(θ2)*sin(θ1 - θ2) - m2*l2*g*sin(θ2)`
+        ///
+        /// 37 operations.
+        #[inline(always)]
+        fn point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::Point<2, T, Self::Mass> {
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+            let s4 = cos2 * cos3 + sin2 * sin3;
+            let s5 = self.l1 * self.l1 * s1;
+            let s6 = self.m2 * self.l1 * self.l2;
+            let s7 = s6 * s4;
+            let s8 = self.m2 * (self.l2 * self.l2);
+            let s9 = s6 * θ1_dot;
+            let s10 = s9 * θ2_dot * (sin2 * cos3 - cos2 * sin3);
+            ::vi_core::collocation::Point {
+                momentum: ::vi_core::SVector::from([
+                    s5 * θ1_dot + s6 * θ2_dot * s4,
+                    s8 * θ2_dot + s9 * s4,
+                ]),
+                force: ::vi_core::SVector::from([
+                    -(s10 + self.l1 * self.g * s1 * sin2),
+                    s10 - self.m2 * self.l2 * self.g * sin3,
+                ]),
+                mass: ::vi_core::SMatrix::from_row_slice(&[s5, s7, s7, s8]),
+            }
+        }
+
+        /// `dE/dt = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn power(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let real = T::real;
+            real(0.0)
         }
     }
 

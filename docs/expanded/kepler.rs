@@ -224,15 +224,6 @@ const _: () = {
             ::core::result::Result::Ok(-s12)
         }
 
-        /// The v with `∂L/∂v = p`, and
-        ///
-        /// `dp_x/dt = -mu*x/(x^2 + y^2)^(3/2)`
-        ///
-        /// `dp_y/dt = -mu*y/(x^2 + y^2)^(3/2)`
-        ///
-        /// `dE/dt = 0`
-        ///
-        /// 13 operations.
         #[inline]
         fn flow(
             &self,
@@ -240,30 +231,25 @@ const _: () = {
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
         ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
-            let mass: ::vi_core::linear::Banded<2, 1, T> = {
-                let real = T::real;
-                ::vi_core::linear::Banded {
-                    rows: [[real(1.0)], [real(1.0)]],
-                }
-            };
-            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let at_rest = ::vi_core::collocation::Collocation::point(
+                self,
+                t,
+                q,
+                &::vi_core::SVector::zeros(),
+            );
             let velocity = ::vi_core::support::velocity_by_mass(
                 t,
-                &mass,
-                &(p - at_rest),
+                &at_rest.mass,
+                &(p - at_rest.momentum),
             )?;
-            let (force, power) = {
-                let v = &velocity;
-                let [x, y]: [T; 2] = (*q).into();
-                let real = T::real;
-                let s1 = x * x + y * y;
-                let s2 = s1.recip();
-                let s3 = s2 * s2 * s1.sqrt();
-                (
-                    ::vi_core::SVector::from([-(self.mu * x * s3), -(self.mu * y * s3)]),
-                    real(0.0),
-                )
-            };
+            let force = ::vi_core::collocation::Collocation::point(self, t, q, &velocity)
+                .force;
+            let power = ::vi_core::collocation::Collocation::power(
+                self,
+                t,
+                q,
+                &velocity,
+            );
             ::core::result::Result::Ok(::vi_core::Flow {
                 velocity,
                 force,
@@ -302,6 +288,58 @@ const _: () = {
                 .into_iter()
                 .find(|(_, value)| !value.is_finite())
                 .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Collocation<2, T> for Kepler<T> {
+        type Mass = ::vi_core::linear::Banded<2, 1, T>;
+        const CONSTANT_MASS: bool = true;
+        const SEPARABLE: bool = true;
+
+        /// L_v, M, and
+        ///
+        /// `L_q + f_x = -mu*x/(x^2 + y^2)^(3/2)`
+        ///
+        /// `L_q + f_y = -mu*y/(x^2 + y^2)^(3/2)`
+        ///
+        /// 13 operations.
+        #[inline(always)]
+        fn point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::Point<2, T, Self::Mass> {
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x + y * y;
+            let s2 = s1.recip();
+            let s3 = s2 * s2 * s1.sqrt();
+            ::vi_core::collocation::Point {
+                momentum: ::vi_core::SVector::from([x_dot, y_dot]),
+                force: ::vi_core::SVector::from([
+                    -(self.mu * x * s3),
+                    -(self.mu * y * s3),
+                ]),
+                mass: ::vi_core::linear::Banded {
+                    rows: [[real(1.0)], [real(1.0)]],
+                },
+            }
+        }
+
+        /// `dE/dt = 0`
+        ///
+        /// 0 operations.
+        #[inline]
+        fn power(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let real = T::real;
+            real(0.0)
         }
     }
 

@@ -2,6 +2,7 @@
 //! are calls.
 
 use crate::called::Called;
+use crate::collocation::{Collocation, Point};
 use crate::discrete::DiscreteLagrangian;
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian, Parameters};
@@ -67,6 +68,27 @@ macro_rules! lagrangian {
 
             fn non_finite(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Option<&'static str> {
                 S::non_finite(self, t, q, v)
+            }
+        }
+    };
+}
+
+/// The equations of motion of what dereferences to S.
+macro_rules! collocation {
+    ($wrapper:ty $(, $rule:ident)?) => {
+        impl<const N: usize, T: Real, S: Collocation<N, T>$(, $rule: Rule)?> Collocation<N, T> for $wrapper {
+            type Mass = S::Mass;
+            const CONSTANT_MASS: bool = S::CONSTANT_MASS;
+            const SEPARABLE: bool = S::SEPARABLE;
+
+            #[inline(always)]
+            fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
+                S::point(self, t, q, v)
+            }
+
+            #[inline]
+            fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+                S::power(self, t, q, v)
             }
         }
     };
@@ -183,10 +205,12 @@ macro_rules! stepping {
 
 // A system may be lent as well as given.
 lagrangian!(&S);
+collocation!(&S);
 discrete!(&S, R as R, R);
 stepping!(&S, R as R, #[inline(always)], R);
 
 lagrangian!(By<S, R>, R);
+collocation!(By<S, R>, R);
 discrete!(By<S, R>, R as Own, R);
 stepping!(By<S, R>, R as Own, #[inline(always)], R);
 

@@ -59,6 +59,21 @@ pub enum StepError {
         /// The last residuals on the way there.
         residuals: Residuals,
     },
+    /// The stages of a Gauss step did not come to rest, neither by sweeps nor by Newton's iteration.
+    StagesUnsettled {
+        /// Time at which the step begins.
+        t: f64,
+        /// Length of the step.
+        h: f64,
+        /// Iterations spent.
+        iterations: u32,
+        /// The last change of a stage, in roundings of its coordinate.
+        change: f64,
+        /// The last change by the one before.
+        contraction: f64,
+        /// Estimate of h ω, ω the fastest rate of the equations linearized in the middle of the step.
+        stiffness: f64,
+    },
     /// A matrix that has to be inverted is singular.
     Singular {
         /// Time at which it was met.
@@ -135,6 +150,10 @@ impl fmt::Display for Reason<'_> {
                 }
                 write!(f, ": residual {residual:.3e} roundings after {iterations} iterations{residuals}")
             }
+            StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness } => write!(
+                f,
+                "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings after {iterations} iterations, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
+            ),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
@@ -174,6 +193,7 @@ impl fmt::Display for StepError {
                 "; take steps shorter than {:.3e}, or with `EnergyPreserving` go on by `with_fallback(Fallback::FixedSteps)`",
                 h.abs()
             ),
+            Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
             Self::OtherSystem { parameter: None, .. } => f.write_str("; restart the system that it was taken of"),
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
             Self::Singular { .. } | Self::NonFinite { .. } | Self::InvalidInput { .. } => Ok(()),

@@ -60,7 +60,7 @@ pub trait Lagrangian<const N: usize, T: Real = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flow<const N: usize, T = f64> {
     /// `dq/dt = v`, the root of `∂L/∂v(t, q, v) = p`.
-    pub velocity: SVector<T, N>,
+    pub v: SVector<T, N>,
     /// `dp/dt = L_q + f`.
     pub force: SVector<T, N>,
     /// `dE/dt = −L_t + f·v`.

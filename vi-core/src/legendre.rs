@@ -30,7 +30,7 @@ impl<const N: usize, T: Scalar> State<N, T> {
     pub fn velocity<S: Lagrangian<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
         let node = Node::new(*self, T::zero());
         let flow = node.check_finite(T::zero()).and_then(|()| system.flow(self.t, &self.q, &self.p));
-        let velocity = flow.map(|flow| flow.velocity);
+        let velocity = flow.map(|flow| flow.v);
         velocity.map_err(|failure| failure.explained(system, &node, T::zero(), &SVector::zeros()))
     }
 

@@ -19,9 +19,11 @@ macro_rules! assignments {
 }
 pub(crate) use assignments;
 
+mod lane;
 mod rounded;
 pub mod sine;
 
+pub use lane::Lane;
 pub use rounded::Rounded;
 
 use core::fmt::Debug;

@@ -4,6 +4,7 @@
 //! rounding is measured in, and what momentum and energy gain. A rule gives [`FixedStepping`]; one whose steps have a density gives
 //! [`EnergyStepping`] besides.
 
+use crate::collocation::Collocation;
 use crate::discrete::DiscreteLagrangian;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
@@ -61,7 +62,7 @@ pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<
 /// A system that can be evaluated in other kinds of numbers, as every generated one can.
 pub trait Convertible<const N: usize, R = Own> {
     /// The same system in the numbers T.
-    type In<T: Real>: FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R>;
+    type In<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R>;
 
     /// The same system, every parameter rounded to T.
     fn convert<T: Real>(&self) -> Self::In<T>;

@@ -10,11 +10,11 @@
 //! and is taken by a sweep; by another one, where a trajectory was refused. One that is still refused takes that step alone, by the
 //! same equations solved to the rounding floor; where that fails it has ended, and its lane is filled with what no one looks at.
 
-use crate::dispatch::Instructions;
 use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
 use crate::sweep::{Elapsed, Extrapolate, Fixed, Sweep, Verdict};
 use nalgebra::SVector;
+use vi_dispatch::Instructions;
 use vi_core::support::{step_alone, weights as extrapolation};
 use vi_core::{Batch, FixedStep, Node, State, StepError};
 

@@ -3,11 +3,11 @@
 //! In: systems, states, a step h; then how many steps to take. Out: for each trajectory, in the order given, the state
 //! reached or how it [`Ended`]. Groups of 64 trajectories are shared among the threads of rayon's current pool.
 
-use crate::dispatch::Instructions;
 use crate::ended::Ended;
 use crate::group::Group;
 use crate::layout::WIDTH;
 use rayon::prelude::*;
+use vi_dispatch::Instructions;
 use vi_core::support::check_step;
 use vi_core::{Batch, State, StepError};
 

@@ -8,8 +8,8 @@
 //! instruction. Those are fixed steps, each trajectory for itself.
 
 use crate::block::Block;
-use crate::dispatch::Instructions;
 use crate::ended::Ended;
+use vi_dispatch::Instructions;
 use vi_core::{Batch, FixedStep, State};
 
 /// Degrees of freedom up to which trajectories go side by side.

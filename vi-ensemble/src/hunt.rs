@@ -4,8 +4,8 @@
 //! it must be at most four roundings of what the row is a sum of, and of what running error analysis says.
 
 use crate::block::Block;
-use crate::dispatch::Instructions;
 use crate::layout::WIDTH;
+use vi_dispatch::Instructions;
 use vi_core::{Batch, Lagrangian, State, lagrangian};
 use vi_systems::{DoublePendulum, DoubleWell, Kepler, SphericalPendulum};
 
@@ -56,7 +56,7 @@ lagrangian! {
 
 /// Hunts among trajectories from starts between `(q, v)` and their doubles.
 fn hunt<S: Batch<N> + Default, const N: usize>(h: f64, q: [f64; N], v: [f64; N]) {
-    for instructions in [Instructions::Baseline, Instructions::detected()] {
+    for instructions in [Instructions::BASELINE, Instructions::detected()] {
         hunt_by::<S, N>(instructions, h, q, v);
     }
 }

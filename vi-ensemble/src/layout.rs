@@ -3,8 +3,8 @@
 //! In: vectors of N entries, one per trajectory. Out: N rows of [`WIDTH`] numbers each, in which one vector instruction
 //! meets the same coordinate of neighbouring trajectories.
 
-use crate::lane::Lane;
 use nalgebra::SVector;
+use vi_core::real::Lane;
 use vi_core::{Node, Real, State};
 
 /// Trajectories in a block: several vectors, so that one is computed while another waits.

@@ -14,7 +14,6 @@
 //! | `group` | whether trajectories go side by side or one after the other |
 //! | `block` | 64 trajectories side by side, and what becomes of one that the common path refuses |
 //! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
-//! | `dispatch` | copies of a loop for the instruction sets of a processor, chosen at run time |
 //! | `layout` | nodes and velocities of a block, one row per coordinate |
 //! | `lane` | the number that the loops compute with: products are added in one instruction |
 //! | `ended` | how a trajectory ended |
@@ -28,13 +27,11 @@
 //! it need not agree.
 
 mod block;
-mod dispatch;
 mod ended;
 pub mod ensemble;
 mod group;
 #[cfg(test)]
 mod hunt;
-mod lane;
 mod layout;
 mod sweep;
 

@@ -13,11 +13,11 @@
 //! What is left of a row then is carried to the next step. So a row itself is at most ε times this sum and that of the step before;
 //! where the sums shrink, that it is at most [`FLOOR`] ε times its own is asked too.
 
-use crate::dispatch::Loop;
-use crate::lane::Lane;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
+use vi_dispatch::Loop;
 use vi_core::linear::Matrix;
+use vi_core::real::Lane;
 use vi_core::support::two_sum;
 use vi_core::{Batch, FixedStepping, MomentumResidual, Node};
 

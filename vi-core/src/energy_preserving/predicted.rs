@@ -34,7 +34,7 @@ const ENERGY_FLOOR: f64 = 0.5;
 const SHORT: f64 = 1e-6;
 
 /// The predictors of v and of h, and what the last step left. Each has a degree of its own: h follows from a small difference, and its
-/// roundings, which extrapolation enlarges, are larger. Measured in `f32`, with one degree for both: four times the error of the energy.
+/// roundings, which extrapolation enlarges, are larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(

@@ -18,11 +18,13 @@
 mod banded;
 mod blocks;
 mod dense;
+mod pivoted;
 mod symmetric;
 mod tridiagonal;
 
 pub use banded::Banded;
 pub use blocks::Blocks;
+pub(crate) use pivoted::Pivoted;
 pub use symmetric::Symmetric;
 pub use tridiagonal::Tridiagonal;
 

@@ -2,6 +2,7 @@
 //! part of the faults.
 
 use vi_core::linear::Matrix;
+use vi_core::collocation::{Collocation, Point};
 use vi_core::{
     Convertible, DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Increment,
     Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Parameters, Real, Rounding, SMatrix, SVector,
@@ -135,6 +136,19 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
         let right = self.system.step_density(t, q, v)?;
         let right = self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]);
         Ok(self.unless(Fault::Density, right, |density| density * T::real(1.001)))
+    }
+}
+
+impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoiled<S> {
+    type Mass = S::Mass;
+    const CONSTANT_MASS: bool = S::CONSTANT_MASS;
+    const SEPARABLE: bool = S::SEPARABLE;
+
+    fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
+        self.system.point(t, q, v)
+    }
+    fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
+        self.system.power(t, q, v)
     }
 }
 

@@ -216,7 +216,7 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Lagrangian<N, T> for UnitMass<
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
         let fields = self.0.fields(t, q, p);
         Ok(Flow {
-            velocity: *p,
+            v: *p,
             force: fields.force - fields.gradient,
             power: fields.potential_t + fields.force.dot(p),
         })

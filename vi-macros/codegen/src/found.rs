@@ -43,6 +43,8 @@ pub struct Findings {
     pub separable: bool,
     /// The mass matrix L_vv depends on parameters only.
     pub constant_mass: bool,
+    /// L_v is M v with a constant mass matrix M, and neither L_q nor f depends on v: the acceleration is a function of t and q.
+    pub force_of_position: bool,
     /// Where the mass matrix has entries other than zero.
     pub mass: Pattern,
     /// No `abs`, `sign` or `atan2` in the momentum row: it has no kink and no jump, and Newton's iteration is quadratic.
@@ -83,14 +85,19 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
     let velocities =
         |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_) | Symbol::Continuous(Variable::Velocity(_)));
     let parameters = |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_));
+    let constant_mass =
+        mass.is_some_and(|(function, rows)| inputs(function, rows.iter().flatten()).iter().all(parameters));
+    let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+    let rate = program.function(FunctionId::Point);
+    let rate_moves = rate.is_none_or(|of| inputs(of, of.results.vector(Output::AppliedForce).iter()).iter().any(moves));
     Findings {
         size: model.dimension(),
         autonomous: system.continuous.autonomous,
         forced: model.forced,
         cyclic: cyclic.collect(),
         separable: momentum.is_some_and(|function| inputs(function, function.results.entries()).iter().all(velocities)),
-        constant_mass: mass
-            .is_some_and(|(function, rows)| inputs(function, rows.iter().flatten()).iter().all(parameters)),
+        constant_mass,
+        force_of_position: constant_mass && system.continuous.momentum_is_mass_times_velocity && !rate_moves,
         mass: mass.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         smooth: jacobian.is_some_and(|(function, _)| smooth(function)),
         jacobian: jacobian.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),

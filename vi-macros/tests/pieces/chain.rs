@@ -68,76 +68,73 @@ const _: () = {
     use ::core::convert::{identity as a, identity as sin1, identity as i};
     use ::core::convert::{identity as sum, identity as p, identity as at_rest};
     use ::core::convert::{identity as velocity, identity as force, identity as power};
-    use ::core::convert::{identity as cos10, identity as values, identity as value};
-    use ::core::convert::{identity as text, identity as interval, identity as t0};
-    use ::core::convert::{identity as t1, identity as h, identity as q_0_0};
-    use ::core::convert::{identity as q_1_0, identity as q_2_0, identity as q_3_0};
-    use ::core::convert::{identity as q_4_0, identity as q_5_0, identity as q_6_0};
-    use ::core::convert::{identity as q_7_0, identity as q_8_0, identity as q_9_0};
-    use ::core::convert::{identity as q_0_1, identity as q_1_1, identity as q_2_1};
-    use ::core::convert::{identity as q_3_1, identity as q_4_1, identity as q_5_1};
-    use ::core::convert::{identity as q_6_1, identity as q_7_1, identity as q_8_1};
-    use ::core::convert::{identity as q_9_1, identity as t_mid, identity as q_0_mid};
-    use ::core::convert::{identity as q_1_mid, identity as q_2_mid, identity as q_3_mid};
-    use ::core::convert::{identity as q_4_mid, identity as q_5_mid, identity as q_6_mid};
-    use ::core::convert::{identity as q_7_mid, identity as q_8_mid, identity as q_9_mid};
-    use ::core::convert::{identity as s21, identity as sin30, identity as cos32};
-    use ::core::convert::{identity as cos33, identity as cos34, identity as cos35};
-    use ::core::convert::{identity as cos36, identity as cos37, identity as cos38};
-    use ::core::convert::{identity as cos39, identity as cos40, identity as s41};
-    use ::core::convert::{identity as s42, identity as s43, identity as s44};
-    use ::core::convert::{identity as sin22, identity as sin23, identity as sin28};
-    use ::core::convert::{identity as sin29, identity as sin27, identity as node};
+    use ::core::convert::{identity as values, identity as value, identity as text};
+    use ::core::convert::{identity as cos9, identity as cos10, identity as interval};
+    use ::core::convert::{identity as t0, identity as t1, identity as h};
+    use ::core::convert::{identity as q_0_0, identity as q_1_0, identity as q_2_0};
+    use ::core::convert::{identity as q_3_0, identity as q_4_0, identity as q_5_0};
+    use ::core::convert::{identity as q_6_0, identity as q_7_0, identity as q_8_0};
+    use ::core::convert::{identity as q_9_0, identity as q_0_1, identity as q_1_1};
+    use ::core::convert::{identity as q_2_1, identity as q_3_1, identity as q_4_1};
+    use ::core::convert::{identity as q_5_1, identity as q_6_1, identity as q_7_1};
+    use ::core::convert::{identity as q_8_1, identity as q_9_1, identity as t_mid};
+    use ::core::convert::{identity as q_0_mid, identity as q_1_mid, identity as q_2_mid};
+    use ::core::convert::{identity as q_3_mid, identity as q_4_mid, identity as q_5_mid};
+    use ::core::convert::{identity as q_6_mid, identity as q_7_mid, identity as q_8_mid};
+    use ::core::convert::{identity as q_9_mid, identity as s21, identity as sin30};
+    use ::core::convert::{identity as cos32, identity as cos33, identity as cos34};
+    use ::core::convert::{identity as cos35, identity as cos36, identity as cos37};
+    use ::core::convert::{identity as cos38, identity as cos39, identity as cos40};
+    use ::core::convert::{identity as s41, identity as s42, identity as s43};
+    use ::core::convert::{identity as s44, identity as sin22, identity as sin23};
+    use ::core::convert::{identity as sin28, identity as sin29, identity as sin27};
+    use ::core::convert::{identity as node, identity as t0_low, identity as q_0_0_low};
     use ::core::convert::{
-        identity as t0_low, identity as q_0_0_low, identity as q_1_0_low,
+        identity as q_1_0_low, identity as q_2_0_low, identity as q_3_0_low,
     };
 
     use ::core::convert::{
-        identity as q_2_0_low, identity as q_3_0_low, identity as q_4_0_low,
+        identity as q_4_0_low, identity as q_5_0_low, identity as q_6_0_low,
     };
 
     use ::core::convert::{
-        identity as q_5_0_low, identity as q_6_0_low, identity as q_7_0_low,
+        identity as q_7_0_low, identity as q_8_0_low, identity as q_9_0_low,
+    };
+
+    use ::core::convert::{identity as p0_q_0, identity as p0_q_1, identity as p0_q_2};
+    use ::core::convert::{identity as p0_q_3, identity as p0_q_4, identity as p0_q_5};
+    use ::core::convert::{identity as p0_q_6, identity as p0_q_7, identity as p0_q_8};
+    use ::core::convert::{
+        identity as p0_q_9, identity as p0_q_0_low, identity as p0_q_1_low,
     };
 
     use ::core::convert::{
-        identity as q_8_0_low, identity as q_9_0_low, identity as p0_q_0,
-    };
-
-    use ::core::convert::{identity as p0_q_1, identity as p0_q_2, identity as p0_q_3};
-    use ::core::convert::{identity as p0_q_4, identity as p0_q_5, identity as p0_q_6};
-    use ::core::convert::{identity as p0_q_7, identity as p0_q_8, identity as p0_q_9};
-    use ::core::convert::{
-        identity as p0_q_0_low, identity as p0_q_1_low, identity as p0_q_2_low,
+        identity as p0_q_2_low, identity as p0_q_3_low, identity as p0_q_4_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_3_low, identity as p0_q_4_low, identity as p0_q_5_low,
+        identity as p0_q_5_low, identity as p0_q_6_low, identity as p0_q_7_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_6_low, identity as p0_q_7_low, identity as p0_q_8_low,
+        identity as p0_q_8_low, identity as p0_q_9_low, identity as sin14,
     };
 
-    use ::core::convert::{identity as p0_q_9_low, identity as sin14, identity as cos14};
-    use ::core::convert::{identity as s36, identity as s37, identity as s38};
-    use ::core::convert::{identity as s39, identity as s40, identity as s45};
-    use ::core::convert::{identity as s46, identity as s47, identity as s48};
-    use ::core::convert::{identity as s49, identity as s50, identity as s51};
-    use ::core::convert::{identity as s52, identity as s53, identity as s54};
-    use ::core::convert::{identity as s55, identity as s56, identity as s57};
-    use ::core::convert::{identity as s58, identity as s59, identity as q0};
-    use ::core::convert::{identity as q0_low, identity as p0, identity as p0_low};
-    use ::core::convert::{identity as q_mid, identity as entries, identity as sin31};
-    use ::core::convert::{
-        identity as cos41, identity as energy0, identity as energy0_low,
-    };
-
-    use ::core::convert::{identity as sin2, identity as s60, identity as s61};
-    use ::core::convert::{identity as s62, identity as s63, identity as s64};
-    use ::core::convert::{identity as s65, identity as s66, identity as s67};
-    use ::core::convert::{identity as s68, identity as s69, identity as s70};
-    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::convert::{identity as cos14, identity as s36, identity as s37};
+    use ::core::convert::{identity as s38, identity as s39, identity as s40};
+    use ::core::convert::{identity as s45, identity as s46, identity as s47};
+    use ::core::convert::{identity as s48, identity as s49, identity as s50};
+    use ::core::convert::{identity as s51, identity as s52, identity as s53};
+    use ::core::convert::{identity as s54, identity as s55, identity as s56};
+    use ::core::convert::{identity as s57, identity as s58, identity as s59};
+    use ::core::convert::{identity as q0, identity as q0_low, identity as p0};
+    use ::core::convert::{identity as p0_low, identity as q_mid, identity as entries};
+    use ::core::convert::{identity as sin31, identity as cos41, identity as energy0};
+    use ::core::convert::{identity as energy0_low, identity as sin2, identity as s60};
+    use ::core::convert::{identity as s61, identity as s62, identity as s63};
+    use ::core::convert::{identity as s64, identity as s65, identity as s66};
+    use ::core::convert::{identity as s67, identity as s68, identity as s69};
+    use ::core::convert::{identity as s70, identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Chain<f64> {
@@ -577,31 +574,6 @@ const _: () = {
             )
         }
 
-        /// The v with `∂L/∂v = p`, and
-        ///
-        /// `dp_q[0]/dt = k*cos(q[0]) + k*(q[1] - q[0])^3 - (sin(t)/3 + 1)*sin(q[0])`
-        ///
-        /// `dp_q[1]/dt = k*cos(q[1]) - k*(4*(q[1] - q[0])^3 - 4*(q[2] - q[1])^3)/4 - (sin(t)/3 + 1)*sin(q[1])`
-        ///
-        /// `dp_q[2]/dt = k*cos(q[2]) - k*(4*(q[2] - q[1])^3 - 4*(q[3] - q[2])^3)/4 - (sin(t)/3 + 1)*sin(q[2])`
-        ///
-        /// `dp_q[3]/dt = k*cos(q[3]) - k*(4*(q[3] - q[2])^3 - 4*(q[4] - q[3])^3)/4 - (sin(t)/3 + 1)*sin(q[3])`
-        ///
-        /// `dp_q[4]/dt = k*cos(q[4]) - k*(4*(q[4] - q[3])^3 - 4*(q[5] - q[4])^3)/4 - (sin(t)/3 + 1)*sin(q[4])`
-        ///
-        /// `dp_q[5]/dt = k*cos(q[5]) - k*(4*(q[5] - q[4])^3 - 4*(q[6] - q[5])^3)/4 - (sin(t)/3 + 1)*sin(q[5])`
-        ///
-        /// `dp_q[6]/dt = k*cos(q[6]) - k*(4*(q[6] - q[5])^3 - 4*(q[7] - q[6])^3)/4 - (sin(t)/3 + 1)*sin(q[6])`
-        ///
-        /// `dp_q[7]/dt = k*cos(q[7]) - k*(4*(q[7] - q[6])^3 - 4*(q[8] - q[7])^3)/4 - (sin(t)/3 + 1)*sin(q[7])`
-        ///
-        /// `dp_q[8]/dt = k*cos(q[8]) - k*(4*(q[8] - q[7])^3 - 4*(q[9] - q[8])^3)/4 - (sin(t)/3 + 1)*sin(q[8])`
-        ///
-        /// `dp_q[9]/dt = -k*(q[9] - q[8])^3 - (sin(t)/3 + 1)*sin(q[9])`
-        ///
-        /// `dE/dt = k*dot(q[0])*cos(q[0]) - (cos(q[0]) + cos(q[1]) + cos(q[2]) + cos(q[3]) + cos(q[4]) + cos(q[5]) + cos(q[6]) + cos(q[7]) + cos(q[8]) + cos(q[9]))*cos(t)/3 + k*dot(q[1])*cos(q[1]) + k*dot(q[2])*cos(q[2]) + k*dot(q[3])*cos(q[3]) + k*dot(q[4])*cos(q[4]) + k*dot(q[5])*cos(q[5]) + k*dot(q[6])*cos(q[6]) + k*dot(q[7])*cos(q[7]) + k*dot(q[8])*cos(q[8])`
-        ///
-        /// 146 operations.
         #[inline]
         fn flow(
             &self,
@@ -609,94 +581,25 @@ const _: () = {
             q: &::vi_core::SVector<T, 10>,
             p: &::vi_core::SVector<T, 10>,
         ) -> ::core::result::Result<::vi_core::Flow<10, T>, ::vi_core::StepError> {
-            let mass: ::vi_core::linear::Banded<10, 1, T> = {
-                let real = T::real;
-                ::vi_core::linear::Banded {
-                    rows: [
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                        [self.m],
-                    ],
-                }
-            };
-            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let at_rest = ::vi_core::collocation::Collocation::point(
+                self,
+                t,
+                q,
+                &::vi_core::SVector::zeros(),
+            );
             let velocity = ::vi_core::support::velocity_by_mass(
                 t,
-                &mass,
-                &(p - at_rest),
+                &at_rest.mass,
+                &(p - at_rest.momentum),
             )?;
-            let (force, power) = {
-                let v = &velocity;
-                let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot,
-                q_7_dot, q_8_dot, _]: [T; 10] = (*v).into();
-                let [q_0, q_1, q_2, q_3, q_4, q_5, q_6, q_7, q_8, q_9]: [T; 10] = (*q)
-                    .into();
-                let real = T::real;
-                let s1 = q_1 - q_0;
-                let s2 = q_2 - q_1;
-                let s3 = q_3 - q_2;
-                let s4 = q_4 - q_3;
-                let s5 = q_5 - q_4;
-                let s6 = q_6 - q_5;
-                let s7 = q_7 - q_6;
-                let s8 = q_8 - q_7;
-                let s9 = q_9 - q_8;
-                let [(sin10, cos10), (sin11, cos11), (sin12, cos12), (sin13, cos13)] = T::sin_cos_each([
-                    t,
-                    q_0,
-                    q_1,
-                    q_2,
-                ]);
-                let s14 = sin10 * real(0.3333333333333333) + real(1.0);
-                let [(sin15, cos15), (sin16, cos16), (sin17, cos17), (sin18, cos18)] = T::sin_cos_each([
-                    q_3,
-                    q_4,
-                    q_5,
-                    q_6,
-                ]);
-                let [(sin19, cos19), (sin20, cos20), (sin21, cos21)] = T::sin_cos_each([
-                    q_7,
-                    q_8,
-                    q_9,
-                ]);
-                let s22 = s1 * s1 * s1;
-                let s23 = s2 * s2 * s2;
-                let s24 = s3 * s3 * s3;
-                let s25 = s4 * s4 * s4;
-                let s26 = s5 * s5 * s5;
-                let s27 = s6 * s6 * s6;
-                let s28 = s7 * s7 * s7;
-                let s29 = s8 * s8 * s8;
-                let s30 = s9 * s9 * s9;
-                let s31 = (cos11 + cos12 + cos13 + cos15 + cos16 + cos17 + cos18 + cos19
-                    + cos20 + cos21) * cos10 * real(0.3333333333333333);
-                let s32 = self.k * q_0_dot * cos11 + self.k * q_1_dot * cos12
-                    + self.k * q_2_dot * cos13 + self.k * q_3_dot * cos15;
-                let s33 = s32 + self.k * q_4_dot * cos16 + self.k * q_5_dot * cos17
-                    + self.k * q_6_dot * cos18 + self.k * q_7_dot * cos19;
-                (
-                    ::vi_core::SVector::from([
-                        self.k * cos11 + self.k * s22 - s14 * sin11,
-                        self.k * cos12 - self.k * (s22 - s23) - s14 * sin12,
-                        self.k * cos13 - self.k * (s23 - s24) - s14 * sin13,
-                        self.k * cos15 - self.k * (s24 - s25) - s14 * sin15,
-                        self.k * cos16 - self.k * (s25 - s26) - s14 * sin16,
-                        self.k * cos17 - self.k * (s26 - s27) - s14 * sin17,
-                        self.k * cos18 - self.k * (s27 - s28) - s14 * sin18,
-                        self.k * cos19 - self.k * (s28 - s29) - s14 * sin19,
-                        self.k * cos20 - self.k * (s29 - s30) - s14 * sin20,
-                        -(self.k * s30 + s14 * sin21),
-                    ]),
-                    s33 + self.k * q_8_dot * cos20 - s31,
-                )
-            };
+            let force = ::vi_core::collocation::Collocation::point(self, t, q, &velocity)
+                .force;
+            let power = ::vi_core::collocation::Collocation::power(
+                self,
+                t,
+                q,
+                &velocity,
+            );
             ::core::result::Result::Ok(::vi_core::Flow {
                 velocity,
                 force,
@@ -812,6 +715,162 @@ const _: () = {
                 .into_iter()
                 .find(|(_, value)| !value.is_finite())
                 .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Collocation<10, T> for Chain<T> {
+        type Mass = ::vi_core::linear::Banded<10, 1, T>;
+        const CONSTANT_MASS: bool = true;
+        const SEPARABLE: bool = true;
+
+        /// L_v, M, and
+        ///
+        /// `L_q + f_q[0] = k*cos(q[0]) + k*(q[1] - q[0])^3 - (sin(t)/3 + 1)*sin(q[0])`
+        ///
+        /// `L_q + f_q[1] = k*cos(q[1]) - k*(4*(q[1] - q[0])^3 - 4*(q[2] - q[1])^3)/4 - (sin(t)/3 + 1)*sin(q[1])`
+        ///
+        /// `L_q + f_q[2] = k*cos(q[2]) - k*(4*(q[2] - q[1])^3 - 4*(q[3] - q[2])^3)/4 - (sin(t)/3 + 1)*sin(q[2])`
+        ///
+        /// `L_q + f_q[3] = k*cos(q[3]) - k*(4*(q[3] - q[2])^3 - 4*(q[4] - q[3])^3)/4 - (sin(t)/3 + 1)*sin(q[3])`
+        ///
+        /// `L_q + f_q[4] = k*cos(q[4]) - k*(4*(q[4] - q[3])^3 - 4*(q[5] - q[4])^3)/4 - (sin(t)/3 + 1)*sin(q[4])`
+        ///
+        /// `L_q + f_q[5] = k*cos(q[5]) - k*(4*(q[5] - q[4])^3 - 4*(q[6] - q[5])^3)/4 - (sin(t)/3 + 1)*sin(q[5])`
+        ///
+        /// `L_q + f_q[6] = k*cos(q[6]) - k*(4*(q[6] - q[5])^3 - 4*(q[7] - q[6])^3)/4 - (sin(t)/3 + 1)*sin(q[6])`
+        ///
+        /// `L_q + f_q[7] = k*cos(q[7]) - k*(4*(q[7] - q[6])^3 - 4*(q[8] - q[7])^3)/4 - (sin(t)/3 + 1)*sin(q[7])`
+        ///
+        /// `L_q + f_q[8] = k*cos(q[8]) - k*(4*(q[8] - q[7])^3 - 4*(q[9] - q[8])^3)/4 - (sin(t)/3 + 1)*sin(q[8])`
+        ///
+        /// `L_q + f_q[9] = -k*(q[9] - q[8])^3 - (sin(t)/3 + 1)*sin(q[9])`
+        ///
+        /// 116 operations.
+        #[inline(always)]
+        fn point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 10>,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> ::vi_core::collocation::Point<10, T, Self::Mass> {
+            let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot,
+            q_8_dot, q_9_dot]: [T; 10] = (*v).into();
+            let [q_0, q_1, q_2, q_3, q_4, q_5, q_6, q_7, q_8, q_9]: [T; 10] = (*q)
+                .into();
+            let real = T::real;
+            let s1 = q_1 - q_0;
+            let s2 = q_2 - q_1;
+            let s3 = q_3 - q_2;
+            let s4 = q_4 - q_3;
+            let s5 = q_5 - q_4;
+            let s6 = q_6 - q_5;
+            let s7 = q_7 - q_6;
+            let s8 = q_8 - q_7;
+            let s9 = q_9 - q_8;
+            let [(sin10, _), (sin11, cos11), (sin12, cos12), (sin13, cos13)] = T::sin_cos_each([
+                t,
+                q_0,
+                q_1,
+                q_2,
+            ]);
+            let s14 = sin10 * real(0.3333333333333333) + real(1.0);
+            let [(sin15, cos15), (sin16, cos16), (sin17, cos17), (sin18, cos18)] = T::sin_cos_each([
+                q_3,
+                q_4,
+                q_5,
+                q_6,
+            ]);
+            let [(sin19, cos19), (sin20, cos20), (sin21, _)] = T::sin_cos_each([
+                q_7,
+                q_8,
+                q_9,
+            ]);
+            let s22 = s1 * s1 * s1;
+            let s23 = s2 * s2 * s2;
+            let s24 = s3 * s3 * s3;
+            let s25 = s4 * s4 * s4;
+            let s26 = s5 * s5 * s5;
+            let s27 = s6 * s6 * s6;
+            let s28 = s7 * s7 * s7;
+            let s29 = s8 * s8 * s8;
+            let s30 = s9 * s9 * s9;
+            ::vi_core::collocation::Point {
+                momentum: ::vi_core::SVector::from([
+                    self.m * q_0_dot,
+                    self.m * q_1_dot,
+                    self.m * q_2_dot,
+                    self.m * q_3_dot,
+                    self.m * q_4_dot,
+                    self.m * q_5_dot,
+                    self.m * q_6_dot,
+                    self.m * q_7_dot,
+                    self.m * q_8_dot,
+                    self.m * q_9_dot,
+                ]),
+                force: ::vi_core::SVector::from([
+                    self.k * cos11 + self.k * s22 - s14 * sin11,
+                    self.k * cos12 - self.k * (s22 - s23) - s14 * sin12,
+                    self.k * cos13 - self.k * (s23 - s24) - s14 * sin13,
+                    self.k * cos15 - self.k * (s24 - s25) - s14 * sin15,
+                    self.k * cos16 - self.k * (s25 - s26) - s14 * sin16,
+                    self.k * cos17 - self.k * (s26 - s27) - s14 * sin17,
+                    self.k * cos18 - self.k * (s27 - s28) - s14 * sin18,
+                    self.k * cos19 - self.k * (s28 - s29) - s14 * sin19,
+                    self.k * cos20 - self.k * (s29 - s30) - s14 * sin20,
+                    -(self.k * s30 + s14 * sin21),
+                ]),
+                mass: ::vi_core::linear::Banded {
+                    rows: [
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                        [self.m],
+                    ],
+                },
+            }
+        }
+
+        /// `dE/dt = k*dot(q[0])*cos(q[0]) - (cos(q[0]) + cos(q[1]) + cos(q[2]) + cos(q[3]) + cos(q[4]) + cos(q[5]) + cos(q[6]) + cos(q[7]) + cos(q[8]) + cos(q[9]))*cos(t)/3 + k*dot(q[1])*cos(q[1]) + k*dot(q[2])*cos(q[2]) + k*dot(q[3])*cos(q[3]) + k*dot(q[4])*cos(q[4]) + k*dot(q[5])*cos(q[5]) + k*dot(q[6])*cos(q[6]) + k*dot(q[7])*cos(q[7]) + k*dot(q[8])*cos(q[8])`
+        ///
+        /// 49 operations.
+        #[inline]
+        fn power(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 10>,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> T {
+            let [q_0_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot,
+            q_8_dot, _]: [T; 10] = (*v).into();
+            let [q_0, q_1, q_2, q_3, q_4, q_5, q_6, q_7, q_8, q_9]: [T; 10] = (*q)
+                .into();
+            let real = T::real;
+            let [(_, cos1), (_, cos2), (_, cos3), (_, cos4)] = T::sin_cos_each([
+                q_0,
+                q_1,
+                q_2,
+                q_3,
+            ]);
+            let [(_, cos5), (_, cos6), (_, cos7), (_, cos8)] = T::sin_cos_each([
+                q_4,
+                q_5,
+                q_6,
+                q_7,
+            ]);
+            let [(_, cos9), (_, cos10), (_, cos11)] = T::sin_cos_each([q_8, q_9, t]);
+            let s12 = (cos1 + cos2 + cos3 + cos4 + cos5 + cos6 + cos7 + cos8 + cos9
+                + cos10) * cos11 * real(0.3333333333333333);
+            let s13 = self.k * q_0_dot * cos1 + self.k * q_1_dot * cos2
+                + self.k * q_2_dot * cos3 + self.k * q_3_dot * cos4;
+            let s14 = s13 + self.k * q_4_dot * cos5 + self.k * q_5_dot * cos6
+                + self.k * q_6_dot * cos7 + self.k * q_7_dot * cos8;
+            s14 + self.k * q_8_dot * cos9 - s12
         }
     }
 

@@ -46,24 +46,24 @@ const _: () = {
     use ::core::convert::{identity as values, identity as s9, identity as s10};
     use ::core::convert::{identity as s11, identity as s12, identity as s13};
     use ::core::convert::{identity as s14, identity as s15, identity as s16};
-    use ::core::convert::{identity as p, identity as s2, identity as at_rest};
-    use ::core::convert::{identity as velocity, identity as force, identity as power};
-    use ::core::convert::{identity as value, identity as text, identity as interval};
-    use ::core::convert::{identity as t0, identity as t1, identity as h};
-    use ::core::convert::{identity as q_0_0, identity as q_1_0, identity as q_0_1};
-    use ::core::convert::{identity as q_1_1, identity as t_mid, identity as q_0_mid};
-    use ::core::convert::{identity as q_1_mid, identity as cos4, identity as node};
+    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
+    use ::core::convert::{identity as force, identity as power, identity as value};
+    use ::core::convert::{identity as text, identity as interval, identity as t0};
+    use ::core::convert::{identity as t1, identity as h, identity as q_0_0};
+    use ::core::convert::{identity as q_1_0, identity as q_0_1, identity as q_1_1};
+    use ::core::convert::{identity as t_mid, identity as q_0_mid, identity as q_1_mid};
+    use ::core::convert::{identity as cos4, identity as node, identity as t0_low};
     use ::core::convert::{
-        identity as t0_low, identity as q_0_0_low, identity as q_1_0_low,
+        identity as q_0_0_low, identity as q_1_0_low, identity as p0_q_0,
     };
 
     use ::core::convert::{
-        identity as p0_q_0, identity as p0_q_1, identity as p0_q_0_low,
+        identity as p0_q_1, identity as p0_q_0_low, identity as p0_q_1_low,
     };
 
-    use ::core::convert::{identity as p0_q_1_low, identity as s17, identity as s18};
-    use ::core::convert::{identity as s19, identity as s20, identity as s21};
-    use ::core::convert::{identity as s22, identity as s23, identity as sin5};
+    use ::core::convert::{identity as s17, identity as s18, identity as s19};
+    use ::core::convert::{identity as s20, identity as s21, identity as s22};
+    use ::core::convert::{identity as s23, identity as s2, identity as sin5};
     use ::core::convert::{identity as s24, identity as s25, identity as s26};
     use ::core::convert::{identity as s27, identity as cos5, identity as energy0};
     use ::core::convert::{identity as energy0_low, identity as s28, identity as s29};
@@ -332,15 +332,6 @@ const _: () = {
             ::core::result::Result::Ok(values[0])
         }
 
-        /// The v with `∂L/∂v = p`, and
-        ///
-        /// `dp_q[0]/dt = -b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0])`
-        ///
-        /// `dp_q[1]/dt = dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - b*dot(q[1]) + k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[1])`
-        ///
-        /// `dE/dt = -(cos(q[0]) + cos(q[1]))*cos(t)/3 - b*dot(q[0])^2 - b*dot(q[1])^2`
-        ///
-        /// 38 operations.
         #[inline]
         fn flow(
             &self,
@@ -348,42 +339,25 @@ const _: () = {
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
         ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
-            let mass: ::vi_core::SMatrix<T, 2, 2> = {
-                let [q_0, q_1]: [T; 2] = (*q).into();
-                let real = T::real;
-                let s1 = self.m * real(2.0);
-                let s2 = (q_0 - q_1).cos() * real(0.25);
-                ::vi_core::SMatrix::from_row_slice(&[s1, s2, s2, s1])
-            };
-            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
+            let at_rest = ::vi_core::collocation::Collocation::point(
+                self,
+                t,
+                q,
+                &::vi_core::SVector::zeros(),
+            );
             let velocity = ::vi_core::support::velocity_by_mass(
                 t,
-                &mass,
-                &(p - at_rest),
+                &at_rest.mass,
+                &(p - at_rest.momentum),
             )?;
-            let (force, power) = {
-                let v = &velocity;
-                let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
-                let [q_0, q_1]: [T; 2] = (*q).into();
-                let real = T::real;
-                let [(sin1, cos1), (sin2, cos2), (sin3, cos3)] = T::sin_cos_each([
-                    t,
-                    q_0,
-                    q_1,
-                ]);
-                let s4 = sin1 * real(0.3333333333333333) + real(1.0);
-                let s5 = sin2 * cos3 - cos2 * sin3;
-                let s6 = self.k * (q_0 - q_1);
-                (
-                    ::vi_core::SVector::from([
-                        -((self.b + q_1_dot * s5 * real(0.25)) * q_0_dot)
-                            - (s6 + s4 * sin2),
-                        s6 - s4 * sin3 + (q_0_dot * s5 * real(0.25) - self.b) * q_1_dot,
-                    ]),
-                    -((cos2 + cos3) * cos1 * real(0.3333333333333333)
-                        + self.b * (q_0_dot * q_0_dot) + self.b * (q_1_dot * q_1_dot)),
-                )
-            };
+            let force = ::vi_core::collocation::Collocation::point(self, t, q, &velocity)
+                .force;
+            let power = ::vi_core::collocation::Collocation::power(
+                self,
+                t,
+                q,
+                &velocity,
+            );
             ::core::result::Result::Ok(::vi_core::Flow {
                 velocity,
                 force,
@@ -434,6 +408,67 @@ const _: () = {
                 .into_iter()
                 .find(|(_, value)| !value.is_finite())
                 .map(|(text, _)| text)
+        }
+    }
+
+    impl<T: ::vi_core::Real> ::vi_core::Collocation<2, T> for Pendula<T> {
+        type Mass = ::vi_core::SMatrix<T, 2, 2>;
+        const CONSTANT_MASS: bool = false;
+        const SEPARABLE: bool = false;
+
+        /// L_v, M, and
+        ///
+        /// `L_q + f_q[0] = -b*dot(q[0]) - dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[0])`
+        ///
+        /// `L_q + f_q[1] = dot(q[0])*dot(q[1])*sin(q[0] - q[1])/4 - b*dot(q[1]) + k*(q[0] - q[1]) - (sin(t)/3 + 1)*sin(q[1])`
+        ///
+        /// 42 operations.
+        #[inline(always)]
+        fn point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::Point<2, T, Self::Mass> {
+            let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+            let [q_0, q_1]: [T; 2] = (*q).into();
+            let real = T::real;
+            let [(sin1, cos1), (sin2, cos2), (sin3, _)] = T::sin_cos_each([q_0, q_1, t]);
+            let s4 = cos1 * cos2 + sin1 * sin2;
+            let s5 = sin3 * real(0.3333333333333333) + real(1.0);
+            let s6 = self.m * real(2.0);
+            let s7 = s4 * real(0.25);
+            let s8 = sin1 * cos2 - cos1 * sin2;
+            let s9 = self.k * (q_0 - q_1);
+            ::vi_core::collocation::Point {
+                momentum: ::vi_core::SVector::from([
+                    q_1_dot * s4 * real(0.25) + self.m * q_0_dot * real(2.0),
+                    q_0_dot * s4 * real(0.25) + self.m * q_1_dot * real(2.0),
+                ]),
+                force: ::vi_core::SVector::from([
+                    -((self.b + q_1_dot * s8 * real(0.25)) * q_0_dot) - (s9 + s5 * sin1),
+                    s9 - s5 * sin2 + (q_0_dot * s8 * real(0.25) - self.b) * q_1_dot,
+                ]),
+                mass: ::vi_core::SMatrix::from_row_slice(&[s6, s7, s7, s6]),
+            }
+        }
+
+        /// `dE/dt = -(cos(q[0]) + cos(q[1]))*cos(t)/3 - b*dot(q[0])^2 - b*dot(q[1])^2`
+        ///
+        /// 13 operations.
+        #[inline]
+        fn power(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> T {
+            let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+            let [q_0, q_1]: [T; 2] = (*q).into();
+            let real = T::real;
+            let [(_, cos1), (_, cos2), (_, cos3)] = T::sin_cos_each([q_0, q_1, t]);
+            -((cos1 + cos2) * cos3 * real(0.3333333333333333)
+                + self.b * (q_0_dot * q_0_dot) + self.b * (q_1_dot * q_1_dot))
         }
     }
 

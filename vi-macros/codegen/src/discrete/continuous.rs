@@ -26,6 +26,8 @@ pub struct Continuous {
     pub force: Vec<Expr>,
     /// M, row by row.
     pub mass: Vec<Vec<Expr>>,
+    /// Whether L_v is M v and nothing else.
+    pub momentum_is_mass_times_velocity: bool,
     /// M a.
     pub mass_times_acceleration: Vec<Expr>,
     /// L_q + f.
@@ -105,6 +107,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     }
     let ltt = fields.lagrangian(pool, &[Variable::Time, Variable::Time]);
     density.push(pool.neg(ltt));
+    let momentum_is_mass_times_velocity = is_product(pool, &momentum, &mass)?;
     let (forced_time, autonomous) = dependence(pool, model);
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     Ok(Continuous {
@@ -118,6 +121,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         power: pool.sum(&power),
         momentum,
         mass,
+        momentum_is_mass_times_velocity,
         mass_times_acceleration,
         step_density: pool.sum(&density),
         autonomous: autonomous && !forced_time,
@@ -140,6 +144,23 @@ fn watched(pool: &Pool<Symbol>, model: &Model) -> Vec<Expr> {
 
 fn moving(pool: &mut Pool<Symbol>, index: usize) -> Expr {
     pool.symbol(Symbol::Continuous(Variable::Velocity(index)))
+}
+
+/// Whether `vector = matrix · v`.
+fn is_product(pool: &mut Pool<Symbol>, vector: &[Expr], matrix: &[Vec<Expr>]) -> Result<bool, TooLarge> {
+    for (entry, row) in vector.iter().zip(matrix) {
+        let mut terms = vec![pool.neg(*entry)];
+        for (index, factor) in row.iter().enumerate() {
+            let v = moving(pool, index);
+            terms.push(pool.mul(*factor, v));
+        }
+        let rest = pool.sum(&terms);
+        let rest = pool.expand(rest)?;
+        if !pool.is_zero(rest) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// v·L_v − L, term by term: a term without velocities only changes its sign, and keeps the form that its writer gave it.

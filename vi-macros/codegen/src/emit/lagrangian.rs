@@ -29,7 +29,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         vector(source, FunctionId::Force, &source.formulas("f", &of.force)),
         acceleration(source),
         step_density(source, of.step_density),
-        flow(source).unwrap_or_default(),
+        flow(source),
         non_finite(source),
     ];
     quote! {
@@ -197,31 +197,22 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
 
 /// The velocity of a momentum, by the mass matrix where L is quadratic in the velocities, else by iteration; then the rates of change
 /// there.
-fn flow(source: &Source) -> Option<TokenStream> {
-    let (dimension, of) = (source.dimension(), &source.system.continuous);
-    let (mass, _) = source.documented(FunctionId::Mass, "", VelocityFrom::Argument)?;
-    let rates = source.named_formulas(&of.applied_force, |name| format!("dp_{name}/dt"));
-    let formula = format!("The v with `∂L/∂v = p`, and\n\n{rates}\n\n{}", source.formula("dE/dt", of.power));
-    let (body, documentation) = source.documented(FunctionId::Flow, &formula, VelocityFrom::Argument)?;
-    let (form, matrix) = matrix(&source.findings.mass, true, mass.results.matrix(Output::Mass));
-    let (mass_inputs, mass_statements) = (state_parts(&mass, source.model), &mass.statements);
-    let velocity = if of.quadratic {
+fn flow(source: &Source) -> TokenStream {
+    let dimension = source.dimension();
+    let point = quote!(::vi_core::collocation::Collocation::point);
+    let velocity = if source.system.continuous.quadratic {
         quote! {
-            let mass: #form = { #mass_inputs #mass_statements #matrix };
-            let at_rest = self.momentum(t, q, &::vi_core::SVector::zeros());
-            let velocity = ::vi_core::support::velocity_by_mass(t, &mass, &(p - at_rest))?;
+            let at_rest = #point(self, t, q, &::vi_core::SVector::zeros());
+            let velocity = ::vi_core::support::velocity_by_mass(t, &at_rest.mass, &(p - at_rest.momentum))?;
         }
     } else {
         quote! {
-            let mass = |v: &::vi_core::SVector<T, #dimension>| -> #form { #mass_inputs #mass_statements #matrix };
+            let mass = |v: &::vi_core::SVector<T, #dimension>| #point(self, t, q, v).mass;
             let rounded = self.convert::<::vi_core::real::Rounded>();
             let velocity = ::vi_core::support::velocity(self, &rounded, mass, (t, q, p))?;
         }
     };
-    let (inputs, statements) = (state_parts(&body, source.model), &body.statements);
-    let (force, power) = (vector_of(body.results.vector(Output::AppliedForce)), body.results.number(Output::Power));
-    Some(quote! {
-        #documentation
+    quote! {
         #[inline]
         fn flow(
             &self,
@@ -230,10 +221,11 @@ fn flow(source: &Source) -> Option<TokenStream> {
             p: &::vi_core::SVector<T, #dimension>,
         ) -> ::core::result::Result<::vi_core::Flow<#dimension, T>, ::vi_core::StepError> {
             #velocity
-            let (force, power) = { let v = &velocity; #inputs #statements (#force, #power) };
-            ::core::result::Result::Ok(::vi_core::Flow { velocity, force, power })
+            let force = #point(self, t, q, &velocity).force;
+            let power = ::vi_core::collocation::Collocation::power(self, t, q, &velocity);
+            ::core::result::Result::Ok(::vi_core::Flow { v: velocity, force, power })
         }
-    })
+    }
 }
 
 fn non_finite(source: &Source) -> TokenStream {

@@ -7,6 +7,7 @@
 mod angles;
 mod body;
 mod check;
+mod collocation;
 mod discrete;
 mod entries;
 mod folds;
@@ -53,10 +54,11 @@ pub fn items(derived: &Derived, limit: usize) -> TokenStream {
     let structure = structure::structure(&source);
     let parameters = structure::parameters(&source);
     let lagrangian = lagrangian::item(&source);
+    let collocation = collocation::item(&source);
     let discrete = discrete::item(&source);
     let stepping = stepping::item(&source);
     let numbers = structure::numbers(&source);
-    let implementations = quote!(#parameters #lagrangian #discrete #stepping #numbers);
+    let implementations = quote!(#parameters #lagrangian #collocation #discrete #stepping #numbers);
     let conditions: Vec<_> = conditions(&model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests(&source, &conditions);

@@ -213,6 +213,13 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn step_density(#at) -> #or_number #none
             fn flow(#at) -> #or_flow #none
         }
+        impl<T: ::vi_core::Real> ::vi_core::Collocation<#n, T> for #name<T> {
+            type Mass = ::vi_core::SMatrix<T, #n, #n>;
+            const CONSTANT_MASS: bool = false;
+            const SEPARABLE: bool = false;
+            fn point(#at) -> ::vi_core::collocation::Point<#n, T, Self::Mass> #none
+            fn power(#at) -> T #none
+        }
         impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#n, T> for #name<T> {
             fn ld(#over) -> T #none
             fn d1_ld(#over) -> T #none

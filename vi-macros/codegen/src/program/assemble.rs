@@ -127,18 +127,18 @@ fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
 fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let of = &system.continuous;
     let mass = (Output::Mass, of.mass.clone());
+    let momentum = (Output::Momentum, vec![of.momentum.clone()]);
     let mass_times_acceleration = (Output::MassTimesAcceleration, vec![of.mass_times_acceleration.clone()]);
     let applied_force = (Output::AppliedForce, vec![of.applied_force.clone()]);
-    let power = (Output::Power, vec![vec![of.power]]);
     Ok(vec![
         assembly.function(FunctionId::Lagrangian, number(of.lagrangian))?,
         assembly.function(FunctionId::Energy, number(of.energy))?,
         assembly.function(FunctionId::Momentum, vector(&of.momentum))?,
         assembly.function(FunctionId::Force, vector(&of.force))?,
         assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?,
+        assembly.function(FunctionId::Point, vec![momentum, applied_force, mass])?,
+        assembly.function(FunctionId::Power, number(of.power))?,
         assembly.function(FunctionId::StepDensity, number(of.step_density))?,
-        assembly.function(FunctionId::Mass, vec![mass])?,
-        assembly.function(FunctionId::Flow, vec![applied_force, power])?,
         assembly.function(FunctionId::NonFinite, vector(&of.watched))?,
     ])
 }

@@ -16,12 +16,12 @@ pub enum FunctionId {
     Force,
     /// The mass matrix M and M a.
     Acceleration,
+    /// L_v, L_q + f, and M.
+    Point,
+    /// f·v − L_t.
+    Power,
     /// D.
     StepDensity,
-    /// M.
-    Mass,
-    /// L_q + f and dE/dt.
-    Flow,
     /// What L and f are made of.
     NonFinite,
     /// L_d.
@@ -64,9 +64,9 @@ impl FunctionId {
             Self::Momentum => "momentum",
             Self::Force => "force",
             Self::Acceleration => "acceleration",
+            Self::Point => "point",
+            Self::Power => "power",
             Self::StepDensity => "step_density",
-            Self::Mass => "mass",
-            Self::Flow => "flow",
             Self::NonFinite => "non_finite",
             Self::Ld => "ld",
             Self::D1Ld => "d1_ld",
@@ -93,12 +93,12 @@ pub enum Output {
     Value,
     /// The mass matrix M.
     Mass,
+    /// L_v.
+    Momentum,
     /// M a, for the acceleration a.
     MassTimesAcceleration,
     /// L_q + f.
     AppliedForce,
-    /// dE/dt.
-    Power,
     /// r, the momentum row.
     Residual,
     /// A = ∂r/∂v.

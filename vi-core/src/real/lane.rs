@@ -8,12 +8,12 @@
 //! known what it is added to, and `a b + c` is one instruction where the processor has it. What is a product and what is
 //! not is known when the formula is compiled: nothing of it is left in the program.
 
+use super::{Real, sine};
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
-use vi_core::real::{Real, sine};
 
 /// One lane: a number whose sine and cosine have no slow path. `FUSED`: whether products are added in one instruction.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lane<const FUSED: bool> {
+pub struct Lane<const FUSED: bool> {
     /// The number, or its first factor.
     value: f64,
     /// Its second factor: 1 where it is no product, so that reading it asks nothing.
@@ -24,13 +24,13 @@ pub(crate) struct Lane<const FUSED: bool> {
 impl<const FUSED: bool> Lane<FUSED> {
     /// The lane of a number.
     #[inline(always)]
-    pub(crate) fn new(value: f64) -> Self {
+    pub fn new(value: f64) -> Self {
         Self { value, factor: 1.0, product: false }
     }
 
     /// The number.
     #[inline(always)]
-    pub(crate) fn get(self) -> f64 {
+    pub fn get(self) -> f64 {
         self.value * self.factor
     }
 }

@@ -4,7 +4,7 @@
 //! each copy of the same source; a build for one processor (`-C target-cpu=native`) needs none of them.
 
 /// A loop over numbers, inlined with all that it calls.
-pub(crate) trait Loop {
+pub trait Loop {
     /// What it computes.
     type Output;
 
@@ -12,9 +12,12 @@ pub(crate) trait Loop {
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
-/// What a processor can do.
+/// The vector instructions that a loop is run by. There is no way to one that the processor does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Instructions {
+pub struct Instructions(Set);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Set {
     /// What every processor of this architecture has.
     Baseline,
     /// Vectors of four numbers, with fused multiply-add.
@@ -26,25 +29,30 @@ pub(crate) enum Instructions {
 }
 
 impl Instructions {
+    /// What every processor of this architecture has.
+    pub const BASELINE: Self = Self(Set::Baseline);
+
     /// The most that this processor has.
-    pub(crate) fn detected() -> Self {
+    #[must_use]
+    pub fn detected() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
             let wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
             if avx2 && wide && is_x86_feature_detected!("avx512dq") {
-                return Self::Avx512;
+                return Self(Set::Avx512);
             }
             if avx2 {
-                return Self::Avx2;
+                return Self(Set::Avx2);
             }
         }
-        Self::Baseline
+        Self::BASELINE
     }
 
     /// Runs a loop by these instructions.
+    #[inline]
     #[allow(unsafe_code)]
-    pub(crate) fn run<L: Loop>(self, of: L) -> L::Output {
+    pub fn run<L: Loop>(self, of: L) -> L::Output {
         #[cfg(target_arch = "x86_64")]
         #[target_feature(enable = "avx2,fma")]
         fn avx2<L: Loop>(of: L) -> L::Output {
@@ -55,14 +63,14 @@ impl Instructions {
         fn avx512<L: Loop>(of: L) -> L::Output {
             of.run::<true>()
         }
-        match self {
-            Self::Baseline => of.run::<{ cfg!(target_feature = "fma") }>(),
+        match self.0 {
+            Set::Baseline => of.run::<{ cfg!(target_feature = "fma") }>(),
             // SAFETY: `Instructions::detected` saw that the processor has these instructions.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { avx2(of) },
+            Set::Avx2 => unsafe { avx2(of) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { avx512(of) },
+            Set::Avx512 => unsafe { avx512(of) },
         }
     }
 }

@@ -1,0 +1,231 @@
+//! The stages of any system.
+//!
+//! In: the equations `q' = v, p' = F = L_q + f, p = L_v` at the stages. Out: velocities and forces there,
+//!
+//! ```text
+//! Q_i = q0 + Σ_j first_ij h b_j V_j        L_v(Q_i, V_i) = p0 + Σ_j first_ij h b_j F_j
+//! q1  = q0 + Σ_j h b_j V_j                 p1 = p0 + Σ_j h b_j F_j
+//! ```
+//!
+//! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
+//! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
+
+use super::stages::{Stages, multiply_add, product, scaled, set, stage, weights};
+use super::sweep::{Equations, Increment};
+use super::tableau::Tableau;
+use crate::collocation::Collocation;
+use crate::linear::Matrix;
+use crate::node::Node;
+use crate::real::Real;
+use nalgebra::{SMatrix, SVector};
+
+/// The equations of a step; see the [module](self).
+pub(super) struct General<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
+where
+    T: Real,
+{
+    system: &'a Y,
+    node: &'a Node<N>,
+    h: f64,
+    /// M, where it is constant.
+    mass: Option<Y::Mass>,
+    /// Velocities from which the positions follow.
+    velocity: Stages<N, S>,
+    /// Velocities and forces at which the equations were evaluated last.
+    evaluated: Stages<N, S>,
+    force: Stages<N, S>,
+}
+
+impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> General<'a, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    /// The equations of the step of length h from `node`, with a guess of the velocities at its stages.
+    #[inline(always)]
+    pub(super) fn new(system: &'a Y, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
+        let origin = SVector::zeros();
+        let constant = || system.point(T::real(node.t), &node.q.map(T::real), &origin).mass;
+        let mass = Y::CONSTANT_MASS.then(constant);
+        Self { system, node, h, mass, velocity, evaluated: velocity, force: [[0.0; S]; N] }
+    }
+
+    /// The equations with the velocities that follow from a guess of the forces, which depend on the position alone.
+    pub(super) fn with_forces(system: &'a Y, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
+        let zeros = [[0.0; S]; N];
+        let mut equations = Self { force, ..Self::new(system, node, h, zeros) };
+        let momentum = equations.missing(&zeros);
+        for i in 0..S {
+            if let Some(mass) = &equations.mass {
+                set(&mut equations.velocity, i, &mass.solve_unchecked(&stage::<N, S, T>(&momentum, i)));
+            }
+        }
+        equations
+    }
+
+    /// The forces of the last evaluation.
+    pub(super) fn forces(&self) -> Stages<N, S> {
+        self.force
+    }
+
+    /// Where the velocities at hand lead.
+    #[inline(always)]
+    fn positions(&self) -> Stages<N, S> {
+        let first = const { &Tableau::<S>::VALUES.first };
+        let weights = weights(self.h);
+        let mut x = [[0.0; S]; N];
+        for k in 0..N {
+            let way = product::<S, FUSED>(first, &scaled(&weights, &self.velocity[k]), &[self.node.q_low[k]; S]);
+            for i in 0..S {
+                x[k][i] = self.node.q[k] + way[i];
+            }
+        }
+        x
+    }
+
+    /// What the momenta that follow from the forces are beyond `momentum`, the L_v of the velocities.
+    #[inline(always)]
+    fn missing(&self, momentum: &Stages<N, S>) -> Stages<N, S> {
+        let first = const { &Tableau::<S>::VALUES.first };
+        let weights = weights(self.h);
+        let mut missing = [[0.0; S]; N];
+        for k in 0..N {
+            let gained = product::<S, FUSED>(first, &scaled(&weights, &self.force[k]), &[self.node.p_low[k]; S]);
+            for i in 0..S {
+                missing[k][i] = (self.node.p[k] - momentum[k][i]) + gained[i];
+            }
+        }
+        missing
+    }
+
+    /// The time of a stage.
+    #[inline(always)]
+    fn time(&self, i: usize) -> T {
+        let c = const { &Tableau::<S>::VALUES.c };
+        T::real(self.node.t + multiply_add::<FUSED>(self.h, c[i], self.node.t_low))
+    }
+
+    /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
+    #[inline(always)]
+    pub(super) fn evaluate(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        // Arrays of this function do not overlap, so far as the compiler knows: it makes vectors of their loops.
+        let velocity = self.velocity;
+        let x = *x;
+        let mut force = [[0.0; S]; N];
+        let mut momentum = [[0.0; S]; N];
+        for i in 0..S {
+            let point = self.system.point(self.time(i), &stage(&x, i), &stage(&velocity, i));
+            set(&mut force, i, &point.force);
+            set(&mut momentum, i, &point.momentum);
+        }
+        self.evaluated = velocity;
+        self.force = force;
+        self.missing(&momentum)
+    }
+
+    /// The same, and the inverse of the mass matrix of each stage.
+    #[inline(always)]
+    fn evaluate_with_masses(&mut self, x: &Stages<N, S>) -> (Stages<N, S>, [Stages<N, S>; N]) {
+        let velocity = self.velocity;
+        let x = *x;
+        let mut force = [[0.0; S]; N];
+        let mut momentum = [[0.0; S]; N];
+        let mut inverse = [[[0.0; S]; N]; N];
+        for i in 0..S {
+            let point = self.system.point(self.time(i), &stage(&x, i), &stage(&velocity, i));
+            set(&mut force, i, &point.force);
+            set(&mut momentum, i, &point.momentum);
+            let columns = point.mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
+            for k in 0..N {
+                for l in 0..N {
+                    inverse[k][l][i] = columns[(k, l)].to_f64();
+                }
+            }
+        }
+        self.evaluated = velocity;
+        self.force = force;
+        (self.missing(&momentum), inverse)
+    }
+
+    /// Adds corrections to the velocities.
+    #[inline(always)]
+    pub(super) fn correct(&mut self, correction: &Stages<N, S>) {
+        for k in 0..N {
+            for i in 0..S {
+                self.velocity[k][i] += correction[k][i];
+            }
+        }
+    }
+
+    /// A sweep with the constant mass matrix.
+    #[inline(always)]
+    fn sweep_constant(&mut self, mass: Y::Mass, x: &Stages<N, S>) {
+        let missing = self.evaluate(x);
+        let mut correction = [[0.0; S]; N];
+        for i in 0..S {
+            let solved = mass.solve_unchecked(&stage::<N, S, T>(&missing, i));
+            set(&mut correction, i, &solved);
+        }
+        self.correct(&correction);
+    }
+
+    /// A sweep with the mass matrix of each stage, whose inverse waits for the momenta of all stages.
+    #[inline(always)]
+    fn sweep_varying(&mut self, x: &Stages<N, S>) {
+        let (missing, inverse) = self.evaluate_with_masses(x);
+        for k in 0..N {
+            for l in 0..N {
+                for i in 0..S {
+                    self.velocity[k][i] = multiply_add::<FUSED>(inverse[k][l][i], missing[l][i], self.velocity[k][i]);
+                }
+            }
+        }
+    }
+}
+
+impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for General<'_, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    const PATIENCE: u32 = 5;
+
+    #[inline(always)]
+    fn start(&self) -> Stages<N, S> {
+        self.positions()
+    }
+
+    #[inline(always)]
+    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        match self.mass {
+            Some(mass) if Y::CONSTANT_MASS => self.sweep_constant(mass, x),
+            _ => self.sweep_varying(x),
+        }
+        self.positions()
+    }
+
+    #[inline(always)]
+    fn increment(&self) -> Increment<N> {
+        let b = const { &Tableau::<S>::VALUES.b };
+        let weights = weights::<S>(self.h);
+        let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
+        for k in 0..N {
+            for i in 0..S {
+                let (moved, gained) = (&mut increment.velocity[k], &mut increment.momentum[k]);
+                *moved = multiply_add::<FUSED>(b[i], self.evaluated[k][i], *moved);
+                *gained = multiply_add::<FUSED>(weights[i], self.force[k][i], *gained);
+            }
+        }
+        increment
+    }
+
+    #[inline(always)]
+    fn guess(&self) -> Stages<N, S> {
+        self.velocity
+    }
+
+    #[inline(always)]
+    fn velocities(&self) -> Stages<N, S> {
+        self.evaluated
+    }
+}

@@ -1,0 +1,359 @@
+//! Fixed steps of order 2S: Galerkin variational integrators at the S Gauss points.
+//!
+//! In: a system, a state, the step h (negative: backwards in time), and the number of stages S, 1 to 16. Out: an iterator of states.
+//! With the tableau a, b, c of Gauss collocation and the stages `T_i = t0 + c_i h`, a step solves
+//!
+//! ```text
+//! Q_i = q0 + h Σ a_ij V_j        L_v(T_i, Q_i, V_i) = p0 + h Σ a_ij (L_q + f)_j
+//! q1  = q0 + h Σ b_i V_i         p1 = p0 + h Σ b_i (L_q + f)_i        E1 = Σ b_i En_i − h Σ b_i c_i (L_t − f·v)_i
+//! ```
+//!
+//! En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`: symplectic where no force
+//! acts, time-symmetric, and momenta of cyclic coordinates are kept bit for bit. S = 1 is the midpoint rule
+//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2).
+//!
+//! | file | part of a step |
+//! |---|---|
+//! | `tableau` | the coefficients, computed by the compiler in twice the precision (`pair`) |
+//! | `stages` | numbers of all stages side by side |
+//! | `separable`, `general` | the equations of the stages: forces of the position alone, and any system |
+//! | `sweep` | the solution, by sweeps over the stages until they no longer move |
+//!
+//! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor. AFTER AN ERROR the integrator
+//! holds the last good state and keeps returning that error.
+
+// The index is that of several arrays, of which a vector register holds neighbours.
+#![allow(clippy::needless_range_loop)]
+
+mod general;
+mod newton;
+mod pair;
+mod rounding;
+mod separable;
+mod stages;
+mod sweep;
+mod tableau;
+
+use crate::checkpoint;
+use crate::collocation::Collocation;
+use vi_dispatch::{Instructions, Loop};
+use crate::error::StepError;
+use crate::fixed_step::check_step;
+use crate::node::Node;
+use crate::real::{Lane, Real, Rounded};
+use crate::state::State;
+use crate::stepping::{Convertible, FixedStepping};
+use general::General;
+use nalgebra::SMatrix;
+use newton::{Newton, Stiff};
+use separable::Separable;
+use stages::{Stages, extrapolated, stage};
+use sweep::{Convergence, Equations, Increment, Sweeps};
+use tableau::Tableau;
+
+/// Fixed steps of order 2 STAGES; see the [module](self).
+#[derive(Clone, Debug)]
+pub struct Gauss<S, const N: usize, const STAGES: usize> {
+    system: S,
+    instructions: Instructions,
+    run: Run<N, STAGES>,
+    /// Made where the first step needs it.
+    newton: Option<Box<Newton<N, STAGES>>>,
+    failure: Option<StepError>,
+}
+
+/// Everything that a run of [`Gauss`] carries, to be stored and resumed bit for bit.
+pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Run<N, STAGES>>;
+
+/// What a run carries from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Run<const N: usize, const S: usize> {
+    node: Node<N>,
+    /// The node before the last step.
+    before: Node<N>,
+    h: f64,
+    /// Velocities at the stages of the last step, forces there of a separable system: a column a coordinate. Before the first
+    /// step those of the node.
+    stages: SMatrix<f64, S, N>,
+    convergence: Convergence,
+    begun: bool,
+    /// Steps that are solved by Newton's iteration before sweeps are tried again, and how many that were the last time.
+    stiff: u32,
+    patience: u32,
+}
+
+impl<S, const N: usize, const STAGES: usize> Gauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// The integrator of `system` from `state` with the step `h`, in units of time.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a state,
+    /// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to its momenta.
+    pub fn new(system: S, state: State<N>, h: f64) -> Result<Self, StepError> {
+        check_step(h)?;
+        let v = state.velocity(&system)?;
+        let force = system.point(state.t, &state.q, &v).force;
+        let start = if <S as Collocation<N>>::SEPARABLE { force } else { v };
+        let stages = SMatrix::from_fn(|_, k| start[k]);
+        let node = Node::new(state, 0.0);
+        let run =
+            Run { node, before: node, h, stages, convergence: Convergence::NONE, begun: false, stiff: 0, patience: 1 };
+        Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
+    }
+
+    /// Everything that the run carries, and of which system with which parameters. Allocates.
+    pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
+        checkpoint::Checkpoint::of(&self.system, self.run)
+    }
+
+    /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.
+    ///
+    /// # Errors
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
+    /// [`StepError::InvalidInput`] for one that no run can have left.
+    pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
+        let run = checkpoint.run_of(&system)?;
+        check_step(run.h)?;
+        let t = if run.node.t.is_finite() { run.node.t } else { 0.0 };
+        run.node.check_finite(t)?;
+        run.before.check_finite(t)?;
+        if !run.stages.iter().all(|entry| entry.is_finite()) {
+            return Err(StepError::NonFinite { t, quantity: "last stages", expression: None });
+        }
+        Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
+    }
+
+    /// Takes one step and returns the state reached.
+    ///
+    /// # Errors
+    /// [`StepError::StagesUnsettled`] where the stages do not come to rest: h is too long for the fastest motion of the system;
+    /// [`StepError::NonFinite`]. The same error again after an error.
+    pub fn step(&mut self) -> Result<State<N>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        match self.solve() {
+            Ok(run) => self.run = run,
+            Err(failure) => {
+                self.failure = Some(failure);
+                return Err(failure);
+            }
+        }
+        Ok(self.run.node.state())
+    }
+
+    /// The run after the next step.
+    fn solve(&mut self) -> Result<Run<N, STAGES>, StepError> {
+        if self.run.stiff == 0 {
+            let solved = self.instructions.run(Solve { system: &self.system, run: &self.run });
+            let run = self.run.after(&solved);
+            if solved.is_at_floor() && run.node.is_finite() {
+                return Ok(run);
+            }
+        }
+        self.solve_with_care()
+    }
+
+    /// The run after a step that sweeps by the instructions of the processor do not solve at once.
+    #[cold]
+    fn solve_with_care(&mut self) -> Result<Run<N, STAGES>, StepError> {
+        if self.run.stiff == 0 {
+            // In plain numbers, whose sines and cosines know every angle.
+            let solved = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
+            let run = self.run.after(&solved);
+            if run.node.is_finite() && self.is_solved(&solved) {
+                return Ok(run);
+            }
+        }
+        let solved = self.solve_stiff();
+        let run = self.run.after_stiff(&solved);
+        if run.node.is_finite() && self.is_solved(&solved) {
+            return Ok(run);
+        }
+        let lost = StepError::NonFinite { t: self.run.node.t, quantity: "force at a stage", expression: None };
+        let v = self.run.node.state().velocity(&self.system)?;
+        let explained = lost.explained(&self.system, &self.run.node, self.run.h, &v);
+        if let StepError::NonFinite { expression: Some(_), .. } = explained {
+            return Err(explained);
+        }
+        let Convergence { sweeps, change, contraction } = solved.sweeps.convergence;
+        let stiffness = self.newton.as_ref().map_or(f64::NAN, |newton| newton.stiffness());
+        let (t, h) = (self.run.node.t, self.run.h);
+        Err(StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness })
+    }
+
+    /// The step by simplified Newton iterations about its middle.
+    fn solve_stiff(&mut self) -> Solved<N, STAGES> {
+        let Self { system, run, newton, .. } = self;
+        let newton = newton.get_or_insert_with(|| Box::new(Newton::new(run.h)));
+        let equations = general(system, &run.node, run.h, run.guess::<false>());
+        let middle = STAGES / 2;
+        let q = stage(&equations.start(), middle);
+        let v = stage(&equations.guess(), middle);
+        newton.linearize(system, run.node.t + 0.5 * run.h, &q, &v);
+        finished(Stiff::new(equations, newton), run)
+    }
+
+    /// Whether what the stages leave of their equations is rounding.
+    fn is_solved(&self, solved: &Solved<N, STAGES>) -> bool {
+        let Solved { sweeps, velocities, .. } = solved;
+        let system = self.system.convert::<Rounded>();
+        solved.is_at_floor()
+            || sweeps.is_within(&rounding::bounds(&system, &self.run.node, self.run.h, &sweeps.before, velocities))
+    }
+
+    /// The state reached last.
+    pub fn state(&self) -> State<N> {
+        self.run.node.state()
+    }
+
+    /// The system.
+    pub fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// The step, in units of time.
+    pub fn h(&self) -> f64 {
+        self.run.h
+    }
+
+    /// What the stages of the last step leave of their equations, in roundings of the coordinates. Zero before the first step.
+    pub fn residual(&self) -> f64 {
+        self.run.convergence.change
+    }
+
+    /// Discrete energy of the last interval, `E1 = Σ b_i En_i + h Σ b_i c_i (f·v − L_t)_i = −D3 L_d − g_d⁺`, in the units of L; `None`
+    /// before the first step, and where it is not finite: forces may be finite where L is not.
+    pub fn discrete_energy(&self) -> Option<f64> {
+        let Self { system, run, .. } = self;
+        let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
+        let equations = general(system, &run.before, run.h, run.stages.data.0);
+        let x = equations.start();
+        let velocities = equations.guess();
+        let mut energy = 0.0;
+        for i in 0..STAGES {
+            let t = run.before.t + run.h * c[i];
+            let q = stage(&x, i);
+            let v = stage(&velocities, i);
+            energy += b[i] * (system.energy(t, &q, &v) + run.h * c[i] * system.power(t, &q, &v));
+        }
+        (run.begun && energy.is_finite()).then_some(energy)
+    }
+
+    /// Sweeps over the stages that the last step took.
+    pub fn iterations(&self) -> u32 {
+        self.run.convergence.sweeps
+    }
+}
+
+impl<const N: usize, const S: usize> Run<N, S> {
+    /// Velocities at the stages of the next step, or forces there: the polynomials of the last one, further on.
+    #[inline(always)]
+    fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
+        if self.begun { extrapolated::<N, S, FUSED>(&self.stages.data.0) } else { self.stages.data.0 }
+    }
+
+    /// The run after a step.
+    #[inline(always)]
+    fn after(&self, solved: &Solved<N, S>) -> Self {
+        let mut node = self.node;
+        node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
+        let convergence = solved.sweeps.convergence;
+        let stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
+        Self { node, before: self.node, stages, convergence, begun: true, patience: 1, ..*self }
+    }
+
+    /// The run after a step by Newton's iteration: sweeps are tried again after twice as many of them as the last time.
+    fn after_stiff(&self, solved: &Solved<N, S>) -> Self {
+        let run = self.after(solved);
+        match self.stiff.checked_sub(1) {
+            Some(stiff) => Self { stiff, patience: self.patience, ..run },
+            None => Self { stiff: self.patience, patience: MOST.min(2 * self.patience), ..run },
+        }
+    }
+}
+
+/// Steps by Newton's iteration after which sweeps are tried again, at most.
+const MOST: u32 = 64;
+
+/// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
+fn general<'a, Y, const N: usize, const S: usize>(
+    system: &'a Y,
+    node: &'a Node<N>,
+    h: f64,
+    stages: Stages<N, S>,
+) -> General<'a, f64, Y, N, S, false>
+where
+    Y: Collocation<N>,
+{
+    if Y::SEPARABLE { General::with_forces(system, node, h, stages) } else { General::new(system, node, h, stages) }
+}
+
+/// A solved step.
+struct Solved<const N: usize, const S: usize> {
+    increment: Increment<N>,
+    stages: Stages<N, S>,
+    velocities: Stages<N, S>,
+    sweeps: Sweeps<N, S>,
+}
+
+impl<const N: usize, const S: usize> Solved<N, S> {
+    /// Whether the stages are at the rounding of their positions.
+    fn is_at_floor(&self) -> bool {
+        self.sweeps.convergence.is_at_floor()
+    }
+}
+
+/// The solution of the next step of a run, by the instructions of the processor.
+struct Solve<'a, Y, const N: usize, const S: usize> {
+    system: &'a Y,
+    run: &'a Run<N, S>,
+}
+
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
+    type Output = Solved<N, S>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Solved<N, S> {
+        let system = self.system.convert::<Lane<FUSED>>();
+        solved::<Lane<FUSED>, _, N, S, FUSED>(&system, self.run)
+    }
+}
+
+/// The next step of a run, the equations evaluated in the numbers T.
+#[inline(always)]
+fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(system: &Y, run: &Run<N, S>) -> Solved<N, S>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    let guess = run.guess::<FUSED>();
+    if Y::SEPARABLE {
+        let equations = Separable::<T, Y, N, S, FUSED>::new(system, &run.node, run.h, guess);
+        finished(equations, run)
+    } else {
+        let equations = General::<T, Y, N, S, FUSED>::new(system, &run.node, run.h, guess);
+        finished(equations, run)
+    }
+}
+
+#[inline(always)]
+fn finished<const N: usize, const S: usize>(mut equations: impl Equations<N, S>, run: &Run<N, S>) -> Solved<N, S> {
+    let sweeps = sweep::solve(&mut equations, &run.node.q, &run.convergence);
+    Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
+}
+
+impl<S, const N: usize, const STAGES: usize> Iterator for Gauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    type Item = Result<State<N>, StepError>;
+
+    /// The next step; never `None`. After an error, the same error.
+    fn next(&mut self) -> Option<Self::Item> {
+        Some(self.step())
+    }
+}

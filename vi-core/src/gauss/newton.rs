@@ -1,0 +1,230 @@
+//! Simplified Newton iterations on the equations of the stages, for steps where sweeps do not contract.
+//!
+//! In: the equations linearized in the middle of a step, and what velocities leave of `L_v(Q_i, V_i) = p0 + h Σ a_ij F_j`. Out: the
+//! correction of the velocities. With `C = ∂L_v/∂q, M = ∂L_v/∂v, K = ∂F/∂q, B = ∂F/∂v` it solves
+//!
+//! ```text
+//! δQ_i = h Σ_j a_ij δV_j        M δV_i + C δQ_i − h Σ_j a_ij (K δQ_j + B δV_j) = missing_i
+//! ```
+//!
+//! In the basis of Legendre's polynomials A is tridiagonal: 1/2 at its corner, `±ξ_k` beside the diagonal, `ξ_k = 1/(2 √(4k² − 1))`
+//! (Hairer and Wanner, *Solving Ordinary Differential Equations II*, IV.5). So S blocks of 2N × 2N follow from each other,
+//!
+//! ```text
+//! E = [I 0; C M]        G = [0 I; K B]        D_0 = E − (h/2) G        D_k = E + h² ξ_k² G D_{k−1}⁻¹ G
+//! ```
+//!
+//! where D_k⁻¹ exists for whatever oscillates or is damped, however stiff. It allocates once, when a run meets its first stiff step.
+
+use super::general::General;
+use super::stages::Stages;
+use super::sweep::{Equations, Increment};
+use super::tableau::Tableau;
+use crate::check::Dual;
+use crate::collocation::Collocation;
+use crate::linear::Pivoted;
+use crate::stepping::Convertible;
+use nalgebra::{DMatrix, DVector, SVector};
+
+/// The linearized equations of a step, factored.
+#[derive(Clone, Debug)]
+pub(super) struct Newton<const N: usize, const S: usize> {
+    h: f64,
+    /// E, and G.
+    left: DMatrix<f64>,
+    right: DMatrix<f64>,
+    /// The factors of D_k.
+    factors: Vec<Pivoted>,
+    /// Values of the normalized Legendre polynomials k at the nodes i: `basis[k][i]`.
+    basis: [[f64; S]; S],
+    /// One vector of 2N a polynomial, and room for a matrix.
+    modes: Vec<DVector<f64>>,
+    room: DMatrix<f64>,
+}
+
+impl<const N: usize, const S: usize> Newton<N, S> {
+    /// Room for the equations of steps of length h.
+    pub(super) fn new(h: f64) -> Self {
+        let square = DMatrix::zeros(2 * N, 2 * N);
+        Self {
+            h,
+            left: square.clone(),
+            right: square.clone(),
+            factors: vec![Pivoted::new(2 * N); S],
+            basis: basis(),
+            modes: vec![DVector::zeros(2 * N); S],
+            room: square,
+        }
+    }
+
+    /// Linearizes the equations of a system at the point (t, q, v).
+    pub(super) fn linearize<Y: Convertible<N>>(
+        &mut self,
+        system: &Y,
+        t: f64,
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) {
+        let system = system.convert::<Dual<f64>>();
+        let time = Dual::fixed(t);
+        for column in 0..2 * N {
+            let mut q = q.map(Dual::fixed);
+            let mut v = v.map(Dual::fixed);
+            let moved = if column < N { &mut q[column] } else { &mut v[column - N] };
+            moved.slope = 1.0;
+            let point = system.point(time, &q, &v);
+            for row in 0..N {
+                let unit = if row == column { 1.0 } else { 0.0 };
+                self.left[(row, column)] = unit;
+                self.right[(row, column)] = if row + N == column { 1.0 } else { 0.0 };
+                self.left[(row + N, column)] = point.momentum[row].slope;
+                self.right[(row + N, column)] = point.force[row].slope;
+            }
+        }
+        for k in 0..S {
+            self.room.copy_from(&self.right);
+            match k.checked_sub(1) {
+                None => {
+                    self.room *= -0.5 * self.h;
+                    self.room += &self.left;
+                }
+                Some(before) => {
+                    let scale = (self.h * xi(k)).powi(2);
+                    for mut column in self.room.column_iter_mut() {
+                        self.factors[before].solve(column.as_mut_slice());
+                    }
+                    let product = &self.right * &self.room;
+                    self.room.copy_from(&self.left);
+                    self.room += product * scale;
+                }
+            }
+            self.factors[k].factor(&self.room);
+        }
+    }
+
+    /// The corrections of the velocities that make up for what is missing in the momenta.
+    pub(super) fn correction(&mut self, missing: &Stages<N, S>) -> Stages<N, S> {
+        let b = const { &Tableau::<S>::VALUES.b };
+        for k in 0..S {
+            self.modes[k].fill(0.0);
+            for row in 0..N {
+                for i in 0..S {
+                    self.modes[k][row + N] += b[i] * self.basis[k][i] * missing[row][i];
+                }
+            }
+        }
+        self.solve();
+        let mut correction = [[0.0; S]; N];
+        for k in 0..S {
+            for row in 0..N {
+                for i in 0..S {
+                    correction[row][i] += self.basis[k][i] * self.modes[k][row + N];
+                }
+            }
+        }
+        correction
+    }
+
+    /// The block tridiagonal system, in place: forwards, then backwards.
+    fn solve(&mut self) {
+        for k in 0..S {
+            let (solved, rest) = self.modes.split_at_mut(k);
+            if let Some(before) = solved.last() {
+                rest[0].gemv(self.h * xi(k), &self.right, before, 1.0);
+            }
+            self.factors[k].solve(rest[0].as_mut_slice());
+        }
+        for k in (1..S).rev() {
+            // The row above waits for `h ξ_k D⁻¹ G` times this one.
+            let (above, below) = self.modes.split_at_mut(k);
+            let mut column = self.room.column_mut(0);
+            column.gemv(self.h * xi(k), &self.right, &below[0], 0.0);
+            self.factors[k - 1].solve(column.as_mut_slice());
+            above[k - 1] -= &column;
+        }
+    }
+
+    /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector.
+    pub(super) fn stiffness(&self) -> f64 {
+        let mut left = Pivoted::new(2 * N);
+        left.factor(&self.left);
+        let mut vector = DVector::from_element(2 * N, 1.0);
+        let mut length = 0.0;
+        for _ in 0..POWERS {
+            let norm = vector.norm();
+            vector /= norm;
+            vector = &self.right * &vector;
+            left.solve(vector.as_mut_slice());
+            length += vector.norm().ln();
+        }
+        self.h.abs() * (length / f64::from(POWERS)).exp()
+    }
+}
+
+/// Multiplications that estimate the stiffness.
+const POWERS: u32 = 16;
+
+/// `ξ_k = 1/(2 √(4k² − 1))`.
+#[allow(clippy::cast_precision_loss)]
+fn xi(k: usize) -> f64 {
+    0.5 / ((4 * k * k) as f64 - 1.0).sqrt()
+}
+
+/// The polynomials `√(2k + 1) P_k(2 c − 1)` at the nodes: orthonormal under the weights.
+#[allow(clippy::cast_precision_loss)]
+fn basis<const S: usize>() -> [[f64; S]; S] {
+    let c = const { &Tableau::<S>::VALUES.c };
+    let mut basis = [[1.0; S]; S];
+    for i in 0..S {
+        let x = 2.0 * c[i] - 1.0;
+        let mut last = [1.0, x];
+        for k in 1..S {
+            let degree = k as f64;
+            basis[k][i] = last[1] * (2.0 * degree + 1.0).sqrt();
+            let next = ((2.0 * degree + 1.0) * x * last[1] - degree * last[0]) / (degree + 1.0);
+            last = [last[1], next];
+        }
+    }
+    basis
+}
+
+/// The equations of the stages, corrected by simplified Newton iterations.
+pub(super) struct Stiff<'a, Y: Collocation<N>, const N: usize, const S: usize> {
+    equations: General<'a, f64, Y, N, S, false>,
+    newton: &'a mut Newton<N, S>,
+}
+
+impl<'a, Y: Collocation<N>, const N: usize, const S: usize> Stiff<'a, Y, N, S> {
+    /// Equations with their linearization.
+    pub(super) fn new(equations: General<'a, f64, Y, N, S, false>, newton: &'a mut Newton<N, S>) -> Self {
+        Self { equations, newton }
+    }
+}
+
+impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stiff<'_, Y, N, S> {
+    // There is no other way left.
+    const PATIENCE: u32 = u32::MAX;
+
+    fn start(&self) -> Stages<N, S> {
+        self.equations.start()
+    }
+
+    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        let missing = self.equations.evaluate(x);
+        let correction = self.newton.correction(&missing);
+        self.equations.correct(&correction);
+        self.equations.start()
+    }
+
+    fn increment(&self) -> Increment<N> {
+        self.equations.increment()
+    }
+
+    fn guess(&self) -> Stages<N, S> {
+        if Y::SEPARABLE { self.equations.forces() } else { self.equations.guess() }
+    }
+
+    fn velocities(&self) -> Stages<N, S> {
+        self.equations.velocities()
+    }
+}

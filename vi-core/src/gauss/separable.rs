@@ -1,0 +1,127 @@
+//! The stages of a system whose forces depend on its position alone.
+//!
+//! In: `q'' = M⁻¹ F(t, q)`, M constant. Out: forces at the stages, with `I_j = h b_j F_j` and the coefficients of the tableau
+//!
+//! ```text
+//! Q_i = q0 + h M⁻¹ (c_i p0 + Σ_j second_ij I_j)
+//! q1  = q0 + h M⁻¹ (p0 + Σ_j (1 − c_j) I_j)                p1 = p0 + Σ_j I_j
+//! ```
+//!
+//! Half of the products of the general equations, and sweeps that contract twice as fast.
+
+use super::stages::{Stages, multiply_add, product, scaled, set, stage, weights};
+use super::sweep::{Equations, Increment};
+use super::tableau::Tableau;
+use crate::collocation::Collocation;
+use crate::linear::Matrix;
+use crate::node::Node;
+use crate::real::Real;
+use nalgebra::SVector;
+
+/// The equations of a step; see the [module](self).
+pub(super) struct Separable<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
+where
+    T: Real,
+{
+    system: &'a Y,
+    node: &'a Node<N>,
+    h: f64,
+    mass: Y::Mass,
+    /// `c_i p0` at the stages.
+    drift: Stages<N, S>,
+    force: Stages<N, S>,
+}
+
+impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> Separable<'a, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    /// The equations of the step of length h from `node`, with a guess of the forces at its stages.
+    #[inline(always)]
+    pub(super) fn new(system: &'a Y, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
+        let c = const { &Tableau::<S>::VALUES.c };
+        let mut drift = [[0.0; S]; N];
+        for k in 0..N {
+            let p0 = node.p[k] + node.p_low[k];
+            drift[k] = scaled(c, &[p0; S]);
+        }
+        let origin = SVector::zeros();
+        let mass = system.point(T::real(node.t), &node.q.map(T::real), &origin).mass;
+        Self { system, node, h, mass, drift, force }
+    }
+
+    /// What the forces at hand move.
+    #[inline(always)]
+    fn positions(&self) -> Stages<N, S> {
+        let second = const { &Tableau::<S>::VALUES.second };
+        let weights = weights(self.h);
+        let mut momenta = [[0.0; S]; N];
+        for k in 0..N {
+            momenta[k] = product::<S, FUSED>(second, &scaled(&weights, &self.force[k]), &self.drift[k]);
+        }
+        let mut x = [[0.0; S]; N];
+        for i in 0..S {
+            let velocity = self.mass.solve_unchecked(&stage::<N, S, T>(&momenta, i));
+            for k in 0..N {
+                let displacement = multiply_add::<FUSED>(self.h, velocity[k].to_f64(), self.node.q_low[k]);
+                x[k][i] = self.node.q[k] + displacement;
+            }
+        }
+        x
+    }
+}
+
+impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Separable<'_, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    const PATIENCE: u32 = 5;
+
+    #[inline(always)]
+    fn start(&self) -> Stages<N, S> {
+        self.positions()
+    }
+
+    #[inline(always)]
+    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        let c = const { &Tableau::<S>::VALUES.c };
+        let rest = SVector::zeros();
+        for i in 0..S {
+            let t = T::real(self.node.t + multiply_add::<FUSED>(self.h, c[i], self.node.t_low));
+            let point = self.system.point(t, &stage(x, i), &rest);
+            set(&mut self.force, i, &point.force);
+        }
+        self.positions()
+    }
+
+    #[inline(always)]
+    fn increment(&self) -> Increment<N> {
+        let c = const { &Tableau::<S>::VALUES.c };
+        let weights = weights::<S>(self.h);
+        let mut momentum = SVector::zeros();
+        let mut mean = SVector::zeros();
+        for k in 0..N {
+            let impulses = scaled(&weights, &self.force[k]);
+            let mut ahead = self.node.p_low[k];
+            for i in 0..S {
+                momentum[k] += impulses[i];
+                ahead = multiply_add::<FUSED>(1.0 - c[i], impulses[i], ahead);
+            }
+            mean[k] = T::real(self.node.p[k] + ahead);
+        }
+        let velocity = self.mass.solve_unchecked(&mean);
+        Increment { velocity: velocity.map(T::to_f64), momentum }
+    }
+
+    #[inline(always)]
+    fn guess(&self) -> Stages<N, S> {
+        self.force
+    }
+
+    #[inline(always)]
+    fn velocities(&self) -> Stages<N, S> {
+        [[0.0; S]; N]
+    }
+}

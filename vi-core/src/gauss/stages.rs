@@ -1,0 +1,129 @@
+//! Numbers of the S stages of a step, side by side.
+//!
+//! In and out: N rows, one a coordinate, of S numbers, one a stage. A loop over the stages of a row, or over all stages of a point,
+//! becomes vector instructions.
+
+use super::tableau::Tableau;
+use crate::real::Real;
+use nalgebra::SVector;
+
+/// N vectors of S stages.
+pub(super) type Stages<const N: usize, const S: usize> = [[f64; S]; N];
+
+/// The vector of one stage.
+#[inline(always)]
+pub(super) fn stage<const N: usize, const S: usize, T: Real>(of: &Stages<N, S>, i: usize) -> SVector<T, N> {
+    let mut vector = [T::zero(); N];
+    for k in 0..N {
+        vector[k] = T::real(of[k][i]);
+    }
+    vector.into()
+}
+
+/// Sets the vector of one stage.
+#[inline(always)]
+pub(super) fn set<const N: usize, const S: usize, T: Real>(
+    stages: &mut Stages<N, S>,
+    i: usize,
+    vector: &SVector<T, N>,
+) {
+    for k in 0..N {
+        stages[k][i] = vector[k].to_f64();
+    }
+}
+
+/// `a b + c`, rounded once where the processor can.
+#[inline(always)]
+pub(super) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// `base_i + Σ_j matrix_ij x_j` at the stages i. In two sums, since each addition waits for the one before.
+#[inline(always)]
+pub(super) fn product<const S: usize, const FUSED: bool>(
+    matrix: &[[f64; S]; S],
+    x: &[f64; S],
+    base: &[f64; S],
+) -> [f64; S] {
+    let mut even = *base;
+    let mut odd = [0.0; S];
+    for j in 0..S {
+        let sum = if j % 2 == 0 { &mut even } else { &mut odd };
+        for i in 0..S {
+            sum[i] = multiply_add::<FUSED>(matrix[j][i], x[j], sum[i]);
+        }
+    }
+    for i in 0..S {
+        even[i] += odd[i];
+    }
+    even
+}
+
+/// What the polynomials through the stages of a step are at those of the next one.
+#[inline(always)]
+pub(super) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {
+    let next = const { &Tableau::<S>::VALUES.next };
+    let mut stages = [[0.0; S]; N];
+    for k in 0..N {
+        stages[k] = product::<S, FUSED>(next, &of[k], &[0.0; S]);
+    }
+    stages
+}
+
+/// `h b_j` of every stage.
+#[inline(always)]
+pub(super) fn weights<const S: usize>(h: f64) -> [f64; S] {
+    let b = const { &Tableau::<S>::VALUES.b };
+    let mut weights = [0.0; S];
+    for j in 0..S {
+        weights[j] = h * b[j];
+    }
+    weights
+}
+
+/// `weights_j x_j` of every stage.
+#[inline(always)]
+pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; S] {
+    let mut scaled = [0.0; S];
+    for j in 0..S {
+        scaled[j] = weights[j] * x[j];
+    }
+    scaled
+}
+
+/// The largest change of a coordinate from `before` to `after`, in roundings of the largest |q| on its way: those of the stages and q0.
+#[inline(always)]
+pub(super) fn change<const N: usize, const S: usize>(
+    before: &Stages<N, S>,
+    after: &Stages<N, S>,
+    q0: &SVector<f64, N>,
+) -> f64 {
+    let mut largest = 0.0;
+    for k in 0..N {
+        let mut moved = [0.0; S];
+        let mut length = [0.0; S];
+        for i in 0..S {
+            moved[i] = (after[k][i] - before[k][i]).abs();
+            length[i] = after[k][i].abs();
+        }
+        let scale = larger(maximum(&length), q0[k].abs()) + f64::MIN_POSITIVE;
+        largest = larger(maximum(&moved) / (scale * f64::EPSILON), largest);
+    }
+    largest
+}
+
+/// The larger of two numbers. Where one is not a number the sums of the step are not either, and the node is refused.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The largest of S numbers that are not negative.
+#[inline(always)]
+fn maximum<const S: usize>(of: &[f64; S]) -> f64 {
+    let mut largest = 0.0;
+    for i in 0..S {
+        largest = larger(of[i], largest);
+    }
+    largest
+}

@@ -1,0 +1,123 @@
+//! Sweeps over the stages of a step until they no longer move.
+//!
+//! In: the equations of the stages, and positions to start from. Out: stages that satisfy them to rounding, measured:
+//!
+//! ```text
+//! sweep      x' = what the equations give at the forces, masses and momenta of x
+//! accept x   where |x' − x| ≤ 4 ε |q|, the largest on the way of each coordinate, and the change before foretold no further one
+//! ```
+//!
+//! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
+//! A step is not ended at the first change that is small enough, but where the next one is negligible: an error of the stages that is
+//! left after every step has a sign, and the energy would drift by it.
+
+use super::stages::{Stages, change};
+use nalgebra::SVector;
+
+/// Sweeps that are tried.
+const SWEEPS: u32 = 60;
+/// The contraction of slow sweeps.
+const SLOW: f64 = 0.5;
+/// Roundings of q below which the contraction says nothing.
+const NOISE: f64 = 1e3;
+/// Changes that are no smaller than the one before, after which no further sweep comes closer.
+const STALLS: u32 = 3;
+/// Roundings of q by which the stages may still move.
+const FLOOR: f64 = 4.0;
+/// Roundings of q that the next change may have for this one to be the last.
+const NEGLIGIBLE: f64 = 1.0 / 64.0;
+
+/// The equations of the stages of a step.
+pub(super) trait Equations<const N: usize, const S: usize> {
+    /// Sweeps after which slow ones are given up.
+    const PATIENCE: u32;
+    /// The positions that the guess of the step leads to.
+    fn start(&self) -> Stages<N, S>;
+    /// Evaluates the equations at the positions x, and returns those that follow from it.
+    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S>;
+    /// What moves the node, by the evaluation of the last sweep.
+    fn increment(&self) -> Increment<N>;
+    /// What the stages are found from: what is extrapolated to the next step.
+    fn guess(&self) -> Stages<N, S>;
+    /// The velocities at which the last sweep evaluated; zeros where nothing depends on them.
+    fn velocities(&self) -> Stages<N, S>;
+}
+
+/// What moves a step from its node to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Increment<const N: usize> {
+    /// `(q1 − q0)/h`.
+    pub(super) velocity: SVector<f64, N>,
+    /// `p1 − p0`.
+    pub(super) momentum: SVector<f64, N>,
+}
+
+/// How sweeps ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Convergence {
+    /// How many there were.
+    pub(super) sweeps: u32,
+    /// The last change, in roundings of q.
+    pub(super) change: f64,
+    /// How many times smaller a change is than the one before.
+    pub(super) contraction: f64,
+}
+
+impl Convergence {
+    /// Before the first step.
+    pub(super) const NONE: Self = Self { sweeps: 0, change: 0.0, contraction: 1.0 };
+
+    /// Whether the stages are at the rounding of their positions.
+    pub(super) fn is_at_floor(&self) -> bool {
+        self.change <= FLOOR
+    }
+}
+
+/// Sweeps until the stages no longer move, or no longer come closer. `before` is how the step before ended.
+#[inline(always)]
+pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
+    equations: &mut E,
+    q0: &SVector<f64, N>,
+    before: &Convergence,
+) -> Sweeps<N, S> {
+    let mut x = equations.start();
+    let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
+    let mut is_last = false;
+    let mut stalls = 0;
+    loop {
+        let y = equations.sweep(&x);
+        let change = change(&x, &y, q0);
+        if state.sweeps > 0 {
+            state.contraction = change / state.change;
+        }
+        stalls += u32::from(change >= state.change);
+        state.change = change;
+        state.sweeps += 1;
+        let is_solved = change <= FLOOR && (is_last || change == 0.0);
+        let is_slow = state.sweeps >= E::PATIENCE && state.contraction > SLOW && change > NOISE;
+        if is_solved || stalls == STALLS || is_slow || state.sweeps == SWEEPS {
+            return Sweeps { convergence: state, before: x, after: y };
+        }
+        is_last = state.contraction * change <= NEGLIGIBLE;
+        x = y;
+    }
+}
+
+/// The last of the sweeps of a step.
+pub(super) struct Sweeps<const N: usize, const S: usize> {
+    pub(super) convergence: Convergence,
+    /// Positions at which it evaluated.
+    pub(super) before: Stages<N, S>,
+    /// Positions that followed.
+    pub(super) after: Stages<N, S>,
+}
+
+impl<const N: usize, const S: usize> Sweeps<N, S> {
+    /// Whether no coordinate changed by more than so many of its bounds of rounding.
+    pub(super) fn is_within(&self, bounds: &SVector<f64, N>) -> bool {
+        let rows = self.before.iter().zip(&self.after).zip(bounds.iter());
+        rows.flat_map(|((before, after), bound)| before.iter().zip(after).map(move |(a, b)| (a, b, bound)))
+            .all(|(a, b, bound)| (b - a).abs() <= FLOOR * bound)
+    }
+}

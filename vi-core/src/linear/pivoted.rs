@@ -1,0 +1,88 @@
+//! Dense matrices of a size that is known at run time, factored in place.
+//!
+//! In: A of n × n. Out: `P A = L U` with partial pivoting; then x with `A x = b`, not finite where A is singular. Allocates when it is
+//! made, and never again.
+
+use nalgebra::DMatrix;
+
+/// The factors of a matrix; see the [module](self).
+#[derive(Clone, Debug)]
+pub(crate) struct Pivoted {
+    factors: DMatrix<f64>,
+    /// Row that was exchanged with each.
+    rows: Vec<usize>,
+}
+
+impl Pivoted {
+    /// Room for matrices of `size` rows.
+    pub(crate) fn new(size: usize) -> Self {
+        Self { factors: DMatrix::zeros(size, size), rows: vec![0; size] }
+    }
+
+    /// Factors a matrix of the size that there is room for.
+    pub(crate) fn factor(&mut self, matrix: &DMatrix<f64>) {
+        self.factors.copy_from(matrix);
+        let size = self.rows.len();
+        for column in 0..size {
+            let below = self.factors.view((column, column), (size - column, 1));
+            let pivot = column + below.iamax_full().0;
+            self.rows[column] = pivot;
+            self.factors.swap_rows(column, pivot);
+            for row in column + 1..size {
+                let factor = self.factors[(row, column)] / self.factors[(column, column)];
+                self.factors[(row, column)] = factor;
+                for k in column + 1..size {
+                    let eliminated = factor * self.factors[(column, k)];
+                    self.factors[(row, k)] -= eliminated;
+                }
+            }
+        }
+    }
+
+    /// Replaces b by the x with `A x = b`.
+    pub(crate) fn solve(&self, b: &mut [f64]) {
+        for (column, row) in self.rows.iter().enumerate() {
+            b.swap(column, *row);
+        }
+        let size = self.rows.len();
+        for row in 0..size {
+            for column in 0..row {
+                b[row] -= self.factors[(row, column)] * b[column];
+            }
+        }
+        for row in (0..size).rev() {
+            for column in row + 1..size {
+                b[row] -= self.factors[(row, column)] * b[column];
+            }
+            b[row] /= self.factors[(row, row)];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pivoted;
+    use nalgebra::{DMatrix, DVector};
+
+    #[test]
+    fn what_was_multiplied_is_solved_for() {
+        // The first pivot is zero, and the rows are in other units.
+        let matrix = DMatrix::from_row_slice(3, 3, &[0.0, 2.0, 1.0, 3.0, -1.0, 4.0, 500.0, 100.0, -700.0]);
+        let x = DVector::from_row_slice(&[1.0, -2.0, 3.0]);
+        let mut b = &matrix * &x;
+        let mut pivoted = Pivoted::new(3);
+        pivoted.factor(&matrix);
+        pivoted.solve(b.as_mut_slice());
+        // 4.4e-16 was measured.
+        assert!((b - x).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_singular_matrix_solves_nothing() {
+        let mut pivoted = Pivoted::new(2);
+        pivoted.factor(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0]));
+        let mut b = [1.0, 0.0];
+        pivoted.solve(&mut b);
+        assert!(b.iter().all(|entry| !entry.is_finite()));
+    }
+}
