@@ -2,7 +2,8 @@
 //! of two links against the double pendulum, order 2, and the energy of both integrators.
 
 use crate::support::exact::Motion;
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, SVector, State, lagrangian};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, lagrangian};
 use vi_systems::{DoublePendulum, FpuChain, NPendulum};
 
 const N: usize = 16;

@@ -3,7 +3,8 @@
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number, steps, vector};
 use crate::support::slope;
-use vi_core::{Composition, FixedStepping, Scheme, State, StepError};
+use vi_core::stepping::FixedStepping;
+use vi_core::{Composition, Scheme, State, StepError};
 use vi_systems::{DampedOscillator, DoublePendulum, HardDuffing, Kepler, ParametricPendulum, Pendulum};
 
 /// The entries of `composition_…` of one system.

@@ -1,7 +1,8 @@
 //! What each system says of itself: name, coordinates, and what the generator found out about it.
 
 use crate::support::scenes::{self, Scene};
-use vi_core::{Lagrangian, Parameters};
+use vi_core::Lagrangian;
+use vi_core::lagrangian::Parameters;
 use vi_systems::HardDuffing;
 
 /// What is found of a system.

@@ -5,8 +5,11 @@
 
 use crate::support::Sequence;
 use vi_core::check::{self, Dual, EnergyChecked, Place};
+use vi_core::lagrangian::Parameters;
 use vi_core::linear::Matrix;
-use vi_core::{DiscreteLagrangian, EnergyStepping, Interval, Lagrangian, Node, Parameters, SVector};
+use vi_core::node::Node;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector};
 use vi_systems as systems;
 
 /// Draws for each system.

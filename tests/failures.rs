@@ -5,7 +5,8 @@
 
 use crate::support::ending::{self, Ending};
 use crate::support::exact::Motion;
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State, StepError, lagrangian};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, State, StepError, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, HarmonicOscillator, Kepler, ParametricPendulum,
     Pendulum,

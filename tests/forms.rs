@@ -2,11 +2,15 @@
 
 use crate::support;
 use core::any::type_name;
+use vi_core::lagrangian::Flow;
 use vi_core::linear::Matrix;
+use vi_core::nalgebra::SMatrix;
+use vi_core::node::Node;
+use vi_core::stepping::{
+    EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumEquation, MomentumResidual, Rounding,
+};
 use vi_core::{
-    DiscreteLagrangian, EnergyPreserving, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStep, FixedStepping,
-    Flow, Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Rounding, SMatrix, SVector, State, StepError,
-    lagrangian,
+    DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, SVector, State, StepError, lagrangian,
 };
 use vi_systems::FpuChain;
 

@@ -6,7 +6,8 @@ use crate::support::scenes::{self, Scene};
 use crate::support::slope;
 use serde_json::Value;
 use vi_core::collocation::Collocation;
-use vi_core::{Convertible, FixedStep, FixedStepping, Gauss, Lagrangian, State, StepError, gauss, lagrangian};
+use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::{FixedStep, Gauss, Lagrangian, State, StepError, gauss, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum,
 };
@@ -107,7 +108,8 @@ fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longe
             let mut run = Gauss::<_, N, S>::new(scene.system, state, h).expect("a valid start");
             let mut error = 0.0_f64;
             for exact in &exact {
-                let node = run.by_ref().take(count as usize).last().expect("steps").unwrap_or_else(|error| panic!("{error}"));
+                let node =
+                    run.by_ref().take(count as usize).last().expect("steps").unwrap_or_else(|error| panic!("{error}"));
                 let p = scene.system.momentum(exact.t, &exact.q, &exact.v);
                 error = error.max((node.q - exact.q).amax()).max((node.p - p).amax());
             }
@@ -287,8 +289,8 @@ fn the_discrete_energy_oscillates_as_it_should() {
 }
 
 /// The step of S stages on a linear system is a rational function of its matrix: the diagonal Padé approximant of exp.
-fn pade<const S: usize>(matrix: vi_core::SMatrix<f64, 2, 2>) -> vi_core::SMatrix<f64, 2, 2> {
-    let identity = vi_core::SMatrix::<f64, 2, 2>::identity();
+fn pade<const S: usize>(matrix: vi_core::nalgebra::SMatrix<f64, 2, 2>) -> vi_core::nalgebra::SMatrix<f64, 2, 2> {
+    let identity = vi_core::nalgebra::SMatrix::<f64, 2, 2>::identity();
     let (mut above, mut below) = (identity, identity);
     let (mut power, mut coefficient, mut sign) = (identity, 1.0, 1.0);
     for k in 0..S {
@@ -305,7 +307,7 @@ fn pade<const S: usize>(matrix: vi_core::SMatrix<f64, 2, 2>) -> vi_core::SMatrix
 fn linear<const S: usize>(c: f64, h: f64) {
     let (m, k) = (1.2, 3.4);
     let system = DampedOscillator { m, k, c };
-    let step = pade::<S>(vi_core::SMatrix::<f64, 2, 2>::new(0.0, 1.0 / m, -k, -c / m) * h);
+    let step = pade::<S>(vi_core::nalgebra::SMatrix::<f64, 2, 2>::new(0.0, 1.0 / m, -k, -c / m) * h);
     let mut run = Gauss::<_, 1, S>::new(system, State::at(&system, 0.0, [0.8], [0.5]), h).expect("a valid start");
     let mut worst = 0.0_f64;
     for _ in 0..20 {

@@ -6,7 +6,8 @@ use crate::support::reference::{file, number, vector};
 use crate::support::scenes::{self, Scene};
 use core::ops::RangeInclusive;
 use serde_json::Value;
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, State, Step};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, Step};
 use vi_systems::{DampedOscillator, DoubleWell, Kepler};
 
 const MILLION: u32 = 1_000_000;

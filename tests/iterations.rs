@@ -1,7 +1,8 @@
 //! The effort of a step, and that it is the forward one: long runs of every system.
 
 use crate::support::scenes::{Scene, each_system};
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, State};
 
 const STEPS: u32 = 100_000;
 

@@ -8,7 +8,8 @@ use crate::support::exact::Motion;
 use crate::support::reference::{file, number};
 use crate::support::scenes::{Scene, each_system};
 use crate::support::slope;
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, State, StepError};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError};
 use vi_systems::{DoublePendulum, HardDuffing, Kepler, Pendulum};
 
 /// Steps over the time of a run: powers of two times this number of the scene's own steps.

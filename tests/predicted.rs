@@ -2,8 +2,10 @@
 //!
 //! The same run by Newton's iteration from the last velocity, which goes on down to the rounding floor.
 
+use vi_core::node::Node;
+use vi_core::stepping::FixedStepping;
 use vi_core::support::step_alone;
-use vi_core::{FixedStep, FixedStepping, Node, State, lagrangian};
+use vi_core::{FixedStep, State, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, Kepler, ParametricPendulum, SphericalPendulum,
 };

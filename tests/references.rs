@@ -5,7 +5,8 @@
 
 use crate::support::reference::{file, number, steps, vector};
 use serde_json::Value;
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, State};
 use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, Kepler, Pendulum};
 
 /// Steps up to which the limits are stated.

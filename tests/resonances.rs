@@ -11,7 +11,8 @@
 //!
 //! The midpoint rule's is the same in x + p, with a/4 for a and (b − a²)/8 for b: bounded unless a² ≤ b ≤ 2 a².
 
-use vi_core::{FixedStep, FixedStepping, State, lagrangian};
+use vi_core::stepping::FixedStepping;
+use vi_core::{FixedStep, State, lagrangian};
 
 lagrangian! {
     /// Oscillator with a quadratic and a cubic force, by the trapezoidal rule.

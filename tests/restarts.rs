@@ -1,6 +1,7 @@
 //! A run that is stored and resumed goes on bit for bit, for every way in which steps are taken; and only as what it was.
 
-use vi_core::{EnergyPreserving, FixedStep, FixedStepping, State, StepError, fixed_step, lagrangian};
+use vi_core::stepping::FixedStepping;
+use vi_core::{EnergyPreserving, FixedStep, State, StepError, fixed_step, lagrangian};
 use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler};
 
 lagrangian! {

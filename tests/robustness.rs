@@ -6,7 +6,9 @@
 use crate::support::Sequence;
 use crate::support::ending::{self, assert_typed};
 use crate::support::scenes::{Scene, each_system};
-use vi_core::{EnergyPreserving, EnergyStepping, Fallback, FixedStep, Parameters, SVector, State, StepError};
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, State, StepError};
 
 /// Draws for each system, each from four starts.
 const DRAWS: usize = 3000;

@@ -1,6 +1,8 @@
 //! Generated systems and both integrators in `f32`.
 
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, Scalar, State};
+use vi_core::real::Scalar;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State};
 use vi_systems::{HardDuffing, Kepler};
 
 const STEPS: usize = 200;

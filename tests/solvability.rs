@@ -2,7 +2,9 @@
 
 use crate::support::Sequence;
 use crate::support::ending;
-use vi_core::{FixedStep, FixedStepping, Node, SVector, State, StepError};
+use vi_core::node::Node;
+use vi_core::stepping::FixedStepping;
+use vi_core::{FixedStep, SVector, State, StepError};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 
 #[test]

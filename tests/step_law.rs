@@ -2,7 +2,8 @@
 //! `h √D` exactly for the damped oscillator. D is the density of the continuous system at the middle of the step.
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
-use vi_core::{EnergyPreserving, EnergyStepping, SVector};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, SVector};
 
 /// Largest relative deviation of `h |D|^exponent` from its value at the first step, over the time `span`.
 fn deviation<const N: usize, S: EnergyStepping<N> + Copy>(

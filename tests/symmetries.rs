@@ -1,7 +1,8 @@
 //! What the fixed step is as a map: its own inverse under h → −h, and symplectic where there is no force.
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
-use vi_core::{FixedStep, FixedStepping, SVector, State};
+use vi_core::stepping::FixedStepping;
+use vi_core::{FixedStep, SVector, State};
 
 /// The state after `steps` steps of length `h`.
 fn after<const N: usize, S: FixedStepping<N> + Copy>(system: S, start: State<N>, h: f64, steps: usize) -> State<N> {

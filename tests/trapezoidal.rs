@@ -3,7 +3,8 @@
 
 use crate::support::exact::Motion;
 use vi_core::check::Dual;
-use vi_core::{DiscreteLagrangian, FixedStep, FixedStepping, Interval, SVector, State, lagrangian};
+use vi_core::stepping::FixedStepping;
+use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, lagrangian};
 
 type D = Dual<f64>;
 

@@ -1,6 +1,7 @@
 //! Units do not matter: a system in metres and radians, in masses of 1 and 1e-12, moves as the same one does in like units.
 
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, SVector, State, StepError, lagrangian};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError, lagrangian};
 
 /// A system of angles u and angular velocities w, in the coordinates q = u, and in q with u_i = 2^(25 i (−1)^i) q_i: masses of
 /// 1 to 1e-75. Powers of two round nothing.

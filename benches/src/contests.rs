@@ -12,7 +12,8 @@ use crate::pendulum::TriplePendulum;
 use crate::problem::Problem;
 use core::array::from_fn;
 use std::hint::black_box;
-use vi_core::{Batch, EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, SVector, State};
+use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, SVector, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
 

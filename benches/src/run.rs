@@ -3,7 +3,8 @@
 //! In: anything that takes steps. Out: [`Run`], behind which a table of unlike steppers is one list. The loop over the steps is
 //! inside, so that a step is inlined into it as in a user's program.
 
-use vi_core::{Batch, EnergyPreserving, EnergyStepping, FixedStep, FixedStepping};
+use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep};
 use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.

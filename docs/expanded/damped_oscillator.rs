@@ -62,9 +62,9 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> DampedOscillator<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn convert<U: ::vi_core::Real>(&self) -> DampedOscillator<U> {
+        pub fn convert<U: ::vi_core::real::Real>(&self) -> DampedOscillator<U> {
             DampedOscillator {
                 m: U::real(self.m.to_f64()),
                 k: U::real(self.k.to_f64()),
@@ -73,7 +73,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for DampedOscillator<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "m" => ::core::option::Option::Some(&mut self.m),
@@ -84,7 +84,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<1, T> for DampedOscillator<T> {
         const NAME: &'static str = "DampedOscillator";
         const COORDINATES: [&'static str; 1] = ["x"];
         const AUTONOMOUS: bool = true;
@@ -168,7 +168,7 @@ const _: () = {
             let time = t;
             let [x_dot]: [T; 1] = (*v).into();
             let [x]: [T; 1] = (*q).into();
-            let mass: ::vi_core::SMatrix<T, 1, 1> = ::vi_core::SMatrix::from_row_slice(
+            let mass: ::vi_core::nalgebra::SMatrix<T, 1, 1> = ::vi_core::nalgebra::SMatrix::from_row_slice(
                 &[self.m],
             );
             let applied: ::vi_core::SVector<T, 1> = ::vi_core::SVector::from([
@@ -201,7 +201,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 1>,
             p: &::vi_core::SVector<T, 1>,
-        ) -> ::core::result::Result<::vi_core::Flow<1, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<1, T>, ::vi_core::StepError> {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -221,8 +221,8 @@ const _: () = {
                 q,
                 &velocity,
             );
-            ::core::result::Result::Ok(::vi_core::Flow {
-                velocity,
+            ::core::result::Result::Ok(::vi_core::lagrangian::Flow {
+                v: velocity,
                 force,
                 power,
             })
@@ -260,8 +260,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Collocation<1, T> for DampedOscillator<T> {
-        type Mass = ::vi_core::SMatrix<T, 1, 1>;
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<1, T> for DampedOscillator<T> {
+        type Mass = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = false;
 
@@ -282,7 +282,7 @@ const _: () = {
             ::vi_core::collocation::Point {
                 momentum: ::vi_core::SVector::from([self.m * x_dot]),
                 force: ::vi_core::SVector::from([-(self.c * x_dot + self.k * x)]),
-                mass: ::vi_core::SMatrix::from_row_slice(&[self.m]),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[self.m]),
             }
         }
 
@@ -301,7 +301,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<1, T>
+    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<1, T>
     for DampedOscillator<T> {
         /// `ld = h*L`
         ///
@@ -443,8 +443,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<1, T> for DampedOscillator<T> {
-        type Jacobian = ::vi_core::SMatrix<T, 1, 1>;
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T> for DampedOscillator<T> {
+        type Jacobian = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
         const CONSTANT_JACOBIAN: bool = true;
         const CLOSED_FORM: bool = true;
         const INLINED: bool = true;
@@ -455,10 +455,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_equation(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
-        ) -> ::vi_core::MomentumEquation<1, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::MomentumEquation<1, T, Self::Jacobian> {
             let [x0]: [T; 1] = node.q.into();
             let [x0_low]: [T; 1] = node.q_low.into();
             let [p0_x]: [T; 1] = node.p.into();
@@ -467,12 +467,12 @@ const _: () = {
             let real = T::real;
             let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
             let s1 = self.c * real(0.5);
-            ::vi_core::MomentumEquation {
+            ::vi_core::stepping::MomentumEquation {
                 residual: ::vi_core::SVector::from([
                     self.m * x_dot - p0_x
                         + ((self.k * real(0.5) * x_mid + s1 * x_dot) * h - p0_x_low),
                 ]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
+                jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                     &[self.m + (s1 + self.k * h * real(0.25)) * h],
                 ),
             }
@@ -486,10 +486,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_residual(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
-        ) -> ::vi_core::MomentumResidual<1, T> {
+        ) -> ::vi_core::stepping::MomentumResidual<1, T> {
             let [x0]: [T; 1] = node.q.into();
             let [x0_low]: [T; 1] = node.q_low.into();
             let [p0_x]: [T; 1] = node.p.into();
@@ -498,7 +498,7 @@ const _: () = {
             let real = T::real;
             let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
             let s1 = self.m * x_dot;
-            ::vi_core::MomentumResidual {
+            ::vi_core::stepping::MomentumResidual {
                 residual: ::vi_core::SVector::from([
                     s1 - p0_x
                         + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
@@ -520,7 +520,7 @@ const _: () = {
         #[inline(always)]
         fn discrete_energy(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
         ) -> T {
@@ -538,7 +538,7 @@ const _: () = {
         #[cold]
         fn momentum_rounding(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
         ) -> ::vi_core::SVector<T, 1> {
@@ -551,17 +551,17 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<1, T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<1, T> for DampedOscillator<T> {
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
         ///
         /// 40 operations.
         #[inline(always)]
         fn extended_system(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
-        ) -> ::vi_core::ExtendedSystem<1, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::ExtendedSystem<1, T, Self::Jacobian> {
             let energy0 = node.energy;
             let energy0_low = node.energy_low;
             let [x0]: [T; 1] = node.q.into();
@@ -577,12 +577,12 @@ const _: () = {
             let s4 = self.k * x_mid;
             let s5 = s4 * real(0.5) + self.c * x_dot * real(0.5);
             let s6 = s2 * x_dot;
-            ::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
+            ::vi_core::stepping::ExtendedSystem {
+                momentum: ::vi_core::stepping::MomentumEquation {
                     residual: ::vi_core::SVector::from([
                         s3 - p0_x + (s5 * h - p0_x_low),
                     ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                    jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                         &[self.m + (self.c * real(0.5) + s2) * h],
                     ),
                 },
@@ -603,10 +603,10 @@ const _: () = {
         #[inline(always)]
         fn extended_residual(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
-        ) -> ::vi_core::ExtendedResidual<1, T> {
+        ) -> ::vi_core::stepping::ExtendedResidual<1, T> {
             let energy0 = node.energy;
             let energy0_low = node.energy_low;
             let [x0]: [T; 1] = node.q.into();
@@ -623,7 +623,7 @@ const _: () = {
             let s5 = self.k * h;
             let s6 = energy0.abs() + (x_dot * p0_x).abs()
                 + (self.m * s3).abs() * real(0.5) + s4.abs() * real(0.5);
-            ::vi_core::ExtendedResidual {
+            ::vi_core::stepping::ExtendedResidual {
                 residual: ::vi_core::SVector::from([
                     s1 - p0_x
                         + ((self.k * real(0.5) * x_mid + self.c * real(0.5) * x_dot) * h
@@ -637,7 +637,7 @@ const _: () = {
                     + (p0_x - s1 * real(0.5)) * x_dot
                     + ((p0_x_low - s5 * real(0.5) * x_mid) * x_dot - energy0_low),
                 energy_scale: s6 + (s5 * x_dot * x_mid).abs() * real(0.5),
-                increment: ::vi_core::Increment {
+                increment: ::vi_core::stepping::Increment {
                     momentum: ::vi_core::SVector::from([
                         -((self.k * x_mid + self.c * x_dot) * h),
                     ]),
@@ -650,10 +650,10 @@ const _: () = {
         #[cold]
         fn extended_rounding(
             &self,
-            node: &::vi_core::Node<1, T>,
+            node: &::vi_core::node::Node<1, T>,
             h: T,
             v: &::vi_core::SVector<T, 1>,
-        ) -> ::vi_core::Rounding<1, T> {
+        ) -> ::vi_core::stepping::Rounding<1, T> {
             ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
@@ -663,15 +663,15 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::Convertible<1> for DampedOscillator<f64> {
-        type In<T: ::vi_core::Real> = DampedOscillator<T>;
+    impl ::vi_core::stepping::Convertible<1> for DampedOscillator<f64> {
+        type In<T: ::vi_core::real::Real> = DampedOscillator<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::Real>(&self) -> DampedOscillator<T> {
+        fn convert<T: ::vi_core::real::Real>(&self) -> DampedOscillator<T> {
             self.convert()
         }
     }
 
-    impl ::vi_core::Batch<1> for DampedOscillator<f64> {
+    impl ::vi_core::stepping::Batch<1> for DampedOscillator<f64> {
         type Rows<const W: usize> = DampedOscillator<[f64; W]>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             DampedOscillator {

@@ -109,9 +109,9 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> DoublePendulum<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn convert<U: ::vi_core::Real>(&self) -> DoublePendulum<U> {
+        pub fn convert<U: ::vi_core::real::Real>(&self) -> DoublePendulum<U> {
             DoublePendulum {
                 m1: U::real(self.m1.to_f64()),
                 m2: U::real(self.m2.to_f64()),
@@ -122,7 +122,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for DoublePendulum<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "m1" => ::core::option::Option::Some(&mut self.m1),
@@ -135,7 +135,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<2, T> for DoublePendulum<T> {
         const NAME: &'static str = "DoublePendulum";
         const COORDINATES: [&'static str; 2] = ["θ1", "θ2"];
         const AUTONOMOUS: bool = true;
@@ -246,7 +246,7 @@ const _: () = {
             let s4 = self.m2 * self.l1 * self.l2;
             let s5 = s4 * (cos2 * cos3 + sin2 * sin3);
             let s6 = sin2 * cos3 - cos2 * sin3;
-            let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
+            let mass: ::vi_core::nalgebra::SMatrix<T, 2, 2> = ::vi_core::nalgebra::SMatrix::from_row_slice(
                 &[self.l1 * self.l1 * s1, s5, s5, self.m2 * (self.l2 * self.l2)],
             );
             let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
@@ -297,7 +297,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<2, T>, ::vi_core::StepError> {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -317,8 +317,8 @@ const _: () = {
                 q,
                 &velocity,
             );
-            ::core::result::Result::Ok(::vi_core::Flow {
-                velocity,
+            ::core::result::Result::Ok(::vi_core::lagrangian::Flow {
+                v: velocity,
                 force,
                 power,
             })
@@ -369,8 +369,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Collocation<2, T> for DoublePendulum<T> {
-        type Mass = ::vi_core::SMatrix<T, 2, 2>;
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T> for DoublePendulum<T> {
+        type Mass = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = false;
         const SEPARABLE: bool = false;
 
@@ -408,7 +408,7 @@ const _: () = {
                     -(s10 + self.l1 * self.g * s1 * sin2),
                     s10 - self.m2 * self.l2 * self.g * sin3,
                 ]),
-                mass: ::vi_core::SMatrix::from_row_slice(&[s5, s7, s7, s8]),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s5, s7, s7, s8]),
             }
         }
 
@@ -427,7 +427,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
         /// `ld = h*L`
         ///
         /// 37 operations.
@@ -619,8 +619,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<2, T> for DoublePendulum<T> {
-        type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for DoublePendulum<T> {
+        type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
@@ -632,10 +632,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_equation(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::MomentumEquation<2, T, Self::Jacobian> {
             let [θ1_0, θ2_0]: [T; 2] = node.q.into();
             let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
             let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
@@ -662,14 +662,14 @@ const _: () = {
             let s17 = s8 * s7;
             let s18 = s8 * real(0.5) * (θ1_dot + θ2_dot) * s14;
             let s19 = s11 * (h * real(0.25));
-            ::vi_core::MomentumEquation {
+            ::vi_core::stepping::MomentumEquation {
                 residual: ::vi_core::SVector::from([
                     s4 * s2 * θ1_dot + s8 * θ2_dot * s7 - p0_θ1
                         - (p0_θ1_low - s1 * (s15 + s12 * sin5)),
                     s3 * θ2_dot + s9 * s7 - p0_θ2
                         - (p0_θ2_low + s1 * (s15 - s13 * sin6)),
                 ]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
+                jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                     &[
                         s2 * s4 + s16 * (s11 + s12 * cos5),
                         s17 + (s18 - s19) * h,
@@ -690,10 +690,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_residual(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::MomentumResidual<2, T> {
+        ) -> ::vi_core::stepping::MomentumResidual<2, T> {
             let [θ1_0, θ2_0]: [T; 2] = node.q.into();
             let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
             let [p0_θ1, p0_θ2]: [T; 2] = node.p.into();
@@ -720,7 +720,7 @@ const _: () = {
             let s17 = self.m1.abs() + self.m2.abs();
             let s18 = s12.abs();
             let s19 = h.abs() * real(0.5);
-            ::vi_core::MomentumResidual {
+            ::vi_core::stepping::MomentumResidual {
                 residual: ::vi_core::SVector::from([
                     s7 * s2 * θ1_dot + s9 - p0_θ1 - (p0_θ1_low - s1 * s14),
                     s3 + s11 - p0_θ2 - (p0_θ2_low + s1 * s16),
@@ -740,7 +740,7 @@ const _: () = {
         #[inline(always)]
         fn discrete_energy(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> T {
@@ -770,7 +770,7 @@ const _: () = {
         #[cold]
         fn momentum_rounding(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::vi_core::SVector<T, 2> {
@@ -783,17 +783,17 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T> for DoublePendulum<T> {
         /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
         ///
         /// 136 operations.
         #[inline(always)]
         fn extended_system(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::ExtendedSystem<2, T, Self::Jacobian> {
             let energy0 = node.energy;
             let energy0_low = node.energy_low;
             let [θ1_0, θ2_0]: [T; 2] = node.q.into();
@@ -843,13 +843,13 @@ const _: () = {
             let s37 = s11 * s6;
             let s38 = s25 * real(0.5) - s37 * s21 * real(0.5);
             let s39 = (s35 * s6 * θ2_dot * s10 - θ2_dot * s33 * real(0.25)) * h;
-            ::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
+            ::vi_core::stepping::ExtendedSystem {
+                momentum: ::vi_core::stepping::MomentumEquation {
                     residual: ::vi_core::SVector::from([
                         s19 + s20 - p0_θ1 - (p0_θ1_low - s1 * s24),
                         s5 + s12 * s10 - p0_θ2 - (p0_θ2_low + s1 * s26),
                     ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                    jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                         &[
                             s2 * s4 + s29 * s28,
                             s30 + (s31 - s32) * h,
@@ -876,10 +876,10 @@ const _: () = {
         #[inline(always)]
         fn extended_residual(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::ExtendedResidual<2, T> {
+        ) -> ::vi_core::stepping::ExtendedResidual<2, T> {
             let energy0 = node.energy;
             let energy0_low = node.energy_low;
             let [θ1_0, θ2_0]: [T; 2] = node.q.into();
@@ -922,7 +922,7 @@ const _: () = {
                 + s5 * s24 * (θ1_dot * θ1_dot) * real(0.5);
             let s30 = s29 + (s3 * (θ2_dot * θ2_dot)).abs() * real(0.5)
                 + (s11 * s8).abs() + s24 * (s12 * cos6).abs();
-            ::vi_core::ExtendedResidual {
+            ::vi_core::stepping::ExtendedResidual {
                 residual: ::vi_core::SVector::from([
                     s16 + s17 - p0_θ1 - (p0_θ1_low - s1 * s20),
                     s4 + s18 - p0_θ2 - (p0_θ2_low + s1 * s22),
@@ -936,7 +936,7 @@ const _: () = {
                         + s1 * (θ2_dot * s22 - θ1_dot * s20)),
                 energy_scale: s30 + s15.abs() + s26 * (h * θ1_dot).abs() * real(0.5)
                     + s28 * (h * θ2_dot).abs() * real(0.5),
-                increment: ::vi_core::Increment {
+                increment: ::vi_core::stepping::Increment {
                     momentum: ::vi_core::SVector::from([-(h * s20), h * s22]),
                     energy: real(0.0),
                 },
@@ -947,10 +947,10 @@ const _: () = {
         #[cold]
         fn extended_rounding(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::Rounding<2, T> {
+        ) -> ::vi_core::stepping::Rounding<2, T> {
             ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
@@ -960,15 +960,15 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::Convertible<2> for DoublePendulum<f64> {
-        type In<T: ::vi_core::Real> = DoublePendulum<T>;
+    impl ::vi_core::stepping::Convertible<2> for DoublePendulum<f64> {
+        type In<T: ::vi_core::real::Real> = DoublePendulum<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::Real>(&self) -> DoublePendulum<T> {
+        fn convert<T: ::vi_core::real::Real>(&self) -> DoublePendulum<T> {
             self.convert()
         }
     }
 
-    impl ::vi_core::Batch<2> for DoublePendulum<f64> {
+    impl ::vi_core::stepping::Batch<2> for DoublePendulum<f64> {
         type Rows<const W: usize> = DoublePendulum<[f64; W]>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             DoublePendulum {

@@ -66,16 +66,16 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> Kepler<T> {
+    impl<T: ::vi_core::real::Real> Kepler<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn convert<U: ::vi_core::Real>(&self) -> Kepler<U> {
+        pub fn convert<U: ::vi_core::real::Real>(&self) -> Kepler<U> {
             Kepler {
                 mu: U::real(self.mu.to_f64()),
             }
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for Kepler<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "mu" => ::core::option::Option::Some(&mut self.mu),
@@ -84,7 +84,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<2, T> for Kepler<T> {
         const NAME: &'static str = "Kepler";
         const COORDINATES: [&'static str; 2] = ["x", "y"];
         const AUTONOMOUS: bool = true;
@@ -230,7 +230,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<2, T>, ::vi_core::StepError> {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -250,8 +250,8 @@ const _: () = {
                 q,
                 &velocity,
             );
-            ::core::result::Result::Ok(::vi_core::Flow {
-                velocity,
+            ::core::result::Result::Ok(::vi_core::lagrangian::Flow {
+                v: velocity,
                 force,
                 power,
             })
@@ -291,7 +291,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Collocation<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T> for Kepler<T> {
         type Mass = ::vi_core::linear::Banded<2, 1, T>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
@@ -343,7 +343,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         /// `ld = h*L`
         ///
         /// 18 operations.
@@ -499,8 +499,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<2, T> for Kepler<T> {
-        type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for Kepler<T> {
+        type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
@@ -512,10 +512,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_equation(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::MomentumEquation<2, T, Self::Jacobian> {
             let [x0, y0]: [T; 2] = node.q.into();
             let [x0_low, y0_low]: [T; 2] = node.q_low.into();
             let [p0_x, p0_y]: [T; 2] = node.p.into();
@@ -537,12 +537,12 @@ const _: () = {
             let s11 = self.mu * (h * h);
             let s12 = s11 * real(0.25);
             let s13 = -(s11 * real(0.75) * x_mid * y_mid * s10);
-            ::vi_core::MomentumEquation {
+            ::vi_core::stepping::MomentumEquation {
                 residual: ::vi_core::SVector::from([
                     x_dot - p0_x + (s9 * x_mid * s8 - p0_x_low),
                     y_dot - p0_y + (s9 * y_mid * s8 - p0_y_low),
                 ]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
+                jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                     &[
                         real(1.0) - s12 * (s2 * s10 * real(3.0) - s8),
                         s13,
@@ -563,10 +563,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_residual(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::MomentumResidual<2, T> {
+        ) -> ::vi_core::stepping::MomentumResidual<2, T> {
             let [x0, y0]: [T; 2] = node.q.into();
             let [x0_low, y0_low]: [T; 2] = node.q_low.into();
             let [p0_x, p0_y]: [T; 2] = node.p.into();
@@ -583,7 +583,7 @@ const _: () = {
             let s6 = s5 * x_mid * s4;
             let s7 = s5 * y_mid * s4;
             let s8 = s5 * real(0.5);
-            ::vi_core::MomentumResidual {
+            ::vi_core::stepping::MomentumResidual {
                 residual: ::vi_core::SVector::from([
                     x_dot - p0_x + (s8 * x_mid * s4 - p0_x_low),
                     y_dot - p0_y + (s8 * y_mid * s4 - p0_y_low),
@@ -602,7 +602,7 @@ const _: () = {
         #[inline(always)]
         fn discrete_energy(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> T {
@@ -622,7 +622,7 @@ const _: () = {
         #[cold]
         fn momentum_rounding(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::vi_core::SVector<T, 2> {
@@ -635,17 +635,17 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T> for Kepler<T> {
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
         ///
         /// 107 operations.
         #[inline(always)]
         fn extended_system(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::ExtendedSystem<2, T, Self::Jacobian> {
             let energy0 = node.energy;
             let energy0_low = node.energy_low;
             let [x0, y0]: [T; 2] = node.q.into();
@@ -683,13 +683,13 @@ const _: () = {
             let s23 = (s20 * y_dot * x_mid * y_mid * s13 + s22) * h;
             let s24 = s10 * real(0.5);
             let s25 = (s20 * x_dot * x_mid * y_mid * s13 + s21 * y_dot * s18) * h;
-            ::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
+            ::vi_core::stepping::ExtendedSystem {
+                momentum: ::vi_core::stepping::MomentumEquation {
                     residual: ::vi_core::SVector::from([
                         x_dot - p0_x + (s9 * s1 - p0_x_low),
                         y_dot - p0_y + (s10 * s1 - p0_y_low),
                     ]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                    jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                         &[real(1.0) - s16 * s14, s17, s17, real(1.0) - s16 * s18],
                     ),
                 },
@@ -709,10 +709,10 @@ const _: () = {
         #[inline(always)]
         fn extended_residual(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::ExtendedResidual<2, T> {
+        ) -> ::vi_core::stepping::ExtendedResidual<2, T> {
             let energy0 = node.energy;
             let energy0_low = node.energy_low;
             let [x0, y0]: [T; 2] = node.q.into();
@@ -737,7 +737,7 @@ const _: () = {
                 - self.mu * real(0.5) * h * (x_dot * x_mid * s6 + y_dot * y_mid * s6);
             let s12 = x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
                 + energy0.abs() + (x_dot * p0_x).abs() + (y_dot * p0_y).abs();
-            ::vi_core::ExtendedResidual {
+            ::vi_core::stepping::ExtendedResidual {
                 residual: ::vi_core::SVector::from([
                     x_dot - p0_x + (s10 * x_mid * s6 - p0_x_low),
                     y_dot - p0_y + (s10 * y_mid * s6 - p0_y_low),
@@ -751,7 +751,7 @@ const _: () = {
                 energy_scale: s12 + s5.abs()
                     + (s7 * x_dot * x_mid * s6).abs() * real(0.5)
                     + (s7 * y_dot * y_mid * s6).abs() * real(0.5),
-                increment: ::vi_core::Increment {
+                increment: ::vi_core::stepping::Increment {
                     momentum: ::vi_core::SVector::from([-s8, -s9]),
                     energy: real(0.0),
                 },
@@ -762,10 +762,10 @@ const _: () = {
         #[cold]
         fn extended_rounding(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::Rounding<2, T> {
+        ) -> ::vi_core::stepping::Rounding<2, T> {
             ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
@@ -775,15 +775,15 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::Convertible<2> for Kepler<f64> {
-        type In<T: ::vi_core::Real> = Kepler<T>;
+    impl ::vi_core::stepping::Convertible<2> for Kepler<f64> {
+        type In<T: ::vi_core::real::Real> = Kepler<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::Real>(&self) -> Kepler<T> {
+        fn convert<T: ::vi_core::real::Real>(&self) -> Kepler<T> {
             self.convert()
         }
     }
 
-    impl ::vi_core::Batch<2> for Kepler<f64> {
+    impl ::vi_core::stepping::Batch<2> for Kepler<f64> {
         type Rows<const W: usize> = Kepler<[f64; W]>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             Kepler {

@@ -19,7 +19,9 @@ use crate::support::ending::assert_typed;
 use crate::support::scenes::Scene;
 use vi_core::check::{self, Checked, Place};
 use vi_core::composition::Scheme;
-use vi_core::{Composition, EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, Node, SVector, State};
+use vi_core::node::Node;
+use vi_core::stepping::{EnergyStepping, FixedStepping};
+use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, State};
 
 /// Steps of each system by each integrator.
 const STEPS: usize = 40_000;

@@ -1,6 +1,7 @@
 //! How runs end: the steps that were taken, and the error that ended them.
 
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, State, Step, StepError};
+use vi_core::stepping::{EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, State, Step, StepError};
 
 /// The end of a run of the energy-preserving integrator.
 #[derive(Clone, Copy, Debug)]

@@ -49,8 +49,8 @@ pub use crate::branch::Branch;
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "T: crate::Real + serde::Serialize",
-        deserialize = "T: crate::Real + serde::Deserialize<'de>"
+        serialize = "T: crate::real::Real + serde::Serialize",
+        deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
 pub struct Run<const N: usize, T = f64> {

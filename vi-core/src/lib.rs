@@ -58,22 +58,14 @@ pub mod stepping;
 pub mod support;
 mod vector;
 
-pub use collocation::Collocation;
 pub use composition::{Composition, Scheme};
 pub use discrete::DiscreteLagrangian;
-pub use energy_preserving::{EnergyPreserving, Fallback, Switches};
-pub use error::{Residuals, StepError};
+pub use energy_preserving::{EnergyPreserving, Fallback};
+pub use error::StepError;
 pub use fixed_step::FixedStep;
 pub use gauss::Gauss;
-pub use lagrangian::{Flow, Lagrangian, Parameters};
+pub use lagrangian::Lagrangian;
 pub use nalgebra;
-pub use nalgebra::{SMatrix, SVector};
-pub use node::Node;
-pub use real::{Real, Scalar};
-pub use rules::By;
-pub use state::{Interval, Method, State, Step};
-pub use stepping::{
-    Batch, Convertible, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, MomentumEquation,
-    MomentumResidual, Rounding,
-};
+pub use nalgebra::SVector;
+pub use state::{Interval, State, Step};
 pub use vi_macros::lagrangian;

@@ -3,7 +3,9 @@
 
 use crate::systems::{DoubleWell, UnitMass};
 use vi_core::fixed_step::{Branch, FixedStep};
-use vi_core::{FixedStepping, Node, SVector, State, StepError};
+use vi_core::node::Node;
+use vi_core::stepping::FixedStepping;
+use vi_core::{SVector, State, StepError};
 
 const SYSTEM: UnitMass<DoubleWell> = UnitMass(DoubleWell);
 

@@ -61,8 +61,9 @@ fn fixed_steps_in_between_resume_bit_for_bit() {
     let start = start.with_step_bounds(1e-6, 2e-3).unwrap_or_else(|error| panic!("{error}"));
     // In the first phase of energy-preserving steps, at its end, in the fixed ones, and after their end.
     let mut methods = start.clone();
-    let fixed =
-        |run: &mut EnergyPreserving<_, 2>| run.step().is_ok_and(|step| step.method == vi_core::Method::FixedStep);
+    let fixed = |run: &mut EnergyPreserving<_, 2>| {
+        run.step().is_ok_and(|step| step.method == vi_core::state::Method::FixedStep)
+    };
     let mut first = 1;
     while !fixed(&mut methods) {
         first += 1;

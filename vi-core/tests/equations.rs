@@ -1,7 +1,9 @@
 //! The systems written by hand: their equations against the slot derivatives, their derivatives against differences.
 
 use crate::systems::{DampedOscillator, ForcedDuffing, Kepler, PumpedPendulum, Steppable, UnitMass};
-use vi_core::{DiscreteLagrangian, EnergyStepping, Interval, Lagrangian, Node, SVector, State};
+use vi_core::node::Node;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, State};
 
 /// Largest difference between the derivatives of `system` and central differences, and between its equations and the slot
 /// derivatives, at one point.

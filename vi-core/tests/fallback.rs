@@ -2,7 +2,9 @@
 //! they cost.
 
 use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass};
-use vi_core::{EnergyPreserving, Fallback, Lagrangian, Method, StepError, Switches};
+use vi_core::energy_preserving::Switches;
+use vi_core::state::Method;
+use vi_core::{EnergyPreserving, Fallback, Lagrangian, StepError};
 
 fn kepler(e: f64, h0: f64) -> EnergyPreserving<UnitMass<Kepler>, 2> {
     let v0 = [0.0, ((1.0 + e) / (1.0 - e)).sqrt()];

@@ -84,7 +84,7 @@ fn condition_numbers_are_those_of_the_scaling() {
             let (node, previous) = (*integrator.node(), integrator.h());
             let step = integrator.step().unwrap_or_else(|error| panic!("{error}"));
             let (_, _, v) = step.midpoint;
-            let equations = vi_core::EnergyStepping::extended_system(integrator.system(), &node, step.h, &v);
+            let equations = vi_core::stepping::EnergyStepping::extended_system(integrator.system(), &node, step.h, &v);
             let condition = Condition::of(&equations, step.h, &v, previous);
             let numbers = [condition.position_time, condition.velocity_step, condition.scaled];
             found.iter_mut().zip(numbers).for_each(|(list, number)| list.push(number));

@@ -1,10 +1,11 @@
 //! What the errors say, and that it is so: looked up independently of the solver.
 
 use crate::systems::{DampedOscillator, Kepler, Steppable, UnitMass};
-use vi_core::FixedStepping;
-use vi_core::{
-    EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, Node, Residuals, SVector, State, StepError, lagrangian,
-};
+use vi_core::error::Residuals;
+use vi_core::node::Node;
+use vi_core::stepping::EnergyStepping;
+use vi_core::stepping::FixedStepping;
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, StepError, lagrangian};
 
 fn last_error<const N: usize, S: EnergyStepping<N>>(run: &mut EnergyPreserving<S, N>) -> StepError {
     loop {

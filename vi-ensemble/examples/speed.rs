@@ -2,7 +2,8 @@
 
 use std::hint::black_box;
 use std::time::Instant;
-use vi_core::{Batch, FixedStep, State, StepError};
+use vi_core::stepping::Batch;
+use vi_core::{FixedStep, State, StepError};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, Kepler};
 

@@ -14,9 +14,11 @@ use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
 use crate::sweep::{Elapsed, Extrapolate, Fixed, Sweep, Verdict};
 use nalgebra::SVector;
-use vi_dispatch::Instructions;
+use vi_core::node::Node;
+use vi_core::stepping::Batch;
 use vi_core::support::{step_alone, weights as extrapolation};
-use vi_core::{Batch, FixedStep, Node, State, StepError};
+use vi_core::{FixedStep, State, StepError};
+use vi_dispatch::Instructions;
 
 /// Velocities that the next one is extrapolated from, at most. Of coupled pendula (h = 0.01, amplitude 1) a polynomial of degree 6 is
 /// refused in 22 steps of 100, one of degree 8 in 4 and one of degree 10 in 0.1, and a second sweep is one for the whole block.

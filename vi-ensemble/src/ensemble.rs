@@ -7,9 +7,10 @@ use crate::ended::Ended;
 use crate::group::Group;
 use crate::layout::WIDTH;
 use rayon::prelude::*;
-use vi_dispatch::Instructions;
+use vi_core::stepping::Batch;
 use vi_core::support::check_step;
-use vi_core::{Batch, State, StepError};
+use vi_core::{State, StepError};
+use vi_dispatch::Instructions;
 
 /// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
 const WORTHWHILE: u64 = 1 << 14;

@@ -9,8 +9,9 @@
 
 use crate::block::Block;
 use crate::ended::Ended;
+use vi_core::stepping::Batch;
+use vi_core::{FixedStep, State};
 use vi_dispatch::Instructions;
-use vi_core::{Batch, FixedStep, State};
 
 /// Degrees of freedom up to which trajectories go side by side.
 const LARGEST: usize = 3;

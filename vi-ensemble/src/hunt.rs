@@ -5,8 +5,9 @@
 
 use crate::block::Block;
 use crate::layout::WIDTH;
+use vi_core::stepping::Batch;
+use vi_core::{Lagrangian, State, lagrangian};
 use vi_dispatch::Instructions;
-use vi_core::{Batch, Lagrangian, State, lagrangian};
 use vi_systems::{DoublePendulum, DoubleWell, Kepler, SphericalPendulum};
 
 /// Steps of a block of trajectories.

@@ -4,8 +4,10 @@
 //! meets the same coordinate of neighbouring trajectories.
 
 use nalgebra::SVector;
+use vi_core::State;
+use vi_core::node::Node;
 use vi_core::real::Lane;
-use vi_core::{Node, Real, State};
+use vi_core::real::Real;
 
 /// Trajectories in a block: several vectors, so that one is computed while another waits.
 pub(crate) const WIDTH: usize = 2 * HALF;

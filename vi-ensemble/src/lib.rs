@@ -4,7 +4,7 @@
 //! that it ended with and the step at which it did. The equations of a step are those of [`vi_core::FixedStep`]. AFTER A STEP the
 //! residual of each trajectory was measured at the velocity that was taken, and is at the rounding floor.
 //!
-//! Systems of up to three degrees of freedom whose functions are short ([`FixedStepping::INLINED`](vi_core::FixedStepping::INLINED)) go side by
+//! Systems of up to three degrees of freedom whose functions are short ([`FixedStepping::INLINED`](vi_core::stepping::FixedStepping::INLINED)) go side by
 //! side in vector lanes, 64 trajectories a thread at a time. All others are one `FixedStep` a trajectory, shared among threads: on
 //! one core that costs what single runs cost.
 //!

@@ -15,11 +15,12 @@
 
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
-use vi_dispatch::Loop;
 use vi_core::linear::Matrix;
+use vi_core::node::Node;
 use vi_core::real::Lane;
+use vi_core::stepping::{Batch, FixedStepping, MomentumResidual};
 use vi_core::support::two_sum;
-use vi_core::{Batch, FixedStepping, MomentumResidual, Node};
+use vi_dispatch::Loop;
 
 /// Roundings that a row may leave.
 const FLOOR: f64 = 4.0;

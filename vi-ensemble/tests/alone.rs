@@ -1,8 +1,10 @@
 //! An ensemble against each of its trajectories alone: as [`FixedStep`] takes it, and converged in every step.
 
 use std::collections::BTreeSet;
+use vi_core::node::Node;
+use vi_core::stepping::Batch;
 use vi_core::support::step_alone;
-use vi_core::{Batch, FixedStep, Node, State, StepError, lagrangian};
+use vi_core::{FixedStep, State, StepError, lagrangian};
 use vi_ensemble::{Ended, Ensemble};
 use vi_systems::{
     ChargedParticle, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum, ParametricPendulum,

@@ -5,7 +5,8 @@
 use crate::failure::Failure;
 use crate::system::{self, System};
 use crate::table::Table;
-use vi_core::{EnergyStepping, Parameters};
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::EnergyStepping;
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,

@@ -4,10 +4,12 @@
 //! Jacobian, with or without the gain, the gain of a step, an acceleration; each counts one. Everything else is passed on uncounted.
 
 use core::cell::Cell;
-use vi_core::{
-    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Interval, Lagrangian,
-    MomentumEquation, MomentumResidual, Node, Rounding, SVector, StepError,
+use vi_core::lagrangian::Flow;
+use vi_core::node::Node;
+use vi_core::stepping::{
+    EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumEquation, MomentumResidual, Rounding,
 };
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
 
 /// A system, and the evaluations so far: its copies count together.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,8 @@
 use crate::start;
 use clap::ValueEnum;
 use serde::Deserialize;
-use vi_core::{Composition, EnergyPreserving, EnergyStepping, FixedStep, SVector, Scheme, State, StepError};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, Scheme, State, StepError};
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]

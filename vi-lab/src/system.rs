@@ -9,7 +9,9 @@ use crate::rival::{self, Ended};
 use crate::simulation::{self, Plan, Simulation, vector};
 use core::cell::Cell;
 use vi_core::check::Motion;
-use vi_core::{EnergyStepping, Parameters, SVector, StepError};
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{SVector, StepError};
 
 /// Where a motion is.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,7 +14,9 @@
 #![allow(non_upper_case_globals, non_camel_case_types, dead_code, reason = "the surroundings")]
 #![allow(missing_docs, reason = "a test")]
 
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, Lagrangian, Parameters, SVector, State, StepError};
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, StepError};
 
 /// Nothing that a binding may be named after.
 macro_rules! constants {

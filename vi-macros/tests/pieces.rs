@@ -4,7 +4,9 @@
 //! compiler, `UPDATE_EXPANDED=1 cargo test -p vi-macros --test pieces` writes them anew.
 
 use vi_core::linear::Matrix;
-use vi_core::{DiscreteLagrangian, EnergyStepping, Interval, Lagrangian, Node, SVector};
+use vi_core::node::Node;
+use vi_core::stepping::EnergyStepping;
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector};
 
 /// A system, its text, and its expansion in functions of at most so many operations, from its file.
 macro_rules! system {

@@ -21,7 +21,8 @@ mod kepler;
 use std::fs;
 use std::path::Path;
 use vi_codegen::inspect::{Stage, source, stage};
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, State};
+use vi_core::stepping::EnergyStepping;
+use vi_core::{EnergyPreserving, FixedStep, State};
 
 /// The expansion of the one system that a text declares.
 fn expansion(text: &str) -> String {

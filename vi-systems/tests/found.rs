@@ -10,7 +10,10 @@ use vi_codegen::found::{Dependence, Findings, Pattern};
 use vi_codegen::inspect::source;
 use vi_codegen::{derive, syntax::parse};
 use vi_core::linear::Matrix;
-use vi_core::{FixedStepping, Node, SMatrix, SVector, State};
+use vi_core::nalgebra::SMatrix;
+use vi_core::node::Node;
+use vi_core::stepping::FixedStepping;
+use vi_core::{SVector, State};
 
 /// The findings of a ready system.
 fn findings(file: &str) -> Findings {

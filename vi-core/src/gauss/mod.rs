@@ -36,7 +36,6 @@ mod tableau;
 
 use crate::checkpoint;
 use crate::collocation::Collocation;
-use vi_dispatch::{Instructions, Loop};
 use crate::error::StepError;
 use crate::fixed_step::check_step;
 use crate::node::Node;
@@ -50,6 +49,7 @@ use separable::Separable;
 use stages::{Stages, extrapolated, stage};
 use sweep::{Convergence, Equations, Increment, Sweeps};
 use tableau::Tableau;
+use vi_dispatch::{Instructions, Loop};
 
 /// Fixed steps of order 2 STAGES; see the [module](self).
 #[derive(Clone, Debug)]

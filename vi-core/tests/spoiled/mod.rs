@@ -1,13 +1,17 @@
 //! A right system with one function spoiled, as a wrong generator would print it: in every kind of number. Each file uses its
 //! part of the faults.
 
-use vi_core::linear::Matrix;
 use vi_core::collocation::{Collocation, Point};
-use vi_core::{
-    Convertible, DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Increment,
-    Interval, Lagrangian, MomentumEquation, MomentumResidual, Node, Parameters, Real, Rounding, SMatrix, SVector,
-    StepError,
+use vi_core::lagrangian::{Flow, Parameters};
+use vi_core::linear::Matrix;
+use vi_core::nalgebra::SMatrix;
+use vi_core::node::Node;
+use vi_core::real::Real;
+use vi_core::stepping::{
+    Convertible, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, MomentumEquation,
+    MomentumResidual, Rounding,
 };
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
 
 /// The damping of [`Fault::Damping`].
 const DAMPING: f64 = 0.01;

@@ -11,11 +11,16 @@
 //!     energy_dh = −(V_tt + 2 v·V_tq + v·V_qq v)/4
 //!     D = |V_q − f|² + v·V_qq v + 2 v·V_tq + V_tt          for f = 0
 
+use vi_core::lagrangian::Flow;
+use vi_core::nalgebra::SMatrix;
+use vi_core::node::Node;
+use vi_core::real::Real;
 use vi_core::real::Rounded;
-use vi_core::{
-    DiscreteLagrangian, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Flow, Increment, Interval,
-    Lagrangian, MomentumEquation, MomentumResidual, Node, Real, Rounding, SMatrix, SVector, StepError, support,
+use vi_core::stepping::{
+    EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, MomentumEquation, MomentumResidual,
+    Rounding,
 };
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, support};
 
 /// A potential and a force at one point, with their derivatives.
 pub(crate) struct Fields<const N: usize, T> {
@@ -215,11 +220,7 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Lagrangian<N, T> for UnitMass<
 
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
         let fields = self.0.fields(t, q, p);
-        Ok(Flow {
-            v: *p,
-            force: fields.force - fields.gradient,
-            power: fields.potential_t + fields.force.dot(p),
-        })
+        Ok(Flow { v: *p, force: fields.force - fields.gradient, power: fields.potential_t + fields.force.dot(p) })
     }
 
     fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {

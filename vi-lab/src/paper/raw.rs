@@ -6,7 +6,9 @@
 //! the Jacobian is exact: what is left is the cancellation in `(q1 − q0)/(t1 − t0)`, which `(v, h)` do not have.
 
 use vi_core::linear::Matrix;
-use vi_core::{DiscreteLagrangian, EnergyPreserving, EnergyStepping, ExtendedSystem, Interval, Node, SVector, State};
+use vi_core::node::Node;
+use vi_core::stepping::{EnergyStepping, ExtendedSystem};
+use vi_core::{DiscreteLagrangian, EnergyPreserving, Interval, SVector, State};
 
 /// What the equations are solved for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

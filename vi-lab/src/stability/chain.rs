@@ -9,7 +9,7 @@ use super::trial::{Chain, TrapezoidalChain};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use core::f64::consts::PI;
-use vi_core::FixedStepping;
+use vi_core::stepping::FixedStepping;
 
 const LIMIT: Limit = Limit { steps: 1000, until: f64::INFINITY, bound: 100.0 };
 const STEPS: (f64, f64) = (0.1, 3.0);

@@ -4,7 +4,8 @@
 //! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
 
 use crate::chart::Class;
-use vi_core::{EnergyPreserving, EnergyStepping, FixedStep, FixedStepping, SVector, State, StepError};
+use vi_core::stepping::{EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError};
 
 /// When a run is over.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,8 @@ use super::ending::{Course, Ending, LASTING, Limit, OWN, UNBOUNDED};
 use super::trial::TrapezoidalOscillator;
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
-use vi_core::{FixedStep, FixedStepping, State, StepError};
+use vi_core::stepping::FixedStepping;
+use vi_core::{FixedStep, State, StepError};
 use vi_systems::DampedOscillator;
 
 /// Steps of a run.

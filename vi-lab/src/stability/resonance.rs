@@ -9,7 +9,7 @@ use super::ending::{Course, Ending, LASTING, Limit, OWN};
 use super::trial::{Bent, TrapezoidalBent};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
-use vi_core::FixedStepping;
+use vi_core::stepping::FixedStepping;
 
 /// Steps of a run.
 const STEPS: u32 = 2000;

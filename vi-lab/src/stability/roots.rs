@@ -9,7 +9,9 @@ use super::ending::{Course, LASTING, Limit, OWN};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use core::f64::consts::PI;
-use vi_core::{FixedStepping, Node, SVector, State};
+use vi_core::node::Node;
+use vi_core::stepping::FixedStepping;
+use vi_core::{SVector, State};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 
 const ONE: Class = Class { label: "one solution", ..LASTING };

@@ -9,7 +9,7 @@ use super::system;
 use crate::catalogue;
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
-use vi_core::EnergyStepping;
+use vi_core::stepping::EnergyStepping;
 use vi_systems::{DoubleWell, Pendulum};
 
 /// Steps enough for the time even where the first one, close to D = 0, is by far the longest.

@@ -143,9 +143,9 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> Chain<T> {
+    impl<T: ::vi_core::real::Real> Chain<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn convert<U: ::vi_core::Real>(&self) -> Chain<U> {
+        pub fn convert<U: ::vi_core::real::Real>(&self) -> Chain<U> {
             Chain {
                 m: U::real(self.m.to_f64()),
                 k: U::real(self.k.to_f64()),
@@ -153,7 +153,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for Chain<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "m" => ::core::option::Option::Some(&mut self.m),
@@ -163,7 +163,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<10, T> for Chain<T> {
         const NAME: &'static str = "Chain";
         const COORDINATES: [&'static str; 10] = [
             "q[0]",
@@ -580,7 +580,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 10>,
             p: &::vi_core::SVector<T, 10>,
-        ) -> ::core::result::Result<::vi_core::Flow<10, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<10, T>, ::vi_core::StepError> {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -600,8 +600,8 @@ const _: () = {
                 q,
                 &velocity,
             );
-            ::core::result::Result::Ok(::vi_core::Flow {
-                velocity,
+            ::core::result::Result::Ok(::vi_core::lagrangian::Flow {
+                v: velocity,
                 force,
                 power,
             })
@@ -718,7 +718,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Collocation<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<10, T> for Chain<T> {
         type Mass = ::vi_core::linear::Banded<10, 1, T>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
@@ -874,7 +874,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<10, T> for Chain<T> {
         /// `ld = h*L`
         ///
         /// 106 operations.
@@ -1586,7 +1586,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<10, T> for Chain<T> {
         type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
         const CONSTANT_JACOBIAN: bool = false;
 
@@ -1614,10 +1614,10 @@ const _: () = {
         #[inline(always)]
         fn momentum_equation(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
-        ) -> ::vi_core::MomentumEquation<10, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::MomentumEquation<10, T, Self::Jacobian> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let [q_0_0, q_1_0, q_2_0, q_3_0, q_4_0, q_5_0, q_6_0, q_7_0, q_8_0, q_9_0,
@@ -1707,7 +1707,7 @@ const _: () = {
             let s57 = -(s50 * s37);
             let s58 = self.k * s39;
             let s59 = -(s58 * s47);
-            ::vi_core::MomentumEquation {
+            ::vi_core::stepping::MomentumEquation {
                 residual: ::vi_core::SVector::from([
                     self.m * q_0_dot - p0_q_0
                         - (p0_q_0_low + s1 * (self.k * s24 - s15 * sin12) + s41 * cos12),
@@ -1783,10 +1783,10 @@ const _: () = {
         #[inline(never)]
         fn momentum_residual(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
-        ) -> ::vi_core::MomentumResidual<10, T> {
+        ) -> ::vi_core::stepping::MomentumResidual<10, T> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let q0 = &node.q.data.0[0];
@@ -1875,7 +1875,7 @@ const _: () = {
             let s25 = self.k * s11[0] - s12[0];
             let s26 = self.k * s11[8] + s12[9];
             let s27 = s19[1] + s19[0];
-            ::vi_core::MomentumResidual {
+            ::vi_core::stepping::MomentumResidual {
                 residual: ::vi_core::SVector::from({
                     let mut entries = [T::real(0.0); 10];
                     entries[0] = s15[0] - (p0_low[0] + s1 * s25 + s16[0]);
@@ -1917,7 +1917,7 @@ const _: () = {
         #[inline(always)]
         fn discrete_energy(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
         ) -> T {
@@ -2012,7 +2012,7 @@ const _: () = {
         #[cold]
         fn momentum_rounding(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
         ) -> ::vi_core::SVector<T, 10> {
@@ -2025,17 +2025,17 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<10, T> for Chain<T> {
         /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1] + h*v_q[2]*L_q[2]/2 + v_q[2]*p0_q[2]_low + v_q[2]*p0_q[2] + h*v_q[3]*L_q[3]/2 + v_q[3]*p0_q[3]_low + v_q[3]*p0_q[3] + h*v_q[4]*L_q[4]/2 + v_q[4]*p0_q[4]_low + v_q[4]*p0_q[4] + h*v_q[5]*L_q[5]/2 + v_q[5]*p0_q[5]_low + v_q[5]*p0_q[5] + h*v_q[6]*L_q[6]/2 + …`
         ///
         /// 732 operations.
         #[inline(never)]
         fn extended_system(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
-        ) -> ::vi_core::ExtendedSystem<10, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::ExtendedSystem<10, T, Self::Jacobian> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let energy0 = node.energy;
@@ -2213,8 +2213,8 @@ const _: () = {
                 + (s16 * s19[6] + s13 * v[8] * s19[7] - s41[6]) * v[7];
             let s70 = s69 + (s15 * s19[4] + s16 * s19[5] - s41[4]) * v[5]
                 + (s14 * s19[2] + s15 * s19[3] - s41[2]) * v[3];
-            ::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
+            ::vi_core::stepping::ExtendedSystem {
+                momentum: ::vi_core::stepping::MomentumEquation {
                     residual: ::vi_core::SVector::from({
                         let mut entries = [T::real(0.0); 10];
                         entries[0] = s26[0] - (p0_low[0] + s1 * s47 + s27[0]);
@@ -2300,10 +2300,10 @@ const _: () = {
         #[inline(never)]
         fn extended_residual(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
-        ) -> ::vi_core::ExtendedResidual<10, T> {
+        ) -> ::vi_core::stepping::ExtendedResidual<10, T> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let energy0 = node.energy;
@@ -2462,7 +2462,7 @@ const _: () = {
                 + s46 * s35[3] * real(0.5) + s47 * s35[4] * real(0.5);
             let s55 = s54 + s48 * s35[5] * real(0.5) + s49 * s35[6] * real(0.5)
                 + s50 * s35[7] * real(0.5) + s51 * s35[8] * real(0.5);
-            ::vi_core::ExtendedResidual {
+            ::vi_core::stepping::ExtendedResidual {
                 residual: ::vi_core::SVector::from({
                     let mut entries = [T::real(0.0); 10];
                     entries[0] = s20[0] - (p0_low[0] + s1 * s38 + s21[0]);
@@ -2492,7 +2492,7 @@ const _: () = {
                 energy_scale: s55 + s52 * s35[9] * real(0.5)
                     + (s6 + (h * cos2).abs() * real(0.16666666666666666) + real(1.0))
                         * (1..10).fold(s34[0], |sum, i| sum + s34[i]),
-                increment: ::vi_core::Increment {
+                increment: ::vi_core::stepping::Increment {
                     momentum: ::vi_core::SVector::from({
                         let mut entries = [T::real(0.0); 10];
                         entries[0] = h * s38 + s19[0];
@@ -2511,10 +2511,10 @@ const _: () = {
         #[cold]
         fn extended_rounding(
             &self,
-            node: &::vi_core::Node<10, T>,
+            node: &::vi_core::node::Node<10, T>,
             h: T,
             v: &::vi_core::SVector<T, 10>,
-        ) -> ::vi_core::Rounding<10, T> {
+        ) -> ::vi_core::stepping::Rounding<10, T> {
             ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
@@ -2524,15 +2524,15 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::Convertible<10> for Chain<f64> {
-        type In<T: ::vi_core::Real> = Chain<T>;
+    impl ::vi_core::stepping::Convertible<10> for Chain<f64> {
+        type In<T: ::vi_core::real::Real> = Chain<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::Real>(&self) -> Chain<T> {
+        fn convert<T: ::vi_core::real::Real>(&self) -> Chain<T> {
             self.convert()
         }
     }
 
-    impl ::vi_core::Batch<10> for Chain<f64> {
+    impl ::vi_core::stepping::Batch<10> for Chain<f64> {
         type Rows<const W: usize> = Chain<[f64; W]>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             Chain {

@@ -87,9 +87,9 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> Pendula<T> {
+    impl<T: ::vi_core::real::Real> Pendula<T> {
         /// The same system in another kind of number, every parameter rounded to it.
-        pub fn convert<U: ::vi_core::Real>(&self) -> Pendula<U> {
+        pub fn convert<U: ::vi_core::real::Real>(&self) -> Pendula<U> {
             Pendula {
                 m: U::real(self.m.to_f64()),
                 k: U::real(self.k.to_f64()),
@@ -98,7 +98,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for Pendula<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "m" => ::core::option::Option::Some(&mut self.m),
@@ -109,7 +109,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<2, T> for Pendula<T> {
         const NAME: &'static str = "Pendula";
         const COORDINATES: [&'static str; 2] = ["q[0]", "q[1]"];
         const AUTONOMOUS: bool = false;
@@ -221,7 +221,7 @@ const _: () = {
             let s6 = (cos1 * cos2 + sin1 * sin2) * real(0.25);
             let s7 = sin1 * cos2 - cos1 * sin2;
             let s8 = self.k * (q_0 - q_1);
-            let mass: ::vi_core::SMatrix<T, 2, 2> = ::vi_core::SMatrix::from_row_slice(
+            let mass: ::vi_core::nalgebra::SMatrix<T, 2, 2> = ::vi_core::nalgebra::SMatrix::from_row_slice(
                 &[s5, s6, s6, s5],
             );
             let applied: ::vi_core::SVector<T, 2> = ::vi_core::SVector::from([
@@ -248,7 +248,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `step_density`: 39 operations.
             #[inline(never)]
-            fn step_density_part_1<T: ::vi_core::Real>(
+            fn step_density_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 7],
                 values: &mut [T; 11],
@@ -290,7 +290,7 @@ const _: () = {
             }
             /// Part 2 of `step_density`: 39 operations.
             #[inline(never)]
-            fn step_density_part_2<T: ::vi_core::Real>(
+            fn step_density_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 7],
                 values: &mut [T; 11],
@@ -338,7 +338,7 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<::vi_core::Flow<2, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<2, T>, ::vi_core::StepError> {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -358,8 +358,8 @@ const _: () = {
                 q,
                 &velocity,
             );
-            ::core::result::Result::Ok(::vi_core::Flow {
-                velocity,
+            ::core::result::Result::Ok(::vi_core::lagrangian::Flow {
+                v: velocity,
                 force,
                 power,
             })
@@ -411,8 +411,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::Collocation<2, T> for Pendula<T> {
-        type Mass = ::vi_core::SMatrix<T, 2, 2>;
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T> for Pendula<T> {
+        type Mass = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = false;
         const SEPARABLE: bool = false;
 
@@ -449,7 +449,7 @@ const _: () = {
                     -((self.b + q_1_dot * s8 * real(0.25)) * q_0_dot) - (s9 + s5 * sin1),
                     s9 - s5 * sin2 + (q_0_dot * s8 * real(0.25) - self.b) * q_1_dot,
                 ]),
-                mass: ::vi_core::SMatrix::from_row_slice(&[s6, s7, s7, s6]),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s6, s7, s7, s6]),
             }
         }
 
@@ -472,7 +472,7 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         /// `ld = h*L`
         ///
         /// 33 operations.
@@ -517,7 +517,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `d1_ld`: 47 operations.
             #[inline(never)]
-            fn d1_ld_part_1<T: ::vi_core::Real>(
+            fn d1_ld_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 9],
                 values: &mut [T; 4],
@@ -556,7 +556,7 @@ const _: () = {
             }
             /// Part 2 of `d1_ld`: 4 operations.
             #[inline(never)]
-            fn d1_ld_part_2<T: ::vi_core::Real>(
+            fn d1_ld_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 9],
                 values: &mut [T; 4],
@@ -631,7 +631,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `d3_ld`: 40 operations.
             #[inline(never)]
-            fn d3_ld_part_1<T: ::vi_core::Real>(
+            fn d3_ld_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 9],
                 values: &mut [T; 5],
@@ -669,7 +669,7 @@ const _: () = {
             }
             /// Part 2 of `d3_ld`: 11 operations.
             #[inline(never)]
-            fn d3_ld_part_2<T: ::vi_core::Real>(
+            fn d3_ld_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 9],
                 values: &mut [T; 5],
@@ -804,8 +804,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::FixedStepping<2, T> for Pendula<T> {
-        type Jacobian = ::vi_core::SMatrix<T, 2, 2>;
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for Pendula<T> {
+        type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
@@ -817,10 +817,10 @@ const _: () = {
         #[inline(never)]
         fn momentum_equation(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::MomentumEquation<2, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::MomentumEquation<2, T, Self::Jacobian> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let [q_0_0, q_1_0]: [T; 2] = node.q.into();
@@ -831,7 +831,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `momentum_equation`: 43 operations.
             #[inline(never)]
-            fn momentum_equation_part_1<T: ::vi_core::Real>(
+            fn momentum_equation_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 13],
                 values: &mut [T; 16],
@@ -879,7 +879,7 @@ const _: () = {
             }
             /// Part 2 of `momentum_equation`: 42 operations.
             #[inline(never)]
-            fn momentum_equation_part_2<T: ::vi_core::Real>(
+            fn momentum_equation_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 13],
                 values: &mut [T; 16],
@@ -938,9 +938,9 @@ const _: () = {
             let mut values = [T::real(0.0); 16];
             momentum_equation_part_1(system, &inputs, &mut values);
             momentum_equation_part_2(system, &inputs, &mut values);
-            ::vi_core::MomentumEquation {
+            ::vi_core::stepping::MomentumEquation {
                 residual: ::vi_core::SVector::from([values[0], values[1]]),
-                jacobian: ::vi_core::SMatrix::from_row_slice(
+                jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                     &[values[2], values[3], values[4], values[5]],
                 ),
             }
@@ -956,10 +956,10 @@ const _: () = {
         #[inline(never)]
         fn momentum_residual(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::MomentumResidual<2, T> {
+        ) -> ::vi_core::stepping::MomentumResidual<2, T> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let [q_0_0, q_1_0]: [T; 2] = node.q.into();
@@ -970,7 +970,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `momentum_residual`: 26 operations.
             #[inline(never)]
-            fn momentum_residual_part_1<T: ::vi_core::Real>(
+            fn momentum_residual_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 13],
                 values: &mut [T; 23],
@@ -1015,7 +1015,7 @@ const _: () = {
             }
             /// Part 2 of `momentum_residual`: 49 operations.
             #[inline(never)]
-            fn momentum_residual_part_2<T: ::vi_core::Real>(
+            fn momentum_residual_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 13],
                 values: &mut [T; 23],
@@ -1059,7 +1059,7 @@ const _: () = {
             }
             /// Part 3 of `momentum_residual`: 31 operations.
             #[inline(never)]
-            fn momentum_residual_part_3<T: ::vi_core::Real>(
+            fn momentum_residual_part_3<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 13],
                 values: &mut [T; 23],
@@ -1113,7 +1113,7 @@ const _: () = {
             momentum_residual_part_1(system, &inputs, &mut values);
             momentum_residual_part_2(system, &inputs, &mut values);
             momentum_residual_part_3(system, &inputs, &mut values);
-            ::vi_core::MomentumResidual {
+            ::vi_core::stepping::MomentumResidual {
                 residual: ::vi_core::SVector::from([values[0], values[1]]),
                 scale: ::vi_core::SVector::from([values[2], values[3]]),
                 increment: ::vi_core::SVector::from([values[4], values[5]]),
@@ -1126,7 +1126,7 @@ const _: () = {
         #[inline(never)]
         fn discrete_energy(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> T {
@@ -1138,7 +1138,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `discrete_energy`: 50 operations.
             #[inline(never)]
-            fn discrete_energy_part_1<T: ::vi_core::Real>(
+            fn discrete_energy_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 9],
                 values: &mut [T; 6],
@@ -1182,7 +1182,7 @@ const _: () = {
             }
             /// Part 2 of `discrete_energy`: 9 operations.
             #[inline(never)]
-            fn discrete_energy_part_2<T: ::vi_core::Real>(
+            fn discrete_energy_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 9],
                 values: &mut [T; 6],
@@ -1221,7 +1221,7 @@ const _: () = {
         #[cold]
         fn momentum_rounding(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::vi_core::SVector<T, 2> {
@@ -1234,17 +1234,17 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<2, T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T> for Pendula<T> {
         /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
         ///
         /// 170 operations.
         #[inline(never)]
         fn extended_system(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::ExtendedSystem<2, T, Self::Jacobian> {
+        ) -> ::vi_core::stepping::ExtendedSystem<2, T, Self::Jacobian> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let energy0 = node.energy;
@@ -1257,7 +1257,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `extended_system`: 27 operations.
             #[inline(never)]
-            fn extended_system_part_1<T: ::vi_core::Real>(
+            fn extended_system_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 50],
@@ -1305,7 +1305,7 @@ const _: () = {
             }
             /// Part 2 of `extended_system`: 29 operations.
             #[inline(never)]
-            fn extended_system_part_2<T: ::vi_core::Real>(
+            fn extended_system_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 50],
@@ -1353,7 +1353,7 @@ const _: () = {
             }
             /// Part 3 of `extended_system`: 29 operations.
             #[inline(never)]
-            fn extended_system_part_3<T: ::vi_core::Real>(
+            fn extended_system_part_3<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 50],
@@ -1400,7 +1400,7 @@ const _: () = {
             }
             /// Part 4 of `extended_system`: 47 operations.
             #[inline(never)]
-            fn extended_system_part_4<T: ::vi_core::Real>(
+            fn extended_system_part_4<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 50],
@@ -1459,7 +1459,7 @@ const _: () = {
             }
             /// Part 5 of `extended_system`: 38 operations.
             #[inline(never)]
-            fn extended_system_part_5<T: ::vi_core::Real>(
+            fn extended_system_part_5<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 50],
@@ -1528,10 +1528,10 @@ const _: () = {
             extended_system_part_3(system, &inputs, &mut values);
             extended_system_part_4(system, &inputs, &mut values);
             extended_system_part_5(system, &inputs, &mut values);
-            ::vi_core::ExtendedSystem {
-                momentum: ::vi_core::MomentumEquation {
+            ::vi_core::stepping::ExtendedSystem {
+                momentum: ::vi_core::stepping::MomentumEquation {
                     residual: ::vi_core::SVector::from([values[0], values[1]]),
-                    jacobian: ::vi_core::SMatrix::from_row_slice(
+                    jacobian: ::vi_core::nalgebra::SMatrix::from_row_slice(
                         &[values[2], values[3], values[4], values[5]],
                     ),
                 },
@@ -1550,10 +1550,10 @@ const _: () = {
         #[inline(never)]
         fn extended_residual(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::ExtendedResidual<2, T> {
+        ) -> ::vi_core::stepping::ExtendedResidual<2, T> {
             let t0 = node.t;
             let t0_low = node.t_low;
             let energy0 = node.energy;
@@ -1566,7 +1566,7 @@ const _: () = {
             let real = T::real;
             /// Part 1 of `extended_residual`: 25 operations.
             #[inline(never)]
-            fn extended_residual_part_1<T: ::vi_core::Real>(
+            fn extended_residual_part_1<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 46],
@@ -1618,7 +1618,7 @@ const _: () = {
             }
             /// Part 2 of `extended_residual`: 31 operations.
             #[inline(never)]
-            fn extended_residual_part_2<T: ::vi_core::Real>(
+            fn extended_residual_part_2<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 46],
@@ -1671,7 +1671,7 @@ const _: () = {
             }
             /// Part 3 of `extended_residual`: 32 operations.
             #[inline(never)]
-            fn extended_residual_part_3<T: ::vi_core::Real>(
+            fn extended_residual_part_3<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 46],
@@ -1710,7 +1710,7 @@ const _: () = {
             }
             /// Part 4 of `extended_residual`: 50 operations.
             #[inline(never)]
-            fn extended_residual_part_4<T: ::vi_core::Real>(
+            fn extended_residual_part_4<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 46],
@@ -1761,7 +1761,7 @@ const _: () = {
             }
             /// Part 5 of `extended_residual`: 41 operations.
             #[inline(never)]
-            fn extended_residual_part_5<T: ::vi_core::Real>(
+            fn extended_residual_part_5<T: ::vi_core::real::Real>(
                 system: &Pendula<T>,
                 inputs: &[T; 15],
                 values: &mut [T; 46],
@@ -1825,12 +1825,12 @@ const _: () = {
             extended_residual_part_3(system, &inputs, &mut values);
             extended_residual_part_4(system, &inputs, &mut values);
             extended_residual_part_5(system, &inputs, &mut values);
-            ::vi_core::ExtendedResidual {
+            ::vi_core::stepping::ExtendedResidual {
                 residual: ::vi_core::SVector::from([values[0], values[1]]),
                 scale: ::vi_core::SVector::from([values[2], values[3]]),
                 energy_residual: values[4],
                 energy_scale: values[5],
-                increment: ::vi_core::Increment {
+                increment: ::vi_core::stepping::Increment {
                     momentum: ::vi_core::SVector::from([values[6], values[7]]),
                     energy: values[8],
                 },
@@ -1841,10 +1841,10 @@ const _: () = {
         #[cold]
         fn extended_rounding(
             &self,
-            node: &::vi_core::Node<2, T>,
+            node: &::vi_core::node::Node<2, T>,
             h: T,
             v: &::vi_core::SVector<T, 2>,
-        ) -> ::vi_core::Rounding<2, T> {
+        ) -> ::vi_core::stepping::Rounding<2, T> {
             ::vi_core::support::extended_rounding(
                 &self.convert::<::vi_core::real::Rounded>(),
                 node,
@@ -1854,15 +1854,15 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::Convertible<2> for Pendula<f64> {
-        type In<T: ::vi_core::Real> = Pendula<T>;
+    impl ::vi_core::stepping::Convertible<2> for Pendula<f64> {
+        type In<T: ::vi_core::real::Real> = Pendula<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::Real>(&self) -> Pendula<T> {
+        fn convert<T: ::vi_core::real::Real>(&self) -> Pendula<T> {
             self.convert()
         }
     }
 
-    impl ::vi_core::Batch<2> for Pendula<f64> {
+    impl ::vi_core::stepping::Batch<2> for Pendula<f64> {
         type Rows<const W: usize> = Pendula<[f64; W]>;
         fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
             Pendula {

@@ -8,8 +8,9 @@ use crate::chart::{Axis, Chart, Look, Series};
 use crate::failure::Failure;
 use crate::numbers::{median, order, scientific};
 use crate::table::Table;
+use vi_core::StepError;
 use vi_core::condition::Condition;
-use vi_core::{EnergyStepping, StepError};
+use vi_core::stepping::EnergyStepping;
 
 /// Steps along which condition numbers are taken: some oscillations.
 const LENGTH: u32 = 10_000;

@@ -16,7 +16,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (form, point) = point(source);
     let power = power(source);
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::Collocation<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
             type Mass = #form;
             const CONSTANT_MASS: bool = #constant_mass;
             const SEPARABLE: bool = #separable;

@@ -24,7 +24,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         number(source, FunctionId::GdPlus, of.forces.gd_plus),
     ];
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
             #(#functions)*
         }
     }

@@ -33,7 +33,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         non_finite(source),
     ];
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#dimension, T> for #name<T> {
             const NAME: &'static str = #text;
             const COORDINATES: [&'static str; #dimension] = [#(#coordinates),*];
             const AUTONOMOUS: bool = #autonomous;
@@ -219,11 +219,11 @@ fn flow(source: &Source) -> TokenStream {
             t: T,
             q: &::vi_core::SVector<T, #dimension>,
             p: &::vi_core::SVector<T, #dimension>,
-        ) -> ::core::result::Result<::vi_core::Flow<#dimension, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<#dimension, T>, ::vi_core::StepError> {
             #velocity
             let force = #point(self, t, q, &velocity).force;
             let power = ::vi_core::collocation::Collocation::power(self, t, q, &velocity);
-            ::core::result::Result::Ok(::vi_core::Flow { v: velocity, force, power })
+            ::core::result::Result::Ok(::vi_core::lagrangian::Flow { v: velocity, force, power })
         }
     }
 }

@@ -13,8 +13,8 @@ pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) ->
         Pattern::Diagonal => banded(rows, 0),
         _ if rows.len() <= CLOSED => {
             let entries = rows.iter().flatten();
-            let value = quote!(::vi_core::SMatrix::from_row_slice(&[#(#entries),*]));
-            (quote!(::vi_core::SMatrix<T, #size, #size>), value)
+            let value = quote!(::vi_core::nalgebra::SMatrix::from_row_slice(&[#(#entries),*]));
+            (quote!(::vi_core::nalgebra::SMatrix<T, #size, #size>), value)
         }
         Pattern::Tridiagonal => tridiagonal(rows),
         Pattern::Banded(width) => banded(rows, *width),
@@ -78,13 +78,13 @@ fn dense(rows: &[Vec<Entry>], symmetric: bool) -> (TokenStream, TokenStream) {
         })
     });
     let value = quote!({
-        let mut entries = ::vi_core::SMatrix::zeros();
+        let mut entries = ::vi_core::nalgebra::SMatrix::zeros();
         #(#assignments)*
         entries
     });
     if symmetric {
         (quote!(::vi_core::linear::Symmetric<#size, T>), quote!(::vi_core::linear::Symmetric(#value)))
     } else {
-        (quote!(::vi_core::SMatrix<T, #size, #size>), value)
+        (quote!(::vi_core::nalgebra::SMatrix<T, #size, #size>), value)
     }
 }

@@ -4,7 +4,7 @@
 //! through functions of bounded length. What a later one or a result reads, a piece puts into an array:
 //!
 //! ```text
-//! fn momentum_equation_part_2<T: ::vi_core::Real>(system: &Chain<T>, inputs: &[T; 9], values: &mut [T; 4]) {
+//! fn momentum_equation_part_2<T: ::vi_core::real::Real>(system: &Chain<T>, inputs: &[T; 9], values: &mut [T; 4]) {
 //!     let h = inputs[0];
 //!     let s1 = values[0];
 //!     let s5 = h * s1;
@@ -113,7 +113,7 @@ pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, 
         functions.extend(quote! {
             #[doc = #documentation]
             #[inline(never)]
-            fn #name<T: ::vi_core::Real>(
+            fn #name<T: ::vi_core::real::Real>(
                 system: &#system<T>,
                 inputs: &[T; #inputs_length],
                 values: &mut [T; #values_length],

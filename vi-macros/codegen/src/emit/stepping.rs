@@ -39,7 +39,7 @@ fn fixed(source: &Source) -> TokenStream {
         )
     });
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::FixedStepping<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T> for #name<T> {
             type Jacobian = #form;
             const CONSTANT_JACOBIAN: bool = #constant;
             #closed
@@ -50,7 +50,7 @@ fn fixed(source: &Source) -> TokenStream {
             #[cold]
             fn momentum_rounding(
                 &self,
-                node: &::vi_core::Node<#dimension, T>,
+                node: &::vi_core::node::Node<#dimension, T>,
                 h: T,
                 v: &::vi_core::SVector<T, #dimension>,
             ) -> ::vi_core::SVector<T, #dimension> {
@@ -64,17 +64,17 @@ fn energy(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let functions = [extended_system(source), extended_residual(source)].into_iter().flatten();
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T> for #name<T> {
             #(#functions)*
 
             /// What the rounding of both residuals is measured in, by running error analysis.
             #[cold]
             fn extended_rounding(
                 &self,
-                node: &::vi_core::Node<#dimension, T>,
+                node: &::vi_core::node::Node<#dimension, T>,
                 h: T,
                 v: &::vi_core::SVector<T, #dimension>,
-            ) -> ::vi_core::Rounding<#dimension, T> {
+            ) -> ::vi_core::stepping::Rounding<#dimension, T> {
                 ::vi_core::support::extended_rounding(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
             }
         }
@@ -107,7 +107,7 @@ fn momentum_fields(source: &Source, results: &Results<Entry>) -> (TokenStream, T
     let residual = vector_of(results.vector(Output::Residual));
     let rows = results.matrix(Output::Jacobian);
     let (form, jacobian) = matrix(&source.findings.pattern, source.findings.symmetric, rows);
-    (form, quote!(::vi_core::MomentumEquation { residual: #residual, jacobian: #jacobian }))
+    (form, quote!(::vi_core::stepping::MomentumEquation { residual: #residual, jacobian: #jacobian }))
 }
 
 /// How many operations a function has.
@@ -138,7 +138,7 @@ fn method(
         #attribute
         fn #name(
             &self,
-            node: &::vi_core::Node<#dimension, T>,
+            node: &::vi_core::node::Node<#dimension, T>,
             h: T,
             v: &::vi_core::SVector<T, #dimension>,
         ) -> #output {
@@ -151,7 +151,7 @@ fn method(
 fn momentum_equation(source: &Source) -> (TokenStream, Option<TokenStream>) {
     let dimension = source.dimension();
     let formula = source.formulas("residual", &source.system.equations.residual);
-    let output = quote!(::vi_core::MomentumEquation<#dimension, T, Self::Jacobian>);
+    let output = quote!(::vi_core::stepping::MomentumEquation<#dimension, T, Self::Jacobian>);
     let mut form = TokenStream::new();
     let function = method(source, FunctionId::MomentumEquation, &formula, &output, |results| {
         let (of, equation) = momentum_fields(source, results);
@@ -166,13 +166,13 @@ fn momentum_residual(source: &Source) -> Option<TokenStream> {
     let of = &source.system.equations;
     let increments = source.named_formulas(&of.momentum_increment, |name| format!("p1_{name} − p0_{name}"));
     let formula = format!("The residual, its rounding scale, and\n\n{increments}");
-    let output = quote!(::vi_core::MomentumResidual<#dimension, T>);
+    let output = quote!(::vi_core::stepping::MomentumResidual<#dimension, T>);
     method(source, FunctionId::MomentumResidual, &formula, &output, |results| {
         let residual = vector_of(results.vector(Output::Residual));
         let scale = vector_of(results.vector(Output::RoundingScale));
         let increment = vector_of(results.vector(Output::MomentumIncrement));
         quote! {
-            ::vi_core::MomentumResidual { residual: #residual, scale: #scale, increment: #increment }
+            ::vi_core::stepping::MomentumResidual { residual: #residual, scale: #scale, increment: #increment }
         }
     })
 }
@@ -187,7 +187,7 @@ fn discrete_energy(source: &Source) -> Option<TokenStream> {
 fn extended_system(source: &Source) -> Option<TokenStream> {
     let dimension = source.dimension();
     let formula = source.formula("energy_residual", source.system.equations.energy_residual);
-    let output = quote!(::vi_core::ExtendedSystem<#dimension, T, Self::Jacobian>);
+    let output = quote!(::vi_core::stepping::ExtendedSystem<#dimension, T, Self::Jacobian>);
     method(source, FunctionId::ExtendedSystem, &formula, &output, |results| {
         let (_, momentum) = momentum_fields(source, results);
         let residual_dh = vector_of(results.vector(Output::ResidualDh));
@@ -195,7 +195,7 @@ fn extended_system(source: &Source) -> Option<TokenStream> {
         let energy_dv = vector_of(results.vector(Output::EnergyDv));
         let energy_dh = results.number(Output::EnergyDh);
         quote! {
-            ::vi_core::ExtendedSystem {
+            ::vi_core::stepping::ExtendedSystem {
                 momentum: #momentum,
                 residual_dh: #residual_dh,
                 energy_residual: #energy_residual,
@@ -211,7 +211,7 @@ fn extended_residual(source: &Source) -> Option<TokenStream> {
     let of = &source.system.equations;
     let formula =
         format!("Both residuals, their rounding scales, and\n\n{}", source.formula("E1 − E0", of.energy_increment));
-    let output = quote!(::vi_core::ExtendedResidual<#dimension, T>);
+    let output = quote!(::vi_core::stepping::ExtendedResidual<#dimension, T>);
     method(source, FunctionId::ExtendedResidual, &formula, &output, |results| {
         let residual = vector_of(results.vector(Output::Residual));
         let scale = vector_of(results.vector(Output::RoundingScale));
@@ -220,12 +220,12 @@ fn extended_residual(source: &Source) -> Option<TokenStream> {
         let momentum = vector_of(results.vector(Output::MomentumIncrement));
         let energy = results.number(Output::EnergyIncrement);
         quote! {
-            ::vi_core::ExtendedResidual {
+            ::vi_core::stepping::ExtendedResidual {
                 residual: #residual,
                 scale: #scale,
                 energy_residual: #energy_residual,
                 energy_scale: #energy_scale,
-                increment: ::vi_core::Increment { momentum: #momentum, energy: #energy },
+                increment: ::vi_core::stepping::Increment { momentum: #momentum, energy: #energy },
             }
         }
     })

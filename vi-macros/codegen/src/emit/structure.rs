@@ -55,14 +55,14 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
             }
         }
 
-        impl<T: ::vi_core::Real> #name<T> {
+        impl<T: ::vi_core::real::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
-            pub fn convert<U: ::vi_core::Real>(&self) -> #name<U> {
+            pub fn convert<U: ::vi_core::real::Real>(&self) -> #name<U> {
                 #name { #(#names: U::real(self.#names.to_f64()),)* #marker_value }
             }
         }
 
-        impl<T: ::vi_core::Real> ::vi_core::Parameters<T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for #name<T> {
             fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
                 match name {
                     #(#arms,)*
@@ -79,16 +79,16 @@ pub(super) fn numbers(source: &Source) -> TokenStream {
     let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
     let (_, marker_value) = marker(names.is_empty());
     quote! {
-        impl ::vi_core::Convertible<#dimension> for #name<f64> {
-            type In<T: ::vi_core::Real> = #name<T>;
+        impl ::vi_core::stepping::Convertible<#dimension> for #name<f64> {
+            type In<T: ::vi_core::real::Real> = #name<T>;
 
             #[inline(always)]
-            fn convert<T: ::vi_core::Real>(&self) -> #name<T> {
+            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> {
                 self.convert()
             }
         }
 
-        impl ::vi_core::Batch<#dimension> for #name<f64> {
+        impl ::vi_core::stepping::Batch<#dimension> for #name<f64> {
             type Rows<const W: usize> = #name<[f64; W]>;
 
             fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
@@ -193,13 +193,13 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
     let none = quote!({ loop {} });
     let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
     let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
-    let from = quote!(&self, _: &::vi_core::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
+    let from = quote!(&self, _: &::vi_core::node::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
     let vector = quote!(::vi_core::SVector<T, #n>);
     let or_error = |what: TokenStream| quote!(::core::result::Result<#what, ::vi_core::StepError>);
     let (or_vector, or_number) = (or_error(vector.clone()), or_error(quote!(T)));
-    let or_flow = or_error(quote!(::vi_core::Flow<#n, T>));
+    let or_flow = or_error(quote!(::vi_core::lagrangian::Flow<#n, T>));
     quote! {
-        impl<T: ::vi_core::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
             const NAME: &'static str = "";
             const COORDINATES: [&'static str; #n] = [""; #n];
             const AUTONOMOUS: bool = false;
@@ -213,14 +213,14 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn step_density(#at) -> #or_number #none
             fn flow(#at) -> #or_flow #none
         }
-        impl<T: ::vi_core::Real> ::vi_core::Collocation<#n, T> for #name<T> {
-            type Mass = ::vi_core::SMatrix<T, #n, #n>;
+        impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
+            type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_MASS: bool = false;
             const SEPARABLE: bool = false;
             fn point(#at) -> ::vi_core::collocation::Point<#n, T, Self::Mass> #none
             fn power(#at) -> T #none
         }
-        impl<T: ::vi_core::Real> ::vi_core::DiscreteLagrangian<#n, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#n, T> for #name<T> {
             fn ld(#over) -> T #none
             fn d1_ld(#over) -> T #none
             fn d2_ld(#over) -> #vector #none
@@ -231,18 +231,18 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn gd_minus(#over) -> T #none
             fn gd_plus(#over) -> T #none
         }
-        impl<T: ::vi_core::Real> ::vi_core::FixedStepping<#n, T> for #name<T> {
-            type Jacobian = ::vi_core::SMatrix<T, #n, #n>;
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T> for #name<T> {
+            type Jacobian = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
-            fn momentum_equation(#from) -> ::vi_core::MomentumEquation<#n, T> #none
-            fn momentum_residual(#from) -> ::vi_core::MomentumResidual<#n, T> #none
+            fn momentum_equation(#from) -> ::vi_core::stepping::MomentumEquation<#n, T> #none
+            fn momentum_residual(#from) -> ::vi_core::stepping::MomentumResidual<#n, T> #none
             fn momentum_rounding(#from) -> #vector #none
             fn discrete_energy(#from) -> T #none
         }
-        impl<T: ::vi_core::Real> ::vi_core::EnergyStepping<#n, T> for #name<T> {
-            fn extended_system(#from) -> ::vi_core::ExtendedSystem<#n, T> #none
-            fn extended_residual(#from) -> ::vi_core::ExtendedResidual<#n, T> #none
-            fn extended_rounding(#from) -> ::vi_core::Rounding<#n, T> #none
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T> for #name<T> {
+            fn extended_system(#from) -> ::vi_core::stepping::ExtendedSystem<#n, T> #none
+            fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
+            fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none
         }
     }
 }
