@@ -167,8 +167,8 @@ mod tests {
 
     #[test]
     fn weights_are_binomials_with_alternating_signs() {
-        assert_eq!(WEIGHTS[2], [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
-        assert_eq!(WEIGHTS[6], [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0]);
+        assert_eq!(WEIGHTS[2].map(f64::to_bits), [3.0, -3.0, 1.0, 0.0, 0.0, 0.0, 0.0].map(f64::to_bits));
+        assert_eq!(WEIGHTS[6].map(f64::to_bits), [7.0, -21.0, 35.0, -35.0, 21.0, -7.0, 1.0].map(f64::to_bits));
         for degree in 0..=10_u32 {
             let weights: [f64; 11] = weights(degree as usize);
             let power = |t: f64| t.powi(i32::try_from(degree).unwrap_or(0));

@@ -15,7 +15,6 @@
 //! | `block` | 64 trajectories side by side, and what becomes of one that the common path refuses |
 //! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
 //! | `layout` | nodes and velocities of a block, one row per coordinate |
-//! | `lane` | the number that the loops compute with: products are added in one instruction |
 //! | `ended` | how a trajectory ended |
 //!
 //! A trajectory depends neither on its neighbours nor on the number of threads, bit for bit; on processors with and
@@ -25,6 +24,9 @@
 //! each by itself, to a few roundings, which the motion may enlarge. Where it has several (see
 //! [`Branch`](vi_core::fixed_step::Branch)), the root taken depends on the guess, and an ensemble guesses otherwise: there
 //! it need not agree.
+
+// A call inside a loop over trajectories keeps it from becoming vector instructions.
+#![allow(clippy::inline_always)]
 
 mod block;
 mod ended;

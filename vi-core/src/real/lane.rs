@@ -23,12 +23,14 @@ pub struct Lane<const FUSED: bool> {
 
 impl<const FUSED: bool> Lane<FUSED> {
     /// The lane of a number.
+    #[must_use]
     #[inline(always)]
     pub fn new(value: f64) -> Self {
         Self { value, factor: 1.0, product: false }
     }
 
     /// The number.
+    #[must_use]
     #[inline(always)]
     pub fn get(self) -> f64 {
         self.value * self.factor
