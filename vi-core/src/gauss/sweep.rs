@@ -20,8 +20,8 @@ const SWEEPS: u32 = 60;
 const SLOW: f64 = 0.5;
 /// Roundings of q below which the contraction says nothing.
 const NOISE: f64 = 1e3;
-/// Changes that are no smaller than the one before, after which no further sweep comes closer.
-const STALLS: u32 = 3;
+/// Sweeps without a smaller change, after which no further one comes closer.
+const STALLS: u32 = 4;
 /// Roundings of q by which the stages may still move.
 const FLOOR: f64 = 4.0;
 /// Roundings of q that the next change may have for this one to be the last.
@@ -84,6 +84,7 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut x = equations.start();
     let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
     let mut is_last = false;
+    let mut least = f64::INFINITY;
     let mut stalls = 0;
     loop {
         let y = equations.sweep(&x);
@@ -91,7 +92,8 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         if state.sweeps > 0 {
             state.contraction = change / state.change;
         }
-        stalls += u32::from(change >= state.change);
+        stalls = if change < least { 0 } else { stalls + 1 };
+        least = least.min(change);
         state.change = change;
         state.sweeps += 1;
         let is_solved = change <= FLOOR && (is_last || change == 0.0);

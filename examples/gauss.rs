@@ -1,0 +1,56 @@
+//! Error against time of Gauss steps: Kepler's problem, e = 0.6, three periods.
+//!
+//! In: nothing. Out: for each error the shortest time of a run, its stages and its steps. `cargo run --release --example gauss`
+
+use std::f64::consts::TAU;
+use std::time::Instant;
+use vi_core::{Gauss, State, StepError};
+use vi_systems::Kepler;
+
+/// Runs of each kind, of which the fastest counts.
+const RUNS: u32 = 9;
+
+/// One kind of run: seconds, relative error of the position, stages, steps.
+struct Run {
+    seconds: f64,
+    error: f64,
+    stages: usize,
+    steps: u32,
+}
+
+/// Runs of S stages, from few steps to many.
+fn runs<const S: usize>() -> Result<Vec<Run>, StepError> {
+    let planet = Kepler::default();
+    let start = State::at(&planet, 0.0, [0.4, 0.0], [0.0, 2.0]);
+    let mut runs = Vec::new();
+    for rung in 0..24 {
+        let steps = (24.0 * 1.15_f64.powi(rung)).round();
+        let mut seconds = f64::INFINITY;
+        let mut end = Ok(start);
+        for _ in 0..RUNS {
+            let clock = Instant::now();
+            let mut run = Gauss::<_, 2, S>::new(planet, start, 3.0 * TAU / steps)?;
+            end = (0..steps as u32).try_fold(start, |_, _| run.step());
+            seconds = seconds.min(clock.elapsed().as_secs_f64());
+        }
+        // Steps that are too long have no solution.
+        let Ok(end) = end else { continue };
+        // After whole periods the planet is where it began.
+        runs.push(Run { seconds, error: (end.q - start.q).norm() / start.q.norm(), stages: S, steps: steps as u32 });
+    }
+    Ok(runs)
+}
+
+fn main() -> Result<(), StepError> {
+    let all: Vec<Run> = [runs::<4>()?, runs::<6>()?, runs::<8>()?, runs::<12>()?].into_iter().flatten().collect();
+    for error in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let good = all.iter().filter(|run| run.error <= error);
+        match good.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
+            Some(Run { seconds, stages, steps, .. }) => {
+                println!("{error:.0e}: {:6.1} µs, {stages} stages, {steps} steps", 1e6 * seconds);
+            }
+            None => println!("{error:.0e}: none"),
+        }
+    }
+    Ok(())
+}
