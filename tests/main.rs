@@ -20,6 +20,7 @@ mod references;
 mod resonances;
 mod restarts;
 mod robustness;
+mod rules;
 mod single_precision;
 mod solvability;
 mod step_law;

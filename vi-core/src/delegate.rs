@@ -148,13 +148,14 @@ macro_rules! discrete {
     };
 }
 
-/// The equations of a step of what dereferences to S, each function with this attribute.
+/// The equations of a step of what dereferences to S, by the rule of this name, each function with this attribute.
 macro_rules! stepping {
-    ($wrapper:ty, $of_rule:ident as $rule:ident, #[$attribute:meta] $(, $generic:ident)?) => {
+    ($wrapper:ty, $of_rule:ident as $rule:ident, $name:expr, #[$attribute:meta] $(, $generic:ident)?) => {
         impl<const N: usize, T: Real, S: FixedStepping<N, T, $of_rule>$(, $generic: Rule)?> FixedStepping<N, T, $rule>
             for $wrapper
         {
             type Jacobian = S::Jacobian;
+            const RULE: Option<&'static str> = $name;
             const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
             const CLOSED_FORM: bool = S::CLOSED_FORM;
             const INLINED: bool = S::INLINED;
@@ -207,15 +208,23 @@ macro_rules! stepping {
 lagrangian!(&S);
 collocation!(&S);
 discrete!(&S, R as R, R);
-stepping!(&S, R as R, #[inline(always)], R);
+stepping!(&S, R as R, S::RULE, #[inline(always)], R);
+
+/// The name of a rule; that of the system's own is what the system says.
+const fn rule_name(of_rule: Option<&'static str>, of_system: Option<&'static str>) -> Option<&'static str> {
+    match of_rule {
+        Some(name) => Some(name),
+        None => of_system,
+    }
+}
 
 lagrangian!(By<S, R>, R);
 collocation!(By<S, R>, R);
 discrete!(By<S, R>, R as Own, R);
-stepping!(By<S, R>, R as Own, #[inline(always)], R);
+stepping!(By<S, R>, R as Own, rule_name(R::NAME, S::RULE), #[inline(always)], R);
 
 lagrangian!(Called<S>);
-stepping!(Called<S>, Own as Own, #[inline(never)]);
+stepping!(Called<S>, Own as Own, S::RULE, #[inline(never)]);
 
 impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
     fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {

@@ -94,7 +94,7 @@ pub enum StepError {
     OtherSystem {
         /// Name of the system that was to be restarted.
         system: &'static str,
-        /// The parameter whose values differ; `None` where the systems do.
+        /// The parameter whose values differ; `None` where the systems or their rules do.
         parameter: Option<&'static str>,
         /// Its value in the checkpoint; not a number where the systems differ.
         stored: f64,
@@ -162,7 +162,7 @@ impl fmt::Display for Reason<'_> {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
             StepError::OtherSystem { system, parameter: None, .. } => {
-                write!(f, "the checkpoint is of another system than `{system}`")
+                write!(f, "the checkpoint is of another system than `{system}`, or of another rule")
             }
             StepError::OtherSystem { system, parameter: Some(parameter), stored, given } => {
                 write!(f, "the checkpoint of `{system}` was taken with `{parameter}` = {stored:e}, not {given:e}")
@@ -194,7 +194,9 @@ impl fmt::Display for StepError {
                 h.abs()
             ),
             Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
-            Self::OtherSystem { parameter: None, .. } => f.write_str("; restart the system that it was taken of"),
+            Self::OtherSystem { parameter: None, .. } => {
+                f.write_str("; restart the system that it was taken of, by its rule")
+            }
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
             Self::Singular { .. } | Self::NonFinite { .. } | Self::InvalidInput { .. } => Ok(()),
         }

@@ -2,13 +2,17 @@
 //!
 //! The traits of a discrete system ([`DiscreteLagrangian`](crate::discrete::DiscreteLagrangian),
 //! [`FixedStepping`](crate::stepping::FixedStepping), [`EnergyStepping`](crate::stepping::EnergyStepping)) are implemented once for
-//! each rule that a system is declared with, told apart by the marker R. The integrators take steps by [`Own`], the first of them.
+//! each rule that a system is declared with, told apart by the marker R. The integrators take steps by [`Own`], the first of them. A call
+//! of one of their functions on a system with several rules names the marker: `FixedStepping::<1, f64, Own>::discrete_energy(&system, …)`.
 
 use core::fmt::Debug;
 use core::ops::Deref;
 
 /// A marker of a rule.
-pub trait Rule: Copy + Debug + PartialEq + Send + Sync + 'static {}
+pub trait Rule: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// Its name in the language; none of the system's own, which may be any.
+    const NAME: Option<&'static str>;
+}
 
 /// The rule that a system is declared with; of several, the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,12 +24,37 @@ pub struct Midpoint;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Trapezoidal;
 
-impl Rule for Own {}
-impl Rule for Midpoint {}
-impl Rule for Trapezoidal {}
+impl Rule for Own {
+    const NAME: Option<&'static str> = None;
+}
+impl Rule for Midpoint {
+    const NAME: Option<&'static str> = Some("midpoint");
+}
+impl Rule for Trapezoidal {
+    const NAME: Option<&'static str> = Some("trapezoidal");
+}
 
-/// A system whose own rule is R, one of the further rules that it is declared with:
-/// `FixedStep::new(By::new(&system, Trapezoidal), state, h)`.
+/// A system whose own rule is R, one of the further rules that it is declared with. It goes wherever the system goes:
+///
+/// ```
+/// use vi_core::rules::{By, Trapezoidal};
+/// use vi_core::{FixedStep, State, lagrangian};
+///
+/// lagrangian! {
+///     struct Pendulum {
+///         coord θ;
+///         L = dot(θ)^2 / 2 + cos(θ);
+///         discretize midpoint, trapezoidal;
+///     }
+/// }
+///
+/// let pendulum = Pendulum::default();
+/// let start = State::at(&pendulum, 0.0, [0.5], [0.0]);
+/// let by_midpoint = FixedStep::new(&pendulum, start, 0.1)?.step()?;
+/// let by_trapezoidal = FixedStep::new(By::new(&pendulum, Trapezoidal), start, 0.1)?.step()?;
+/// assert_ne!(by_midpoint, by_trapezoidal);
+/// # Ok::<(), vi_core::StepError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct By<S, R> {
     system: S,

@@ -17,9 +17,15 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
 /// the numbers of the common path stay in registers.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` takes no steps by the rule `{R}`",
+    note = "a system takes steps by the rules that it is declared with, as `discretize midpoint, trapezoidal;`"
+)]
 pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
     /// The form of A, by its zero pattern.
     type Jacobian: Matrix<N, T>;
+    /// Name of the rule, where it is not the one that the system is declared with: a checkpoint is of one rule.
+    const RULE: Option<&'static str> = None;
     /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
     const CONSTANT_JACOBIAN: bool;
     /// Whether v and what a step adds to p are a constant matrix times (q, p), but for a constant: A is constant, the momenta
@@ -152,8 +158,8 @@ pub struct Rounding<const N: usize, T = f64> {
 /// What the rounding of the momentum residual is measured in: that of a system, given in numbers that carry a bound of their
 /// rounding; v and h are the numbers nearest to a root.
 #[doc(hidden)]
-pub fn momentum_rounding<const N: usize, T: Real, R>(
-    system: &impl FixedStepping<N, Rounded, R>,
+pub fn momentum_rounding<const N: usize, T: Real>(
+    system: &impl FixedStepping<N, Rounded>,
     node: &Node<N, T>,
     h: T,
     v: &SVector<T, N>,
@@ -164,8 +170,8 @@ pub fn momentum_rounding<const N: usize, T: Real, R>(
 
 /// The same of both residuals.
 #[doc(hidden)]
-pub fn extended_rounding<const N: usize, T: Real, R>(
-    system: &impl EnergyStepping<N, Rounded, R>,
+pub fn extended_rounding<const N: usize, T: Real>(
+    system: &impl EnergyStepping<N, Rounded>,
     node: &Node<N, T>,
     h: T,
     v: &SVector<T, N>,

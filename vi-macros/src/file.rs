@@ -17,9 +17,10 @@ pub(crate) fn expand(tokens: TokenStream) -> TokenStream {
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
     // A system with mistakes is its errors, and no file.
     let (items, error) = match vi_codegen::compile(tokens) {
-        Ok(derived) => {
-            let items = vi_codegen::items(&derived);
-            let written = folder.map_or(Ok(()), |folder| write(&derived.model.name.to_string(), items.clone(), folder));
+        Ok(derivations) => {
+            let items = vi_codegen::items(&derivations);
+            let name = derivations.own.model.name.to_string();
+            let written = folder.map_or(Ok(()), |folder| write(&name, items.clone(), folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
         }
         Err(errors) => (errors, None),

@@ -57,8 +57,8 @@ system! {
 
 fn expansion(text: &str, limit: usize) -> String {
     let system = vi_codegen::syntax::parse::system(text.parse().expect("tokens")).expect("a right system");
-    let derived = vi_codegen::derive(system).expect("a right system");
-    vi_codegen::pretty::text(vi_codegen::emit::items(&derived, limit)).expect("Rust")
+    let derivations = vi_codegen::derive(&system).expect("a right system");
+    vi_codegen::pretty::text(vi_codegen::emit::items(&derivations, limit)).expect("Rust")
 }
 
 fn documented_is_todays(file: &str, today: &str) {

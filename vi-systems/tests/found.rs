@@ -20,7 +20,7 @@ fn findings(file: &str) -> Findings {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(file).with_extension("rs");
     let text = fs::read_to_string(path).expect("the declaration");
     let tokens = source::declarations(&text).expect("Rust").remove(0);
-    derive(parse::system(tokens).expect("a system")).map(|derived| derived.findings).expect("a right system")
+    derive(&parse::system(tokens).expect("a system")).expect("a right system").own.findings
 }
 
 /// A vector without any symmetry.

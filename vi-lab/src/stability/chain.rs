@@ -5,7 +5,7 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
-use super::trial::{Chain, TrapezoidalChain};
+use super::trial::{Chain, trapezoidal};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use core::f64::consts::PI;
@@ -38,7 +38,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         Labels { name: "chain-trapezoidal", title: "Chain of springs: trapezoidal rule", caption },
         &grid,
         line,
-        |amplitude, h| class(TrapezoidalChain::default(), amplitude, h),
+        |amplitude, h| class(trapezoidal(Chain::default()), amplitude, h),
     )?;
     let caption = "Midpoint rule, 1000 steps: no limit at small amplitude. The springs have no negative curvature, so that \
                    every step has one solution; yet a violent motion may still run away.";
@@ -79,7 +79,7 @@ mod tests {
     fn gentle_motion_has_the_linear_limit() {
         // 1.0154266118857451 in `stability.json`, found by bisection to 5e-14.
         assert!((linear_limit() - 1.015_426_611_885_745_1).abs() < 1e-13);
-        let ends = |h: f64| class(TrapezoidalChain::default(), 0.01, h);
+        let ends = |h: f64| class(trapezoidal(Chain::default()), 0.01, h);
         assert_eq!((ends(0.99 * linear_limit()), ends(1.03 * linear_limit())), (LASTING, UNBOUNDED));
         assert_eq!(class(Chain::default(), 0.01, 3.0), LASTING);
     }

@@ -6,12 +6,11 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, OWN, UNBOUNDED};
-use super::trial::TrapezoidalOscillator;
+use super::trial::{Oscillator, trapezoidal};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use vi_core::stepping::FixedStepping;
 use vi_core::{FixedStep, State, StepError};
-use vi_systems::DampedOscillator;
 
 /// Steps of a run.
 const STEPS: u32 = 2000;
@@ -48,7 +47,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         Labels { name: "linear-midpoint", title: "Oscillator: fixed step, midpoint rule", caption },
         &grid,
         Vec::new(),
-        |h, zeta| class(DampedOscillator { m: 1.0, k: 1.0, c: 2.0 * zeta }, h, zeta),
+        |h, zeta| class(Oscillator { c: 2.0 * zeta }, h, zeta),
     )?;
     let theory = boundary("spectral radius", grid.zeros(excess));
     let caption = "Fixed steps of the trapezoidal rule (Verlet’s method where there is no damping): unstable beyond \
@@ -57,7 +56,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         Labels { name: "linear-trapezoidal", title: "Oscillator: fixed step, trapezoidal rule", caption },
         &grid,
         theory,
-        |h, zeta| class(TrapezoidalOscillator { c: 2.0 * zeta }, h, zeta),
+        |h, zeta| class(trapezoidal(Oscillator { c: 2.0 * zeta }), h, zeta),
     )?;
     energy(atlas)?;
     atlas.advice(
@@ -123,7 +122,7 @@ fn energy(atlas: &mut Atlas) -> Result<(), Failure> {
 /// Steps of the energy-preserving integrator, and their class.
 fn survival(h: f64, zeta: f64) -> (u32, Class) {
     let limit = Limit { steps: 1000, until: f64::INFINITY, bound: f64::INFINITY };
-    let system = DampedOscillator { m: 1.0, k: 1.0, c: 2.0 * zeta };
+    let system = Oscillator { c: 2.0 * zeta };
     let course = Course::energy(system, [1.0], [0.0], h, limit);
     let class = match course.ending {
         Ending::Failing(StepError::NoForwardStep { .. } | StepError::StepRatio { .. }) => {
@@ -144,7 +143,7 @@ mod tests {
     #[test]
     fn the_trapezoidal_rule_is_stable_up_to_h_omega_2() {
         let grid = Grid::new(axes(), 60);
-        let cells = grid.cells(|h, zeta| class(TrapezoidalOscillator { c: 2.0 * zeta }, h, zeta), |_| ());
+        let cells = grid.cells(|h, zeta| class(trapezoidal(Oscillator { c: 2.0 * zeta }), h, zeta), |_| ());
         // Where the motion decays the boundary is h ω = 2; where it grows, that of the characteristic polynomial.
         assert_eq!(
             strays(&grid, &cells, UNBOUNDED, |h, zeta| if zeta < 0.0 { excess(h, zeta) > 0.0 } else { h > 2.0 }),
@@ -155,7 +154,7 @@ mod tests {
     #[test]
     fn the_midpoint_rule_has_no_limit() {
         let grid = Grid::new(axes(), 30);
-        let cells = grid.cells(|h, zeta| class(DampedOscillator { m: 1.0, k: 1.0, c: 2.0 * zeta }, h, zeta), |_| ());
+        let cells = grid.cells(|h, zeta| class(Oscillator { c: 2.0 * zeta }, h, zeta), |_| ());
         assert_eq!(strays(&grid, &cells, GROWS, |_, zeta| zeta < 0.0), 0);
         assert!(cells.iter().all(|cell| [GROWS, DECAYS].contains(cell)));
     }

@@ -6,7 +6,7 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, OWN};
-use super::trial::{Bent, TrapezoidalBent};
+use super::trial::{Bent, trapezoidal};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use vi_core::stepping::FixedStepping;
@@ -41,7 +41,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         Labels { name: "resonance-trapezoidal", title: "Resonances of the trapezoidal rule", caption },
         &grid,
         boundary("hω = √2, √3, 2", lines),
-        |h, a| class(TrapezoidalBent::default(), h, a),
+        |h, a| class(trapezoidal(Bent::default()), h, a),
     )?;
     let grid = atlas.grid(Axes { x: Axis::linear("h ω").over(0.0, 4.4), y: amplitudes() });
     let caption = "The midpoint rule has its resonances at <i>hω</i> = 2 (1:4) and 2√3 (1:3), though its linear limit is \

@@ -5,7 +5,7 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
-use super::trial::{SpringPendulum, TrapezoidalSpringPendulum};
+use super::trial::{SpringPendulum, trapezoidal};
 use crate::chart::{Axis, boundary};
 use crate::failure::Failure;
 
@@ -36,7 +36,7 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
         &grid,
         limit,
         |omega, h| {
-            Course::fixed(TrapezoidalSpringPendulum { k: omega * omega }, START, AT_REST, h, LIMIT).ending.class()
+            Course::fixed(trapezoidal(SpringPendulum { k: omega * omega }), START, AT_REST, h, LIMIT).ending.class()
         },
     )?;
     let caption = "Midpoint rule: stable far beyond the spring’s period, as long as the slow motion is resolved. What is no \

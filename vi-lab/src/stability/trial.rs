@@ -1,16 +1,17 @@
-//! Systems that only the charts need: the trapezoidal rule beside the midpoint rule, each at its plainest.
+//! Systems that only the charts need: each at its plainest, by the midpoint and by the trapezoidal rule.
 
 use vi_core::lagrangian;
+use vi_core::rules::{By, Trapezoidal};
 
 lagrangian! {
-    /// Oscillator of frequency 1 and damping ratio c/2, stepped as central differences.
-    pub(super) struct TrapezoidalOscillator {
+    /// Oscillator of frequency 1 and damping ratio c/2; by the trapezoidal rule stepped as central differences.
+    pub(super) struct Oscillator {
         /// Damping: the force −c v.
         param c = 0.0;
         coord x;
         L = dot(x)^2 / 2 - x^2 / 2;
         force x = -c * dot(x);
-        discretize trapezoidal;
+        discretize midpoint, trapezoidal;
     }
 }
 
@@ -19,16 +20,7 @@ lagrangian! {
     pub(super) struct Bent {
         coord x;
         L = dot(x)^2 / 2 - x^2 / 2 - x^3 / 3 - x^4 / 4;
-        discretize midpoint;
-    }
-}
-
-lagrangian! {
-    /// The same by the trapezoidal rule: Verlet's method.
-    pub(super) struct TrapezoidalBent {
-        coord x;
-        L = dot(x)^2 / 2 - x^2 / 2 - x^3 / 3 - x^4 / 4;
-        discretize trapezoidal;
+        discretize midpoint, trapezoidal;
     }
 }
 
@@ -40,18 +32,7 @@ lagrangian! {
         param k = 100.0;
         coord s, θ;
         L = (dot(s)^2 + (1 + s)^2 * dot(θ)^2) / 2 - k * s^2 / 2 + (1 + s) * cos(θ);
-        discretize midpoint;
-    }
-}
-
-lagrangian! {
-    /// The same by the trapezoidal rule.
-    pub(super) struct TrapezoidalSpringPendulum {
-        /// Stiffness.
-        param k = 100.0;
-        coord s, θ;
-        L = (dot(s)^2 + (1 + s)^2 * dot(θ)^2) / 2 - k * s^2 / 2 + (1 + s) * cos(θ);
-        discretize trapezoidal;
+        discretize midpoint, trapezoidal;
     }
 }
 
@@ -64,19 +45,11 @@ lagrangian! {
         let squares = q[0]^2 + sum(i in 1..N, r[i]^2) + q[N - 1]^2;
         let fourths = q[0]^4 + sum(i in 1..N, r[i]^4) + q[N - 1]^4;
         L = sum(i in 0..N, dot(q[i])^2) / 2 - squares / 2 - fourths / 4;
-        discretize midpoint;
+        discretize midpoint, trapezoidal;
     }
 }
 
-lagrangian! {
-    /// The same by the trapezoidal rule.
-    pub(super) struct TrapezoidalChain {
-        const N = 8;
-        coord q[N];
-        let r[i in 1..N] = q[i] - q[i - 1];
-        let squares = q[0]^2 + sum(i in 1..N, r[i]^2) + q[N - 1]^2;
-        let fourths = q[0]^4 + sum(i in 1..N, r[i]^4) + q[N - 1]^4;
-        L = sum(i in 0..N, dot(q[i])^2) / 2 - squares / 2 - fourths / 4;
-        discretize trapezoidal;
-    }
+/// A system by the trapezoidal rule.
+pub(super) fn trapezoidal<S>(system: S) -> By<S, Trapezoidal> {
+    By::new(system, Trapezoidal)
 }

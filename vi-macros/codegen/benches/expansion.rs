@@ -57,7 +57,7 @@ fn main() -> Result<(), vi_core::StepError> {
 /// Operations that one iteration of either integrator takes.
 fn operations(text: &str) -> [usize; 2] {
     let system = syntax::parse::system(text.parse().expect("tokens"));
-    let program = system.and_then(vi_codegen::derive).expect("a right system").program;
+    let program = system.and_then(|system| vi_codegen::derive(&system)).expect("a right system").own.program;
     [FunctionId::MomentumEquation, FunctionId::ExtendedSystem]
         .map(|id| program.function(id).expect("every function is there").operation_count())
 }

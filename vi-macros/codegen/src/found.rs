@@ -57,8 +57,6 @@ pub struct Findings {
     pub symmetric: bool,
     /// The momentum row and what the momenta gain are linear in what changes from step to step, their coefficients free of it.
     pub affine: bool,
-    /// Operations of each function, in the order in which they are emitted.
-    pub operations: Vec<(FunctionId, usize)>,
 }
 
 /// On what the Jacobian A depends, from little to much.
@@ -104,7 +102,6 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         pattern: jacobian.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         symmetric: jacobian.is_some_and(|(_, rows)| symmetric(rows)),
         affine: program.function(FunctionId::MomentumResidual).is_some_and(affine),
-        operations: program.functions().map(|function| (function.id, function.operation_count())).collect(),
     }
 }
 
@@ -172,6 +169,11 @@ fn symmetric(rows: &[Vec<OperationId>]) -> bool {
     (0..rows.len()).all(|i| (0..i).all(|j| entry(i, j) == entry(j, i)))
 }
 
+/// The names of coordinates, separated by commas.
+fn list(name: &dyn Fn(usize) -> String, indices: &[usize]) -> String {
+    indices.iter().map(|index| name(*index)).collect::<Vec<_>>().join(", ")
+}
+
 impl Findings {
     /// The momentum row is linear with a matrix that is the same in every step of one length: it is inverted once per run.
     #[must_use]
@@ -188,7 +190,6 @@ impl Findings {
     /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
     #[must_use]
     pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
-        let list = |indices: &[usize]| indices.iter().map(|index| name(*index)).collect::<Vec<_>>().join(", ");
         let mut lines = vec![
             match (self.autonomous, self.forced) {
                 (true, false) => "Autonomous and without a force: the energy is conserved",
@@ -200,7 +201,7 @@ impl Findings {
         ];
         if !self.cyclic.is_empty() {
             let momenta = if self.cyclic.len() == 1 { "its momentum is" } else { "their momenta are" };
-            lines.push(format!("Cyclic: {}; {momenta} conserved", list(&self.cyclic)));
+            lines.push(format!("Cyclic: {}; {momenta} conserved", list(name, &self.cyclic)));
         }
         lines.push(match (self.separable, self.constant_mass) {
             (true, true) => "`L = T(v) + U(t, q)` with a constant mass matrix".to_owned(),
@@ -208,7 +209,14 @@ impl Findings {
             (false, true) => "The mass matrix is constant".to_owned(),
             (false, false) => "The mass matrix depends on the state".to_owned(),
         });
-        lines.push(format!(
+        lines.extend(self.of_steps(name));
+        lines
+    }
+
+    /// Those of the findings that depend on the rule.
+    #[must_use]
+    pub fn of_steps(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
+        let mut lines = vec![format!(
             "The step's equation in `v` is {}",
             match self.jacobian {
                 _ if !self.smooth =>
@@ -222,10 +230,14 @@ impl Findings {
                 Dependence::Unknown =>
                     "nonlinear: its Jacobian `A` depends on `v`, and Newton's iteration gives the step",
             }
-        ));
+        )];
         if self.pattern != Pattern::Scalar {
             let symmetry = if self.symmetric { "symmetric" } else { "not symmetric" };
-            lines.push(format!("`A` is {}, {symmetry}; solved {}", self.pattern.text(&list), self.solved()));
+            lines.push(format!(
+                "`A` is {}, {symmetry}; solved {}",
+                self.pattern.text(&|indices| list(name, indices)),
+                self.solved()
+            ));
         }
         lines
     }

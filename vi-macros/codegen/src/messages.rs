@@ -93,6 +93,10 @@ pub enum Message {
     SingularMass { missing: Option<String> },
     /// A rule by a name that does not exist.
     UnknownRule { name: String, near: Option<String> },
+    /// A rule that a list names twice.
+    RepeatedRule { name: String },
+    /// A rule written out in a list of rules.
+    WrittenInList,
     /// A line of a rule that is no slot of it.
     UnknownSlot { name: String },
     /// A line of a rule that is missing.
@@ -182,6 +186,8 @@ impl Message {
             Self::NoVelocity => "`L` does not depend on any velocity".to_owned(),
             Self::SingularMass { .. } => "the mass matrix ∂²L/∂v² is singular for every state".to_owned(),
             Self::UnknownRule { name, .. } => format!("unknown rule `{name}`"),
+            Self::RepeatedRule { name } => format!("the rule `{name}` is listed twice"),
+            Self::WrittenInList => "a rule that is written out stands in no list".to_owned(),
             Self::UnknownSlot { name } => format!("a rule has no line `{name}`"),
             Self::MissingSlot { name } => format!("the rule has no line `{name}`"),
             Self::SecondSlot { name } => format!("a second `{name}` in the rule"),
@@ -255,7 +261,7 @@ impl Message {
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
             Self::MissingRule => format!("write `discretize {};`", RULES[0].name),
-            Self::SecondRule => "write `discretize` once".to_owned(),
+            Self::SecondRule => "write `discretize` once; it may list several rules by their names".to_owned(),
             Self::SecondCheck => "write `check` once".to_owned(),
             Self::MissingStep => "end it with the step, as in `h = 0.01;`".to_owned(),
             Self::StepNotPositive => "give a step with which the system moves well, as in `h = 0.01;`".to_owned(),
@@ -278,6 +284,8 @@ impl Message {
                 |name| format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
             ),
             Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), &format!("the rules are {}", rules::list())),
+            Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
+            Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
             Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),
             Self::MissingSlot { name } if *name == "Ld" => "write `Ld = …;`".to_owned(),
             Self::MissingSlot { .. } => "the system has a force: write all lines, or `Ld` alone, made of `L`".to_owned(),

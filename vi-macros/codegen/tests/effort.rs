@@ -70,7 +70,7 @@ fn what_is_large_and_simple_passes() {
 fn the_work_of_families_is_pinned() {
     let work = |text: String| {
         let system = syntax::parse::system(text.parse().expect("tokens")).expect("a right system");
-        vi_codegen::derive(system).expect("a right system").pool.work()
+        vi_codegen::derive(&system).expect("a right system").own.pool.work()
     };
     for (length, limit) in [(16, 3_000_000), (64, 9_000_000)] {
         let work = work(families::chain(length));

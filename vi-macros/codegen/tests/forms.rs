@@ -19,16 +19,17 @@ fn forms(pattern: Pattern, symmetric: bool, jacobian: &str, mass: &str) -> Forms
 
 /// The items of a system without spaces, and its forms.
 fn emitted(text: &str) -> (String, Forms) {
-    let derived = derive(parse::system(text.parse().expect("tokens")).expect("a system"))
+    let derivations = derive(&parse::system(text.parse().expect("tokens")).expect("a system"))
         .unwrap_or_else(|error| panic!("{text}: {error}"));
-    let rust: String = items(&derived).to_string().split_whitespace().collect();
+    let rust: String = items(&derivations).to_string().split_whitespace().collect();
     let between = |start: &str, end: &str| {
         let (_, rest) = rust.split_once(start).expect("emitted");
         let form = rest.split_once(end).expect("its end").0;
         form.replace("::vi_core::linear::", "").replace("::vi_core::", "")
     };
     let (jacobian, mass) = (between("typeJacobian=", ";"), between("letmass:", "="));
-    let found = Forms { pattern: derived.findings.pattern, symmetric: derived.findings.symmetric, jacobian, mass };
+    let findings = derivations.own.findings;
+    let found = Forms { pattern: findings.pattern, symmetric: findings.symmetric, jacobian, mass };
     (rust, found)
 }
 

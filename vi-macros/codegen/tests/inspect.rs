@@ -11,7 +11,8 @@ fn tokens(body: &str) -> TokenStream {
 }
 
 fn findings(body: &str) -> Findings {
-    derive(parse::system(tokens(body)).expect("a system")).unwrap_or_else(|error| panic!("{body}: {error}")).findings
+    let system = parse::system(tokens(body)).expect("a system");
+    derive(&system).unwrap_or_else(|error| panic!("{body}: {error}")).own.findings
 }
 
 fn words(body: &str) -> Vec<String> {
@@ -221,6 +222,36 @@ fn expressions_in_latex() {
         deep = pool.add(product, y);
     }
     assert_eq!(latex::expression(&pool, deep, &name), "\\ldots");
+}
+
+#[test]
+fn every_rule_of_a_list_is_shown_and_gives_the_operations_that_it_gives_alone() {
+    let by = |rules: &str, of| {
+        let system = "param a = 2; coord x, y; L = dot(x)^2 + (2 + cos(x)) * dot(y)^2 - a * x * y * sin(t); force x = -dot(x) * y^2;";
+        stage(tokens(&format!("{system} discretize {rules};")), of).expect("right")
+    };
+    let program = by("midpoint, trapezoidal", Stage::Program);
+    let (own, further) = program.split_once("\nby the rule trapezoidal\n\n").expect("both rules");
+    assert_eq!(own, by("midpoint", Stage::Program));
+    assert!(further.starts_with("ld: ") && by("trapezoidal", Stage::Program).ends_with(further), "{further}");
+    let discrete = by("trapezoidal, midpoint", Stage::Discrete);
+    let (own, further) =
+        discrete.split_once("\nThe same system by a further rule\n    rule midpoint\n").expect("both rules");
+    assert_eq!(own, by("trapezoidal", Stage::Discrete));
+    assert!(by("midpoint", Stage::Discrete).ends_with(further), "{further}");
+    assert!(by("midpoint, trapezoidal", Stage::Syntax).contains("discretize midpoint, trapezoidal;"));
+    let rust = by("midpoint, trapezoidal", Stage::Rust);
+    for shown in [
+        "/// By the rule `trapezoidal`, as `By::new(system, Trapezoidal)`:",
+        "impl ::vi_core::stepping::Convertible<2, ::vi_core::rules::Trapezoidal>",
+    ] {
+        assert!(rust.contains(shown), "{shown}");
+    }
+    // What is continuous is emitted once.
+    assert_eq!((rust.matches("fn acceleration").count(), rust.matches("fn d1_ld").count()), (1, 2));
+    let system = tokens("coord x; L = dot(x)^2 - x^2; discretize midpoint, trapezoidal;");
+    let explained = explain(system).expect("a right system").text();
+    assert_eq!(explained.matches("    momentum_residual").count(), 2, "{explained}");
 }
 
 #[test]

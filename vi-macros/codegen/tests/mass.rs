@@ -8,7 +8,7 @@ use vi_expr::Pool;
 fn said(clauses: &str) -> Option<String> {
     let text = format!("struct System {{ {clauses} discretize midpoint; }}");
     let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
-    let check = |system| model::check::model(&mut Pool::new(), system);
+    let check = |system| model::check::model(&mut Pool::new(), &system, 0);
     syntax::parse::system(tokens).and_then(check).err().map(|error| error.to_string())
 }
 

@@ -9,7 +9,7 @@ use vi_codegen::syntax;
 /// All errors of a text: (token underlined, message).
 fn errors(text: &str) -> Vec<(String, String)> {
     let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
-    let result = syntax::parse::system(tokens).and_then(vi_codegen::derive).map(|_| ());
+    let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
     let Err(error) = result else { return Vec::new() };
     let token = |error: &syn::Error| error.span().source_text().unwrap_or_default();
     error.into_iter().map(|error| (token(&error), error.to_string())).collect()
@@ -116,8 +116,27 @@ fn clauses() {
     case("L = 1; discretize midpoint;", "the system has no coordinates");
     case("coord x; L = dot(x)^2;", "the system is not discretized\nhelp: write `discretize midpoint;`");
     case("coord x; L = dot(x)^2; «L» = dot(x)^2; discretize midpoint;", "a second `L`");
-    case("coord x; L = dot(x)^2; discretize midpoint; discretize «midpoint»;", "a second `discretize`");
+    case(
+        "coord x; L = dot(x)^2; discretize midpoint; discretize «midpoint»;",
+        "a second `discretize`\nhelp: write `discretize` once; it",
+    );
     case("coord x; L = dot(x)^2; discretize «midpont»;", "unknown rule `midpont`\nhelp: did you mean `midpoint`?");
+    case("coord x; L = dot(x)^2; discretize midpoint, «trapzoidal»;", "unknown rule `trapzoidal`\nhelp: did you mean");
+    case(
+        "coord x; L = dot(x)^2; discretize midpoint, «midpoint»;",
+        "the rule `midpoint` is listed twice\nhelp: list each",
+    );
+    let written = "Ld = h * L(t0, q0, (q1 - q0)/h);";
+    case(
+        &format!("coord x; L = dot(x)^2; discretize midpoint, «{{» {written} }}"),
+        "a rule that is written out stands in no",
+    );
+    case(
+        &format!("coord x; L = dot(x)^2; discretize {{ {written} }}«,» midpoint;"),
+        "a rule that is written out stands in no",
+    );
+    case("coord x; L = dot(x)^2; discretize midpoint, «;»", "expected a name");
+    case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected an operator or `;`");
     case("coord x; L = dot(x)^2; force «y» = 1; discretize midpoint;", "a force on `y`, which is not a coordinate");
     case("coord x; L = dot(x)^2; force x = 1; force «x» = 2; discretize midpoint;", "a second force on `x`");
     case(&format!("«parm» a = 1; {REST}"), "unknown clause `parm`\nhelp: did you mean `param`?");

@@ -10,7 +10,7 @@ use vi_expr::Function;
 
 fn lowered(text: &str) -> Program {
     let tokens = text.parse().expect("tokens");
-    syntax::parse::system(tokens).and_then(vi_codegen::derive).expect("a right system").program
+    syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).expect("a right system").own.program
 }
 
 /// Operations of the two functions that a step evaluates in every iteration, and of what measures it.

@@ -9,7 +9,7 @@ const REFERENCE: &str = include_str!("../../../docs/dsl.md");
 /// The errors of a system: (line, what is wrong, help).
 fn errors(body: &str) -> Vec<(usize, String, String)> {
     let tokens: TokenStream = body.parse().expect("a block of the reference is made of Rust tokens");
-    let result = syntax::parse::system(tokens).and_then(vi_codegen::derive).map(|_| ());
+    let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
     let errors = result.expect_err("a block that is marked so does not compile");
     let split = |error: syn::Error| {
         let text = error.to_string();

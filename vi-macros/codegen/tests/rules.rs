@@ -11,7 +11,8 @@ const SYSTEM: &str = "param a = 2; coord x, y; L = dot(x)^2 + (2 + cos(x)) * dot
 
 fn derived(rule: &str) -> Derived {
     let text = format!("struct System {{ {SYSTEM} discretize {{ {rule} }} }}");
-    parse::system(text.parse().expect("tokens")).and_then(derive).unwrap_or_else(|error| panic!("{rule}: {error}"))
+    let system = parse::system(text.parse().expect("tokens"));
+    system.and_then(|system| derive(&system)).unwrap_or_else(|error| panic!("{rule}: {error}")).own
 }
 
 /// A number for each symbol, the same for the same name.

@@ -1,7 +1,7 @@
 //! The checks of a system: one test for each that applies.
 //!
 //! Which apply is known here: whether there is a force, which coordinates are cyclic, and what the table says of the rule. A rule that
-//! is not in it is expected to be of order 1, and nothing else.
+//! is not in it is expected to be of order 1, and nothing else. A system with several rules has the tests once for each of them.
 
 use super::Source;
 use super::formula::number;
@@ -13,26 +13,20 @@ use syn::Attribute;
 /// The tests of the clause `check`, in a module of their own:
 ///
 /// ```text
-/// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … }
+/// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … mod trapezoidal { … } }
 /// ```
-pub(super) fn tests(source: &Source, conditions: &[&Attribute]) -> Option<TokenStream> {
+pub(super) fn tests(source: &Source, further: &[Source], conditions: &[&Attribute]) -> Option<TokenStream> {
     let state = source.model.check_state.as_ref()?;
     let (name, dimension) = (&source.model.name, source.dimension());
     let module = format_ident!("{}_checks", snake_case(name));
     let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
     let (t, h) = (number(state.t), number(state.h));
     let (q, v) = (state.q.iter().map(|entry| number(*entry)), state.v.iter().map(|entry| number(*entry)));
-    let tests = checks(source).into_iter().map(|(check, order)| {
-        let check = format_ident!("{check}");
-        quote! {
-            #[::core::prelude::v1::test]
-            fn #check() {
-                let checked = ::vi_core::check::#check(&super::#name::default(), &place() #order);
-                if let ::core::result::Result::Err(failure) = checked {
-                    ::core::panic!("{failure}");
-                }
-            }
-        }
+    let tests = tests_by_rule(source, &quote!(super::#name::default()), &quote!(place()));
+    let by_further = further.iter().map(|source| {
+        let rule = format_ident!("{}", source.model.rule.title());
+        let tests = tests_by_rule(source, &quote!(super::super::#name::default()), &quote!(super::place()));
+        quote!(mod #rule { #(#tests)* })
     });
     Some(quote! {
         #[doc = #documentation]
@@ -45,8 +39,27 @@ pub(super) fn tests(source: &Source, conditions: &[&Attribute]) -> Option<TokenS
             }
 
             #(#tests)*
+            #(#by_further)*
         }
     })
+}
+
+/// One test for each check that applies to the steps by the rule.
+fn tests_by_rule(source: &Source, system: &TokenStream, place: &TokenStream) -> Vec<TokenStream> {
+    let system = source.by_rule(system.clone());
+    let test = |(check, order): (&str, TokenStream)| {
+        let check = format_ident!("{check}");
+        quote! {
+            #[::core::prelude::v1::test]
+            fn #check() {
+                let checked = ::vi_core::check::#check(&#system, &#place #order);
+                if let ::core::result::Result::Err(failure) = checked {
+                    ::core::panic!("{failure}");
+                }
+            }
+        }
+    };
+    checks(source).into_iter().map(test).collect()
 }
 
 /// The checks that apply, with the further argument that the order takes.

@@ -9,9 +9,10 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use vi_expr::Expr;
 
-/// The implementation of `DiscreteLagrangian`.
+/// The implementation of `DiscreteLagrangian` by the rule.
 pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension, of) = (&source.model.name, source.dimension(), &source.system.slots);
+    let rule = source.rule_argument();
     let functions = [
         number(source, FunctionId::Ld, of.ld),
         number(source, FunctionId::D1Ld, of.d1_ld),
@@ -24,7 +25,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
         number(source, FunctionId::GdPlus, of.forces.gd_plus),
     ];
     quote! {
-        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#dimension, T #rule> for #name<T> {
             #(#functions)*
         }
     }

@@ -21,14 +21,14 @@ mod scope;
 mod stepping;
 mod structure;
 
-use crate::derived::Derived;
+use crate::derived::{Derivations, Derived};
 use crate::discrete::DiscreteSystem;
 use crate::found::Findings;
 use crate::model::Model;
 use crate::program::{Function, FunctionId, Program};
 use crate::symbol::Symbol;
-use proc_macro2::{Literal, TokenStream};
-use quote::quote;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
 use vi_expr::Pool;
 
 pub use structure::Broken;
@@ -40,6 +40,8 @@ struct Source<'a> {
     system: &'a DiscreteSystem,
     program: &'a Program,
     findings: &'a Findings,
+    /// The marker of the rule in `vi_core::rules`, where it is not the system's own.
+    marker: Option<Ident>,
     limit: usize,
 }
 
@@ -48,21 +50,31 @@ pub const LIMIT: usize = 800;
 
 /// The items of a system, in fixed order, in functions of at most `limit` operations, which is [`LIMIT`] but in tests.
 #[must_use]
-pub fn items(derived: &Derived, limit: usize) -> TokenStream {
-    let Derived { pool, model, system, program, findings } = derived;
-    let source = Source { pool, model, system, program, findings, limit };
-    let structure = structure::structure(&source);
+pub fn items(derivations: &Derivations, limit: usize) -> TokenStream {
+    let source = Source::of(&derivations.own, None, limit);
+    let marked = derivations.further.iter().filter_map(|derived| Some((derived, derived.model.rule.named?)));
+    let further = marked.map(|(derived, rule)| Source::of(derived, Some(format_ident!("{}", rule.marker)), limit));
+    let further: Vec<Source> = further.collect();
+    let structure = structure::structure(&source, &further);
     let parameters = structure::parameters(&source);
     let lagrangian = lagrangian::item(&source);
     let collocation = collocation::item(&source);
-    let discrete = discrete::item(&source);
-    let stepping = stepping::item(&source);
-    let numbers = structure::numbers(&source);
-    let implementations = quote!(#parameters #lagrangian #collocation #discrete #stepping #numbers);
-    let conditions: Vec<_> = conditions(&model.attributes).collect();
+    let own = by_rule(&source);
+    let batch = structure::batch(&source);
+    let by_further = further.iter().map(by_rule);
+    let implementations = quote!(#parameters #lagrangian #collocation #own #batch #(#by_further)*);
+    let conditions: Vec<_> = conditions(&source.model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
-    let tests = check::tests(&source, &conditions);
+    let tests = check::tests(&source, &further, &conditions);
     quote! { #structure #scope #tests }
+}
+
+/// What is implemented once for each rule.
+fn by_rule(source: &Source) -> TokenStream {
+    let discrete = discrete::item(source);
+    let stepping = stepping::item(source);
+    let convertible = structure::convertible(source);
+    quote!(#discrete #stepping #convertible)
 }
 
 /// The conditions under which a struct is there, and all that belongs to it.
@@ -70,7 +82,25 @@ pub(crate) fn conditions(attributes: &[syn::Attribute]) -> impl Iterator<Item = 
     attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    fn of(derived: &'a Derived, marker: Option<Ident>, limit: usize) -> Self {
+        let Derived { pool, model, system, program, findings } = derived;
+        Self { pool, model, system, program, findings, marker, limit }
+    }
+
+    /// The rule as the last argument of a trait, whose default is the system's own: `, ::vi_core::rules::Trapezoidal`.
+    fn rule_argument(&self) -> Option<TokenStream> {
+        self.marker.as_ref().map(|marker| quote!(, ::vi_core::rules::#marker))
+    }
+
+    /// A value of the system that takes steps by the rule: `By::new(system, Trapezoidal)`, or the system.
+    fn by_rule(&self, system: TokenStream) -> TokenStream {
+        match &self.marker {
+            Some(marker) => quote!(::vi_core::rules::By::new(#system, ::vi_core::rules::#marker)),
+            None => system,
+        }
+    }
+
     /// Number of coordinates, as it stands in types.
     fn dimension(&self) -> Literal {
         Literal::usize_unsuffixed(self.model.dimension())

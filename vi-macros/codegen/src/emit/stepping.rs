@@ -14,7 +14,7 @@ use quote::{ToTokens, format_ident, quote};
 /// Operations up to which the functions of a momentum step are short: `FixedStepping::INLINED`.
 const INLINED: usize = 250;
 
-/// The implementations of `FixedStepping` and `EnergyStepping`.
+/// The implementations of `FixedStepping` and `EnergyStepping` by the rule.
 pub(super) fn item(source: &Source) -> TokenStream {
     let fixed = fixed(source);
     let energy = source.system.has_energy_steps().then(|| energy(source));
@@ -23,6 +23,8 @@ pub(super) fn item(source: &Source) -> TokenStream {
 
 fn fixed(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
+    let rule = source.rule_argument();
+    let rounded = rounded(source);
     let constant = source.findings.constant_jacobian();
     let (form, equation) = momentum_equation(source);
     let functions = [equation, momentum_residual(source), discrete_energy(source)].into_iter().flatten();
@@ -39,7 +41,7 @@ fn fixed(source: &Source) -> TokenStream {
         )
     });
     quote! {
-        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T #rule> for #name<T> {
             type Jacobian = #form;
             const CONSTANT_JACOBIAN: bool = #constant;
             #closed
@@ -54,17 +56,24 @@ fn fixed(source: &Source) -> TokenStream {
                 h: T,
                 v: &::vi_core::SVector<T, #dimension>,
             ) -> ::vi_core::SVector<T, #dimension> {
-                ::vi_core::support::momentum_rounding(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
+                ::vi_core::support::momentum_rounding(&#rounded, node, h, v)
             }
         }
     }
 }
 
+/// The system by the rule, in numbers that carry a bound of their rounding.
+fn rounded(source: &Source) -> TokenStream {
+    source.by_rule(quote!(self.convert::<::vi_core::real::Rounded>()))
+}
+
 fn energy(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
+    let rule = source.rule_argument();
+    let rounded = rounded(source);
     let functions = [extended_system(source), extended_residual(source)].into_iter().flatten();
     quote! {
-        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T #rule> for #name<T> {
             #(#functions)*
 
             /// What the rounding of both residuals is measured in, by running error analysis.
@@ -75,7 +84,7 @@ fn energy(source: &Source) -> TokenStream {
                 h: T,
                 v: &::vi_core::SVector<T, #dimension>,
             ) -> ::vi_core::stepping::Rounding<#dimension, T> {
-                ::vi_core::support::extended_rounding(&self.convert::<::vi_core::real::Rounded>(), node, h, v)
+                ::vi_core::support::extended_rounding(&#rounded, node, h, v)
             }
         }
     }

@@ -2,15 +2,16 @@
 
 use super::formula::number;
 use super::{Source, conditions};
-use crate::syntax::{Kind, System};
+use crate::rules::RULES;
+use crate::syntax::{Discretization, Kind, System};
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 use std::collections::BTreeMap;
 use syn::Attribute;
 
-/// The struct.
-pub(super) fn structure(source: &Source) -> TokenStream {
+/// The struct, whose documentation says what was found of it by its own rule and by further ones.
+pub(super) fn structure(source: &Source, further: &[Source]) -> TokenStream {
     let model = source.model;
     let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
     let fields = model.parameters.iter().map(|parameter| {
@@ -20,10 +21,12 @@ pub(super) fn structure(source: &Source) -> TokenStream {
         quote!(#(#attributes)* #pause #[doc = #default] pub #name: T)
     });
     let found = found(source);
+    let found_further = further.iter().filter_map(found_further);
     let (derived, (marker, _)) = (derived(), marker(model.parameters.is_empty()));
     quote! {
         #(#attributes)*
         #found
+        #(#found_further)*
         #derived
         #[allow(non_snake_case)]
         #visibility struct #name<T = ::core::primitive::f64> {
@@ -73,13 +76,11 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
     }
 }
 
-/// The implementations of `Convertible` and of `Batch`: the system in other numbers, and parameters side by side.
-pub(super) fn numbers(source: &Source) -> TokenStream {
-    let (name, dimension) = (&source.model.name, source.dimension());
-    let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
-    let (_, marker_value) = marker(names.is_empty());
+/// The implementation of `Convertible` by the rule: the system in other numbers.
+pub(super) fn convertible(source: &Source) -> TokenStream {
+    let (name, dimension, rule) = (&source.model.name, source.dimension(), source.rule_argument());
     quote! {
-        impl ::vi_core::stepping::Convertible<#dimension> for #name<f64> {
+        impl ::vi_core::stepping::Convertible<#dimension #rule> for #name<f64> {
             type In<T: ::vi_core::real::Real> = #name<T>;
 
             #[inline(always)]
@@ -87,7 +88,15 @@ pub(super) fn numbers(source: &Source) -> TokenStream {
                 self.convert()
             }
         }
+    }
+}
 
+/// The implementation of `Batch`: parameters side by side.
+pub(super) fn batch(source: &Source) -> TokenStream {
+    let (name, dimension) = (&source.model.name, source.dimension());
+    let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
+    let (_, marker_value) = marker(names.is_empty());
+    quote! {
         impl ::vi_core::stepping::Batch<#dimension> for #name<f64> {
             type Rows<const W: usize> = #name<[f64; W]>;
 
@@ -111,6 +120,15 @@ fn found(source: &Source) -> TokenStream {
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
     let pause = pause(&model.attributes);
     quote!(#pause #[doc = #rule] #[doc = ""] #(#[doc = #findings])*)
+}
+
+/// What was found of the steps by a further rule.
+fn found_further(source: &Source) -> Option<TokenStream> {
+    let marker = source.marker.as_ref()?;
+    let rule = format!(" By the rule `{}`, as `By::new(system, {marker})`:", source.model.rule.title());
+    let findings = source.findings.of_steps(&|index| format!("`{}`", source.model.coordinates[index].text()));
+    let findings = findings.into_iter().map(|line| format!(" * {line}"));
+    Some(quote!(#[doc = ""] #[doc = #rule] #[doc = ""] #(#[doc = #findings])*))
 }
 
 /// An empty line of documentation after the user's own words, so that ours are a paragraph of their own.
@@ -155,7 +173,11 @@ fn stub(system: &System) -> TokenStream {
         system.parameters.iter().map(|parameter| (parameter.name.to_string(), &parameter.name)).collect();
     let parameters: Vec<&Ident> = parameters.into_values().collect();
     let (marker, marker_value) = marker(parameters.is_empty());
-    let traits = dimension(system).map(|dimension| stub_traits(name, &dimension));
+    let traits = dimension(system).map(|dimension| {
+        let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &dimension, rule.as_ref()));
+        let lagrangian = stub_lagrangian(name, &dimension);
+        quote!(#lagrangian #(#by_rules)*)
+    });
     let (derived, conditions) = (derived(), conditions(&system.attributes).collect::<Vec<_>>());
     quote! {
         #(#conditions)*
@@ -189,11 +211,22 @@ fn dimension(system: &System) -> Option<Literal> {
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
 }
 
-fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
+/// The rules of a system, each as the last argument of a trait: first its own, by default, then those of its list that there are.
+fn rules(system: &System) -> Vec<Option<TokenStream>> {
+    let mut rules = vec![None];
+    if let Some(Discretization::Named(names)) = system.discretizations.first() {
+        let known = RULES.iter().filter(|rule| names.iter().skip(1).any(|name| name == rule.name));
+        rules.extend(known.map(|rule| {
+            let marker = format_ident!("{}", rule.marker);
+            Some(quote!(, ::vi_core::rules::#marker))
+        }));
+    }
+    rules
+}
+
+fn stub_lagrangian(name: &Ident, n: &Literal) -> TokenStream {
     let none = quote!({ loop {} });
     let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
-    let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
-    let from = quote!(&self, _: &::vi_core::node::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
     let vector = quote!(::vi_core::SVector<T, #n>);
     let or_error = |what: TokenStream| quote!(::core::result::Result<#what, ::vi_core::StepError>);
     let (or_vector, or_number) = (or_error(vector.clone()), or_error(quote!(T)));
@@ -220,7 +253,16 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn point(#at) -> ::vi_core::collocation::Point<#n, T, Self::Mass> #none
             fn power(#at) -> T #none
         }
-        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#n, T> for #name<T> {
+    }
+}
+
+fn stub_steps(name: &Ident, n: &Literal, rule: Option<&TokenStream>) -> TokenStream {
+    let none = quote!({ loop {} });
+    let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
+    let from = quote!(&self, _: &::vi_core::node::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
+    let vector = quote!(::vi_core::SVector<T, #n>);
+    quote! {
+        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#n, T #rule> for #name<T> {
             fn ld(#over) -> T #none
             fn d1_ld(#over) -> T #none
             fn d2_ld(#over) -> #vector #none
@@ -231,7 +273,7 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn gd_minus(#over) -> T #none
             fn gd_plus(#over) -> T #none
         }
-        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T #rule> for #name<T> {
             type Jacobian = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
             fn momentum_equation(#from) -> ::vi_core::stepping::MomentumEquation<#n, T> #none
@@ -239,7 +281,7 @@ fn stub_traits(name: &Ident, n: &Literal) -> TokenStream {
             fn momentum_rounding(#from) -> #vector #none
             fn discrete_energy(#from) -> T #none
         }
-        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T> for #name<T> {
+        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T #rule> for #name<T> {
             fn extended_system(#from) -> ::vi_core::stepping::ExtendedSystem<#n, T> #none
             fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
             fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none

@@ -25,8 +25,8 @@ mod syntax;
 
 pub use explanation::{Explanation, Line, Section};
 
-use crate::syntax::{System, parse};
-use crate::{Derived, derive, items, pretty};
+use crate::syntax::parse;
+use crate::{Derivations, Derived, derive, items, pretty};
 use proc_macro2::TokenStream;
 use syn::Result;
 
@@ -53,25 +53,32 @@ pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
     let system = parse::system(tokens)?;
     match stage {
         Stage::Syntax => Ok(syntax::text(&system)),
-        Stage::Model => Ok(explanation(system, &[model::sections])?.text()),
-        Stage::Discrete => Ok(explanation(system, &[discrete::sections])?.text()),
-        Stage::Program => Ok(program::text(&derive(system)?)),
-        Stage::Rust => pretty::text(items(&derive(system)?)),
+        Stage::Model => Ok(explanation(&derive(&system)?, &[model::sections], &[]).text()),
+        Stage::Discrete => Ok(explanation(&derive(&system)?, &[discrete::sections], &[discrete::sections]).text()),
+        Stage::Program => Ok(program::text(&derive(&system)?)),
+        Stage::Rust => pretty::text(items(&derive(&system)?)),
     }
 }
 
-/// The mathematics of a system: L and f, the discrete system, what was found out, and what it costs.
+/// The mathematics of a system: L and f, then by each of its rules the discrete system, what was found out, and what it costs.
 ///
 /// # Errors
 /// What is wrong with the system.
 pub fn explain(tokens: TokenStream) -> Result<Explanation> {
-    explanation(parse::system(tokens)?, &[model::sections, discrete::sections, findings::sections])
+    let derivations = derive(&parse::system(tokens)?)?;
+    let own: [Chapter; 3] = [model::sections, discrete::sections, findings::sections];
+    Ok(explanation(&derivations, &own, &[discrete::sections, findings::of_steps]))
 }
 
 type Chapter = fn(&Derived) -> Vec<Section>;
 
-fn explanation(system: System, chapters: &[Chapter]) -> Result<Explanation> {
-    let derived = derive(system)?;
-    let sections = chapters.iter().flat_map(|chapter| chapter(&derived)).collect();
-    Ok(Explanation { title: derived.model.name.to_string(), sections })
+/// The chapters of a system by its own rule, then those by each further one.
+fn explanation(Derivations { own, further }: &Derivations, of_own: &[Chapter], of_further: &[Chapter]) -> Explanation {
+    let mut sections: Vec<Section> = of_own.iter().flat_map(|chapter| chapter(own)).collect();
+    for derived in further {
+        let chapters = of_further.iter().flat_map(|chapter| chapter(derived));
+        let head = of_further.first().map(|_| model::further_rule(derived));
+        sections.extend(head.into_iter().chain(chapters));
+    }
+    Explanation { title: own.model.name.to_string(), sections }
 }

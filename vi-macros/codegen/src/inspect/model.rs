@@ -7,6 +7,12 @@ use super::name;
 use crate::Derived;
 use crate::model::Coordinate;
 
+/// The head of what is told of a system by a further rule.
+pub(super) fn further_rule(derived: &Derived) -> Section {
+    let rule = Line::words(format!("rule {}", derived.model.rule.title()));
+    Section { title: "The same system by a further rule", lines: vec![rule] }
+}
+
 /// Names, L and f.
 pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     let model = &derived.model;

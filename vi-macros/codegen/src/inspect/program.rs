@@ -1,15 +1,21 @@
 //! The functions of a system, operation by operation.
 //!
-//! In: a derived system. Out: per function its operations in order, `%3 = %1 * x_mid`, and its results. Inputs and numbers
-//! stand where they are used; an operation that is an argument of the rule says so.
+//! In: a system by each of its rules. Out: per function its operations in order, `%3 = %1 * x_mid`, and its results; then, by each
+//! further rule, those of the functions that depend on it. Inputs and numbers stand where they are used; an operation that is an
+//! argument of the rule says so.
 
-use crate::Derived;
 use crate::program::{Function, Operation, OperationId};
+use crate::{Derivations, Derived};
 use std::collections::BTreeMap;
 
 /// All functions.
-pub(super) fn text(derived: &Derived) -> String {
-    derived.program.functions().map(|of| function(derived, of)).collect::<Vec<_>>().join("\n")
+pub(super) fn text(Derivations { own, further }: &Derivations) -> String {
+    let mut functions: Vec<String> = own.program.functions().map(|of| function(own, of)).collect();
+    for derived in further {
+        functions.push(format!("by the rule {}\n", derived.model.rule.title()));
+        functions.extend(derived.program.by_rule().map(|of| function(derived, of)));
+    }
+    functions.join("\n")
 }
 
 fn function(derived: &Derived, of: &Function) -> String {

@@ -19,7 +19,10 @@ pub(super) fn text(system: &System) -> String {
     lines.extend(system.dissipations.iter().map(definition));
     for discretization in &system.discretizations {
         match discretization {
-            Discretization::Named(name) => lines.push(format!("discretize {name};")),
+            Discretization::Named(names) => {
+                let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+                lines.push(format!("discretize {};", names.join(", ")));
+            }
             Discretization::Written(rule) => {
                 lines.push("discretize {".to_owned());
                 lines.extend(rule.lines.iter().map(|line| format!("    {}", definition(line))));

@@ -13,11 +13,11 @@ use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
-/// Checks a system, whose expressions go into the pool.
+/// Checks a system, whose expressions go into the pool, with the rule of this place in its list.
 ///
 /// # Errors
-/// Everything that is wrong with it.
-pub fn model(pool: &mut Pool<Symbol>, system: System) -> Result<Model> {
+/// Everything that is wrong with it, whatever the place.
+pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<Model> {
     let mut context = Context::new(pool);
     context.constants(&system.constants);
     let defaults = context.parameters(&system.parameters);
@@ -26,7 +26,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: System) -> Result<Model> {
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut context, &system.forces, &system.dissipations, coordinates.len());
     let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
-    let rule = rule::rule(&mut context, &system.discretizations, &system.name, coordinates.len(), forced);
+    let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, coordinates.len());
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
@@ -42,14 +42,16 @@ pub fn model(pool: &mut Pool<Symbol>, system: System) -> Result<Model> {
     // What an exhausted pool says means nothing.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
-    let parameters = system.parameters.into_iter().zip(defaults);
+    let parameters = system.parameters.iter().zip(defaults).map(|(written, default)| Parameter {
+        attributes: written.attributes.clone(),
+        name: written.name.clone(),
+        default,
+    });
     Ok(Model {
-        attributes: system.attributes,
-        visibility: system.visibility,
-        name: system.name,
-        parameters: parameters
-            .map(|(written, default)| Parameter { attributes: written.attributes, name: written.name, default })
-            .collect(),
+        attributes: system.attributes.clone(),
+        visibility: system.visibility.clone(),
+        name: system.name.clone(),
+        parameters: parameters.collect(),
         coordinates,
         lagrangian,
         forced,

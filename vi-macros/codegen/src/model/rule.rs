@@ -7,10 +7,10 @@ use super::context::Context;
 use super::point::Point;
 use super::resolve::Value;
 use super::scope::Scope;
-use crate::messages::{Errors, Message, error, nearest};
+use crate::messages::{Errors, Message, nearest};
 use crate::rules::{self, NamedRule};
 use crate::symbol::{Quantity, Symbol};
-use crate::syntax::{self, Definition, Discretization, parse};
+use crate::syntax::{self, Definition, Discretization, System, parse};
 use proc_macro2::{Ident, Span};
 use std::collections::BTreeSet;
 use syn::Result;
@@ -72,27 +72,30 @@ const LD: &str = "Ld";
 /// The lines that say what a force does.
 const FORCES: [&str; 4] = ["fd_minus", "fd_plus", "gd_minus", "gd_plus"];
 
-/// The rule of the first clause `discretize`; a second clause is a mistake.
+/// The rule of this place among those of the clause `discretize`; a second clause is a mistake.
 pub(super) fn rule(
     context: &mut Context,
-    written: &[Discretization],
-    system: &Ident,
+    written: &System,
+    place: usize,
     dimension: usize,
     forced: bool,
 ) -> Option<Rule> {
-    let Some((first, others)) = written.split_first() else {
-        context.errors.at(system.span(), &Message::MissingRule);
+    let Some((first, others)) = written.discretizations.split_first() else {
+        context.errors.at(written.name.span(), &Message::MissingRule);
         return None;
     };
     for other in others {
         let span = match other {
-            Discretization::Named(name) => name.span(),
+            Discretization::Named(names) => names.first().map_or(written.name.span(), Ident::span),
             Discretization::Written(rule) => rule.span,
         };
         context.errors.at(span, &Message::SecondRule);
     }
     let resolved = match first {
-        Discretization::Named(name) => of_name(context.pool, name, dimension, forced),
+        Discretization::Named(names) => {
+            let rules = of_names(context, names);
+            named(context.pool, *rules.get(place)?, dimension, forced)
+        }
         Discretization::Written(rule) => {
             let scope = Scope::of_rule(dimension).with_constants_of(&context.scope, context.pool);
             resolve(context.pool, scope, rule, forced)
@@ -101,14 +104,23 @@ pub(super) fn rule(
     context.report(resolved)
 }
 
-/// The rule of a name.
-fn of_name(pool: &mut Pool<Symbol>, written: &Ident, dimension: usize, forced: bool) -> Result<Rule> {
-    let name = written.to_string();
-    if let Some(rule) = rules::named(&name) {
-        return named(pool, rule, dimension, forced);
+/// The rules of a list of names: each one of the table, and there once.
+fn of_names(context: &mut Context, names: &[Ident]) -> Vec<&'static NamedRule> {
+    let mut rules: Vec<&'static NamedRule> = Vec::with_capacity(names.len());
+    for written in names {
+        let name = written.to_string();
+        match rules::named(&name) {
+            Some(rule) if rules.contains(&rule) => {
+                context.errors.at(written.span(), &Message::RepeatedRule { name });
+            }
+            Some(rule) => rules.push(rule),
+            None => {
+                let near = nearest(&name, rules::names());
+                context.errors.at(written.span(), &Message::UnknownRule { name, near });
+            }
+        }
     }
-    let near = nearest(&name, rules::names());
-    Err(error(written.span(), &Message::UnknownRule { name, near }))
+    rules
 }
 
 /// A rule of the table, for a system of so many coordinates, with or without a force.

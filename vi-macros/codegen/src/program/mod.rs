@@ -70,7 +70,12 @@ impl Program {
     }
 
     /// All functions, in the order in which they are emitted.
-    pub fn functions(&self) -> impl Iterator<Item = &Function> {
-        self.continuous.iter().chain(&self.slots).chain(&self.step)
+    pub fn functions(&self) -> impl Iterator<Item = &Function> + Clone {
+        self.continuous.iter().chain(self.by_rule())
+    }
+
+    /// Those that depend on the rule, in the same order.
+    pub fn by_rule(&self) -> impl Iterator<Item = &Function> + Clone {
+        self.slots.iter().chain(&self.step)
     }
 }

@@ -37,6 +37,17 @@ pub struct System {
     pub checks: Vec<Check>,
 }
 
+impl System {
+    /// How many rules the system is declared with: those of a list, or one.
+    #[must_use]
+    pub fn rules(&self) -> usize {
+        match self.discretizations.first() {
+            Some(Discretization::Named(names)) => names.len(),
+            Some(Discretization::Written(_)) | None => 1,
+        }
+    }
+}
+
 /// A name with its expression.
 pub struct Definition {
     /// Doc comments before it.
@@ -67,8 +78,8 @@ pub struct Coordinate {
 
 /// How L becomes L_d.
 pub enum Discretization {
-    /// `discretize midpoint;`
-    Named(Ident),
+    /// `discretize midpoint, trapezoidal;`: one rule or more, the system's own first.
+    Named(Vec<Ident>),
     /// `discretize { Ld = …; … }`
     Written(Rule),
 }

@@ -220,12 +220,15 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             let lines;
             syn::braced!(lines in input);
             system.discretizations.push(Discretization::Written(rule_lines(&lines)?));
+            if input.peek(Token![,]) {
+                return Err(error(input.span(), &Message::WrittenInList));
+            }
             if input.peek(Token![;]) {
                 input.parse::<Token![;]>()?;
             }
             return Ok(());
         }
-        "discretize" => system.discretizations.push(Discretization::Named(name(input)?)),
+        "discretize" => system.discretizations.push(Discretization::Named(list(input, &mut rule_name)?)),
         "check" => {
             system.checks.push(check(word.span(), input)?);
             if input.peek(Token![;]) {
@@ -239,6 +242,14 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         }
     }
     semicolon(input)
+}
+
+/// `midpoint`, in a list of rules
+fn rule_name(input: ParseStream) -> Result<Ident> {
+    if input.peek(syn::token::Brace) {
+        return Err(error(input.span(), &Message::WrittenInList));
+    }
+    name(input)
 }
 
 /// The lines of a rule, written out.

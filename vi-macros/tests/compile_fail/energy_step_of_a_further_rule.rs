@@ -1,0 +1,15 @@
+use vi_core::rules::{By, Trapezoidal};
+use vi_core::{EnergyPreserving, lagrangian};
+
+lagrangian! {
+    struct Oscillator {
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2;
+        discretize midpoint, trapezoidal;
+    }
+}
+
+fn main() {
+    let _ = EnergyPreserving::from_midpoint(Oscillator::default(), 0.0, [1.0], [0.0], 0.1);
+    let _ = EnergyPreserving::from_midpoint(By::new(Oscillator::default(), Trapezoidal), 0.0, [1.0], [0.0], 0.1);
+}

@@ -1,0 +1,16 @@
+use vi_core::rules::{By, Trapezoidal};
+use vi_core::{FixedStep, State, lagrangian};
+
+lagrangian! {
+    struct Oscillator {
+        coord x;
+        L = dot(x)^2 / 2 - x^2 / 2;
+        discretize midpoint;
+    }
+}
+
+fn main() {
+    let system = Oscillator::default();
+    let start = State::at(&system, 0.0, [1.0], [0.0]);
+    let _ = FixedStep::new(By::new(system, Trapezoidal), start, 0.1);
+}
