@@ -414,3 +414,86 @@ fn a_checkpoint_is_resumed_by_its_own_system_only() {
     let error = Gauss::restart(Kepler { mu: 1.3 }, run.checkpoint()).expect_err("another parameter");
     assert!(matches!(error, StepError::OtherSystem { parameter: Some("mu"), .. }), "{error}");
 }
+
+lagrangian! {
+    /// A relativistic particle in a field: velocities beyond 1 have no momentum.
+    struct Accelerated {
+        coord x;
+        L = -sqrt(1 - dot(x)^2) + 3 * x;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// Damped and driven, wherever it is.
+    struct Anywhere {
+        coord x;
+        L = dot(x)^2 / 2;
+        force x = -dot(x) / 2 + cos(t);
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// A wall that is far too steep for long steps.
+    struct Wall {
+        coord x;
+        L = dot(x)^2 / 2 - exp(-50 * x) - x;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// A mass that vanishes at the origin.
+    struct Vanishing {
+        coord x;
+        L = x^2 * dot(x)^2 / 2 + x;
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn stages_that_leave_the_domain_are_an_error_or_right() {
+    for h in [0.1, 0.5, 5.0] {
+        let system = Accelerated::default();
+        let mut run = Gauss::<_, 1, 3>::new(&system, State::at(&system, 0.0, [0.0], [0.0]), h).expect("a valid start");
+        // p = 3 t, and x = (√(1 + p²) − 1)/3.
+        for step in 1..=10 {
+            let Ok(state) = run.step() else { break };
+            let p = 3.0 * h * f64::from(step);
+            assert!((state.p[0] - p).abs() < 1e-12 * p, "h = {h}: {state:?}");
+            assert!(state.q[0].abs() < h * f64::from(step), "h = {h}, faster than light: {state:?}");
+            assert!(run.residual().is_finite() && run.discrete_energy().is_some(), "h = {h}");
+        }
+    }
+    let system = Vanishing::default();
+    let mut run = Gauss::<_, 1, 3>::new(&system, State::at(&system, 0.0, [1.0], [-2.0]), 1.0).expect("a valid start");
+    let error = run.step().expect_err("the mass vanishes on the way");
+    assert!(matches!(error, StepError::StagesUnsettled { .. } | StepError::NonFinite { .. }), "{error}");
+}
+
+#[test]
+fn velocities_are_solved_wherever_the_positions_are() {
+    let system = Anywhere::default();
+    let step = |x: f64| {
+        let state = State::at(&system, 0.0, [x], [1.0]);
+        Gauss::<_, 1, 8>::new(&system, state, 0.1).expect("a start").step().expect("a step").p[0]
+    };
+    for x in [1e6, 1e12, 1e17] {
+        // Measured: 4.4e-16.
+        assert!((step(x) - step(0.0)).abs() < 2e-15, "x = {x:e}: {} and {}", step(x), step(0.0));
+    }
+}
+
+#[test]
+fn a_step_that_newton_does_not_solve_is_an_error() {
+    let system = Wall::default();
+    let mut run = Gauss::<_, 1, 1>::new(&system, State::at(&system, 0.0, [1.0], [-1.0]), 1.0).expect("a valid start");
+    for _ in 0..5 {
+        match run.step() {
+            // p1 − p0 = h F in the middle, and L_v there is the mean of both.
+            Ok(state) => assert!(state.p[0].abs() < 100.0, "{state:?}"),
+            Err(error) => return assert!(matches!(error, StepError::StagesUnsettled { .. }), "{error}"),
+        }
+    }
+}

@@ -232,6 +232,15 @@ impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
     }
 }
 
+impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N, R> for &S {
+    type In<T: Real> = S::In<T>;
+
+    #[inline(always)]
+    fn convert<T: Real>(&self) -> Self::In<T> {
+        S::convert(self)
+    }
+}
+
 impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N> for By<S, R> {
     type In<T: Real> = By<S::In<T>, R>;
 

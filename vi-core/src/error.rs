@@ -152,7 +152,7 @@ impl fmt::Display for Reason<'_> {
             }
             StepError::StagesUnsettled { t, h, iterations, change, contraction, stiffness } => write!(
                 f,
-                "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings after {iterations} iterations, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
+                "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings in iteration {iterations}, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
             ),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {

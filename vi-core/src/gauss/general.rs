@@ -10,7 +10,7 @@
 //! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
-use super::stages::{Stages, multiply_add, product, scaled, set, stage, weights};
+use super::stages::{Stages, change, multiply_add, product, scaled, set, stage, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
@@ -225,7 +225,12 @@ where
     }
 
     #[inline(always)]
-    fn velocities(&self) -> Stages<N, S> {
-        self.evaluated
+    fn velocities(&self) -> Option<Stages<N, S>> {
+        Some(self.evaluated)
+    }
+
+    #[inline(always)]
+    fn change_of_velocities(&self) -> f64 {
+        change(&self.evaluated, &self.velocity, &SVector::zeros())
     }
 }

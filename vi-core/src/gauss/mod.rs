@@ -180,7 +180,10 @@ where
             return Err(explained);
         }
         let Convergence { sweeps, change, contraction } = solved.sweeps.convergence;
-        let stiffness = self.newton.as_ref().map_or(f64::NAN, |newton| newton.stiffness());
+        // What is not a number was beyond all.
+        let [change, contraction] =
+            [change, contraction].map(|ratio| if ratio.is_nan() { f64::INFINITY } else { ratio });
+        let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
         let (t, h) = (self.run.node.t, self.run.h);
         Err(StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness })
     }
@@ -201,8 +204,8 @@ where
     fn is_solved(&self, solved: &Solved<N, STAGES>) -> bool {
         let Solved { sweeps, velocities, .. } = solved;
         let system = self.system.convert::<Rounded>();
-        solved.is_at_floor()
-            || sweeps.is_within(&rounding::bounds(&system, &self.run.node, self.run.h, &sweeps.before, velocities))
+        let node = &self.run.node;
+        solved.is_at_floor() || rounding::are_solved(&system, node, self.run.h, &sweeps.positions, velocities.as_ref())
     }
 
     /// The state reached last.
@@ -296,7 +299,7 @@ where
 struct Solved<const N: usize, const S: usize> {
     increment: Increment<N>,
     stages: Stages<N, S>,
-    velocities: Stages<N, S>,
+    velocities: Option<Stages<N, S>>,
     sweeps: Sweeps<N, S>,
 }
 

@@ -157,7 +157,8 @@ impl<const N: usize, const S: usize> Newton<N, S> {
             left.solve(vector.as_mut_slice());
             length += vector.norm().ln();
         }
-        self.h.abs() * (length / f64::from(POWERS)).exp()
+        let stiffness = self.h.abs() * (length / f64::from(POWERS)).exp();
+        if stiffness.is_nan() { f64::INFINITY } else { stiffness }
     }
 }
 
@@ -224,7 +225,11 @@ impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stif
         if Y::SEPARABLE { self.equations.forces() } else { self.equations.guess() }
     }
 
-    fn velocities(&self) -> Stages<N, S> {
+    fn velocities(&self) -> Option<Stages<N, S>> {
         self.equations.velocities()
+    }
+
+    fn change_of_velocities(&self) -> f64 {
+        self.equations.change_of_velocities()
     }
 }

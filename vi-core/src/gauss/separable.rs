@@ -121,7 +121,12 @@ where
     }
 
     #[inline(always)]
-    fn velocities(&self) -> Stages<N, S> {
-        [[0.0; S]; N]
+    fn velocities(&self) -> Option<Stages<N, S>> {
+        None
+    }
+
+    #[inline(always)]
+    fn change_of_velocities(&self) -> f64 {
+        0.0
     }
 }

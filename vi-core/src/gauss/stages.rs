@@ -91,28 +91,32 @@ pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; 
     scaled
 }
 
-/// The largest change of a coordinate from `before` to `after`, in roundings of the largest |q| on its way: those of the stages and q0.
+/// The largest change of an entry from `before` to `after`, in roundings of the largest of its row and of `start`. Not a number where one
+/// of the stages is not finite.
 #[inline(always)]
 pub(super) fn change<const N: usize, const S: usize>(
     before: &Stages<N, S>,
     after: &Stages<N, S>,
-    q0: &SVector<f64, N>,
+    start: &SVector<f64, N>,
 ) -> f64 {
     let mut largest = 0.0;
+    let mut lost = 0.0;
     for k in 0..N {
         let mut moved = [0.0; S];
         let mut length = [0.0; S];
         for i in 0..S {
             moved[i] = (after[k][i] - before[k][i]).abs();
             length[i] = after[k][i].abs();
+            // Zero, or not a number.
+            lost += moved[i] * 0.0;
         }
-        let scale = larger(maximum(&length), q0[k].abs()) + f64::MIN_POSITIVE;
+        let scale = larger(maximum(&length), start[k].abs()) + f64::MIN_POSITIVE;
         largest = larger(maximum(&moved) / (scale * f64::EPSILON), largest);
     }
-    largest
+    largest + lost
 }
 
-/// The larger of two numbers. Where one is not a number the sums of the step are not either, and the node is refused.
+/// The larger of two numbers.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }

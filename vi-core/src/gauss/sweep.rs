@@ -4,7 +4,8 @@
 //!
 //! ```text
 //! sweep      x' = what the equations give at the forces, masses and momenta of x
-//! accept x   where |x' − x| ≤ 4 ε |q|, the largest on the way of each coordinate, and the change before foretold no further one
+//! accept x   where |x' − x| ≤ 4 ε |q| and |v' − v| ≤ 64 ε |v|, the largest on the way of each coordinate, and the change before
+//!            predicted no further one
 //! ```
 //!
 //! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
@@ -22,8 +23,10 @@ const SLOW: f64 = 0.5;
 const NOISE: f64 = 1e3;
 /// Sweeps without a smaller change, after which no further one comes closer.
 const STALLS: u32 = 4;
+/// Part of a rounding of q that a rounding of v counts as: velocities are solved for by the mass matrix, and carry its condition.
+const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q by which the stages may still move.
-const FLOOR: f64 = 4.0;
+pub(super) const FLOOR: f64 = 4.0;
 /// Roundings of q that the next change may have for this one to be the last.
 const NEGLIGIBLE: f64 = 1.0 / 64.0;
 
@@ -39,8 +42,10 @@ pub(super) trait Equations<const N: usize, const S: usize> {
     fn increment(&self) -> Increment<N>;
     /// What the stages are found from: what is extrapolated to the next step.
     fn guess(&self) -> Stages<N, S>;
-    /// The velocities at which the last sweep evaluated; zeros where nothing depends on them.
-    fn velocities(&self) -> Stages<N, S>;
+    /// The velocities at which the last sweep evaluated; none where nothing depends on them.
+    fn velocities(&self) -> Option<Stages<N, S>>;
+    /// The change of the velocities by the last sweep, in roundings of theirs.
+    fn change_of_velocities(&self) -> f64;
 }
 
 /// What moves a step from its node to the next.
@@ -58,7 +63,7 @@ pub(super) struct Increment<const N: usize> {
 pub(super) struct Convergence {
     /// How many there were.
     pub(super) sweeps: u32,
-    /// The last change, in roundings of q.
+    /// The last change, in roundings of q, or in sixteens of those of v.
     pub(super) change: f64,
     /// How many times smaller a change is than the one before.
     pub(super) contraction: f64,
@@ -88,7 +93,9 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut stalls = 0;
     loop {
         let y = equations.sweep(&x);
-        let change = change(&x, &y, q0);
+        let of_velocities = equations.change_of_velocities() * VELOCITY;
+        // Where one of them is not a number, neither is the sum.
+        let change = change(&x, &y, q0).max(of_velocities) + 0.0 * of_velocities;
         if state.sweeps > 0 {
             state.contraction = change / state.change;
         }
@@ -99,7 +106,7 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         let is_solved = change <= FLOOR && (is_last || change == 0.0);
         let is_slow = state.sweeps >= E::PATIENCE && state.contraction > SLOW && change > NOISE;
         if is_solved || stalls == STALLS || is_slow || state.sweeps == SWEEPS {
-            return Sweeps { convergence: state, before: x, after: y };
+            return Sweeps { convergence: state, positions: x };
         }
         is_last = state.contraction * change <= NEGLIGIBLE;
         x = y;
@@ -110,16 +117,5 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
 pub(super) struct Sweeps<const N: usize, const S: usize> {
     pub(super) convergence: Convergence,
     /// Positions at which it evaluated.
-    pub(super) before: Stages<N, S>,
-    /// Positions that followed.
-    pub(super) after: Stages<N, S>,
-}
-
-impl<const N: usize, const S: usize> Sweeps<N, S> {
-    /// Whether no coordinate changed by more than so many of its bounds of rounding.
-    pub(super) fn is_within(&self, bounds: &SVector<f64, N>) -> bool {
-        let rows = self.before.iter().zip(&self.after).zip(bounds.iter());
-        rows.flat_map(|((before, after), bound)| before.iter().zip(after).map(move |(a, b)| (a, b, bound)))
-            .all(|(a, b, bound)| (b - a).abs() <= FLOOR * bound)
-    }
+    pub(super) positions: Stages<N, S>,
 }
