@@ -37,9 +37,10 @@ pub(super) struct Newton<const N: usize, const S: usize> {
     factors: Vec<Pivoted>,
     /// Values of the normalized Legendre polynomials k at the nodes i: `basis[k][i]`.
     basis: [[f64; S]; S],
-    /// One vector of 2N a polynomial, and room for a matrix.
+    /// One vector of 2N a polynomial, and room for two matrices.
     modes: Vec<DVector<f64>>,
     room: DMatrix<f64>,
+    block: DMatrix<f64>,
 }
 
 impl<const N: usize, const S: usize> Newton<N, S> {
@@ -53,7 +54,8 @@ impl<const N: usize, const S: usize> Newton<N, S> {
             factors: vec![Pivoted::new(2 * N); S],
             basis: basis(),
             modes: vec![DVector::zeros(2 * N); S],
-            room: square,
+            room: square.clone(),
+            block: square,
         }
     }
 
@@ -93,9 +95,9 @@ impl<const N: usize, const S: usize> Newton<N, S> {
                     for mut column in self.room.column_iter_mut() {
                         self.factors[before].solve(column.as_mut_slice());
                     }
-                    let product = &self.right * &self.room;
-                    self.room.copy_from(&self.left);
-                    self.room += product * scale;
+                    self.block.copy_from(&self.left);
+                    self.block.gemm(scale, &self.right, &self.room, 1.0);
+                    self.room.copy_from(&self.block);
                 }
             }
             self.factors[k].factor(&self.room);
