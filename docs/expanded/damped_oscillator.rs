@@ -73,7 +73,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T>
+    for DampedOscillator<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "m" => ::core::option::Option::Some(&mut self.m),
@@ -201,7 +202,10 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 1>,
             p: &::vi_core::SVector<T, 1>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<1, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<
+            ::vi_core::lagrangian::Flow<1, T>,
+            ::vi_core::StepError,
+        > {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -260,7 +264,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<1, T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<1, T>
+    for DampedOscillator<T> {
         type Mass = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = false;
@@ -443,7 +448,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T>
+    for DampedOscillator<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
         const CONSTANT_JACOBIAN: bool = true;
         const CLOSED_FORM: bool = true;
@@ -551,7 +557,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<1, T> for DampedOscillator<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<1, T>
+    for DampedOscillator<T> {
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
         ///
         /// 40 operations.

@@ -122,7 +122,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T>
+    for DoublePendulum<T> {
         fn parameter_mut(&mut self, name: &str) -> ::core::option::Option<&mut T> {
             match name {
                 "m1" => ::core::option::Option::Some(&mut self.m1),
@@ -297,7 +298,10 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<2, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<
+            ::vi_core::lagrangian::Flow<2, T>,
+            ::vi_core::StepError,
+        > {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -369,7 +373,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
+    for DoublePendulum<T> {
         type Mass = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = false;
         const SEPARABLE: bool = false;
@@ -427,7 +432,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T>
+    for DoublePendulum<T> {
         /// `ld = h*L`
         ///
         /// 37 operations.
@@ -619,7 +625,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>
+    for DoublePendulum<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
@@ -783,7 +790,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T> for DoublePendulum<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T>
+    for DoublePendulum<T> {
         /// `energy_residual = h*v_θ1*L_θ1/2 - L - E0_low - E0 + v_θ1*p0_θ1_low + v_θ1*p0_θ1 + h*v_θ2*L_θ2/2 + v_θ2*p0_θ2_low + v_θ2*p0_θ2`
         ///
         /// 136 operations.

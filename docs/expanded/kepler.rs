@@ -230,7 +230,10 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<2, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<
+            ::vi_core::lagrangian::Flow<2, T>,
+            ::vi_core::StepError,
+        > {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -291,7 +294,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
+    for Kepler<T> {
         type Mass = ::vi_core::linear::Banded<2, 1, T>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
@@ -499,7 +503,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>
+    for Kepler<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
@@ -635,7 +640,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T> for Kepler<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T>
+    for Kepler<T> {
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x + h*v_y*L_y/2 + v_y*p0_y_low + v_y*p0_y`
         ///
         /// 107 operations.

@@ -61,11 +61,7 @@ mod tests {
         let inner = folder.join("of").join("its own");
         assert_eq!(expansion(SYSTEM, None), expansion(SYSTEM, Some(&inner)), "the expansion itself is the same");
         let written = fs::read_to_string(inner.join("free_particle.rs")).expect("the file");
-        assert!(
-            written.contains(
-                "impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T> for FreeParticle<T> {"
-            )
-        );
+        assert!(written.contains("::vi_core::stepping::FixedStepping<1, T>"));
         // A system with mistakes says so, and is not written.
         assert!(expansion("struct Wrong { coord x; }", Some(&inner)).contains("compile_error"));
         assert_eq!(fs::read_dir(&inner).expect("the folder").count(), 1);

@@ -51,9 +51,12 @@ fn neighbours() {
         assert_eq!(found, forms(Tridiagonal, true, &jacobian, &mass));
     }
     // Up to three rows the closed form is used, whatever the pattern.
-    assert_eq!(emitted(&families::chain(3)).1, forms(Tridiagonal, true, "SMatrix<T,3,3>", "Banded<3,1,T>"));
-    assert_eq!(emitted(&families::chain(2)).1, forms(Dense, true, "SMatrix<T,2,2>", "Banded<2,1,T>"));
-    assert_eq!(emitted(&families::chain(1)).1, forms(Scalar, true, "SMatrix<T,1,1>", "SMatrix<T,1,1>"));
+    assert_eq!(emitted(&families::chain(3)).1, forms(Tridiagonal, true, "nalgebra::SMatrix<T,3,3>", "Banded<3,1,T>"));
+    assert_eq!(emitted(&families::chain(2)).1, forms(Dense, true, "nalgebra::SMatrix<T,2,2>", "Banded<2,1,T>"));
+    assert_eq!(
+        emitted(&families::chain(1)).1,
+        forms(Scalar, true, "nalgebra::SMatrix<T,1,1>", "nalgebra::SMatrix<T,1,1>")
+    );
     // A force by the right neighbour alone: no matrix is its own transpose, and the place on the left is kept.
     let drawn = masses(4, "0", "force q[i in 0..N - 1] = q[i]*q[i + 1];");
     assert_eq!(drawn, forms(Tridiagonal, false, "Tridiagonal<4,T>", "Banded<4,1,T>"));
@@ -98,7 +101,7 @@ fn bodies_that_do_not_touch() {
     let (all, right) = (rust.matches("members:").count(), rust.matches("members:&[&[0,3],&[1,4],&[2],&[5]]").count());
     assert!(all >= 3 && right == all, "{right} of {all}");
     let three = of("coord x, y, z; L = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - x*z^2 - y^4;");
-    assert_eq!(three, forms(Blocks(vec![vec![0, 2], vec![1]]), true, "SMatrix<T,3,3>", "Banded<3,1,T>"));
+    assert_eq!(three, forms(Blocks(vec![vec![0, 2], vec![1]]), true, "nalgebra::SMatrix<T,3,3>", "Banded<3,1,T>"));
     // One alone among others, one row of two.
     let rest = masses(5, "q[1]*q[2]*q[3]*q[4] + q[0]^4", "force q[2] = -q[1]^2;");
     let blocks = Blocks(vec![vec![0], vec![1, 2, 3, 4]]);
@@ -116,16 +119,19 @@ fn bodies_that_all_touch() {
         let pendulum = emitted(&families::pendulum(size)).1;
         assert_eq!(
             pendulum,
-            forms(Dense, false, &format!("SMatrix<T,{size},{size}>"), &format!("Symmetric<{size},T>"))
+            forms(Dense, false, &format!("nalgebra::SMatrix<T,{size},{size}>"), &format!("Symmetric<{size},T>"))
         );
     }
-    assert_eq!(emitted(&families::pendulum(3)).1, forms(Dense, false, "SMatrix<T,3,3>", "SMatrix<T,3,3>"));
+    assert_eq!(
+        emitted(&families::pendulum(3)).1,
+        forms(Dense, false, "nalgebra::SMatrix<T,3,3>", "nalgebra::SMatrix<T,3,3>")
+    );
     // One row that friction draws into.
     let pulled = masses(4, "(q[0] + q[1] + q[2] + q[3])^4", "force q[0] = -dot(q[1]);");
-    assert_eq!(pulled, forms(Dense, false, "SMatrix<T,4,4>", "Banded<4,1,T>"));
+    assert_eq!(pulled, forms(Dense, false, "nalgebra::SMatrix<T,4,4>", "Banded<4,1,T>"));
     // A magnetic field: A = 1 ± (h/2) b beside the diagonal.
     let turning = of("coord x, y; L = (dot(x)^2 + dot(y)^2)/2 + x*dot(y);");
-    assert_eq!(turning, forms(Dense, false, "SMatrix<T,2,2>", "Banded<2,1,T>"));
+    assert_eq!(turning, forms(Dense, false, "nalgebra::SMatrix<T,2,2>", "Banded<2,1,T>"));
     // A ring closes the corners.
     let ring = masses(4, "sum(i in 0..N - 1, q[i]*q[i + 1]) + q[0]*q[N - 1]", "");
     assert_eq!(ring, forms(Dense, true, "Symmetric<4,T>", "Banded<4,1,T>"));

@@ -113,7 +113,7 @@ fn the_stages_show_their_products() {
         ],
     );
     holds(Stage::Program, &["momentum: 1 operation", "%1 = m * dot(x)", "result %1"]);
-    holds(Stage::Rust, &["impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T> for System<T> {"]);
+    holds(Stage::Rust, &["impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T>"]);
     assert!(text(Stage::Rust).contains("\n        }\n\n        /// `v·L_v − L = "), "items stand apart");
 }
 

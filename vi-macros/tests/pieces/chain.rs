@@ -580,7 +580,10 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 10>,
             p: &::vi_core::SVector<T, 10>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<10, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<
+            ::vi_core::lagrangian::Flow<10, T>,
+            ::vi_core::StepError,
+        > {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -718,7 +721,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<10, T>
+    for Chain<T> {
         type Mass = ::vi_core::linear::Banded<10, 1, T>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
@@ -1586,7 +1590,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<10, T>
+    for Chain<T> {
         type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
         const CONSTANT_JACOBIAN: bool = false;
 
@@ -2025,7 +2030,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<10, T> for Chain<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<10, T>
+    for Chain<T> {
         /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1] + h*v_q[2]*L_q[2]/2 + v_q[2]*p0_q[2]_low + v_q[2]*p0_q[2] + h*v_q[3]*L_q[3]/2 + v_q[3]*p0_q[3]_low + v_q[3]*p0_q[3] + h*v_q[4]*L_q[4]/2 + v_q[4]*p0_q[4]_low + v_q[4]*p0_q[4] + h*v_q[5]*L_q[5]/2 + v_q[5]*p0_q[5]_low + v_q[5]*p0_q[5] + h*v_q[6]*L_q[6]/2 + …`
         ///
         /// 732 operations.

@@ -338,7 +338,10 @@ const _: () = {
             t: T,
             q: &::vi_core::SVector<T, 2>,
             p: &::vi_core::SVector<T, 2>,
-        ) -> ::core::result::Result<::vi_core::lagrangian::Flow<2, T>, ::vi_core::StepError> {
+        ) -> ::core::result::Result<
+            ::vi_core::lagrangian::Flow<2, T>,
+            ::vi_core::StepError,
+        > {
             let at_rest = ::vi_core::collocation::Collocation::point(
                 self,
                 t,
@@ -411,7 +414,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
+    for Pendula<T> {
         type Mass = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = false;
         const SEPARABLE: bool = false;
@@ -804,7 +808,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>
+    for Pendula<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
@@ -1234,7 +1239,8 @@ const _: () = {
         }
     }
 
-    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T> for Pendula<T> {
+    impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<2, T>
+    for Pendula<T> {
         /// `energy_residual = h*L_t/2 - L - E0_low - E0 + h*v_q[0]*L_q[0]/2 + v_q[0]*p0_q[0]_low + v_q[0]*p0_q[0] + h*v_q[1]*L_q[1]/2 + v_q[1]*p0_q[1]_low + v_q[1]*p0_q[1]`
         ///
         /// 170 operations.
