@@ -599,7 +599,7 @@ fn a_file_is_expanded_stage_by_stage() {
         ("model", "    p_x = dot(x)"),
         ("discrete", "    (D4 L_d)_x = L_v_x + h*L_x/2"),
         ("program", "momentum: 0 operations"),
-        ("rust", "    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T> for Kepler<T> {"),
+        ("rust", "    impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>"),
     ] {
         let (status, output, errors) = lab(&["expand", kepler, "--stage", stage]);
         assert_eq!((status, errors.as_str()), (Some(0), ""), "{stage}");
