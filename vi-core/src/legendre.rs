@@ -119,8 +119,7 @@ where
         Evaluated {
             residual: self.system.momentum(*t, q, v) - *p,
             mass: (self.mass)(v),
-            // Bounds are in halves of an ulp.
-            scale: rounded.map(|number| T::real(0.5 * number.error())),
+            scale: rounded.map(|number| T::real(number.ulps())),
         }
     }
 

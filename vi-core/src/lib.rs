@@ -23,7 +23,7 @@
 //! | `called` | a system whose functions are calls, for rare code |
 //! | `compensated` | sums that keep what rounding takes from them |
 //!
-//! Nothing here panics, allocates in a step, or prints.
+//! Nothing here panics, allocates in a step (but for the room that the first stiff Gauss step makes), or prints.
 
 // A call that is not inlined spills the run's state out of registers.
 #![allow(clippy::inline_always)]

@@ -186,9 +186,9 @@ fn nearest<T: Real>(number: T) -> Rounded {
     Rounded::nearest(number.to_f64())
 }
 
-/// The bound of a rounding, which is in halves of an ulp.
+/// The bound of a rounding.
 fn ulps<T: Real>(number: Rounded) -> T {
-    T::real(0.5 * number.error())
+    T::real(number.ulps())
 }
 
 /// What momentum and energy gain over one solved step.

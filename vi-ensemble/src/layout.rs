@@ -97,7 +97,7 @@ impl<const N: usize> Rows<N> {
                 for (weight, other) in weights.iter().zip(others) {
                     let entries = &other.0[k].0.as_flattened()[place * CHUNK..(place + 1) * CHUNK];
                     for (sum, entry) in whole.iter_mut().zip(entries) {
-                        *sum = (Lane::<FUSED>::new(*sum) + Lane::new(*weight) * Lane::new(*entry)).get();
+                        *sum = Lane::<FUSED>::multiply_add(*weight, *entry, *sum);
                     }
                 }
                 sums.copy_from_slice(&whole);

@@ -10,13 +10,13 @@
 //! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
-use super::stages::{Stages, change, multiply_add, product, scaled, set, stage, weights};
+use super::stages::{Stages, change, constant_mass, product, scaled, set, stage, time, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::Real;
+use crate::real::{Lane, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// The equations of a step; see the [module](self).
@@ -44,9 +44,7 @@ where
     /// The equations of the step of length h from `node`, with a guess of the velocities at its stages.
     #[inline(always)]
     pub(super) fn new(system: &'a Y, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
-        let origin = SVector::zeros();
-        let constant = || system.point(T::real(node.t), &node.q.map(T::real), &origin).mass;
-        let mass = Y::CONSTANT_MASS.then(constant);
+        let mass = Y::CONSTANT_MASS.then(|| constant_mass(system, node));
         Self { system, node, h, mass, velocity, evaluated: velocity, force: [[0.0; S]; N] }
     }
 
@@ -68,16 +66,25 @@ where
         self.force
     }
 
+    /// `low + Σ_j first_ij h b_j X_j` at the stages i.
+    #[inline(always)]
+    fn integrals(&self, of: &Stages<N, S>, low: &SVector<f64, N>) -> Stages<N, S> {
+        let first = const { &Tableau::<S>::VALUES.first };
+        let weights = weights(self.h);
+        let mut integrals = [[0.0; S]; N];
+        for k in 0..N {
+            integrals[k] = product::<S, FUSED>(first, &scaled(&weights, &of[k]), &[low[k]; S]);
+        }
+        integrals
+    }
+
     /// Where the velocities at hand lead.
     #[inline(always)]
     fn positions(&self) -> Stages<N, S> {
-        let first = const { &Tableau::<S>::VALUES.first };
-        let weights = weights(self.h);
-        let mut x = [[0.0; S]; N];
+        let mut x = self.integrals(&self.velocity, &self.node.q_low);
         for k in 0..N {
-            let way = product::<S, FUSED>(first, &scaled(&weights, &self.velocity[k]), &[self.node.q_low[k]; S]);
             for i in 0..S {
-                x[k][i] = self.node.q[k] + way[i];
+                x[k][i] += self.node.q[k];
             }
         }
         x
@@ -86,23 +93,30 @@ where
     /// What the momenta that follow from the forces are beyond `momentum`, the L_v of the velocities.
     #[inline(always)]
     fn missing(&self, momentum: &Stages<N, S>) -> Stages<N, S> {
-        let first = const { &Tableau::<S>::VALUES.first };
-        let weights = weights(self.h);
-        let mut missing = [[0.0; S]; N];
+        let mut missing = self.integrals(&self.force, &self.node.p_low);
         for k in 0..N {
-            let gained = product::<S, FUSED>(first, &scaled(&weights, &self.force[k]), &[self.node.p_low[k]; S]);
             for i in 0..S {
-                missing[k][i] = (self.node.p[k] - momentum[k][i]) + gained[i];
+                missing[k][i] += self.node.p[k] - momentum[k][i];
             }
         }
         missing
     }
 
-    /// The time of a stage.
+    /// Evaluates the equations at a stage, writes L_q + f and L_v, and returns the mass matrix.
     #[inline(always)]
-    fn time(&self, i: usize) -> T {
-        let c = const { &Tableau::<S>::VALUES.c };
-        T::real(self.node.t + multiply_add::<FUSED>(self.h, c[i], self.node.t_low))
+    fn evaluate_stage(
+        &self,
+        i: usize,
+        x: &Stages<N, S>,
+        velocity: &Stages<N, S>,
+        force: &mut Stages<N, S>,
+        momentum: &mut Stages<N, S>,
+    ) -> Y::Mass {
+        let t = time::<N, S, FUSED, T>(self.node, self.h, i);
+        let point = self.system.point(t, &stage(x, i), &stage(velocity, i));
+        set(force, i, &point.force);
+        set(momentum, i, &point.momentum);
+        point.mass
     }
 
     /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
@@ -114,9 +128,7 @@ where
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
         for i in 0..S {
-            let point = self.system.point(self.time(i), &stage(&x, i), &stage(&velocity, i));
-            set(&mut force, i, &point.force);
-            set(&mut momentum, i, &point.momentum);
+            self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
         }
         self.evaluated = velocity;
         self.force = force;
@@ -132,10 +144,8 @@ where
         let mut momentum = [[0.0; S]; N];
         let mut inverse = [[[0.0; S]; N]; N];
         for i in 0..S {
-            let point = self.system.point(self.time(i), &stage(&x, i), &stage(&velocity, i));
-            set(&mut force, i, &point.force);
-            set(&mut momentum, i, &point.momentum);
-            let columns = point.mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
+            let mass = self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
+            let columns = mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
             for k in 0..N {
                 for l in 0..N {
                     inverse[k][l][i] = columns[(k, l)].to_f64();
@@ -176,7 +186,8 @@ where
         for k in 0..N {
             for l in 0..N {
                 for i in 0..S {
-                    self.velocity[k][i] = multiply_add::<FUSED>(inverse[k][l][i], missing[l][i], self.velocity[k][i]);
+                    self.velocity[k][i] =
+                        Lane::<FUSED>::multiply_add(inverse[k][l][i], missing[l][i], self.velocity[k][i]);
                 }
             }
         }
@@ -212,8 +223,8 @@ where
         for k in 0..N {
             for i in 0..S {
                 let (moved, gained) = (&mut increment.velocity[k], &mut increment.momentum[k]);
-                *moved = multiply_add::<FUSED>(b[i], self.evaluated[k][i], *moved);
-                *gained = multiply_add::<FUSED>(weights[i], self.force[k][i], *gained);
+                *moved = Lane::<FUSED>::multiply_add(b[i], self.evaluated[k][i], *moved);
+                *gained = Lane::<FUSED>::multiply_add(weights[i], self.force[k][i], *gained);
             }
         }
         increment

@@ -18,6 +18,8 @@
 //! | `stages` | numbers of all stages side by side |
 //! | `separable`, `general` | the equations of the stages: forces of the position alone, and any system |
 //! | `sweep` | the solution, by sweeps over the stages until they no longer move |
+//! | `newton` | else by simplified Newton iterations about the middle of the step |
+//! | `rounding` | whether stages that stall are solved, by running error analysis |
 //!
 //! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor. AFTER AN ERROR the integrator
 //! holds the last good state and keeps returning that error.
@@ -46,7 +48,7 @@ use general::General;
 use nalgebra::SMatrix;
 use newton::{Newton, Stiff};
 use separable::Separable;
-use stages::{Stages, extrapolated, stage};
+use stages::{Stages, extrapolated, stage, time};
 use sweep::{Convergence, Equations, Increment, Sweeps};
 use tableau::Tableau;
 use vi_dispatch::{Instructions, Loop};
@@ -77,7 +79,6 @@ pub struct Run<const N: usize, const S: usize> {
     /// step those of the node.
     stages: SMatrix<f64, S, N>,
     convergence: Convergence,
-    begun: bool,
     /// Steps that are solved by Newton's iteration before sweeps are tried again, and how many that were the last time.
     stiff: u32,
     patience: u32,
@@ -99,8 +100,7 @@ where
         let start = if <S as Collocation<N>>::SEPARABLE { force } else { v };
         let stages = SMatrix::from_fn(|_, k| start[k]);
         let node = Node::new(state, 0.0);
-        let run =
-            Run { node, before: node, h, stages, convergence: Convergence::NONE, begun: false, stiff: 0, patience: 1 };
+        let run = Run { node, before: node, h, stages, convergence: Convergence::NONE, stiff: 0, patience: 1 };
         Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
     }
 
@@ -135,6 +135,7 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
+        // No `?`: with it a step copies the run once more. Measured: an eighth of a step of Kepler's problem.
         match self.solve() {
             Ok(run) => self.run = run,
             Err(failure) => {
@@ -147,24 +148,28 @@ where
 
     /// The run after the next step.
     fn solve(&mut self) -> Result<Run<N, STAGES>, StepError> {
-        if self.run.stiff == 0 {
-            let solved = self.instructions.run(Solve { system: &self.system, run: &self.run });
-            let run = self.run.after(&solved);
-            if solved.is_at_floor() && run.node.is_finite() {
-                return Ok(run);
-            }
+        if self.run.stiff > 0 {
+            return self.solve_with_care(None);
         }
-        self.solve_with_care()
+        let swept = self.instructions.run(Solve { system: &self.system, run: &self.run });
+        let run = self.run.after(&swept);
+        if swept.is_at_floor() && run.node.is_finite() { Ok(run) } else { self.solve_with_care(Some(&swept)) }
     }
 
-    /// The run after a step that sweeps by the instructions of the processor do not solve at once.
+    /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
     #[cold]
-    fn solve_with_care(&mut self) -> Result<Run<N, STAGES>, StepError> {
-        if self.run.stiff == 0 {
-            // In plain numbers, whose sines and cosines know every angle.
-            let solved = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
-            let run = self.run.after(&solved);
-            if run.node.is_finite() && self.is_solved(&solved) {
+    fn solve_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<Run<N, STAGES>, StepError> {
+        if let Some(swept) = swept {
+            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+            let plain;
+            let solved = if swept.sweeps.convergence.change.is_nan() {
+                plain = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
+                &plain
+            } else {
+                swept
+            };
+            let run = self.run.after(solved);
+            if run.node.is_finite() && self.is_solved(solved) {
                 return Ok(run);
             }
         }
@@ -238,12 +243,12 @@ where
         let velocities = equations.guess();
         let mut energy = 0.0;
         for i in 0..STAGES {
-            let t = run.before.t + run.h * c[i];
+            let t = time::<N, STAGES, false, f64>(&run.before, run.h, i);
             let q = stage(&x, i);
             let v = stage(&velocities, i);
             energy += b[i] * (system.energy(t, &q, &v) + run.h * c[i] * system.power(t, &q, &v));
         }
-        (run.begun && energy.is_finite()).then_some(energy)
+        (run.convergence.has_begun() && energy.is_finite()).then_some(energy)
     }
 
     /// Sweeps over the stages that the last step took.
@@ -256,7 +261,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
     /// Velocities at the stages of the next step, or forces there: the polynomials of the last one, further on.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
-        if self.begun { extrapolated::<N, S, FUSED>(&self.stages.data.0) } else { self.stages.data.0 }
+        if self.convergence.has_begun() { extrapolated::<N, S, FUSED>(&self.stages.data.0) } else { self.stages.data.0 }
     }
 
     /// The run after a step.
@@ -266,7 +271,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
         node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
         let convergence = solved.sweeps.convergence;
         let stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
-        Self { node, before: self.node, stages, convergence, begun: true, patience: 1, ..*self }
+        Self { node, before: self.node, stages, convergence, patience: 1, ..*self }
     }
 
     /// The run after a step by Newton's iteration: sweeps are tried again after twice as many of them as the last time.

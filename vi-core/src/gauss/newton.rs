@@ -176,16 +176,11 @@ fn xi(k: usize) -> f64 {
 /// The polynomials `√(2k + 1) P_k(2 c − 1)` at the nodes: orthonormal under the weights.
 #[allow(clippy::cast_precision_loss)]
 fn basis<const S: usize>() -> [[f64; S]; S] {
-    let c = const { &Tableau::<S>::VALUES.c };
-    let mut basis = [[1.0; S]; S];
-    for i in 0..S {
-        let x = 2.0 * c[i] - 1.0;
-        let mut last = [1.0, x];
-        for k in 1..S {
-            let degree = k as f64;
-            basis[k][i] = last[1] * (2.0 * degree + 1.0).sqrt();
-            let next = ((2.0 * degree + 1.0) * x * last[1] - degree * last[0]) / (degree + 1.0);
-            last = [last[1], next];
+    let mut basis = const { Tableau::<S>::VALUES.legendre };
+    for (k, row) in basis.iter_mut().enumerate() {
+        let norm = ((2 * k + 1) as f64).sqrt();
+        for value in row {
+            *value *= norm;
         }
     }
     basis

@@ -11,10 +11,10 @@
 //! It is asked where changes stall above the rounding of the unknowns: where terms cancel, their sum is known less well.
 
 use super::stages::Stages;
-use super::sweep::FLOOR;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
+use crate::newton::FLOOR;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
 use nalgebra::SVector;
@@ -26,8 +26,7 @@ fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usize) -> SVect
 
 /// Whether a row is zero as far as its arithmetic can tell.
 fn is_rounding(row: Rounded) -> bool {
-    // Bounds are in halves of an ulp.
-    row.to_f64().abs() <= FLOOR * 0.5 * f64::EPSILON * row.error()
+    row.to_f64().abs() <= FLOOR * f64::EPSILON * row.ulps()
 }
 
 /// Whether the stages of the step of length h from `node` satisfy their equations.

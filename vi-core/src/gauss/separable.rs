@@ -9,13 +9,13 @@
 //!
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
-use super::stages::{Stages, multiply_add, product, scaled, set, stage, weights};
+use super::stages::{Stages, constant_mass, product, scaled, set, stage, time, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::Real;
+use crate::real::{Lane, Real};
 use nalgebra::SVector;
 
 /// The equations of a step; see the [module](self).
@@ -46,8 +46,7 @@ where
             let p0 = node.p[k] + node.p_low[k];
             drift[k] = scaled(c, &[p0; S]);
         }
-        let origin = SVector::zeros();
-        let mass = system.point(T::real(node.t), &node.q.map(T::real), &origin).mass;
+        let mass = constant_mass(system, node);
         Self { system, node, h, mass, drift, force }
     }
 
@@ -64,7 +63,7 @@ where
         for i in 0..S {
             let velocity = self.mass.solve_unchecked(&stage::<N, S, T>(&momenta, i));
             for k in 0..N {
-                let displacement = multiply_add::<FUSED>(self.h, velocity[k].to_f64(), self.node.q_low[k]);
+                let displacement = Lane::<FUSED>::multiply_add(self.h, velocity[k].to_f64(), self.node.q_low[k]);
                 x[k][i] = self.node.q[k] + displacement;
             }
         }
@@ -86,10 +85,9 @@ where
 
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        let c = const { &Tableau::<S>::VALUES.c };
         let rest = SVector::zeros();
         for i in 0..S {
-            let t = T::real(self.node.t + multiply_add::<FUSED>(self.h, c[i], self.node.t_low));
+            let t = time::<N, S, FUSED, T>(self.node, self.h, i);
             let point = self.system.point(t, &stage(x, i), &rest);
             set(&mut self.force, i, &point.force);
         }
@@ -107,7 +105,7 @@ where
             let mut ahead = self.node.p_low[k];
             for i in 0..S {
                 momentum[k] += impulses[i];
-                ahead = multiply_add::<FUSED>(1.0 - c[i], impulses[i], ahead);
+                ahead = Lane::<FUSED>::multiply_add(1.0 - c[i], impulses[i], ahead);
             }
             mean[k] = T::real(self.node.p[k] + ahead);
         }

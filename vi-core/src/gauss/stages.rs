@@ -4,7 +4,9 @@
 //! becomes vector instructions.
 
 use super::tableau::Tableau;
-use crate::real::Real;
+use crate::collocation::Collocation;
+use crate::node::Node;
+use crate::real::{Lane, Real};
 use nalgebra::SVector;
 
 /// N vectors of S stages.
@@ -32,10 +34,17 @@ pub(super) fn set<const N: usize, const S: usize, T: Real>(
     }
 }
 
-/// `a b + c`, rounded once where the processor can.
+/// The time of a stage of the step of length h from `node`.
 #[inline(always)]
-pub(super) fn multiply_add<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+pub(super) fn time<const N: usize, const S: usize, const FUSED: bool, T: Real>(node: &Node<N>, h: f64, i: usize) -> T {
+    let c = const { &Tableau::<S>::VALUES.c };
+    T::real(node.t + Lane::<FUSED>::multiply_add(h, c[i], node.t_low))
+}
+
+/// The mass matrix of a system where it is constant.
+#[inline(always)]
+pub(super) fn constant_mass<const N: usize, T: Real, Y: Collocation<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
+    system.point(T::real(node.t), &node.q.map(T::real), &SVector::zeros()).mass
 }
 
 /// `base_i + Σ_j matrix_ij x_j` at the stages i. In two sums, since each addition waits for the one before.
@@ -50,7 +59,7 @@ pub(super) fn product<const S: usize, const FUSED: bool>(
     for j in 0..S {
         let sum = if j % 2 == 0 { &mut even } else { &mut odd };
         for i in 0..S {
-            sum[i] = multiply_add::<FUSED>(matrix[j][i], x[j], sum[i]);
+            sum[i] = Lane::<FUSED>::multiply_add(matrix[j][i], x[j], sum[i]);
         }
     }
     for i in 0..S {

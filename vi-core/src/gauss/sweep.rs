@@ -13,6 +13,7 @@
 //! left after every step has a sign, and the energy would drift by it.
 
 use super::stages::{Stages, change};
+use crate::newton::FLOOR;
 use nalgebra::SVector;
 
 /// Sweeps that are tried.
@@ -25,8 +26,6 @@ const NOISE: f64 = 1e3;
 const STALLS: u32 = 4;
 /// Part of a rounding of q that a rounding of v counts as: velocities are solved for by the mass matrix, and carry its condition.
 const VELOCITY: f64 = 1.0 / 16.0;
-/// Roundings of q by which the stages may still move.
-pub(super) const FLOOR: f64 = 4.0;
 /// Roundings of q that the next change may have for this one to be the last.
 const NEGLIGIBLE: f64 = 1.0 / 64.0;
 
@@ -72,6 +71,11 @@ pub(super) struct Convergence {
 impl Convergence {
     /// Before the first step.
     pub(super) const NONE: Self = Self { sweeps: 0, change: 0.0, contraction: 1.0 };
+
+    /// Whether there was a step.
+    pub(super) fn has_begun(&self) -> bool {
+        self.sweeps > 0
+    }
 
     /// Whether the stages are at the rounding of their positions.
     pub(super) fn is_at_floor(&self) -> bool {

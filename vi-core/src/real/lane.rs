@@ -29,6 +29,13 @@ impl<const FUSED: bool> Lane<FUSED> {
         Self { value, factor: 1.0, product: false }
     }
 
+    /// `a b + c`, rounded once where the processor can.
+    #[must_use]
+    #[inline(always)]
+    pub fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
+        if FUSED { a.mul_add(b, c) } else { a * b + c }
+    }
+
     /// The number.
     #[must_use]
     #[inline(always)]

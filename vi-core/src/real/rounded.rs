@@ -44,6 +44,12 @@ impl Rounded {
         self.error
     }
 
+    /// The same in ulps of 1: what a residual is one rounding of, times ε.
+    #[must_use]
+    pub fn ulps(self) -> f64 {
+        0.5 * self.error
+    }
+
     /// What an operation makes of operands whose errors come to `carried`.
     fn rounding(value: f64, carried: f64, ulps: f64) -> Self {
         // Below the smallest normal number a rounding is as large as there.

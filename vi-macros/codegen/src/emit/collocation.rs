@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::body::{VelocityFrom, state_parts};
-use super::lagrangian::vector_of;
+use super::lagrangian::{number, vector_of};
 use super::matrix::matrix;
 use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
@@ -14,7 +14,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let constant_mass = source.findings.constant_mass;
     let separable = source.findings.force_of_position;
     let (form, point) = point(source);
-    let power = power(source);
+    let power = number(source, FunctionId::Power, &source.formula("dE/dt", source.system.continuous.power));
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
             type Mass = #form;
@@ -53,28 +53,4 @@ fn point(source: &Source) -> (TokenStream, TokenStream) {
         }
     };
     (form, function)
-}
-
-/// The function of f·v − L_t.
-fn power(source: &Source) -> TokenStream {
-    let dimension = source.dimension();
-    let formula = source.formula("dE/dt", source.system.continuous.power);
-    let Some((body, documentation)) = source.documented(FunctionId::Power, &formula, VelocityFrom::Argument) else {
-        return TokenStream::new();
-    };
-    let inputs = state_parts(&body, source.model);
-    let statements = &body.statements;
-    let result = body.results.number(Output::Value);
-    quote! {
-        #documentation
-        #[inline]
-        fn power(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, #dimension>,
-            v: &::vi_core::SVector<T, #dimension>,
-        ) -> T {
-            #inputs #statements #result
-        }
-    }
 }

@@ -101,7 +101,8 @@ pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
     quote!(::vi_core::SVector::from(#entries))
 }
 
-fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
+/// A function of (t, q, v) whose value is a number.
+pub(super) fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
     let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };
