@@ -4,10 +4,11 @@
 //! States, intervals and parameters are drawn, parameters away from 1, so that no term hides behind another.
 
 use crate::support::Sequence;
-use vi_core::check::{self, Dual, EnergyChecked, Place};
+use vi_core::check::{self, EnergyChecked, Place};
 use vi_core::lagrangian::Parameters;
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
+use vi_core::real::Dual;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector};
 use vi_systems as systems;

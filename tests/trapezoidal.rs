@@ -2,7 +2,7 @@
 //! midpoint rule written out, which is the named one bit for bit.
 
 use crate::support::exact::Motion;
-use vi_core::check::Dual;
+use vi_core::real::Dual;
 use vi_core::stepping::FixedStepping;
 use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, lagrangian};
 

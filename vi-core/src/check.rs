@@ -28,7 +28,6 @@
 mod bounded;
 mod comparison;
 mod derivatives;
-pub mod dual;
 mod energy;
 mod energy_equations;
 mod ladder;
@@ -44,7 +43,6 @@ mod subject;
 mod symmetries;
 
 pub use derivatives::derivatives;
-pub use dual::Dual;
 pub use energy::energy;
 pub use energy_equations::energy_equations;
 pub use motion::Motion;

@@ -76,10 +76,18 @@ pub fn velocity_by_mass<T: Real, const N: usize>(
     mass: &impl Matrix<N, T>,
     momentum: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
+    solved(mass, momentum).map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))
+}
+
+/// The v with `mass · v = momentum`; where there is none, whether the matrix is singular or not finite.
+#[inline]
+fn solved<T: Real, const N: usize>(
+    mass: &impl Matrix<N, T>,
+    momentum: &SVector<T, N>,
+) -> Result<SVector<T, N>, Failure> {
     linear::solve(mass, momentum).ok_or_else(|| {
         let is_finite = momentum.iter().chain(mass.dense().iter()).all(|entry| entry.is_finite());
-        let failure = if is_finite { Failure::Singular } else { Failure::NonFinite };
-        failure.at(t.to_f64(), 0.0, "mass matrix")
+        if is_finite { Failure::Singular } else { Failure::NonFinite }
     })
 }
 
@@ -128,9 +136,7 @@ where
     }
 
     fn correction(&self, jacobian: &Self::Evaluation, residual: &Self::Evaluation) -> Result<SVector<T, N>, Failure> {
-        let finite = |mass: &M| mass.dense().iter().all(|entry| entry.is_finite());
-        let failure = || if finite(&jacobian.mass) { Failure::Singular } else { Failure::NonFinite };
-        linear::solve(&jacobian.mass, &residual.residual).ok_or_else(failure)
+        solved(&jacobian.mass, &residual.residual)
     }
 }
 

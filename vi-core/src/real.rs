@@ -19,10 +19,12 @@ macro_rules! assignments {
 }
 pub(crate) use assignments;
 
+pub(crate) mod dual;
 mod lane;
 mod rounded;
 pub mod sine;
 
+pub use dual::Dual;
 pub use lane::Lane;
 pub use rounded::Rounded;
 

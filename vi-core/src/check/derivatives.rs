@@ -11,13 +11,13 @@
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
-use super::dual::Dual;
-use super::dual::{along, lift, slopes, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::subject::{Checked, Place};
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
+use crate::real::dual::Dual;
+use crate::real::dual::{along, lift, slopes, unit};
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;
 

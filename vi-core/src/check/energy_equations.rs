@@ -11,13 +11,13 @@
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
 use super::derivatives::{First, enough};
-use super::dual::{Dual, along, lift, slopes, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::steps::ends;
 use super::subject::{EnergyChecked, Place};
 use crate::discrete::DiscreteLagrangian;
 use crate::linear::Matrix;
+use crate::real::dual::{Dual, along, lift, slopes, unit};
 use crate::stepping::{EnergyStepping, FixedStepping};
 use nalgebra::SVector;
 

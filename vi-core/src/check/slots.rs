@@ -11,14 +11,14 @@
 use super::bounded::{Bounded, vector_of};
 use super::comparison::Comparison;
 use super::derivatives::First;
-use super::dual::Dual;
-use super::dual::{along, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::subject::{Checked, Place};
 use crate::discrete::DiscreteLagrangian;
 use crate::lagrangian::Lagrangian;
 use crate::real::Real;
+use crate::real::dual::Dual;
+use crate::real::dual::{along, unit};
 use crate::state::Interval;
 use nalgebra::SVector;
 

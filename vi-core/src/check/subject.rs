@@ -1,9 +1,9 @@
 //! What is checked: a system in any kind of number, and a place where it is well behaved.
 
 use super::bounded::Bounded;
-use super::dual::Dual;
 use crate::discrete::DiscreteLagrangian;
 use crate::lagrangian::Parameters;
+use crate::real::dual::Dual;
 use crate::stepping::{Convertible, EnergyStepping, FixedStepping};
 use nalgebra::SVector;
 

@@ -13,13 +13,13 @@
 use super::bounded::{Bounded, exact};
 use super::comparison::Comparison;
 use super::derivatives::First;
-use super::dual::Dual;
-use super::dual::{along, lift, slopes, unit};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::subject::{Checked, Place, STEPS};
 use crate::fixed_step::FixedStep;
 use crate::node::Node;
+use crate::real::dual::Dual;
+use crate::real::dual::{along, lift, slopes, unit};
 use crate::state::State;
 use crate::stepping::FixedStepping;
 use nalgebra::SVector;

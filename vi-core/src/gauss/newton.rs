@@ -20,9 +20,9 @@ use super::general::General;
 use super::stages::Stages;
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
-use crate::check::Dual;
 use crate::collocation::Collocation;
 use crate::linear::Pivoted;
+use crate::real::Dual;
 use crate::stepping::Convertible;
 use nalgebra::{DMatrix, DVector, SVector};
 

@@ -38,22 +38,22 @@ impl<T: Real> Dual<T> {
 }
 
 /// A vector that does not change.
-pub(super) fn lift<T: Real, const N: usize>(vector: &SVector<T, N>) -> SVector<Dual<T>, N> {
+pub(crate) fn lift<T: Real, const N: usize>(vector: &SVector<T, N>) -> SVector<Dual<T>, N> {
     vector.map(Dual::fixed)
 }
 
 /// A vector that changes in a direction.
-pub(super) fn along<T: Real, const N: usize>(vector: &SVector<T, N>, direction: &SVector<T, N>) -> SVector<Dual<T>, N> {
+pub(crate) fn along<T: Real, const N: usize>(vector: &SVector<T, N>, direction: &SVector<T, N>) -> SVector<Dual<T>, N> {
     vector.zip_map(direction, |value, slope| Dual { value, slope })
 }
 
 /// The direction of one entry.
-pub(super) fn unit<T: Real, const N: usize>(index: usize) -> SVector<T, N> {
+pub(crate) fn unit<T: Real, const N: usize>(index: usize) -> SVector<T, N> {
     SVector::from_fn(|row, _| if row == index { T::one() } else { T::zero() })
 }
 
 /// How fast each entry changes.
-pub(super) fn slopes<T: Real, const N: usize>(vector: &SVector<Dual<T>, N>) -> SVector<T, N> {
+pub(crate) fn slopes<T: Real, const N: usize>(vector: &SVector<Dual<T>, N>) -> SVector<T, N> {
     vector.map(|entry| entry.slope)
 }
 
