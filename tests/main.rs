@@ -11,6 +11,7 @@ mod flow;
 mod forms;
 mod gauss;
 mod hunt;
+mod integrators;
 mod invariants;
 mod iterations;
 mod loops;

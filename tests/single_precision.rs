@@ -20,7 +20,7 @@ fn runs<const N: usize, T: Scalar, S: EnergyStepping<N, T> + Copy>(system: S, q:
     let start = State::at(&system, T::zero(), q, v);
     let mut fixed = FixedStep::new(system, start, h).expect("a valid start");
     let mut energy_preserving = EnergyPreserving::from_midpoint(system, T::zero(), q, v, h).expect("a valid start");
-    let (energy, mut energy_error) = (energy_preserving.energy(), 0.0_f64);
+    let (energy, mut energy_error) = (energy_preserving.discrete_energy(), 0.0_f64);
     for _ in 0..STEPS {
         fixed.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
         let step = energy_preserving.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));

@@ -18,8 +18,10 @@
 
 use crate::branch::Branch;
 use crate::called::Called;
+use crate::checkpoint;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
+use crate::integrator::{Hermite, Integrator};
 use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -110,6 +112,7 @@ where
 {
     system: S,
     scheme: Scheme,
+    h: T,
     node: Node<N, T>,
     /// The substeps: each is predicted from itself in the whole steps before.
     substeps: Vec<Steps<N, T>>,
@@ -118,6 +121,22 @@ where
     correctors: Vec<Corrector<S::Jacobian, N, T>>,
     failure: Option<StepError>,
 }
+
+/// What a run of [`Composition`] carries from step to step.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub struct Run<const N: usize, T = f64> {
+    h: T,
+    node: Node<N, T>,
+    substeps: Vec<Steps<N, T>>,
+}
+
+/// Everything that a run of [`Composition`] carries but its scheme, to be stored and resumed bit for bit.
+pub type Checkpoint<const N: usize, T = f64> = checkpoint::Checkpoint<Run<N, T>, T>;
 
 impl<S, const N: usize, T> Composition<S, N, T>
 where
@@ -132,10 +151,71 @@ where
         check_step(h)?;
         let node = Node::new(state, T::zero());
         let v = state.velocity(&system)?;
-        let lengths = scheme.weights.iter().map(|weight| h * T::real(*weight));
-        let substeps: Vec<_> = lengths.map(|h| Steps::new(h, v)).collect();
+        let substeps = lengths(scheme, h).map(|h| Steps::new(h, v)).collect();
+        Ok(Self::prepared(system, scheme, Run { h, node, substeps }))
+    }
+
+    /// With what is the same in every step.
+    fn prepared(system: S, scheme: Scheme, run: Run<N, T>) -> Self {
+        let Run { h, node, substeps } = run;
         let correctors = substeps.iter().map(|substep| Corrector::of(&Called(system), substep.h)).collect();
-        Ok(Self { system, scheme, node, following: substeps.clone(), substeps, correctors, failure: None })
+        Self { system, scheme, h, node, following: substeps.clone(), substeps, correctors, failure: None }
+    }
+
+    /// Everything that the run carries but its scheme, to be stored and resumed bit for bit. Allocates.
+    pub fn checkpoint(&self) -> Checkpoint<N, T> {
+        checkpoint::Checkpoint::of(&self.system, self.run())
+    }
+
+    /// The run that was at `checkpoint`, bit for bit.
+    ///
+    /// # Errors
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::InvalidInput`] for one of another scheme;
+    /// [`StepError::NonFinite`] and [`StepError::InvalidInput`] for one that no run can have left.
+    pub fn restart(system: S, scheme: Scheme, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
+        let run = checkpoint.run_of(&system)?;
+        check_step(run.h)?;
+        let t = if run.node.t.to_f64().is_finite() { run.node.t } else { T::zero() };
+        run.node.check_finite(t)?;
+        let mut steps = run.substeps.iter();
+        let is_of_scheme = lengths(scheme, run.h).all(|h| steps.next().is_some_and(|substep| substep.h == h));
+        if !is_of_scheme || steps.next().is_some() {
+            #[allow(clippy::cast_precision_loss)] // a few substeps
+            let value = run.substeps.len() as f64;
+            let allowed = "those of the scheme that the run is restarted with";
+            return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
+        }
+        if !run.substeps.iter().all(Steps::is_finite) {
+            return Err(StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None });
+        }
+        Ok(Self::prepared(system, scheme, run))
+    }
+
+    /// What the run carries.
+    fn run(&self) -> Run<N, T> {
+        Run { h: self.h, node: self.node, substeps: self.substeps.clone() }
+    }
+
+    /// The run with substeps of another whole step, of which the last velocities are the first guesses.
+    fn with_length(&self, h: T) -> Self {
+        let substeps = self.substeps.iter().zip(lengths(self.scheme, h)).map(|(substep, h)| substep.with_length(h));
+        Self::prepared(self.system, self.scheme, Run { h, node: self.node, substeps: substeps.collect() })
+    }
+
+    /// Takes one whole step of the length `h` instead of the next one; the step of the run stays. Allocates.
+    ///
+    /// # Errors
+    /// As [`Composition::step`], and [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite; the run is then what it was, and
+    /// may go on.
+    pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        check_step(h)?;
+        let mut aside = self.with_length(h);
+        let state = aside.step()?;
+        *self = aside.with_length(self.h);
+        Ok(state)
     }
 
     /// Takes one whole step and returns the state reached.
@@ -158,6 +238,16 @@ where
     /// The node reached last: the state with the low parts of its sums. Its energy has no meaning.
     pub fn node(&self) -> &Node<N, T> {
         &self.node
+    }
+
+    /// The system.
+    pub fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// The whole step, in units of time.
+    pub fn h(&self) -> T {
+        self.h
     }
 
     /// Velocities of the substeps of the last whole step, one after the other; before the first step the velocity that belongs to
@@ -201,6 +291,71 @@ where
         self.node = node;
         core::mem::swap(&mut self.substeps, &mut self.following);
         Ok(self.state())
+    }
+}
+
+/// Lengths of the substeps.
+fn lengths<T: Real>(scheme: Scheme, h: T) -> impl Iterator<Item = T> {
+    scheme.weights.iter().map(move |weight| h * T::real(*weight))
+}
+
+impl<S, const N: usize> Integrator<N> for Composition<S, N>
+where
+    S: FixedStepping<N>,
+{
+    type System = S;
+    type Path = Hermite<N>;
+    type Checkpoint = Checkpoint<N>;
+
+    const H_IS_GIVEN: bool = true;
+
+    fn step(&mut self) -> Result<State<N>, StepError> {
+        self.step()
+    }
+
+    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
+        self.step_of(h)
+    }
+
+    fn node(&self) -> &Node<N> {
+        self.node()
+    }
+
+    fn system(&self) -> &S {
+        self.system()
+    }
+
+    fn h(&self) -> f64 {
+        self.h()
+    }
+
+    fn discrete_energy(&self) -> Option<f64> {
+        None
+    }
+
+    fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
+        let mut system = self.system;
+        change(&mut system);
+        self.state().velocity(&system)?;
+        *self = Self::prepared(system, self.scheme, self.run());
+        Ok(())
+    }
+
+    fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
+        *self = Self::new(self.system, self.scheme, state, self.h)?;
+        Ok(())
+    }
+
+    fn path(&self, before: &State<N>) -> Result<Hermite<N>, StepError> {
+        Hermite::between(&self.system, before, &self.state())
+    }
+
+    fn checkpoint(&self) -> Checkpoint<N> {
+        self.checkpoint()
+    }
+
+    fn set_time(&mut self, t: f64) {
+        self.node.set_time(t);
     }
 }
 

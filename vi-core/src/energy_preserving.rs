@@ -22,6 +22,7 @@
 //! | `bracket` | where that fails: the smallest h > 0 that solves them, or the proof that there is none |
 //! | `fallback` | what is done then: an error, or fixed steps until a step exists again |
 //! | `interval` | the interval that the next step follows |
+//! | `integrator` | what it shares with the other integrators |
 //! | `checkpoint` | what a run carries, to be stored and resumed bit for bit |
 //!
 //! AFTER A STEP both residuals were measured at the (v, h) that was taken, and are at the rounding floor. AFTER AN ERROR the
@@ -32,6 +33,7 @@ mod checkpoint;
 mod equations;
 mod fallback;
 mod guess;
+mod integrator;
 mod interval;
 mod predicted;
 mod run;

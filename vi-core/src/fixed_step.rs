@@ -18,6 +18,7 @@
 use crate::called::Called;
 use crate::checkpoint;
 use crate::error::StepError;
+use crate::integrator::{Hermite, Integrator};
 use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -149,6 +150,23 @@ where
         outcome.map(|()| self.run.node.state())
     }
 
+    /// Takes one step of the length `h` instead of the next one; the step of the run stays.
+    ///
+    /// # Errors
+    /// As [`FixedStep::step`], and [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite; the run is then what it was, and
+    /// may go on.
+    pub fn step_of(&mut self, h: T) -> Result<State<N, T>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        check_step(h)?;
+        let steps = self.run.steps.with_length(h);
+        let mut aside = Self::prepared(self.system, Run { steps, ..self.run });
+        let state = aside.step()?;
+        self.run = Run { steps: aside.run.steps.with_length(self.h()), ..aside.run };
+        Ok(state)
+    }
+
     /// The state reached last.
     #[inline]
     pub fn state(&self) -> State<N, T> {
@@ -200,6 +218,67 @@ where
             self.system.discrete_energy(&start, self.run.steps.h, &v)
         });
         energy.filter(|energy| energy.is_finite())
+    }
+}
+
+impl<S, const N: usize> Integrator<N> for FixedStep<S, N>
+where
+    S: FixedStepping<N>,
+{
+    type System = S;
+    type Path = Hermite<N>;
+    type Checkpoint = Checkpoint<N>;
+
+    const H_IS_GIVEN: bool = true;
+
+    #[inline(always)]
+    fn step(&mut self) -> Result<State<N>, StepError> {
+        self.step()
+    }
+
+    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
+        self.step_of(h)
+    }
+
+    fn node(&self) -> &Node<N> {
+        self.node()
+    }
+
+    fn system(&self) -> &S {
+        self.system()
+    }
+
+    fn h(&self) -> f64 {
+        self.h()
+    }
+
+    fn discrete_energy(&self) -> Option<f64> {
+        self.discrete_energy()
+    }
+
+    fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
+        let mut system = self.system;
+        change(&mut system);
+        self.state().velocity(&system)?;
+        *self = Self::prepared(system, self.run);
+        Ok(())
+    }
+
+    fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
+        *self = Self::new(self.system, state, self.h())?.with_branch(self.run.branch);
+        Ok(())
+    }
+
+    fn path(&self, before: &State<N>) -> Result<Hermite<N>, StepError> {
+        Hermite::between(&self.system, before, &self.state())
+    }
+
+    fn checkpoint(&self) -> Checkpoint<N> {
+        self.checkpoint()
+    }
+
+    fn set_time(&mut self, t: f64) {
+        self.run.node.set_time(t);
     }
 }
 

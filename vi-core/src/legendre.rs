@@ -3,7 +3,7 @@
 //! In: a system, and `(t, q, v)` or `(t, q, p)`. Out: `p = ∂L/∂v`; the v with `∂L/∂v(t, q, v) = p`; `H = v·p − L`.
 
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
+use crate::lagrangian::{Flow, Lagrangian};
 use crate::linear::{self, Matrix};
 use crate::newton::{self, Equations, Failure, worst};
 use crate::node::Node;
@@ -28,10 +28,17 @@ impl<const N: usize, T: Scalar> State<N, T> {
     /// [`StepError::Singular`] where the mass matrix cannot be inverted, [`StepError::NotConverged`] where no velocity has
     /// these momenta, [`StepError::NonFinite`].
     pub fn velocity<S: Lagrangian<N, T>>(&self, system: &S) -> Result<SVector<T, N>, StepError> {
+        self.flow(system).map(|flow| flow.v)
+    }
+
+    /// The rates of change at this node: its velocity, `L_q + f`, and the power `f·v − L_t`.
+    ///
+    /// # Errors
+    /// Those of [`State::velocity`].
+    pub fn flow<S: Lagrangian<N, T>>(&self, system: &S) -> Result<Flow<N, T>, StepError> {
         let node = Node::new(*self, T::zero());
         let flow = node.check_finite(T::zero()).and_then(|()| system.flow(self.t, &self.q, &self.p));
-        let velocity = flow.map(|flow| flow.v);
-        velocity.map_err(|failure| failure.explained(system, &node, T::zero(), &SVector::zeros()))
+        flow.map_err(|failure| failure.explained(system, &node, T::zero(), &SVector::zeros()))
     }
 
     /// The energy `H = v·∂L/∂v − L` at this node, in the units of L, v the velocity that belongs to its momenta.

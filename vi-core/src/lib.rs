@@ -14,6 +14,7 @@
 //! | [`fixed_step`] | the variational integrator with a given step |
 //! | [`composition`] | fixed steps of order 4, 6 and 8 |
 //! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
+//! | [`integrator`] | what all integrators share: states at times, on a grid, at events; inputs |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`checkpoint`] | a run between two steps, with the system that it is of |
 //! | [`error`] | every way in which a step can fail, with its numbers |
@@ -43,6 +44,7 @@ pub mod error;
 mod explained;
 pub mod fixed_step;
 pub mod gauss;
+pub mod integrator;
 pub mod lagrangian;
 mod legendre;
 pub mod linear;
@@ -64,6 +66,7 @@ pub use energy_preserving::{EnergyPreserving, Fallback};
 pub use error::StepError;
 pub use fixed_step::FixedStep;
 pub use gauss::Gauss;
+pub use integrator::Integrator;
 pub use lagrangian::Lagrangian;
 pub use nalgebra;
 pub use nalgebra::SVector;

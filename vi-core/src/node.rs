@@ -96,6 +96,12 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
+    /// Sets the time, without a low part.
+    pub(crate) fn set_time(&mut self, t: T) {
+        self.t = t;
+        self.t_low = T::zero();
+    }
+
     /// Adds to the energy.
     #[inline]
     pub(crate) fn add_energy(&mut self, increment: T) {

@@ -122,7 +122,7 @@ fn a_step_beyond_the_factor_is_named_with_its_length() {
     let mut short = EnergyPreserving::from_midpoint(&system, 0.0_f64, [0.74], [0.0], 0.01)
         .unwrap_or_else(|error| panic!("{error}"));
     let h = short.step().map_or(f64::NAN, |step| step.h);
-    let (state, energy, v) = (short.state(), short.energy(), short.v());
+    let (state, energy, v) = (short.state(), short.discrete_energy(), short.v());
     let run = EnergyPreserving::from_state(&system, state, energy, 0.05, v);
     let (_, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 1);
     let Some(StepError::StepRatio { previous, found, .. }) = error else { panic!("{error:?}") };

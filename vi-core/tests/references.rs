@@ -79,7 +79,7 @@ fn from_midpoint<const N: usize, P: Steppable<N>>(system: &UnitMass<P>, case: &V
     assert!((adaptive.state().q - vector(&start["q1"])).amax() < 1e-16);
     // Measured: 0.
     assert!((adaptive.state().p - vector(&start["p1"])).amax() < 5e-16);
-    assert!((adaptive.energy() - number(&start["E1"])).abs() < 5e-16);
+    assert!((adaptive.discrete_energy() - number(&start["E1"])).abs() < 5e-16);
     differences(system, case, State::at(system, t0, q0, v0), adaptive)
 }
 

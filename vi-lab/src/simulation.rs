@@ -347,7 +347,7 @@ impl<S: EnergyStepping<N>, const N: usize> Simulation for Energy<S, N> {
     }
 
     fn discrete_energy(&self) -> Option<f64> {
-        Some(self.integrator.energy())
+        Some(self.integrator.discrete_energy())
     }
 
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {

@@ -66,7 +66,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
     let first = run.state();
     let mut moved = 0.0_f64;
     for _ in 0..STEPS {
-        let (before, carried) = (run.state(), run.energy());
+        let (before, carried) = (run.state(), run.discrete_energy());
         let step = run.step().map_err(|error| check.step(error))?;
         let (t, q, v) = step.midpoint;
         let rounding = system.extended_rounding(&Node::new(before, 0.0), step.h, &v);

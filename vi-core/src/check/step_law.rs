@@ -95,7 +95,7 @@ fn deviations<const N: usize, S: EnergyChecked<N>>(
     let mut squares = [Measured { quantity: 0.0, rounding: 0.0 }; 2];
     let mut passed = 0.0;
     while passed < span {
-        let node = Node::new(run.state(), run.energy());
+        let node = Node::new(run.state(), run.discrete_energy());
         let step = run.step().map_err(|error| check.step(error))?;
         let here = density(system, &step.midpoint).map_err(|error| check.step(error))?;
         let solved = length::solved(system, &node.map(Bounded::once), step.h, &step.midpoint.2);

@@ -20,6 +20,7 @@ use crate::real::Scalar;
 use crate::state::{Method, Step};
 use crate::stepping::{EnergyStepping, Increment};
 use crate::vector::VelocityStep;
+use nalgebra::SVector;
 
 /// What a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -220,6 +221,31 @@ impl<const N: usize, T: Scalar> Run<N, T> {
         let step = self.fixed_step(system, phase)?;
         self.switches.count += 1;
         Ok(step)
+    }
+
+    /// One fixed step of the length h, after which the run goes on as it was: with its energy, its length of a step, its fallback.
+    pub(super) fn step_of<S: EnergyStepping<N, T>>(&mut self, system: &S, h: T) -> Result<Step<N, T>, StepError> {
+        let before = *self;
+        let Last { h: last, density, .. } = before.last;
+        let mut phase =
+            Phase { h, shorter: false, law_h: last, law_density: density, density_next: density, gap: T::zero() };
+        let step = self.fixed_step(system, phase)?;
+        if let Some(fixed) = before.phase {
+            phase = self.phase.unwrap_or(phase);
+            self.phase = Some(Phase { gap: phase.gap, density_next: phase.density_next, ..fixed });
+        } else {
+            self.phase = None;
+        }
+        self.switches = before.switches;
+        self.resume_after(&before.last);
+        Ok(step)
+    }
+
+    /// Lets the next step follow the velocity at hand as if the last one had the length and the density of `interval`.
+    pub(super) fn resume_after(&mut self, interval: &Last<N, T>) {
+        let v = self.last.v;
+        self.last = Last { v, previous: interval.h, change: SVector::zeros(), ..*interval };
+        self.prediction = Prediction::new(v, interval.h);
     }
 
     /// A step where the last one was fixed: energy-preserving again where one exists, else fixed.

@@ -3,7 +3,7 @@
 //! In: a system and a run. Out: step after step. The common step is predicted and inlined into the caller's loop; every other step is
 //! a call that is given a copy of the run.
 
-use super::fallback::{Fallback, StepBounds, Switches};
+use super::fallback::{Fallback, StepBounds, Switches, check_step};
 use super::interval::Last;
 use super::predicted::Predicted;
 use super::run::Run;
@@ -58,6 +58,25 @@ where
         outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
 
+    /// Takes one step of the length `h`, in units of time, that solves the momentum equation alone; the energy to preserve stays, with the work
+    /// done. The next step follows as if the last one had its own length.
+    ///
+    /// # Errors
+    /// Those of a fixed step: [`StepError::NotConverged`], [`StepError::Singular`], [`StepError::NonFinite`], and [`StepError::InvalidInput`]
+    /// for an h that is not positive, or subnormal. The run is then what it was, and may go on.
+    pub fn step_of(&mut self, h: T) -> Result<Step<N, T>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        check_step("the step h", h)?;
+        let mut run = self.run;
+        let step = run.step_of(&Called(self.system), h);
+        let Last { h, v, .. } = self.run.last;
+        let step = step.map_err(|failure| failure.explained(&self.system, &self.run.node, h, &v))?;
+        self.run = run;
+        Ok(step)
+    }
+
     /// What to do where no energy-preserving step exists; [`Fallback::Stop`] unless this is called.
     ///
     /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::DegenerateStep`],
@@ -109,8 +128,8 @@ where
         &self.system
     }
 
-    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the node reached last.
-    pub fn energy(&self) -> T {
+    /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the node reached last. The energy at the node, H, is that of [`State::energy`].
+    pub fn discrete_energy(&self) -> T {
         match &self.run.phase {
             None => self.run.node.energy,
             Some(phase) => phase.energy(&self.run.node),

@@ -19,6 +19,8 @@
 //! | `separable`, `general` | the equations of the stages: forces of the position alone, and any system |
 //! | `sweep` | the solution, by sweeps over the stages until they no longer move |
 //! | `newton` | else by simplified Newton iterations about the middle of the step |
+//! | `polynomial` | the motion between the nodes of a step |
+//! | `integrator` | what it shares with the other integrators |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
 //!
 //! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor. AFTER AN ERROR the integrator
@@ -28,8 +30,10 @@
 #![allow(clippy::needless_range_loop)]
 
 mod general;
+mod integrator;
 mod newton;
 mod pair;
+mod polynomial;
 mod rounding;
 mod separable;
 mod stages;
@@ -45,8 +49,10 @@ use crate::real::{Lane, Real, Rounded};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
 use general::General;
+pub use integrator::Motion;
 use nalgebra::SMatrix;
 use newton::{Newton, Stiff};
+pub use polynomial::Polynomial;
 use separable::Separable;
 use stages::{Stages, extrapolated, stage, time};
 use sweep::{Convergence, Equations, Increment, Sweeps};
@@ -95,12 +101,7 @@ where
     /// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to its momenta.
     pub fn new(system: S, state: State<N>, h: f64) -> Result<Self, StepError> {
         check_step(h)?;
-        let v = state.velocity(&system)?;
-        let force = system.point(state.t, &state.q, &v).force;
-        let start = if <S as Collocation<N>>::SEPARABLE { force } else { v };
-        let stages = SMatrix::from_fn(|_, k| start[k]);
-        let node = Node::new(state, 0.0);
-        let run = Run { node, before: node, h, stages, convergence: Convergence::NONE, stiff: 0, patience: 1 };
+        let run = Run::new(&system, Node::new(state, 0.0), h)?;
         Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
     }
 
@@ -124,6 +125,23 @@ where
             return Err(StepError::NonFinite { t, quantity: "last stages", expression: None });
         }
         Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
+    }
+
+    /// Takes one step of the length `h` instead of the next one; the step of the run stays.
+    ///
+    /// # Errors
+    /// As [`Gauss::step`], and [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite; the run is then what it was, and
+    /// may go on.
+    pub fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        check_step(h)?;
+        let start = Run::new(&self.system, self.run.node, h)?;
+        let mut aside = Self { system: self.system, run: start, newton: None, ..*self };
+        let state = aside.step()?;
+        self.run = Run::new(&self.system, aside.run.node, self.run.h)?;
+        Ok(state)
     }
 
     /// Takes one step and returns the state reached.
@@ -258,6 +276,14 @@ where
 }
 
 impl<const N: usize, const S: usize> Run<N, S> {
+    /// A run that begins at a node, the stages of its first step guessed constant.
+    fn new<Y: Collocation<N>>(system: &Y, node: Node<N>, h: f64) -> Result<Self, StepError> {
+        let flow = node.state().flow(system)?;
+        let start = if Y::SEPARABLE { flow.force } else { flow.v };
+        let stages = SMatrix::from_fn(|_, k| start[k]);
+        Ok(Self { node, before: node, h, stages, convergence: Convergence::NONE, stiff: 0, patience: 1 })
+    }
+
     /// Velocities at the stages of the next step, or forces there: the polynomials of the last one, further on.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Stages<N, S> {

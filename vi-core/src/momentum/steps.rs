@@ -154,6 +154,11 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
         }
     }
 
+    /// Steps of another length, of which the last velocity is the first guess; what the last step left was measured.
+    pub(crate) fn with_length(&self, h: T) -> Self {
+        Self { measured: self.measured, ..Self::new(h, self.v()) }
+    }
+
     /// Whether there was no step yet.
     pub(crate) fn is_new(&self) -> bool {
         !self.begun

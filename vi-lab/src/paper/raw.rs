@@ -33,7 +33,7 @@ pub(crate) struct RawNode {
 impl RawNode {
     /// The node that an integrator starts from.
     pub(crate) fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(integrator: &EnergyPreserving<S, 1>) -> Self {
-        Self { state: integrator.state(), energy: integrator.energy(), h: integrator.h(), v: integrator.v().x }
+        Self { state: integrator.state(), energy: integrator.discrete_energy(), h: integrator.h(), v: integrator.v().x }
     }
 
     /// The next node; none where there is no step, or the iteration leaves the numbers.

@@ -66,7 +66,7 @@ impl Rung {
         let mut integrator = case.start()?;
         let system = *integrator.system();
         let state = integrator.state();
-        let e1 = integrator.energy();
+        let e1 = integrator.discrete_energy();
         let length = steps(case.h0, study);
         let mut raw = Some(RawNode::first(&integrator));
         let mut rung = Self { h0: case.h0, energy: 0.0, raw: 0.0, steps: (case.h0, case.h0), trajectory: None };

@@ -81,7 +81,7 @@ impl Run {
         let mut integrator = case.start()?;
         let system = *integrator.system();
         let state = integrator.state();
-        let energy = integrator.energy();
+        let energy = integrator.discrete_energy();
         let mut adaptive = Track::new(case.h0);
         for index in 1..=steps {
             let step = integrator.step()?;

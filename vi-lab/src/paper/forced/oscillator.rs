@@ -60,7 +60,8 @@ pub(super) fn start(zeta: f64) -> Result<EnergyPreserving<DampedOscillator, 1>, 
 pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Run, StepError> {
     let integrator = start(zeta)?;
     let state = integrator.state();
-    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: integrator.energy(), h: H0 }];
+    let mut samples =
+        vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: integrator.discrete_energy(), h: H0 }];
     for step in integrator.take(usize::try_from(most).unwrap_or(usize::MAX)) {
         match step {
             Ok(step) => samples.push(Sample { t: step.t, q: step.q.x, v: step.p.x, energy: step.energy, h: step.h }),
@@ -77,7 +78,7 @@ pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Run,
 pub(super) fn fixed(zeta: f64, until: f64) -> Result<Run, StepError> {
     let first = start(zeta)?;
     let state = first.state();
-    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: first.energy(), h: H0 }];
+    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: first.discrete_energy(), h: H0 }];
     let mut integrator = FixedStep::new(system(zeta), state, H0)?;
     while integrator.state().t <= until {
         let state = integrator.step()?;

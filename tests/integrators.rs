@@ -1,0 +1,516 @@
+//! What all integrators share: states at times and on grids, events, inputs, other states; against closed forms and runs that begin anew.
+
+use core::f64::consts::{PI, TAU};
+use vi_core::integrator::{Direction, Event, Path};
+use vi_core::{
+    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, Lagrangian, SVector, Scheme, State, StepError,
+    lagrangian,
+};
+use vi_systems::{DoubleWell, HarmonicOscillator, HenonHeiles, Kepler, Pendulum};
+
+lagrangian! {
+    /// A body on a spring, pushed by a force that is held between steps.
+    struct Pushed {
+        param m = 1.7, k = 2.3, u = 0.0;
+        coord x;
+        L = m * dot(x)^2 / 2 - k * x^2 / 2 - x^4 / 5;
+        force x = u;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// A ball above the floor.
+    struct Ball {
+        param g = 9.81;
+        coord z;
+        L = dot(z)^2 / 2 - g * z;
+        discretize midpoint;
+    }
+}
+
+/// A state of Kepler's problem of eccentricity e at its perihelion.
+fn planet(e: f64) -> State<2> {
+    State::at(&Kepler::default(), 0.0, [1.0 - e, 0.0], [0.0, ((1.0 + e) / (1.0 - e)).sqrt()])
+}
+
+fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
+    (a.q - b.q).norm() + (a.p - b.p).norm()
+}
+
+/// The state at t by many steps that end there, of a run that is given anew for each number of them.
+fn ends_at<I: Integrator<N>, const N: usize>(mut run: I, t: f64) -> State<N> {
+    let state = run.propagate_until(t).expect("the run goes on");
+    assert_eq!(state.t.to_bits(), t.to_bits());
+    assert_eq!(state, run.state());
+    // A run that is there goes nowhere.
+    assert_eq!(run.propagate_until(t), Ok(state));
+    // And it goes on with its own step.
+    let h = run.h();
+    let next = run.step().expect("the run goes on").t - t;
+    assert!(next / h > 0.3 && next / h < 3.0, "{next} after {h}");
+    state
+}
+
+#[test]
+fn a_run_ends_exactly_at_a_time() {
+    let kepler = Kepler::default();
+    let start = planet(0.3);
+    let exact = ends_at(Gauss::<_, 2, 8>::new(kepler, start, 0.05).expect("valid"), 7.3);
+    let runs = |h: f64| {
+        [
+            ends_at(FixedStep::new(kepler, start, h).expect("valid"), 7.3),
+            ends_at(Composition::new(kepler, Scheme::SUZUKI_4, start, h).expect("valid"), 7.3),
+            ends_at(Gauss::<_, 2, 2>::new(kepler, start, h).expect("valid"), 7.3),
+        ]
+    };
+    // The last step is shorter, and the order is that of the method all the same.
+    let coarse = runs(0.1);
+    let fine = runs(0.05);
+    for (index, order) in [2.0, 4.0, 4.0].into_iter().enumerate() {
+        let slope = (distance(&coarse[index], &exact) / distance(&fine[index], &exact)).log2();
+        // 2.003, 4.022, 3.995.
+        assert!((slope - order).abs() < 0.1, "{index}: {slope}");
+    }
+    let half = |h: f64| {
+        let (q, v) = (start.q, start.velocity(&kepler).expect("regular"));
+        ends_at(EnergyPreserving::from_midpoint(kepler, 0.0, q, v, h).expect("valid"), 7.3)
+    };
+    let slope = (distance(&half(0.04), &exact) / distance(&half(0.02), &exact)).log2();
+    // 1.998.
+    assert!((slope - 2.0).abs() < 0.1, "energy-preserving: {slope}");
+}
+
+#[test]
+fn runs_to_multiples_of_a_step_take_plain_steps() {
+    let well = DoubleWell::default();
+    let start = State::at(&well, 0.0, [0.8], [0.0]);
+    for h in [0.1, 0.3, 1.0 / 3.0, -0.07] {
+        let mut plain = FixedStep::new(well, start, h).expect("valid");
+        let mut asked = plain.clone();
+        for step in 1..=300_u32 {
+            let state = plain.step().expect("solvable");
+            if step % 30 == 0 {
+                let reached = asked.propagate_until(f64::from(step) * h).expect("solvable");
+                // By a rounding of the time the last step may be another: 1.8e-15.
+                assert!(distance(&reached, &state) < 1e-14, "{h}, {step}: {}", distance(&reached, &state));
+            }
+        }
+    }
+}
+
+#[test]
+fn backwards_and_forwards_again() {
+    let kepler = Kepler::default();
+    let start = planet(0.5);
+    let end = Gauss::<_, 2, 6>::new(kepler, start, 0.1).expect("valid").propagate_until(5.03).expect("solvable");
+    let back = Gauss::<_, 2, 6>::new(kepler, end, -0.1).expect("valid").propagate_until(0.0).expect("solvable");
+    assert_eq!(back.t.to_bits(), 0.0_f64.to_bits());
+    // 1.6e-15: the steps are others, and both are at the accuracy of numbers.
+    assert!(distance(&back, &start) < 1e-14, "{}", distance(&back, &start));
+}
+
+#[test]
+fn times_behind_or_beyond_all_are_typed_errors() {
+    let well = DoubleWell::default();
+    let start = State::at(&well, 1.0, [0.8], [0.0]);
+    let mut run = FixedStep::new(well, start, 0.1).expect("valid");
+    for t in [0.5, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let Err(StepError::InvalidInput { input, value, .. }) = run.propagate_until(t) else { panic!("{t}") };
+        assert_eq!((input, value.to_bits()), ("the time to propagate to", t.to_bits()));
+        let asked = run.propagate_grid(&[t]).next();
+        assert!(matches!(asked, Some(Err(StepError::InvalidInput { .. }))), "{asked:?}");
+        assert!(matches!(run.next_event(&[], t), Err(StepError::InvalidInput { .. })));
+        assert_eq!(run.state(), start, "the run stays");
+    }
+    for h in [0.0, f64::NAN, 1e-320] {
+        assert!(matches!(run.step_of(h), Err(StepError::InvalidInput { .. })), "{h}");
+    }
+    assert!(run.step().is_ok(), "the run goes on");
+}
+
+/// States on a grid are as accurate as nodes, and the run takes the steps that it would have taken.
+fn is_undisturbed<I: Integrator<N>, const N: usize>(run: &I) {
+    let mut asked = run.clone();
+    let mut plain = run.clone();
+    let times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.317).collect();
+    let states: Vec<_> = asked.propagate_grid(&times).map(|state| state.expect("solvable")).collect();
+    assert_eq!(states.len(), times.len());
+    for (state, t) in states.iter().zip(&times) {
+        assert_eq!(state.t.to_bits(), t.to_bits());
+    }
+    // The last node that is not beyond.
+    let end = asked.t();
+    assert!(end <= times[40] && times[40] - end < 2.0 * asked.h());
+    while plain.t() < end {
+        plain.step().expect("solvable");
+    }
+    assert_eq!((plain.state(), *plain.node()), (asked.state(), *asked.node()));
+    // Each state is that of a run to its time.
+    for (state, t) in states.iter().zip(&times).skip(1).step_by(7) {
+        let alone = run.clone().propagate_until(*t).expect("solvable");
+        assert_eq!((alone.q, alone.p), (state.q, state.p));
+    }
+}
+
+#[test]
+fn a_grid_leaves_the_run_as_it_is() {
+    let well = DoubleWell::default();
+    let start = State::at(&well, 0.0, [0.8], [0.0]);
+    is_undisturbed(&FixedStep::new(well, start, 0.1).expect("valid"));
+    is_undisturbed(&Composition::new(well, Scheme::KAHAN_LI_6, start, 0.4).expect("valid"));
+    is_undisturbed(&Gauss::<_, 1, 5>::new(well, start, 0.3).expect("valid"));
+    // Several times in one step.
+    is_undisturbed(&Gauss::<_, 1, 8>::new(well, start, 0.9).expect("valid"));
+    let mut energy = EnergyPreserving::from_midpoint(well, -0.05, [0.8], [0.0], 0.1).expect("valid");
+    energy.propagate_until(0.0).expect("solvable");
+    is_undisturbed(&energy);
+}
+
+#[test]
+fn paths_have_their_order_and_end_at_the_nodes() {
+    let kepler = Kepler::default();
+    let start = planet(0.4);
+    fn worst<I: Integrator<2>>(mut run: I, exact: &Gauss<Kepler, 2, 10>) -> f64 {
+        let before = run.state();
+        let after = run.step().expect("solvable");
+        let path = run.path(&before).expect("regular");
+        let at_start = distance(&path.state(before.t), &before);
+        // 8.3e-17.
+        let at_end = distance(&path.state(after.t), &after);
+        assert!(at_start == 0.0 && at_end < 1e-15, "{at_start} {at_end}");
+        let parts = [0.2, 0.37, 0.5, 0.81];
+        let errors = parts.map(|part| {
+            let t = before.t + part * (after.t - before.t);
+            let truth = exact.clone().propagate_until(t).expect("solvable");
+            let v = truth.velocity(&Kepler::default()).expect("regular");
+            // The derivative is one order lower.
+            let of_velocity = (path.velocity(t) - v).norm() * (after.t - before.t);
+            distance(&path.state(t), &truth) + of_velocity
+        });
+        errors.into_iter().fold(0.0, f64::max)
+    }
+    let exact = Gauss::<_, 2, 10>::new(kepler, start, 0.05).expect("valid");
+    let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
+    // Of S stages: of order S + 1 over one step, its velocity too; of cubics that of the step, 3. Measured: 3.988, 4.976, 3.016.
+    let three = slope(&|h| worst(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid"), &exact));
+    let four = slope(&|h| worst(Gauss::<_, 2, 4>::new(kepler, start, h).expect("valid"), &exact));
+    let cubic = slope(&|h| worst(FixedStep::new(kepler, start, h).expect("valid"), &exact));
+    assert!((three - 4.0).abs() < 0.2, "{three}");
+    assert!((four - 5.0).abs() < 0.2, "{four}");
+    assert!((cubic - 3.0).abs() < 0.2, "{cubic}");
+}
+
+/// Zeros of the angle of a pendulum from 2 rad, rising.
+fn rising<I: Integrator<1>>(mut run: I, end: f64) -> Vec<f64> {
+    let upward = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
+    let events = [Event::new(&upward, Direction::Rising)];
+    let found: Vec<_> = run.events(&events, end).map(|crossing| crossing.expect("solvable")).collect();
+    assert_eq!(run.t().to_bits(), end.to_bits(), "the run ends where it is told to");
+    for crossing in &found {
+        assert!(crossing.is_rising && crossing.v[0] > 0.0 && crossing.event == 0);
+        // 5.6e-17.
+        assert!(crossing.state.q[0].abs() < 1e-15, "{}", crossing.state.q[0]);
+    }
+    found.iter().map(|crossing| crossing.state.t).collect()
+}
+
+/// The arithmetic-geometric mean.
+fn mean(mut a: f64, mut b: f64) -> f64 {
+    while (a - b).abs() > 1e-15 * a {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    a
+}
+
+#[test]
+fn the_period_of_a_pendulum() {
+    let pendulum = Pendulum::default();
+    let start = State::at(&pendulum, 0.0, [2.0], [0.0]);
+    // T = 2π / (ω agm(1, cos(θ0/2))), ω² = g/l: with the default parameters ω = 1.
+    let period = TAU / mean(1.0, 1.0_f64.cos());
+    let rises = |times: &[f64]| {
+        assert_eq!(times.len(), 12);
+        let expected = (0..12).map(|k| (f64::from(k) + 0.75) * period);
+        times.iter().zip(expected).map(|(t, exact)| (t - exact).abs()).fold(0.0, f64::max)
+    };
+    let end = 12.0 * period;
+    let gauss = rises(&rising(Gauss::<_, 1, 8>::new(pendulum, start, 0.4).expect("valid"), end));
+    // 4.3e-14.
+    assert!(gauss < 2e-13, "{gauss}");
+    let errors = [0.05, 0.025].map(|h| rises(&rising(FixedStep::new(pendulum, start, h).expect("valid"), end)));
+    let slope = (errors[0] / errors[1]).log2();
+    assert!((slope - 2.0).abs() < 0.1, "{slope}");
+    let composed = Composition::new(pendulum, Scheme::KAHAN_LI_6, start, 0.2).expect("valid");
+    // 5.2e-7.
+    assert!(rises(&rising(composed, end)) < 1e-6);
+    let energy = EnergyPreserving::from_midpoint(pendulum, 0.0, [2.0], [0.0], 0.02).expect("valid");
+    let error = rises(&rising(energy, end));
+    // 1.2e-3.
+    assert!(error < 2e-3, "{error}");
+}
+
+#[test]
+fn two_events_in_a_step_and_one_that_only_touches() {
+    let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
+    let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
+    let run = || Gauss::<_, 1, 10>::new(oscillator, start, 0.5).expect("valid");
+    let levels = |level: f64, direction: Direction| -> Vec<f64> {
+        let above = move |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0] - level;
+        let events = [Event::new(&above, direction)];
+        run().events(&events, 13.0).map(|crossing| crossing.expect("solvable").state.t).collect()
+    };
+    for level in [0.0_f64, 0.9, 0.999, 1.0 - 1e-6, 1.0 - 1e-10] {
+        let angle = level.acos();
+        let expected = [angle, TAU - angle, TAU + angle, 2.0 * TAU - angle, 2.0 * TAU + angle];
+        let expected: Vec<f64> = expected.into_iter().filter(|t| *t < 13.0).collect();
+        let found = levels(level, Direction::Both);
+        assert_eq!(found.len(), expected.len(), "{level}: {found:?}");
+        for (t, exact) in found.iter().zip(&expected) {
+            // Where the level is nearly touched, a rounding of x is many of t: 1.8e-15 at 0.9, 7.2e-15 at 0.999, 1.7e-13, 2.2e-11.
+            assert!((t - exact).abs() < 6e-16 / (1.0 - level * level).sqrt() + 2e-15, "{level}: {t} {exact}");
+        }
+        let rising = levels(level, Direction::Rising);
+        let falling = levels(level, Direction::Falling);
+        assert_eq!(rising.len() + falling.len(), found.len());
+        assert!(rising.iter().zip(&falling).all(|(up, down)| down < up), "it falls first");
+    }
+    // What is not reached, or only touched, is no event.
+    assert!(levels(1.0 + 1e-9, Direction::Both).is_empty());
+}
+
+#[test]
+fn several_functions_in_one_step_come_in_their_order() {
+    let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
+    let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
+    let mut run = Gauss::<_, 1, 10>::new(oscillator, start, 2.0).expect("valid");
+    let clock = |t: f64, _: &SVector<f64, 1>, _: &SVector<f64, 1>| t - 1.3;
+    let place = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
+    let speed = |_: f64, _: &SVector<f64, 1>, v: &SVector<f64, 1>| v[0] + 0.5;
+    let events = [&clock as &dyn Fn(_, &_, &_) -> f64, &place, &speed].map(|g| Event::new(g, Direction::Both));
+    let found: Vec<_> = run.events(&events, 4.0).map(|crossing| crossing.expect("solvable")).collect();
+    let order: Vec<usize> = found.iter().map(|crossing| crossing.event).collect();
+    assert_eq!(order, [2, 0, 1, 2]);
+    for (crossing, exact) in found.iter().zip([PI / 6.0, 1.3, PI / 2.0, 5.0 * PI / 6.0]) {
+        assert!((crossing.state.t - exact).abs() < 1e-14, "{crossing:?}");
+    }
+}
+
+#[test]
+fn a_run_that_stops_at_an_event_goes_on_from_it() {
+    let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
+    let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
+    let mut run = Gauss::<_, 1, 6>::new(oscillator, start, 0.3).expect("valid");
+    let place = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
+    let events = [Event::new(&place, Direction::Both)];
+    for half in 0..200 {
+        let crossing = run.next_event(&events, 1e4).expect("solvable").expect("there is one");
+        assert_eq!(crossing.state, run.state());
+        let exact = (f64::from(half) + 0.5) * PI;
+        // Each one once: 1.2e-13, of 628.
+        assert!((run.t() - exact).abs() < 5e-13, "{half}: {} {exact}", run.t());
+    }
+    let start = run.t();
+    assert_eq!(run.next_event(&events, start + 1.0), Ok(None));
+    assert_eq!(run.t().to_bits(), (start + 1.0).to_bits());
+    // A run that begins at a zero leaves it.
+    let start = State::at(&oscillator, 0.0, [0.0], [1.0]);
+    let mut run = FixedStep::new(oscillator, start, 0.1).expect("valid");
+    let first = run.next_event(&events, 10.0).expect("solvable").expect("there is one");
+    assert!((first.state.t - PI).abs() < 0.01 && !first.is_rising, "{first:?}");
+}
+
+#[test]
+fn an_event_function_that_is_not_finite_is_a_typed_error() {
+    let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
+    let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
+    let mut run = FixedStep::new(oscillator, start, 0.1).expect("valid");
+    let logarithm = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0].ln();
+    let events = [Event::new(&logarithm, Direction::Both)];
+    let mut found = run.events(&events, 10.0);
+    let failure = found.next();
+    assert!(matches!(failure, Some(Err(StepError::NonFinite { quantity: "function of an event", .. }))), "{failure:?}");
+    assert_eq!(found.next(), None);
+}
+
+#[test]
+fn a_section_of_henon_and_heiles() {
+    let system = HenonHeiles::default();
+    // Energy 1/12 on the section x = 0: p_x from it.
+    let (y, p_y) = (0.1_f64, 0.0_f64);
+    let p_x = (2.0_f64 * (1.0 / 12.0) - p_y * p_y - y * y + 2.0 * y * y * y / 3.0).sqrt();
+    let start = State::at(&system, 0.0, [0.0, y], [p_x, p_y]);
+    let x = |_: f64, q: &SVector<f64, 2>, _: &SVector<f64, 2>| q[0];
+    let events = [Event::new(&x, Direction::Rising)];
+    let section = |h: f64| -> Vec<State<2>> {
+        let mut run = Gauss::<_, 2, 8>::new(system, start, h).expect("valid");
+        run.events(&events, 300.0).map(|crossing| crossing.expect("solvable").state).collect()
+    };
+    let coarse = section(0.5);
+    let fine = section(0.21);
+    // The start is no event; every further one is, with either step.
+    assert_eq!((coarse.len(), fine.len()), (fine.len(), coarse.len()));
+    assert!(coarse.len() > 40, "{}", coarse.len());
+    for (a, b) in coarse.iter().zip(&fine) {
+        // 2.2e-15 and 2.8e-17.
+        assert!(distance(a, b) < 1e-14 && a.q[0].abs() < 1e-15, "{a:?} {b:?}");
+        let energy = a.energy(&system).expect("regular");
+        // 9.8e-17.
+        assert!((energy - 1.0 / 12.0).abs() < 1e-15, "{energy}");
+    }
+}
+
+#[test]
+fn a_ball_bounces() {
+    let ball = Ball::default();
+    let floor = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
+    let hits = [Event::new(&floor, Direction::Falling)];
+    fn bounce<I: Integrator<1>>(run: &mut I, hits: &[Event<'_, 1>]) -> f64 {
+        let hit = run.next_event(hits, 100.0).expect("solvable").expect("it falls");
+        run.set_state(State { p: -hit.state.p, ..hit.state }).expect("valid");
+        hit.state.t
+    }
+    let mut run = FixedStep::new(ball, State::at(&ball, 0.0, [1.3], [0.0]), 0.037).expect("valid");
+    let fall = (2.0_f64 * 1.3 / 9.81).sqrt();
+    for count in 0..20 {
+        let t = bounce(&mut run, &hits);
+        let exact = (2.0 * f64::from(count) + 1.0) * fall;
+        // The midpoint rule is exact under constant forces: 3.6e-15.
+        assert!((t - exact).abs() < 1e-14, "{count}: {t} {exact}");
+    }
+}
+
+#[test]
+fn changed_parameters_are_those_of_a_new_run() {
+    let system = Pushed::default();
+    let start = State::at(&system, 0.0, [0.4], [0.2]);
+    fn differ<I: Integrator<1, System = Pushed>>(mut run: I, anew: impl Fn(Pushed, State<1>) -> I) -> f64 {
+        let mut worst = 0.0_f64;
+        for step in 0..200 {
+            let u = (0.7 * f64::from(step)).sin() + if step % 50 < 25 { 1.0 } else { -1.0 };
+            run.set_parameters(|system| {
+                system.u = u;
+                system.k = 2.3 + 0.5 * u;
+            })
+            .expect("regular");
+            let fresh = anew(*run.system(), run.state()).step().expect("solvable");
+            let state = run.step().expect("solvable");
+            worst = worst.max(distance(&fresh, &state));
+        }
+        worst
+    }
+    let fixed = |system, state| FixedStep::new(system, state, 0.1).expect("valid");
+    let composed = |system, state| Composition::new(system, Scheme::SUZUKI_4, state, 0.1).expect("valid");
+    let gauss = |system, state| Gauss::<_, 1, 4>::new(system, state, 0.1).expect("valid");
+    // 1.0e-15, 1.0e-15, 9.5e-16: the residuals of two guesses, and what sums carry below an ulp.
+    let errors = [
+        differ(fixed(system, start), fixed),
+        differ(composed(system, start), composed),
+        differ(gauss(system, start), gauss),
+    ];
+    assert!(errors.into_iter().all(|error| error < 3e-15), "{errors:?}");
+}
+
+#[test]
+fn the_energy_that_a_change_brings_is_accounted_for() {
+    let system = Pushed { u: 0.3, ..Pushed::default() };
+    let mut run = EnergyPreserving::from_midpoint(system, 0.0, [0.7], [0.0], 0.02).expect("valid");
+    let mut brought = 0.0;
+    let mut work = 0.0;
+    let e0 = run.discrete_energy();
+    for step in 0..100 {
+        if step % 10 == 5 {
+            let before = run.energy().expect("regular");
+            run.set_parameters(|system| system.k *= 1.01).expect("regular");
+            brought += run.energy().expect("regular") - before;
+        }
+        let q0 = run.state().q;
+        run.step().expect("solvable");
+        work += 0.3 * (run.state().q - q0)[0];
+        let error = run.discrete_energy() - e0 - brought - work;
+        // 1.7e-16.
+        assert!(error.abs() < 1e-15, "{step}: {error}");
+    }
+    assert!(brought > 1e-3, "{brought}");
+    // H follows the energy that is kept.
+    let difference = run.energy().expect("regular") - run.discrete_energy();
+    // 7.0e-5.
+    assert!(difference.abs() < 1e-4, "{difference}");
+}
+
+#[test]
+fn parameters_with_which_nothing_moves_are_refused() {
+    let system = Pushed::default();
+    let start = State::at(&system, 0.0, [0.4], [0.2]);
+    fn refuses<I: Integrator<1, System = Pushed>>(mut run: I) {
+        run.step().expect("solvable");
+        let state = run.state();
+        for m in [0.0, f64::NAN] {
+            let refused = run.set_parameters(|system| system.m = m);
+            assert!(matches!(refused, Err(StepError::Singular { .. } | StepError::NonFinite { .. })), "{refused:?}");
+        }
+        assert_eq!((run.state(), run.system().m.to_bits()), (state, 1.7_f64.to_bits()));
+        run.step().expect("the run goes on");
+        let lost = State { q: SVector::from([f64::NAN]), ..state };
+        assert!(matches!(run.set_state(lost), Err(StepError::NonFinite { .. })));
+        run.step().expect("the run goes on");
+    }
+    refuses(FixedStep::new(system, start, 0.1).expect("valid"));
+    refuses(Composition::new(system, Scheme::SUZUKI_4, start, 0.1).expect("valid"));
+    refuses(Gauss::<_, 1, 4>::new(system, start, 0.1).expect("valid"));
+    refuses(EnergyPreserving::from_midpoint(system, 0.0, [0.4], [0.2], 0.05).expect("valid"));
+}
+
+#[test]
+fn energies_at_nodes_are_of_order_2_and_2s() {
+    let kepler = Kepler::default();
+    let start = planet(0.3);
+    fn worst<I: Integrator<2>>(mut run: I) -> f64 {
+        let first = run.energy().expect("regular");
+        let mut worst = 0.0_f64;
+        while run.t() < 7.0 {
+            run.step().expect("solvable");
+            worst = worst.max((run.energy().expect("regular") - first).abs());
+        }
+        worst
+    }
+    let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
+    let two = slope(&|h| worst(FixedStep::new(kepler, start, h).expect("valid")));
+    let four = slope(&|h| worst(Gauss::<_, 2, 2>::new(kepler, start, h).expect("valid")));
+    let six = slope(&|h| worst(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid")));
+    // 2.000, 3.995, 6.003.
+    assert!((two - 2.0).abs() < 0.2 && (four - 4.0).abs() < 0.2 && (six - 6.0).abs() < 0.3, "{two} {four} {six}");
+}
+
+#[test]
+fn a_composition_restarts_bit_for_bit() {
+    let kepler = Kepler::default();
+    let mut run = Composition::new(kepler, Scheme::KAHAN_LI_6, planet(0.4), 0.2).expect("valid");
+    for _ in 0..30 {
+        run.step().expect("solvable");
+    }
+    let text = serde_json::to_string(&run.checkpoint()).expect("plain numbers");
+    let stored = serde_json::from_str(&text).expect("what was written");
+    let mut again = Composition::restart(kepler, Scheme::KAHAN_LI_6, stored).expect("the same system");
+    for _ in 0..30 {
+        assert_eq!(run.step(), again.step());
+        assert_eq!(run.node(), again.node());
+    }
+    let other = Composition::restart(kepler, Scheme::KAHAN_LI_8, run.checkpoint());
+    assert!(matches!(other, Err(StepError::InvalidInput { .. })), "{other:?}");
+    let other = Composition::restart(Kepler { mu: 2.0 }, Scheme::KAHAN_LI_6, run.checkpoint());
+    assert!(matches!(other, Err(StepError::OtherSystem { .. })), "{other:?}");
+}
+
+#[test]
+fn the_motion_goes_on_after_a_step_that_failed() {
+    // A step that is too long has no solution; the run may take a shorter one.
+    let kepler = Kepler::default();
+    let mut run = Gauss::<_, 2, 3>::new(kepler, planet(0.6), 0.05).expect("valid");
+    run.step().expect("solvable");
+    let before = run.clone();
+    assert!(run.step_of(1e200).is_err());
+    assert_eq!(run.state(), before.state());
+    assert!(run.step().is_ok());
+    assert_eq!(<Kepler as Lagrangian<2>>::NAME, "Kepler");
+}

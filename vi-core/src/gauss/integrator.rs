@@ -1,0 +1,102 @@
+//! The run of Gauss steps as one integrator among others.
+
+use super::polynomial::Polynomial;
+use super::{Checkpoint, Gauss, Run};
+use crate::collocation::Collocation;
+use crate::error::StepError;
+use crate::integrator::{Hermite, Integrator, Path};
+use crate::node::Node;
+use crate::state::State;
+use crate::stepping::{Convertible, FixedStepping};
+use nalgebra::SVector;
+
+/// The motion over a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion<const N: usize, const S: usize> {
+    /// Over a step of the run.
+    Collocation(Polynomial<N, S>),
+    /// Over a step of another length, the stages of which are not kept.
+    Hermite(Hermite<N>),
+}
+
+impl<const N: usize, const S: usize> Path<N> for Motion<N, S> {
+    fn state(&self, t: f64) -> State<N> {
+        match self {
+            Self::Collocation(polynomial) => polynomial.state(t),
+            Self::Hermite(cubics) => cubics.state(t),
+        }
+    }
+
+    fn velocity(&self, t: f64) -> SVector<f64, N> {
+        match self {
+            Self::Collocation(polynomial) => polynomial.velocity(t),
+            Self::Hermite(cubics) => cubics.velocity(t),
+        }
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Integrator<N> for Gauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    type System = S;
+    type Path = Motion<N, STAGES>;
+    type Checkpoint = Checkpoint<N, STAGES>;
+
+    const H_IS_GIVEN: bool = true;
+
+    fn step(&mut self) -> Result<State<N>, StepError> {
+        self.step()
+    }
+
+    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
+        self.step_of(h)
+    }
+
+    fn node(&self) -> &Node<N> {
+        &self.run.node
+    }
+
+    fn system(&self) -> &S {
+        self.system()
+    }
+
+    fn h(&self) -> f64 {
+        self.h()
+    }
+
+    fn discrete_energy(&self) -> Option<f64> {
+        self.discrete_energy()
+    }
+
+    fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
+        let mut system = self.system;
+        change(&mut system);
+        self.state().velocity(&system)?;
+        self.system = system;
+        self.failure = None;
+        Ok(())
+    }
+
+    fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
+        self.run = Run::new(&self.system, Node::new(state, 0.0), self.run.h)?;
+        self.failure = None;
+        Ok(())
+    }
+
+    fn path(&self, before: &State<N>) -> Result<Motion<N, STAGES>, StepError> {
+        if self.run.convergence.has_begun() {
+            Ok(Motion::Collocation(Polynomial::of(&self.system, &self.run, *before)))
+        } else {
+            Hermite::between(&self.system, before, &self.state()).map(Motion::Hermite)
+        }
+    }
+
+    fn checkpoint(&self) -> Checkpoint<N, STAGES> {
+        self.checkpoint()
+    }
+
+    fn set_time(&mut self, t: f64) {
+        self.run.node.set_time(t);
+    }
+}

@@ -1,0 +1,124 @@
+//! The motion over a Gauss step: its collocation polynomials.
+//!
+//! In: velocities and forces at the stages. Out: q and p at any time of the step, in Legendre polynomials of x = 2θ − 1, θ the part of the step:
+//!
+//! ```text
+//! v(θ) = Σ_k u_k P_k(x)        u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i        exact, since the rule of Gauss is
+//! q(θ) = q0 + h Σ_k u_k I_k    I_0 = θ,  I_k = (P_{k+1}(x) − P_{k−1}(x)) / (2 (2k + 1))
+//! ```
+//!
+//! and the same of p with the forces. Of order S + 1 in the step, and of order 2S at its ends (Hairer, Lubich, Wanner, *Geometric Numerical Integration*,
+//! II.1.2 and II.1.3).
+
+use super::stages::{Stages, set, stage, time};
+use super::sweep::Equations;
+use super::tableau::Tableau;
+use super::{Run, general};
+use crate::collocation::Collocation;
+use crate::integrator::Path;
+use crate::state::State;
+use nalgebra::SVector;
+
+/// The motion over a step of S stages; see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial<const N: usize, const S: usize> {
+    /// Where the step began.
+    start: State<N>,
+    h: f64,
+    /// Coefficients of the velocity and of the force in Legendre polynomials.
+    velocity: Stages<N, S>,
+    force: Stages<N, S>,
+}
+
+impl<const N: usize, const S: usize> Polynomial<N, S> {
+    /// The motion over the last step of a run, which began at `start`.
+    pub(super) fn of<Y: Collocation<N>>(system: &Y, run: &Run<N, S>, start: State<N>) -> Self {
+        let equations = general(system, &run.before, run.h, run.stages.data.0);
+        let x = equations.start();
+        let velocity = equations.guess();
+        let mut force = [[0.0; S]; N];
+        for i in 0..S {
+            let t = time::<N, S, false, f64>(&run.before, run.h, i);
+            set(&mut force, i, &system.point(t, &stage(&x, i), &stage(&velocity, i)).force);
+        }
+        Self { start, h: run.h, velocity: coefficients(&velocity), force: coefficients(&force) }
+    }
+
+    /// The part of the step that is over at the time t.
+    fn part(&self, t: f64) -> f64 {
+        (t - self.start.t) / self.h
+    }
+}
+
+impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
+    fn state(&self, t: f64) -> State<N> {
+        let integrals = integrals::<S>(self.part(t));
+        let q = self.start.q + sum(&self.velocity, &integrals) * self.h;
+        let p = self.start.p + sum(&self.force, &integrals) * self.h;
+        State { t, q, p }
+    }
+
+    fn velocity(&self, t: f64) -> SVector<f64, N> {
+        sum(&self.velocity, &polynomials(self.part(t)))
+    }
+}
+
+/// The coefficients `u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i` of values at the stages.
+fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
+    let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
+    let mut coefficients = [[0.0; S]; N];
+    let mut factor = 1.0;
+    for k in 0..S {
+        for (row, values) in coefficients.iter_mut().zip(values) {
+            for i in 0..S {
+                row[k] += factor * b[i] * legendre[k][i] * values[i];
+            }
+        }
+        factor += 2.0;
+    }
+    coefficients
+}
+
+/// `Σ_k u_k basis_k` of each coordinate, the small ones first.
+fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64; S]) -> SVector<f64, N> {
+    let mut total = SVector::<f64, N>::zeros();
+    for (total, row) in total.iter_mut().zip(coefficients) {
+        for k in (0..S).rev() {
+            *total += row[k] * basis[k];
+        }
+    }
+    total
+}
+
+/// P_k(2θ − 1), k = 0 … S − 1, by `(k + 1) P_{k+1} = (2k + 1) x P_k − k P_{k−1}`.
+fn polynomials<const S: usize>(part: f64) -> [f64; S] {
+    let x = 2.0 * part - 1.0;
+    let mut values = [0.0; S];
+    let mut last = [0.0, 1.0];
+    let mut k = 0.0;
+    for value in &mut values {
+        *value = last[1];
+        last = [last[1], ((2.0 * k + 1.0) * x * last[1] - k * last[0]) / (k + 1.0)];
+        k += 1.0;
+    }
+    values
+}
+
+/// `∫_0^θ P_k(2u − 1) du`, k = 0 … S − 1.
+fn integrals<const S: usize>(part: f64) -> [f64; S] {
+    let x = 2.0 * part - 1.0;
+    let mut values = [0.0; S];
+    let mut last = [1.0, x];
+    let mut k = 1.0;
+    for (index, value) in values.iter_mut().enumerate() {
+        if index == 0 {
+            *value = part;
+            continue;
+        }
+        let next = ((2.0 * k + 1.0) * x * last[1] - k * last[0]) / (k + 1.0);
+        *value = (next - last[0]) / (2.0 * (2.0 * k + 1.0));
+        last = [last[1], next];
+        k += 1.0;
+    }
+    values
+}
