@@ -307,7 +307,7 @@ where
     type Path = Hermite<N>;
     type Checkpoint = Checkpoint<N>;
 
-    const H_IS_GIVEN: bool = true;
+    const LONGEST: f64 = 1.0;
 
     fn step(&mut self) -> Result<State<N>, StepError> {
         self.step()

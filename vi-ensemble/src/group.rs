@@ -7,6 +7,7 @@
 //! of freedom: longer ones are calls, and their matrices are solved by loops themselves, so that nothing would become a vector
 //! instruction. Those are fixed steps, each trajectory for itself.
 
+use crate::alone::Alone;
 use crate::block::Block;
 use crate::ended::Ended;
 use vi_core::stepping::Batch;
@@ -20,14 +21,7 @@ const LARGEST: usize = 3;
 #[derive(Clone, Debug)]
 pub(crate) enum Group<S: Batch<N>, const N: usize> {
     Together(Box<Block<S, N>>),
-    Apart(Vec<Alone<S, N>>),
-}
-
-/// A trajectory by itself, as far as it has come.
-#[derive(Clone, Debug)]
-pub(crate) struct Alone<S: Batch<N>, const N: usize> {
-    run: Result<FixedStep<S, N>, Ended<N>>,
-    steps: u64,
+    Apart(Vec<Alone<FixedStep<S, N>, N>>),
 }
 
 impl<S: Batch<N>, const N: usize> Group<S, N> {
@@ -37,8 +31,7 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
             return Self::Together(Box::new(Block::new(trajectories, h, instructions)));
         }
         let alone = |&(system, state): &(S, State<N>)| {
-            let run = FixedStep::new(system, state, h).map_err(|error| Ended { state, steps: 0, error });
-            Alone { run, steps: 0 }
+            Alone::new(FixedStep::new(system, state, h).map_err(|error| Ended { state, steps: 0, error }))
         };
         Self::Apart(trajectories.iter().map(alone).collect())
     }
@@ -55,7 +48,7 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
     pub(crate) fn running(&self) -> usize {
         match self {
             Self::Together(block) => block.running(),
-            Self::Apart(all) => all.iter().filter(|alone| alone.run.is_ok()).count(),
+            Self::Apart(all) => all.iter().filter(|alone| alone.is_running()).count(),
         }
     }
 
@@ -63,7 +56,7 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
     pub(crate) fn result(&self, index: usize) -> Result<State<N>, Ended<N>> {
         match self {
             Self::Together(block) => block.result(index),
-            Self::Apart(all) => all[index].run.as_ref().map(FixedStep::state).map_err(|ended| *ended),
+            Self::Apart(all) => all[index].result(),
         }
     }
 
@@ -72,20 +65,6 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
         match self {
             Self::Together(block) => block.run(steps),
             Self::Apart(all) => all.iter_mut().for_each(|alone| alone.take(steps)),
-        }
-    }
-}
-
-impl<S: Batch<N>, const N: usize> Alone<S, N> {
-    fn take(&mut self, steps: u64) {
-        let Ok(run) = &mut self.run else { return };
-        for _ in 0..steps {
-            if let Err(error) = run.step() {
-                let state = run.state();
-                self.run = Err(Ended { state, steps: self.steps, error });
-                return;
-            }
-            self.steps += 1;
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Many trajectories of one system, each with its own parameters and its own start.
+//! Many trajectories of one system, each with its own parameters and its own start: by fixed steps of order 2 ([`Ensemble`]), or by
+//! any integrator ([`Runs`]).
 //!
 //! In: systems of one kind, a state for each, one step h. Out: for each trajectory the state reached, or the typed error
 //! that it ended with and the step at which it did. The equations of a step are those of [`vi_core::FixedStep`]. AFTER A STEP the
@@ -11,6 +12,8 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`ensemble`] | the trajectories of a caller, in groups, over threads |
+//! | `runs` | many runs of any integrator, over threads |
+//! | `alone` | a trajectory by itself |
 //! | `group` | whether trajectories go side by side or one after the other |
 //! | `block` | 64 trajectories side by side, and what becomes of one that the common path refuses |
 //! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
@@ -28,6 +31,7 @@
 // A call inside a loop over trajectories keeps it from becoming vector instructions.
 #![allow(clippy::inline_always)]
 
+mod alone;
 mod block;
 mod ended;
 pub mod ensemble;
@@ -35,7 +39,9 @@ mod group;
 #[cfg(test)]
 mod hunt;
 mod layout;
+mod runs;
 mod sweep;
 
 pub use ended::Ended;
 pub use ensemble::Ensemble;
+pub use runs::Runs;

@@ -5,8 +5,8 @@ use vi_core::node::Node;
 use vi_core::rules::{By, Trapezoidal};
 use vi_core::stepping::Batch;
 use vi_core::support::step_alone;
-use vi_core::{FixedStep, State, StepError, lagrangian};
-use vi_ensemble::{Ended, Ensemble};
+use vi_core::{FixedStep, Gauss, Integrator, State, StepError, lagrangian};
+use vi_ensemble::{Ended, Ensemble, Runs};
 use vi_systems::{
     ChargedParticle, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum, ParametricPendulum,
     Pendulum,
@@ -376,4 +376,43 @@ fn what_cannot_be_run_is_refused() {
         empty.run(3);
         empty.results().next().is_none() && empty.running() == 0
     }));
+}
+
+/// Runs of any integrator over threads are those that each is alone, bit for bit; one that fails ends with its reason, and the others go on.
+#[test]
+fn runs_of_any_integrator_are_what_each_is_alone() {
+    let planet = Kepler::default();
+    // The last one falls into the sun.
+    let speeds = [1.0, 1.1, 0.9, 1.3, 0.0];
+    let start = |speed: f64| State::at(&planet, 0.0, [1.0, 0.0], [0.0, speed]);
+    let gauss = |speed: f64| Gauss::<_, 2, 6>::new(planet, start(speed), 0.1);
+    let all: Result<Vec<_>, _> = speeds.into_iter().map(gauss).collect();
+    let mut runs = Runs::new(all.expect("valid"));
+    runs.run(37);
+    runs.propagate_until(11.17);
+    runs.run(5);
+    let results: Vec<_> = runs.results().collect();
+    for (speed, result) in speeds.into_iter().zip(&results) {
+        let mut alone = gauss(speed).expect("valid");
+        let outcome: Result<State<2>, StepError> = (|| {
+            for _ in 0..37 {
+                alone.step()?;
+            }
+            alone.propagate_until(11.17)?;
+            for _ in 0..4 {
+                alone.step()?;
+            }
+            alone.step()
+        })();
+        match (outcome, result) {
+            (Ok(state), Ok(reached)) => assert_eq!(state, *reached),
+            (Err(error), Err(ended)) => {
+                assert_eq!((error, alone.state()), (ended.error, ended.state));
+                assert!(ended.steps < 37, "{ended}");
+            }
+            other => panic!("{speed}: {other:?}"),
+        }
+    }
+    assert_eq!(runs.running(), 4);
+    assert_eq!(runs.integrators().filter(|run| run.is_ok_and(|run| (run.h() - 0.1).abs() < 1e-15)).count(), 4);
 }

@@ -4,7 +4,7 @@
 //! goes on with `E + ΔH`: so `H − E`, from which the length of the next step follows, is what it was.
 
 use super::checkpoint::Checkpoint;
-use super::interval::Last;
+use super::interval::{Last, RATIO};
 use super::run::Run;
 use super::stepper::EnergyPreserving;
 use crate::error::StepError;
@@ -21,7 +21,7 @@ where
     type Path = Hermite<N>;
     type Checkpoint = Checkpoint<N>;
 
-    const H_IS_GIVEN: bool = false;
+    const LONGEST: f64 = RATIO;
 
     #[inline(always)]
     fn step(&mut self) -> Result<State<N>, StepError> {

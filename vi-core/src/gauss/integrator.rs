@@ -43,7 +43,7 @@ where
     type Path = Motion<N, STAGES>;
     type Checkpoint = Checkpoint<N, STAGES>;
 
-    const H_IS_GIVEN: bool = true;
+    const LONGEST: f64 = 1.0;
 
     fn step(&mut self) -> Result<State<N>, StepError> {
         self.step()

@@ -36,8 +36,8 @@ pub trait Integrator<const N: usize>: Clone {
     /// Everything that a run carries, with the name and the parameters of the system.
     type Checkpoint;
 
-    /// Whether the length of every step is [`Integrator::h`]. Else the step finds its own.
-    const H_IS_GIVEN: bool;
+    /// A step is at most so many times as long as [`Integrator::h`] says: 1 where it is always that long.
+    const LONGEST: f64;
 
     /// Takes one step, and returns the state reached.
     ///
@@ -189,13 +189,12 @@ pub trait Integrator<const N: usize>: Clone {
             return Ok(true);
         }
         let direction = self.h().signum();
-        if Self::H_IS_GIVEN {
-            // Up to a rounding of t the last step may be longer than h, so that none of the length of a rounding follows.
-            let beyond = (self.h() - left) * direction;
-            if beyond + f64::EPSILON * t.abs() < 0.0 {
-                return self.step().map(|_| false);
-            }
-        } else {
+        // Up to a rounding of t the last step may be longer than h, so that none of the length of a rounding follows.
+        let beyond = (Self::LONGEST * self.h() - left) * direction + f64::EPSILON * t.abs();
+        if beyond < 0.0 {
+            return self.step().map(|_| false);
+        }
+        if Self::LONGEST > 1.0 {
             let ahead = self.after_a_step()?;
             if ahead.time_to(t) * direction >= 0.0 {
                 *self = ahead;
@@ -210,7 +209,7 @@ pub trait Integrator<const N: usize>: Clone {
     fn end_at(&mut self, t: f64) -> Result<(), StepError> {
         let left = self.time_to(t);
         // Where the next step ends there, it is that one.
-        let is_next = Self::H_IS_GIVEN && left.to_bits() == self.h().to_bits();
+        let is_next = Self::LONGEST <= 1.0 && left.to_bits() == self.h().to_bits();
         let outcome = if is_next { self.step() } else { self.step_of(left) };
         outcome.map(|_| self.set_time(t))
     }
