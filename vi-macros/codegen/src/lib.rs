@@ -14,6 +14,7 @@ mod derived;
 pub mod discrete;
 pub mod emit;
 pub mod found;
+mod habits;
 #[cfg(feature = "inspect")]
 pub mod inspect;
 mod limits;

@@ -3,6 +3,7 @@
 //! In: what a stage found wrong. Out: the text, what is wrong first, then what to do; lower case, no full stop.
 //! A stage collects its errors in [`Errors`] and reports them all before the next stage starts.
 
+use crate::habits::{self, Habit};
 use crate::rules::{self, RULES};
 use proc_macro2::Span;
 use vi_expr::TooLarge;
@@ -29,10 +30,10 @@ pub enum Message {
     Arity { name: String, takes: usize, given: usize },
     /// A function used without its arguments.
     FunctionWithoutArguments { name: String },
-    /// `dot` of something that is not a coordinate.
+    /// `dot` of a number, a parameter or a constant.
+    DotOfConstant { name: String },
+    /// The velocity in a check of something that is not a coordinate.
     DotOfOther { name: String },
-    /// `dot` of an expression.
-    DotOfExpression,
     /// `dot(dot(x))`, or a name that reads as an acceleration.
     Acceleration { name: String },
     /// A constant or default that is not made of numbers and constants.
@@ -90,7 +91,7 @@ pub enum Message {
     /// L does not depend on any velocity.
     NoVelocity,
     /// The mass matrix has no inverse anywhere.
-    SingularMass { missing: Option<String> },
+    SingularMass { missing: Option<String>, multiplies: bool },
     /// A rule by a name that does not exist.
     UnknownRule { name: String, near: Option<String> },
     /// A rule that a list names twice.
@@ -110,11 +111,11 @@ pub enum Message {
     /// A vector where a rule needs a number, or the reverse.
     Shape { needs: &'static str },
     /// A clause that does not exist.
-    UnknownClause { found: String, near: Option<String> },
+    UnknownClause { found: String, near: Option<String>, is_defined: bool },
     /// Anything that the grammar does not allow at this token.
     Expected { what: &'static str },
-    /// A number with letters behind it.
-    NumberSuffix { digits: String, suffix: String },
+    /// What is written otherwise in this language.
+    Habit(Habit),
     /// A number that is no decimal integer or decimal fraction.
     NotDecimal,
     /// A number out of the range of `f64`.
@@ -141,6 +142,22 @@ fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
     near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
 }
 
+/// What to do about a word that opens no clause; behind one that is defined stands `=`.
+fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
+    let clauses = "the clauses are const, param, coord, let, L, force, dissipation, discretize, check";
+    let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
+    habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
+}
+
+/// What to do about a direction without kinetic energy; a coordinate that is missing in it may multiply a constraint.
+fn move_with_energy(missing: Option<&str>, multiplies: bool) -> String {
+    match missing {
+        Some(name) if multiplies => format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT),
+        Some(name) => format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
+        None => "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned(),
+    }
+}
+
 impl Message {
     /// What is wrong.
     #[must_use]
@@ -155,7 +172,7 @@ impl Message {
             Self::Arity { name, takes, given } => format!("`{name}` takes {takes} argument(s), not {given}"),
             Self::FunctionWithoutArguments { name } => format!("`{name}` is a function"),
             Self::DotOfOther { name } => format!("`dot({name})`: `{name}` is not a coordinate"),
-            Self::DotOfExpression => "`dot` of an expression".to_owned(),
+            Self::DotOfConstant { name } => format!("`dot({name})`: `{name}` does not change with time"),
             Self::Acceleration { name } => format!("an expression cannot depend on the acceleration `{name}`"),
             Self::NotConstant { name } => format!("`{name}` is not a constant"),
             Self::NotFinite { name } => format!("the value of `{name}` is not finite"),
@@ -196,7 +213,7 @@ impl Message {
             Self::Shape { needs } => format!("a {needs} is needed here"),
             Self::UnknownClause { found, .. } => format!("unknown clause `{found}`"),
             Self::Expected { what } => format!("expected {what}"),
-            Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
+            Self::Habit(habit) => habit.what(),
             Self::NotDecimal => "not a decimal number".to_owned(),
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
             Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
@@ -227,17 +244,22 @@ impl Message {
                 "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`"
                     .to_owned()
             }
-            Self::Unknown { near, .. } => {
-                did_you_mean(near.as_ref(), "declare it with `param`, `const` or `coord`, or above with `let`")
+            Self::Unknown { name, near } => {
+                let declare = "declare it with `param`, `const` or `coord`, or above with `let`";
+                did_you_mean(near.as_ref(), &habits::name(name).unwrap_or_else(|| declare.to_owned()))
             }
-            Self::UnknownFunction { near, .. } => did_you_mean(
+            Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
                 near.as_ref(),
                 "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow sum, in a rule L f, elsewhere dot",
-            ),
+            )),
             Self::Arity { name, takes, .. } => format!("write `{name}({})`", ["a", "a, b"][usize::from(*takes > 1)]),
-            Self::FunctionWithoutArguments { name } => format!("write its argument: `{name}(…)`"),
-            Self::DotOfOther { .. } => "`dot` takes a coordinate; its result is that coordinate's velocity".to_owned(),
-            Self::DotOfExpression => "`dot` takes the name of a coordinate; differentiate by hand otherwise".to_owned(),
+            Self::FunctionWithoutArguments { name } => {
+                format!("write its argument: `{name}(…)`; a power stands behind it, `{name}(…)^2`")
+            }
+            Self::DotOfConstant { .. } => {
+                "`dot` takes what depends on the time or on a coordinate; its result is the derivative by time".to_owned()
+            }
+            Self::DotOfOther { .. } => "a check gives the velocities of coordinates".to_owned(),
             Self::Acceleration { .. } => {
                 "use positions, velocities, time and parameters; an inertial term belongs in `L`".to_owned()
             }
@@ -276,13 +298,7 @@ impl Message {
             }
             Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
-            Self::SingularMass { missing } => missing.as_ref().map_or_else(
-                || {
-                    "every direction of motion needs kinetic energy; remove coordinates that depend on others"
-                        .to_owned()
-                },
-                |name| format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
-            ),
+            Self::SingularMass { missing, multiplies } => move_with_energy(missing.as_deref(), *multiplies),
             Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), &format!("the rules are {}", rules::list())),
             Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
             Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
@@ -296,12 +312,9 @@ impl Message {
                 "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"
                     .to_owned()
             }
-            Self::UnknownClause { near, .. } => did_you_mean(
-                near.as_ref(),
-                "the clauses are const, param, coord, let, L, force, dissipation, discretize, check",
-            ),
+            Self::UnknownClause { found, near, is_defined } => clause_for(found, near.as_ref(), *is_defined),
             Self::Expected { .. } => "a clause reads `name = expression;`, and a sum `a + 2 * b`".to_owned(),
-            Self::NumberSuffix { digits, suffix } => format!("write `{digits} * {suffix}` for a product"),
+            Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
@@ -335,6 +348,22 @@ impl Errors {
             Some(combined) => combined.combine(error),
             None => self.combined = Some(error),
         }
+    }
+
+    /// A part of an expression, or nothing and its errors. What was said of another part is not said again.
+    pub fn keep<P>(&mut self, part: syn::Result<P>) -> Option<P> {
+        let error = match part {
+            Ok(part) => return Some(part),
+            Err(error) => error,
+        };
+        for one in error {
+            let text = one.to_string();
+            let mut said = self.combined.iter().flat_map(Clone::clone);
+            if !said.any(|said| said.to_string() == text) {
+                self.add(one);
+            }
+        }
+        None
     }
 
     /// Whether nothing was found.

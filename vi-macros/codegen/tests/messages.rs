@@ -8,7 +8,7 @@ use vi_codegen::syntax;
 
 /// All errors of a text: (token underlined, message).
 fn errors(text: &str) -> Vec<(String, String)> {
-    let tokens: TokenStream = text.parse().expect("the case is made of Rust tokens");
+    let tokens: TokenStream = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
     let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());
     let Err(error) = result else { return Vec::new() };
     let token = |error: &syn::Error| error.span().source_text().unwrap_or_default();
@@ -65,13 +65,34 @@ fn velocities() {
         "param a = 1, «b» = 2; coord x; L = a * dot(x)^2 + b * x - b * x; discretize midpoint;",
         "the parameter `b` acts on nothing",
     );
-    case("param a = 1; coord x; L = dot(x)^2 * dot(«a»); discretize midpoint;", "`dot(a)`: `a` is not a coordinate");
-    case("coord x; L = dot(x)^2 * dot(«t»); discretize midpoint;", "`dot(t)`: `t` is not a coordinate");
-    case("coord x; L = dot(x)^2 * dot(«2»); discretize midpoint;", "`dot` of an expression");
+    for constant in ["a", "pi", "e", "b", "2"] {
+        case(
+            &format!(
+                "param a = 1; const e = 2; let b = a * pi; coord x; L = dot(x)^2 * dot(«{constant}»); discretize midpoint;"
+            ),
+            &format!("`dot({constant})`: `{constant}` does not change with time\nhelp: `dot` takes what depends on"),
+        );
+    }
+    case(
+        "coord x; let m[i in 0..2] = i; L = dot(x)^2 * dot(«m»[0]); discretize midpoint;",
+        "`dot(m)`: `m` does not change with time",
+    );
+    case("coord x; L = dot(x)^2 * «dot»(x, t); discretize midpoint;", "`dot` takes 1 argument(s), not 2");
+    case("coord x; L = dot(x)^2 * dot(«sin»); discretize midpoint;", "`sin` is a function");
+    case("coord q[2]; L = dot(q[0])^2 * dot(«q»); discretize midpoint;", "`q` is an array");
     case(
         "coord x; L = dot(x)^2; force x = «dot»(dot(x)); discretize midpoint;",
         "an expression cannot depend on the acceleration",
     );
+    for (argument, name) in [("«v»", "v"), ("«w»[1]", "w[…]"), ("«x» * v", "…"), ("2 * dot(x)", "…")] {
+        let argument = if argument.contains('«') { argument.to_owned() } else { argument.replace('2', "«2»") };
+        case(
+            &format!(
+                "coord x; let v = x + dot(x), w[i in 0..2] = i * dot(x); L = dot(x)^2; force x = dot({argument}); discretize midpoint;"
+            ),
+            &format!("an expression cannot depend on the acceleration `dot({name})`"),
+        );
+    }
     case(
         "coord θ; L = dot(θ)^2; force θ = -«θ_ddot»; discretize midpoint;",
         "an expression cannot depend on the acceleration `θ_ddot`",
@@ -102,6 +123,17 @@ fn constants() {
     case("coord x; L = dot(x)^2 - x * «tan»(pi / 2); discretize midpoint;", "this expression has no value");
     case("const a = 1 / «0»; coord x; L = dot(x)^2; discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 / («x» - x); discretize midpoint;", "division by zero");
+    case("coord x; L = dot(x)^2 - sin(x / («t» - t)); discretize midpoint;", "division by zero");
+    // Zero but for rounding.
+    case("coord x; L = dot(x)^2 - exp(1 / («ln»(2) + ln(3) - ln(6))) * x; discretize midpoint;", "division by zero");
+    case("coord x; L = dot(x)^2 - x^2 / («sqrt»(2) * sqrt(3) - sqrt(6)); discretize midpoint;", "division by zero");
+    let by_rule = |divisor: &str| {
+        let ld = format!("h * L(t0, q0, (q1 - q0) / ({divisor}))");
+        format!("coord x; L = dot(x)^2 - x^2; discretize {{ Ld = {ld}; }}")
+    };
+    case(&by_rule("«h» - h"), "division by zero");
+    case(&by_rule("«t1» - t0 - h"), "division by zero");
+    assert_eq!(errors(&format!("struct System {{ {} }}", by_rule("t1 - t0"))), []);
     case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "this expression has no value");
     case("const a = «t»; coord x; L = dot(x)^2; discretize midpoint;", "`a` is not a constant");
     case("coord x; L = dot(x)^2 * «2x»; discretize midpoint;", "the number `2` runs into `x`\nhelp: write `2 * x`");
@@ -135,8 +167,8 @@ fn clauses() {
         &format!("coord x; L = dot(x)^2; discretize {{ {written} }}«,» midpoint;"),
         "a rule that is written out stands in no",
     );
-    case("coord x; L = dot(x)^2; discretize midpoint, «;»", "expected a name");
-    case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected an operator or `;`");
+    case("coord x; L = dot(x)^2; discretize midpoint, «,»;", "expected a name");
+    case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected `,` or `;`");
     case("coord x; L = dot(x)^2; force «y» = 1; discretize midpoint;", "a force on `y`, which is not a coordinate");
     case("coord x; L = dot(x)^2; force x = 1; force «x» = 2; discretize midpoint;", "a second force on `x`");
     case(&format!("«parm» a = 1; {REST}"), "unknown clause `parm`\nhelp: did you mean `param`?");
@@ -144,10 +176,143 @@ fn clauses() {
     case(&format!("param a «1»; {REST}"), "expected `=`");
     case(&format!("param «1» = 1; {REST}"), "expected a name");
     case(&format!("param «r#type» = 1; {REST}"), "the name `r#type` is reserved");
-    case("coord x; L = dot(x)^2 «x»; discretize midpoint;", "expected an operator or `;`");
+    case("coord x; L = dot(x)^2 «,» 1; discretize midpoint;", "expected an operator or `;`");
     case("coord x; L = dot(x)^2 * «;» discretize midpoint;", "expected a number, a name or `(`");
-    case("coord x; L = dot(x)^2 * (x «x»); discretize midpoint;", "expected an operator or `)`");
-    case("coord x; L = dot(x)^2 * hypot(x «x»); discretize midpoint;", "expected an operator, `,` or `)`");
+    case("coord x; L = dot(x)^2 * (x«,» x); discretize midpoint;", "expected an operator or `)`");
+    case("coord x; L = dot(x)^2 * hypot(x «;» x); discretize midpoint;", "expected an operator, `,` or `)`");
+}
+
+/// Of Rust, of other languages and of paper.
+#[test]
+fn habits() {
+    let lagrangian =
+        |summand: &str| format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;");
+    let says = |summand: &str, message: &str| case(&lagrangian(summand), message);
+    says("x.«sin»()", "`.sin(…)`: numbers have no methods\nhelp: write it as a function, `sin(…)`");
+    says("2.0.«sqrt»()", "`.sqrt(…)`: numbers have no methods");
+    says("(x + 1).«powi»(2)", "`.powi(…)`: numbers have no methods\nhelp: write `a^b`");
+    says("x.«max»(1)", "`.max(…)`: numbers have no methods\nhelp: write `(a + b + abs(a - b)) / 2` for the larger");
+    says("x«.»y", "expected an operator or `;`");
+    says("x «*»* 2", "`**` is no operator\nhelp: write `x^2`");
+    says("x «as»  f64", "numbers need no conversion\nhelp: leave `as` out");
+    says("«1.0f64» * x", "the number `1.0` has the type `f64`\nhelp: write `1.0`: numbers are exact");
+    says("«2_i32» * x", "the number `2` has the type `i32`\nhelp: write `2`");
+    says("«2usize» * x", "the number `2` has the type `usize`\nhelp: write `2`");
+    says("1.«e» - 3 * x", "a number has digits on both sides of its point\nhelp: write `1.0e-3`");
+    says("1.«e3» * x", "a number has digits on both sides of its point\nhelp: write `1.0e3`");
+    says("«.»5 * x", "a number has digits on both sides of its point\nhelp: write `0.5`");
+    says(
+        "«if» x { 1 } else { 2 }",
+        "an expression has no conditions\nhelp: a formula holds everywhere: write `abs(a)`",
+    );
+    says("«|»x|", "bars are no absolute value\nhelp: write `abs(x)`");
+    says("2«|»x|", "bars are no absolute value\nhelp: write `abs(x)`");
+    says("x«'»x", "a prime is no derivative\nhelp: write `dot(x)`");
+    says("x«':'»", "a prime is no derivative\nhelp: write `dot(x)`");
+    says("f64«:»:consts::PI", "names have no paths\nhelp: write names alone");
+    says("dot(x)«[»0]", "an index stands behind a name only\nhelp: write `dot(q[0])`");
+    says("2 «x»", "an operator is missing between `2` and `x`\nhelp: write `2 * x` for a product; units are not");
+    says("m «g»", "an operator is missing between `m` and `g`\nhelp: write `m * g` for a product");
+    says("(m «g»)", "an operator is missing between `m` and `g`");
+    says("x^2 «(»x + 1)", "an operator is missing between `2` and `(…)`\nhelp: write `2 * (…)` for a product");
+    says("sin(x) «cos»(x)", "an operator is missing between `(…)` and `cos`\nhelp: write `(…) * cos` for a product");
+    says("sin «x»", "`sin` is a function\nhelp: write its argument in parentheses: `sin(x)`");
+    says("«sin»^2(x)", "`sin` is a function\nhelp: write its argument: `sin(…)`; a power stands behind it, `sin(…)^2`");
+    says("x^«1»/2", "`a^1/b` is `(a^1) / b`\nhelp: write `a^(1/b)` for a root");
+    says("x^«-»1/2", "`a^-1/b` is `(a^-1) / b`\nhelp: write `a^(-1/b)` for a root");
+    says("«xdot»", "unknown name `xdot`\nhelp: write `dot(x)`, the velocity of `x`");
+    for name in ["x_dot", "dotx", "dot_x", "vx", "v_x"] {
+        says(&format!("«{name}»"), &format!("unknown name `{name}`\nhelp: write `dot(x)`"));
+    }
+    says("«xddot»", "an expression cannot depend on the acceleration `xddot`");
+    says("«ddot»(x)", "an expression cannot depend on the acceleration `ddot(…)`");
+    case(
+        "coord q[2]; L = dot(q[0])^2 + «q_dot»[1]^2; discretize midpoint;",
+        "unknown name `q_dot`\nhelp: write `dot(q[…])`, the velocity of `q[…]`",
+    );
+    says("«π»", "unknown name `π`\nhelp: write `pi`");
+    says("«e»^x", "unknown name `e`\nhelp: write `exp(x)` for e^x");
+    says("«time»", "unknown name `time`\nhelp: write `t`");
+    says("«lambda» * x", "unknown name `lambda`\nhelp: the language has no constraints: choose coordinates");
+    for (function, help) in [
+        ("max", "write `(a + b + abs(a - b)) / 2` for the larger"),
+        ("min", "write `(a + b - abs(a - b)) / 2` for the smaller"),
+        ("log", "write `ln(a)` for the natural logarithm"),
+        ("arctan", "write `atan(a)`"),
+        ("asinh", "write `ln(a + sqrt(a^2 + 1))`"),
+        ("cbrt", "write `a^(1/3)`"),
+        ("diff", "write `dot(a)` for a derivative by time"),
+    ] {
+        says(&format!("«{function}»(x, 1)"), &format!("unknown function `{function}`\nhelp: {help}"));
+    }
+
+    let clause = |clause: &str, message: &str| case(&format!("{clause} {REST}"), message);
+    clause("param m«:» f64 = 1.0;", "types are not written\nhelp: write `param m = 1.0;`");
+    clause("coord y«:» f64;", "types are not written");
+    clause("param «m»;", "`m` has no value\nhelp: write `m = 1.0`: a `param` has a default");
+    clause("param a = 1, «m»;", "`m` has no value");
+    clause("param «m»", "`m` has no value");
+    clause("coord y «=» 1;", "a coordinate is declared without a value\nhelp: write `coord x;`: where a run starts");
+    clause("force «=» x;", "a force on no coordinate\nhelp: write the coordinate that it acts on: `force x = …;`");
+    clause("force«(»x) = x;", "a force on no coordinate");
+    clause(
+        "param g = 9.81 «m»/s^2;",
+        "an operator is missing between `9.81` and `m`\nhelp: write `9.81 * m` for a product; units",
+    );
+    clause(
+        "param g = «9.81m»/s^2;",
+        "the number `9.81` runs into `m`\nhelp: write `9.81 * m` for a product; units are not",
+    );
+    clause(
+        "«constraint» x^2 + y^2 = 1;",
+        "unknown clause `constraint`\nhelp: the language has no constraints: choose coord",
+    );
+    clause("«for» i in 0..3 {};", "unknown clause `for`\nhelp: write `force q[i in 0..8] = …;`");
+    clause("«parameter» m = 1;", "unknown clause `parameter`\nhelp: write `param a = 1.0;`");
+    clause("«T» = dot(x)^2 / 2;", "unknown clause `T`\nhelp: write `let T = …;` to name a part");
+    case(
+        "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1); discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint; the language has no constr",
+    );
+}
+
+#[test]
+fn a_missing_semicolon_is_told_where_it_belongs() {
+    for (body, after) in [
+        ("coord «x» L = dot(x)^2; discretize midpoint;", "x"),
+        ("coord x; L = dot(x)^«2» discretize midpoint;", "2"),
+        ("const a = 1, b = «2» coord x; L = dot(x)^2; discretize midpoint;", "2"),
+        ("coord x; let a = (1 + x«)» let b = 2; L = dot(x)^2; discretize midpoint;", "(…)"),
+        ("coord x; let a = «1» L = dot(x)^2; discretize midpoint;", "1"),
+        ("coord x; L = dot(x)^2; discretize «midpoint»", "midpoint"),
+        ("coord x; L = dot(x)^2; discretize { Ld = h * L(t0, q0, (q1 - q0)/h) * «1» }", "1"),
+    ] {
+        case(body, &format!("`;` is missing behind `{after}`\nhelp: every clause ends with `;`"));
+    }
+    // The clause behind is read.
+    let found = errors("struct System { coord x L = 1 +; param a = 1 discretize some thing; }");
+    let said: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
+    assert_eq!(
+        said,
+        [
+            "`;` is missing behind `x`",
+            "expected a number, a name or `(`",
+            "`;` is missing behind `1`",
+            "expected `,` or `;`"
+        ]
+    );
+}
+
+#[test]
+fn a_comma_may_end_every_list() {
+    let body = "const a = 1, b = 2,; param m = 1, k = 2,; coord x, q[3],; let c = a, e[i in 0..3] = q[i],; \
+        L = m * dot(x)^2 + sum(i in 0..3, dot(q[i],)^2,) - k * hypot(x, e[0],); force x = b * c, q[0] = 1,; \
+        discretize midpoint, trapezoidal,; check { x = 1, q[0] = 2,; h = 1, }";
+    assert_eq!(errors(&format!("struct System {{ {body} }}")), []);
+    let rule = "coord x; L = dot(x)^2; discretize { Ld = h * L(t0, q0, (q1 - q0)/h,); }";
+    assert_eq!(errors(&format!("struct System {{ {rule} }}")), []);
+    case("param «,»; coord x; L = dot(x)^2; discretize midpoint;", "expected a name");
+    case("coord x,«,» y; L = dot(x)^2; discretize midpoint;", "expected a name");
 }
 
 #[test]
@@ -161,7 +326,7 @@ fn arrays() {
     case("coord q[«1.5»]; L = 1; discretize midpoint;", "this has to be a constant integer");
     case("coord q[«pi»]; L = 1; discretize midpoint;", "this has to be a constant integer");
     case("coord q[«M»]; L = 1; discretize midpoint;", "unknown name `M`");
-    case("coord q[2 «2»]; L = 1; discretize midpoint;", "expected an operator or `]`");
+    case("coord q[2«,» 2]; L = 1; discretize midpoint;", "expected an operator or `]`");
     case(&system("let e[i in 0..N] = q[«i» + 1] - q[i];"), "`q[4]` is out of range 0..4\nhelp: the indices are 0 to 3");
     case(&system("let e[i in 1..N] = q[i]; let d = e[«0»];"), "`e[0]` is out of range 1..4");
     case(&system("let e = q[«-»1];"), "`q[-1]` is out of range 0..4");
@@ -170,7 +335,7 @@ fn arrays() {
     case(&system("let e = dot(«q»);"), "`q` is an array");
     case(&system("let e = «x»[0];"), "`x` is not an array");
     case(&system("let e = «N»[0];"), "`N` is not an array");
-    case(&system("let e = dot(«x»[0]);"), "`dot(x)`: `x` is not a coordinate");
+    case(&system("let e = dot(«x»[0]);"), "`x` is not an array");
     case(&system("let e = «p»[0];"), "unknown name `p`");
     case(&system("let e[«0»] = 1;"), "expected a range");
     case(&system("let e[i in 3..«1»] = 1;"), "the range 3..1 ends before it begins");
@@ -179,7 +344,8 @@ fn arrays() {
     case(&system("let e = sum(i in 0..2, sum(«i» in 0..2, 1));"), "the name `i` is declared twice");
     case(&system("let e = sum(i in 0..2, i) + «i»;"), "unknown name `i`");
     case(&system("let e = sum(«0»..2, i);"), "expected a range");
-    case(&system("let e = sum(i in 0«.».=2, i);"), "expected `..` and the end");
+    case(&system("let e = sum(i in 0«.».=2, i);"), "a range stops before its end\nhelp: write `0..N + 1`");
+    case(&system("let e = sum(i in 0«,» 2, i);"), "expected `..` and the end");
     case(&system("let e = sum(i in 0..2 «i»);"), "expected `,` and what is summed");
     case(&system("let e = «sum»;"), "`sum` is a function");
     case(&system("let e = sum(i in 0..1000000000, «1»);"), "the system grows over 75000 terms");
@@ -241,6 +407,11 @@ fn rules() {
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(missing[0].1.starts_with("the rule has no line `gd_plus`\nhelp: the system has a force"), "{missing:?}");
     // The work of the force follows from what `Ld` takes of `L`: nothing.
+    // An `Ld` that is wrong says nothing about them.
+    for (wrong, said) in [("Ld = «y» * L(t0, q0, q1);", "unknown name `y`"), ("Ld = «q0»;", "a number is needed here")]
+    {
+        case(&system(wrong), said);
+    }
     let missing = errors(&format!("struct System {{ {} }}", system("Ld = (q1 - q0) * (q1 - q0) / (2 * h);")));
     assert_eq!(missing.len(), 4, "{missing:?}");
 }
@@ -277,7 +448,9 @@ fn checks() {
     case(&system("check { x = «exp»(1000); h = 1; }"), "the value of `x` is not finite");
     case(&system("check { x = 1 / «0»; h = 1; }"), "division by zero");
     case(&system("check { h = «x»; }"), "`h` is not a constant");
-    case(&system("check { x = 1 «y» = 2; h = 1; }"), "expected an operator, `,` or `;`");
+    case(&system("check { x = 1 «dot»(x) = 2; h = 1; }"), "an operator is missing between `1` and `dot`");
+    case(&system("check { x = «1» y = 2; h = 1; }"), "`;` is missing behind `1`");
+    case(&system("check { x = 1 «{»} h = 1; }"), "expected an operator, `,` or `;`");
     case(&system("check «;»"), "expected `{` and a place");
     let two = errors(&format!("struct System {{ {} }}", system("check { y = 1; z = 2; }")));
     let said: Vec<&str> = two.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
@@ -293,11 +466,28 @@ fn several_mistakes_are_reported_at_once() {
     let wanted = [
         "the name `t` is reserved",
         "unknown name `a`",
+        "unknown name `b`",
         "unknown name `c`",
         "a force on `y`, which is not a coordinate",
         "unknown rule `some`",
     ];
     assert_eq!(said, wanted);
+}
+
+#[test]
+fn every_unknown_name_of_an_expression_is_told() {
+    let text = "struct System { param mass = 1; coord x; L = mas * dot(y)^2 - k * hypot(x, l[m]) / mas + sum(i in 0..n, i * z); \
+        force x = a + sin(b)^c - dot(d * x); discretize { Ld = h * L(e, q0, (q1 - u)/h); } check { x = v + w; h = 1; } }";
+    let found = errors(text);
+    let tokens: Vec<&str> = found.iter().map(|(token, _)| token.as_str()).collect();
+    assert_eq!(tokens, ["mas", "y", "k", "l", "m", "n", "a", "b", "c", "d", "e", "u", "v", "w"]);
+    for (token, message) in &found {
+        let help = if token == "mas" { "did you mean `mass`?" } else { "declare it with" };
+        assert!(message.starts_with(&format!("unknown name `{token}`\nhelp: ")), "{message}");
+        assert!(token != "mas" || message.ends_with(help), "{message}");
+    }
+    // In a sum those of its first term, once.
+    case("coord x; L = sum(i in 0..5, i * «y» * dot(x)^2); discretize midpoint;", "unknown name `y`");
 }
 
 #[test]
@@ -479,6 +669,22 @@ fn coefficients_are_numbers() {
     let tokens = "struct System { coord x; L = dot(x)^1e308; discretize midpoint; }".parse().expect("tokens");
     let said = vi_codegen::expand(tokens).to_string();
     assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{said}");
+}
+
+/// Numbers of many digits are short in messages and in documentation.
+#[test]
+fn long_numbers_are_short_in_words() {
+    case(
+        "coord x; L = dot(x)^2 * dot(«1e150»); discretize midpoint;",
+        "`dot(1e150)`: `1e150` does not change with time",
+    );
+    let text = "struct System { param k = 1e150, c = 0.1e-200; coord x; L = dot(x)^2 - k * 1e150 * x^2 - c * x^4; discretize midpoint; }";
+    let said = vi_codegen::expand(text.parse().expect("tokens")).to_string();
+    let words: Vec<&str> = said.split('"').skip(1).step_by(2).collect();
+    for part in ["Parameter `k`, 1e150 by default.", "Parameter `c`, 1e-201 by default.", "1e150*k*x^2"] {
+        assert!(words.iter().any(|text| text.contains(part)), "{part}: {words:?}");
+    }
+    assert!(!words.iter().any(|text| text.contains(&"0".repeat(20))), "{words:?}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Plain text.
 //!
 //! In: an expression and a name for each symbol. Out: text as a person writes it, `m*v^2/2 - k*x^2/2`, with no parentheses
-//! that are not needed, subtraction and division as such, and `sqrt`. At most [`MAX_CHARACTERS`], or fewer, then `…`: the text of a
+//! that are not needed, subtraction and division as such, and `sqrt`; `1e150` for a number of many digits. At most [`MAX_CHARACTERS`], or fewer, then `…`: the text of a
 //! shared expression can be exponentially longer than the expression.
 
 use std::hash::Hash;
@@ -13,6 +13,9 @@ use crate::{Expr, Node, Pool, Rational};
 
 /// Longest text, in characters.
 pub const MAX_CHARACTERS: usize = 100_000;
+
+/// Digits of the longest number that is written out in any case.
+const DIGITS: u32 = 17;
 
 /// How strongly an expression holds together.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -144,12 +147,19 @@ fn write_multiple(coefficient: &Rational, factors: &[(Expr, Rational)], pieces: 
     let above = factors.iter().filter(|(_, exponent)| exponent.is_positive());
     let below = factors.iter().filter(|(_, exponent)| exponent.is_negative());
     let below: Vec<_> = below.map(|(base, exponent)| (*base, -exponent)).collect();
-    let numerator = write_factors(coefficient.numer(), above.map(|(base, e)| (*base, e.clone())), pieces);
-    if below.is_empty() && coefficient.denom().is_one() {
+    let above = above.map(|(base, exponent)| (*base, exponent.clone()));
+    let integer = |number: &BigInt| scientific(&number.clone().into()).unwrap_or_else(|| number.to_string());
+    let written = |number: &BigInt| (!number.is_one()).then(|| integer(number));
+    let (number, divisor) = match scientific(coefficient) {
+        Some(short) => (Some(short), None),
+        None => (written(coefficient.numer()), written(coefficient.denom())),
+    };
+    let numerator = write_factors(number, above, pieces);
+    if below.is_empty() && divisor.is_none() {
         return numerator;
     }
     let mut denominator = Vec::new();
-    if write_factors(coefficient.denom(), below, &mut denominator) > Binding::Product {
+    if write_factors(divisor, below, &mut denominator) > Binding::Product {
         pieces.push(Piece::Text("/"));
         pieces.extend(denominator);
     } else {
@@ -160,17 +170,46 @@ fn write_multiple(coefficient: &Rational, factors: &[(Expr, Rational)], pieces: 
     Binding::Product
 }
 
-/// Number and powers with positive exponents, joined by `*`; the number 1 only if it is alone.
+/// `1.5e150` of a number with more than [`DIGITS`] digits above or below, where that is exact and has no more.
+fn scientific(number: &Rational) -> Option<String> {
+    let long = BigInt::from(10).pow(DIGITS);
+    if number.numer().abs() < long && *number.denom() < long {
+        return None;
+    }
+    // number = mantissa/10^places, which needs a denominator of twos and fives.
+    let twos = u32::try_from(number.denom().trailing_zeros()?).ok()?;
+    let mut rest = number.denom() >> twos;
+    let mut fives = 0;
+    while !rest.is_one() {
+        if !(&rest % BigInt::from(5)).is_zero() {
+            return None;
+        }
+        rest /= 5;
+        fives += 1;
+    }
+    let places = twos.max(fives);
+    let mantissa = (number.numer() * BigInt::from(10).pow(places) / number.denom()).to_string();
+    let digits = mantissa.trim_end_matches('0');
+    if digits.len() > usize::try_from(DIGITS).ok()? {
+        return None;
+    }
+    let exponent = i64::try_from(mantissa.len()).ok()? - 1 - i64::from(places);
+    let (first, others) = digits.split_at(1);
+    let point = if others.is_empty() { "" } else { "." };
+    Some(format!("{first}{point}{others}e{exponent}"))
+}
+
+/// Number and powers with positive exponents, joined by `*`; 1 where there are none.
 fn write_factors(
-    number: &BigInt,
+    number: Option<String>,
     factors: impl IntoIterator<Item = (Expr, Rational)>,
     pieces: &mut Vec<Piece>,
 ) -> Binding {
     let start = pieces.len();
     let mut binding = Binding::Atom;
     let mut count = 0;
-    if !number.is_one() {
-        pieces.push(Piece::Owned(number.to_string()));
+    if let Some(number) = number {
+        pieces.push(Piece::Owned(number));
         count += 1;
     }
     for (base, exponent) in factors {
@@ -196,7 +235,11 @@ fn write_power(base: Expr, exponent: &Rational, pieces: &mut Vec<Piece>) -> Bind
         return Binding::Atom;
     }
     pieces.push(Piece::Inside(base, Binding::Atom));
-    let exponent = if exponent.is_integer() { format!("^{exponent}") } else { format!("^({exponent})") };
-    pieces.push(Piece::Owned(exponent));
+    let exponent = match scientific(exponent) {
+        Some(short) => short,
+        None if exponent.is_integer() => exponent.to_string(),
+        None => format!("({exponent})"),
+    };
+    pieces.push(Piece::Owned(format!("^{exponent}")));
     Binding::Power
 }

@@ -16,7 +16,7 @@ pub(super) fn structure(source: &Source, further: &[Source]) -> TokenStream {
     let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
     let fields = model.parameters.iter().map(|parameter| {
         let (name, attributes) = (&parameter.name, &parameter.attributes);
-        let default = format!(" Parameter `{name}`, {} by default.", parameter.default);
+        let default = format!(" Parameter `{name}`, {} by default.", parameter.default_text());
         let pause = pause(attributes);
         quote!(#(#attributes)* #pause #[doc = #default] pub #name: T)
     });

@@ -29,8 +29,24 @@ pub(super) fn check(pool: &mut Pool<Symbol>, coordinates: &[Coordinate], lagrang
         return Ok(());
     }
     let missing = empty.map(|row| coordinates[row].text());
+    let multiplies = empty.is_some_and(|row| is_multiplier(pool, lagrangian, row));
     let span = empty.map_or(span, |row| coordinates[row].name.span());
-    Err(error(span, &Message::SingularMass { missing }))
+    Err(error(span, &Message::SingularMass { missing, multiplies }))
+}
+
+/// Whether a coordinate is one of Lagrange's multipliers: L is λ g(t, q) and terms without λ.
+fn is_multiplier(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> bool {
+    let multiplier = Symbol::Continuous(Variable::Coordinate(row));
+    let velocity = Symbol::Continuous(Variable::Velocity(row));
+    let constraint = pool.derivative(lagrangian, &mut |pool, symbol| {
+        if *symbol == multiplier { pool.one() } else { pool.zero() }
+    });
+    let of_state = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Coordinate(_)));
+    let is_itself = |symbol: &Symbol| *symbol == multiplier;
+    let moves = |symbol: &Symbol| *symbol == velocity;
+    pool.depends_on(constraint, &of_state)
+        && !pool.depends_on(constraint, &is_itself)
+        && !pool.depends_on(lagrangian, &moves)
 }
 
 /// M, row by row.

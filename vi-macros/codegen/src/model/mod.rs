@@ -22,6 +22,9 @@ use crate::symbol::Symbol;
 use proc_macro2::Ident;
 use vi_expr::Expr;
 
+/// Characters of a number in words that is written without a power of ten.
+const CHARACTERS: usize = 20;
+
 /// A checked system.
 pub struct Model {
     /// Attributes and doc comments of the struct.
@@ -77,6 +80,15 @@ pub struct Parameter {
     pub name: Ident,
     /// Its value in `Default`.
     pub default: f64,
+}
+
+impl Parameter {
+    /// Its default in words, `0.04` or `1e150`.
+    #[must_use]
+    pub fn default_text(&self) -> String {
+        let plain = self.default.to_string();
+        if plain.len() > CHARACTERS { format!("{:e}", self.default) } else { plain }
+    }
 }
 
 impl Model {

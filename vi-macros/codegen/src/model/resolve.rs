@@ -5,8 +5,9 @@
 
 use super::point::Point;
 use super::scope::{Meaning, Scope};
+use crate::habits::Habit;
 use crate::limits::bounded;
-use crate::messages::{Message, error, nearest};
+use crate::messages::{Errors, Message, error, nearest};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator, Range};
 use num_traits::ToPrimitive;
@@ -16,6 +17,9 @@ use vi_expr::{Expr, Function, Pool, Rational};
 
 /// Work of reading one part of an expression.
 const READING: usize = 8;
+
+/// Characters of a number in a message.
+const CHARACTERS: usize = 30;
 
 /// What is done with one value of an index.
 type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
@@ -123,9 +127,8 @@ impl Scope {
             }
             Kind::Negative(operand) => self.value(pool, operand)?.map(|operand| pool.neg(operand)),
             Kind::Power(base, exponent) => {
-                let base = self.expression(pool, base)?;
-                let exponent = self.expression(pool, exponent)?;
-                Value::Number(pool.call(Function::Pow, &[base, exponent]))
+                let operands = self.each_of(pool, [&**base, exponent], Self::expression)?;
+                Value::Number(pool.call(Function::Pow, &operands))
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
         };
@@ -134,6 +137,27 @@ impl Scope {
             return Err(error(written.span, &Message::NoValue));
         }
         Ok(value)
+    }
+
+    /// What is made of each part of an expression, in order.
+    ///
+    /// # Errors
+    /// Those of all parts; of a system that is too large only the first.
+    fn each_of<P, Q>(
+        &mut self,
+        pool: &mut Pool<Symbol>,
+        parts: impl IntoIterator<Item = P>,
+        make: fn(&mut Self, &mut Pool<Symbol>, P) -> Result<Q>,
+    ) -> Result<Vec<Q>> {
+        let mut errors = Errors::default();
+        let mut made = Vec::new();
+        for part in parts {
+            made.extend(errors.keep(make(self, pool, part)));
+            if !errors.is_empty() && bounded(pool).is_err() {
+                break;
+            }
+        }
+        errors.finish(made)
     }
 
     /// What is made of each value of an index, in order.
@@ -167,28 +191,32 @@ impl Scope {
     }
 
     fn chain(&mut self, pool: &mut Pool<Symbol>, first: &Expression, rest: &[(Operator, Expression)]) -> Result<Value> {
-        let mut operands = vec![(self.value(pool, first)?, first.span)];
-        let mut is_sum = true;
-        for (operator, written) in rest {
-            let operand = self.value(pool, written)?;
-            let operand = match operator {
-                Operator::Plus | Operator::Times => operand,
-                Operator::Minus => operand.map(|operand| pool.neg(operand)),
-                Operator::Over => {
-                    let divisor = operand.number(written.span)?;
-                    if pool.is_zero(divisor) {
-                        return Err(error(written.span, &Message::DivisionByZero));
-                    }
-                    Value::Number(pool.power(divisor, &Rational::from_integer((-1).into())))
-                }
-            };
-            operands.push((operand, written.span));
-            is_sum = matches!(operator, Operator::Plus | Operator::Minus);
-        }
+        let is_sum = rest.iter().all(|(operator, _)| matches!(operator, Operator::Plus | Operator::Minus));
+        let leading = if is_sum { Operator::Plus } else { Operator::Times };
+        let rest = rest.iter().map(|(operator, written)| (*operator, written));
+        let operands = self.each_of(pool, [(leading, first)].into_iter().chain(rest), Self::operand)?;
         if is_sum {
             return Value::sum(pool, operands);
         }
         Ok(Value::product(pool, operands.into_iter().map(|(operand, _)| operand).collect()))
+    }
+
+    /// A term or factor with its place: the negative of one after `-`, the inverse of one after `/`.
+    fn operand(&mut self, pool: &mut Pool<Symbol>, of: (Operator, &Expression)) -> Result<(Value, Span)> {
+        let (operator, written) = of;
+        let operand = self.value(pool, written)?;
+        let operand = match operator {
+            Operator::Plus | Operator::Times => operand,
+            Operator::Minus => operand.map(|operand| pool.neg(operand)),
+            Operator::Over => {
+                let divisor = operand.number(written.span)?;
+                if is_nothing(pool, divisor) {
+                    return Err(error(written.span, &Message::DivisionByZero));
+                }
+                Value::Number(pool.power(divisor, &Rational::from_integer((-1).into())))
+            }
+        };
+        Ok((operand, written.span))
     }
 
     fn name(&self, pool: &mut Pool<Symbol>, name: &Ident) -> Result<Value> {
@@ -219,8 +247,14 @@ impl Scope {
         if let Some(coordinate) = self.coordinate_entry(pool, name, index)? {
             return Ok(pool.symbol(Symbol::Continuous(Variable::Coordinate(coordinate))));
         }
-        let at = self.integer(pool, index)?;
         let text = name.to_string();
+        if self.meaning(&text).is_none() {
+            let mut errors = Errors::default();
+            errors.at(name.span(), &self.unknown(pool, text));
+            errors.keep(self.integer(pool, index));
+            return errors.finish(pool.one());
+        }
+        let at = self.integer(pool, index)?;
         let of_coordinates: Vec<Expr>;
         let (first, entries) = match self.meaning(&text) {
             Some(Meaning::Array { first, entries }) => (*first, entries),
@@ -280,6 +314,9 @@ impl Scope {
         if acceleration.is_some_and(|stem| self.is_coordinate(stem.trim_end_matches('_'))) {
             return Message::Acceleration { name };
         }
+        if let Some(coordinate) = self.coordinate_of_velocity(&name) {
+            return Message::Habit(Habit::VelocityByName { name, coordinate });
+        }
         let near = self.near(pool, &name);
         Message::Unknown { name, near }
     }
@@ -287,7 +324,7 @@ impl Scope {
     fn call(&mut self, pool: &mut Pool<Symbol>, function: &Ident, arguments: &[Expression]) -> Result<Value> {
         let name = function.to_string();
         match self.meaning(&name).cloned() {
-            Some(Meaning::Dot) => return self.velocity(pool, function.span(), arguments).map(Value::Number),
+            Some(Meaning::Dot) => return self.rate(pool, function.span(), arguments).map(Value::Number),
             Some(Meaning::Lagrangian) => {
                 let point = self.arguments_of_point(pool, function, arguments)?;
                 return Ok(Value::Number(pool.symbol(at_point(Quantity::Lagrangian, point))));
@@ -301,13 +338,16 @@ impl Scope {
         }
         let known = Function::from_name(&name);
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
+            if name == "ddot" {
+                return Err(error(function.span(), &Message::Acceleration { name: "ddot(…)".to_owned() }));
+            }
             let near = nearest(&name, self.functions());
             return Err(error(function.span(), &Message::UnknownFunction { name, near }));
         };
         if arguments.len() != takes {
             return Err(error(function.span(), &Message::Arity { name, takes, given: arguments.len() }));
         }
-        let values = arguments.iter().map(|each| self.expression(pool, each)).collect::<Result<Vec<_>>>()?;
+        let values = self.each_of(pool, arguments, Self::expression)?;
         Ok(Value::Number(match known {
             Some(function) => pool.call(function, &values),
             None => pool.power(values[0], &Rational::new(1.into(), 2.into())),
@@ -321,14 +361,15 @@ impl Scope {
         function: &Ident,
         arguments: &[Expression],
     ) -> Result<usize> {
-        let [time, coordinates, velocities] = arguments else {
+        let values = self.each_of(pool, arguments, Self::value)?;
+        let [time, coordinates, velocities] = <[Value; 3]>::try_from(values).map_err(|values| {
             let name = function.to_string();
-            return Err(error(function.span(), &Message::Arity { name, takes: 3, given: arguments.len() }));
-        };
+            error(function.span(), &Message::Arity { name, takes: 3, given: values.len() })
+        })?;
         let point = Point {
-            time: self.expression(pool, time)?,
-            coordinates: self.value(pool, coordinates)?.vector(coordinates.span)?,
-            velocities: self.value(pool, velocities)?.vector(velocities.span)?,
+            time: time.number(arguments[0].span)?,
+            coordinates: coordinates.vector(arguments[1].span)?,
+            velocities: velocities.vector(arguments[2].span)?,
         };
         let is_field = |symbol: &Symbol| matches!(symbol, Symbol::Field(_));
         if point.arguments().any(|(_, argument)| pool.depends_on(argument, &is_field)) {
@@ -337,35 +378,85 @@ impl Scope {
         Ok(self.point(point))
     }
 
-    fn velocity(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Expr> {
+    /// The derivative by time of what a written expression stands for: of a coordinate its velocity, of X(t, q)
+    ///
+    /// ```text
+    /// dot(X) = ∂X/∂t + Σ_i ∂X/∂q_i v_i
+    /// ```
+    fn rate(&mut self, pool: &mut Pool<Symbol>, span: Span, arguments: &[Expression]) -> Result<Expr> {
         let [argument] = arguments else {
             return Err(error(span, &Message::Arity { name: "dot".to_owned(), takes: 1, given: arguments.len() }));
         };
-        let coordinate = match &argument.kind {
-            Kind::Name(name) => match self.meaning(&name.to_string()) {
-                Some(Meaning::Coordinate(index)) => *index,
-                Some(Meaning::Wrong) => return Ok(pool.one()),
-                Some(Meaning::Coordinates { .. }) => {
-                    return Err(error(name.span(), &Message::ArrayWithoutIndex { name: name.to_string() }));
+        // An array is named by its entries, whatever its index, and other expressions not at all.
+        let (name, text) = match &argument.kind {
+            Kind::Name(name) => (Some(name), name.to_string()),
+            Kind::Entry(name, _) => (Some(name), format!("{name}[…]")),
+            _ => (None, "…".to_owned()),
+        };
+        match (&argument.kind, name.and_then(|name| self.meaning(&name.to_string()))) {
+            (_, Some(Meaning::Wrong)) => return Ok(pool.one()),
+            (Kind::Name(_), Some(Meaning::Coordinate(coordinate))) => {
+                return Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(*coordinate))));
+            }
+            (Kind::Entry(name, index), Some(Meaning::Coordinates { .. })) => {
+                if let Some(coordinate) = self.coordinate_entry(pool, name, index)? {
+                    return Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(coordinate))));
                 }
-                None => return Err(error(name.span(), &self.unknown(pool, name.to_string()))),
-                Some(_) => return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() })),
-            },
-            Kind::Entry(name, index) => match self.coordinate_entry(pool, name, index)? {
-                Some(coordinate) => coordinate,
-                None if self.meaning(&name.to_string()) == Some(&Meaning::Wrong) => return Ok(pool.one()),
-                None if self.meaning(&name.to_string()).is_some() => {
-                    return Err(error(name.span(), &Message::DotOfOther { name: name.to_string() }));
-                }
-                None => return Err(error(name.span(), &self.unknown(pool, name.to_string()))),
-            },
-            Kind::Call(inner, _) if inner == "dot" => {
+            }
+            (Kind::Call(inner, _), _) if inner == "dot" => {
                 return Err(error(span, &Message::Acceleration { name: "dot(dot(…))".to_owned() }));
             }
-            _ => return Err(error(argument.span, &Message::DotOfExpression)),
-        };
-        Ok(pool.symbol(Symbol::Continuous(Variable::Velocity(coordinate))))
+            (Kind::Number(number), _) => {
+                let number = pool.number(number.clone());
+                let name = pool.render_within(CHARACTERS, number, &|_| String::new());
+                return Err(error(argument.span, &Message::DotOfConstant { name }));
+            }
+            _ => {}
+        }
+        let value = self.expression(pool, argument)?;
+        if let Some(name) = name.filter(|name| self.is_constant(pool, &name.to_string())) {
+            return Err(error(name.span(), &Message::DotOfConstant { name: name.to_string() }));
+        }
+        if pool.depends_on(value, &|symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)))) {
+            return Err(error(argument.span, &Message::Acceleration { name: format!("dot({text})") }));
+        }
+        Ok(pool.derivative(value, &mut |pool, symbol| match symbol {
+            Symbol::Continuous(Variable::Time) => pool.one(),
+            Symbol::Continuous(Variable::Coordinate(index)) => {
+                pool.symbol(Symbol::Continuous(Variable::Velocity(*index)))
+            }
+            _ => pool.zero(),
+        }))
     }
+
+    /// Whether a name stands for numbers that neither time nor state changes.
+    fn is_constant(&self, pool: &Pool<Symbol>, name: &str) -> bool {
+        let changes = |expr: &Expr| pool.depends_on(*expr, &|symbol| matches!(symbol, Symbol::Continuous(_)));
+        match self.meaning(name) {
+            Some(Meaning::Pi) => true,
+            Some(Meaning::Number(value)) => !changes(value),
+            Some(Meaning::Array { entries, .. }) => !entries.iter().any(changes),
+            _ => false,
+        }
+    }
+}
+
+/// Whether a divisor is zero whatever the state: the number 0, numbers that cancel but for their rounding, as sqrt(2) sqrt(3) − sqrt(6), or
+/// zero by h = t1 − t0.
+fn is_nothing(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
+    if pool.is_zero(divisor) || pool.as_number(divisor).is_some() || pool.as_symbol(divisor).is_some() {
+        return pool.is_zero(divisor);
+    }
+    if pool.depends_on(divisor, &|symbol| *symbol == Symbol::T1) {
+        let start = pool.symbol(Symbol::T0);
+        let step = pool.symbol(Symbol::Step);
+        let end = pool.add(start, step);
+        let over_step = pool.substitute(divisor, &mut |_, symbol| (*symbol == Symbol::T1).then_some(end));
+        return pool.is_zero(over_step);
+    }
+    let is_constant = !pool.depends_on(divisor, &|_| true);
+    let values = if is_constant { pool.evaluate_rounded(&[divisor], &mut |_| f64::NAN) } else { Vec::new() };
+    values.first().is_some_and(|found| found.value.abs() <= found.error)
 }
 
 /// L or a component of f itself, at a point of the rule.

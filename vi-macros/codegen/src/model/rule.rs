@@ -142,7 +142,8 @@ fn resolve(pool: &mut Pool<Symbol>, scope: Scope, rule: &syntax::Rule, forced: b
     let is_lagrangian =
         |symbol: &Symbol| matches!(symbol, Symbol::Field(field) if field.quantity == Quantity::Lagrangian);
     let is_made_of_lagrangian = lines.pool.depends_on(ld, &is_lagrangian);
-    let is_needed = FORCES.into_iter().any(|name| lines.written(name).is_some()) || !is_made_of_lagrangian;
+    let is_wrong = !lines.errors.is_empty();
+    let is_needed = FORCES.into_iter().any(|name| lines.written(name).is_some()) || !is_made_of_lagrangian && !is_wrong;
     let [fd_minus, fd_plus, gd_minus, gd_plus] = FORCES;
     let forces = (forced && is_needed).then(|| DiscreteForces {
         fd_minus: lines.vector(fd_minus),

@@ -146,6 +146,18 @@ impl Scope {
         matches!(self.meaning(name), Some(Meaning::Coordinate(_) | Meaning::Coordinates { .. }))
     }
 
+    /// The coordinate whose velocity a name says: `x` of `xdot`, `x_dot`, `dot_x`, `v_x` and `vx`; `q[…]` of an array.
+    pub(super) fn coordinate_of_velocity(&self, name: &str) -> Option<String> {
+        let behind = ["_dot", "dot"].into_iter().filter_map(|ending| name.strip_suffix(ending));
+        let before = ["dot_", "dot", "v_", "v"].into_iter().filter_map(|beginning| name.strip_prefix(beginning));
+        let mut stems = behind.chain(before);
+        stems.find_map(|stem| match self.meaning(stem) {
+            Some(Meaning::Coordinate(_)) => Some(stem.to_owned()),
+            Some(Meaning::Coordinates { .. }) => Some(format!("{stem}[…]")),
+            _ => None,
+        })
+    }
+
     /// The declared name nearest to a misspelt one.
     pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
         self.near_of(pool, name, |known| self.meaning(known) != Some(&Meaning::OfState))

@@ -11,13 +11,16 @@
 //! atom    = number | name | name "[" sum "]" | name "(" sum { "," sum } ")" | "sum" "(" range "," sum ")" | "(" sum ")"
 //! range   = name "in" sum ".." sum
 //! ```
+//!
+//! A comma may stand behind the last one of a list. A power `a^1/2` is refused, since it is `(a^1)/2` and is never meant.
 
+use super::unfitting;
+use crate::habits::Habit;
 use crate::messages::{Message, error};
 use num_bigint::BigInt;
-use num_traits::{ToPrimitive, Zero};
+use num_traits::{One, ToPrimitive, Zero};
 use proc_macro2::{Ident, Literal, Span, TokenTree};
 use syn::parse::ParseStream;
-use syn::punctuated::Punctuated;
 use syn::{Result, Token};
 use vi_expr::Rational;
 
@@ -97,9 +100,13 @@ impl Expression {
             return Err(error(input.span(), &expected));
         };
         input.parse::<Token![in]>()?;
+        let start = input.cursor();
         let from = Self::sum(input, depth)?;
-        if !input.peek(Token![..]) || input.peek(Token![..=]) {
-            return Err(error(input.span(), &Message::Expected { what: "`..` and the end of the range" }));
+        if input.peek(Token![..=]) {
+            return Err(error(input.span(), &Message::Habit(Habit::InclusiveRange)));
+        }
+        if !input.peek(Token![..]) {
+            return Err(unfitting::operator(input, start, "`..` and the end of the range"));
         }
         input.parse::<Token![..]>()?;
         Ok(Range { index, from, to: Self::sum(input, depth)? })
@@ -119,7 +126,9 @@ impl Expression {
 
     fn product(input: ParseStream, depth: usize) -> Result<Self> {
         Self::chain(input, Self::unary, depth, |input| {
-            if input.peek(Token![*]) {
+            if input.peek(Token![*]) && input.peek2(Token![*]) {
+                Err(error(input.span(), &Message::Habit(Habit::DoubleStar)))
+            } else if input.peek(Token![*]) {
                 input.parse::<Token![*]>().map(|_| Some(Operator::Times))
             } else if input.peek(Token![/]) {
                 input.parse::<Token![/]>().map(|_| Some(Operator::Over))
@@ -158,11 +167,33 @@ impl Expression {
         }
         let base = Self::atom(input, depth)?;
         if input.peek(Token![^]) {
+            if let Kind::Name(name) = &base.kind
+                && unfitting::is_function(name)
+            {
+                return Err(error(name.span(), &Message::FunctionWithoutArguments { name: name.to_string() }));
+            }
             input.parse::<Token![^]>()?;
             let exponent = Self::unary(input, depth + 1)?;
+            if input.peek(Token![/]) && input.peek2(syn::LitInt) {
+                exponent.is_no_numerator()?;
+            }
             return Ok(Self { span, kind: Kind::Power(Box::new(base), Box::new(exponent)) });
         }
         Ok(base)
+    }
+
+    /// Refuses an exponent 1 or -1 over an integer: nobody writes `a^1/2` for half of a.
+    fn is_no_numerator(&self) -> Result<()> {
+        let (number, exponent) = match &self.kind {
+            Kind::Negative(positive) => (&positive.kind, "-1"),
+            other => (other, "1"),
+        };
+        match number {
+            Kind::Number(number) if number.is_one() => {
+                Err(error(self.span, &Message::Habit(Habit::PowerOverNumber { exponent })))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn atom(input: ParseStream, depth: usize) -> Result<Self> {
@@ -175,17 +206,15 @@ impl Expression {
         if input.peek(syn::token::Paren) {
             let inner;
             syn::parenthesized!(inner in input);
-            let expression = Self::sum(&inner, depth + 1)?;
-            return end(&inner, "an operator or `)`").map(|()| expression);
+            return Self::alone(&inner, depth, "an operator or `)`");
         }
         let Ok(name) = input.parse::<Ident>() else {
-            return Err(error(span, &Message::Expected { what: "a number, a name or `(`" }));
+            return Err(unfitting::operand(input));
         };
         if input.peek(syn::token::Bracket) {
             let inner;
             syn::bracketed!(inner in input);
-            let index = Self::sum(&inner, depth + 1)?;
-            end(&inner, "an operator or `]`")?;
+            let index = Self::alone(&inner, depth, "an operator or `]`")?;
             return Ok(Self { span, kind: Kind::Entry(name, Box::new(index)) });
         }
         if !input.peek(syn::token::Paren) {
@@ -199,31 +228,43 @@ impl Expression {
                 return Err(error(inner.span(), &Message::Expected { what: "`,` and what is summed" }));
             }
             inner.parse::<Token![,]>()?;
+            let start = inner.cursor();
             let summand = Self::sum(&inner, depth + 1)?;
-            end(&inner, "an operator or `)`")?;
+            if inner.peek(Token![,]) {
+                inner.parse::<Token![,]>()?;
+            }
+            if !inner.is_empty() {
+                return Err(unfitting::operator(&inner, start, "an operator or `)`"));
+            }
             return Ok(Self { span, kind: Kind::Sum(Box::new(range), Box::new(summand)) });
         }
-        let mut arguments = Punctuated::<Self, Token![,]>::new();
+        let arguments = Self::list(&inner, depth + 1, "an operator, `,` or `)`")?;
+        Ok(Self { span, kind: Kind::Call(name, arguments) })
+    }
+
+    /// The only expression between delimiters, whose end `what` names.
+    pub(super) fn alone(inner: ParseStream, depth: usize, what: &'static str) -> Result<Self> {
+        let start = inner.cursor();
+        let expression = Self::sum(inner, depth + 1)?;
+        if inner.is_empty() { Ok(expression) } else { Err(unfitting::operator(inner, start, what)) }
+    }
+
+    /// Expressions between delimiters, separated by commas; `what` names what goes on or ends them.
+    pub(super) fn list(inner: ParseStream, depth: usize, what: &'static str) -> Result<Vec<Self>> {
+        let mut expressions = Vec::new();
         while !inner.is_empty() {
-            arguments.push_value(Self::sum(&inner, depth + 1)?);
+            let start = inner.cursor();
+            expressions.push(Self::sum(inner, depth)?);
             if inner.is_empty() {
                 break;
             }
             if !inner.peek(Token![,]) {
-                return Err(error(inner.span(), &Message::Expected { what: "an operator, `,` or `)`" }));
+                return Err(unfitting::operator(inner, start, what));
             }
-            arguments.push_punct(inner.parse()?);
+            inner.parse::<Token![,]>()?;
         }
-        Ok(Self { span, kind: Kind::Call(name, arguments.into_iter().collect()) })
+        Ok(expressions)
     }
-}
-
-/// Nothing may be left in the parentheses.
-fn end(inner: ParseStream, what: &'static str) -> Result<()> {
-    if inner.is_empty() {
-        return Ok(());
-    }
-    Err(error(inner.span(), &Message::Expected { what }))
 }
 
 /// The exact value of a literal.
@@ -240,8 +281,7 @@ fn number(literal: &Literal) -> Result<Rational> {
     let text = text.replace('_', "");
     let (digits, suffix) = text.split_at(length(&text));
     if !suffix.is_empty() {
-        let (digits, suffix) = (digits.to_owned(), suffix.to_owned());
-        return Err(error(span, &Message::NumberSuffix { digits, suffix }));
+        return Err(error(span, &Message::Habit(Habit::of_suffix(digits, suffix))));
     }
     decimal(digits).ok_or_else(|| error(span, &Message::NumberRange))
 }
@@ -302,7 +342,6 @@ fn over_power_of_ten(mut number: BigInt, power: u32) -> Rational {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use num_traits::One;
 
     #[test]
     fn decimals_are_exact() {

@@ -5,6 +5,7 @@
 
 mod expression;
 pub mod parse;
+mod unfitting;
 
 pub use expression::{Expression, Kind, Operator, Range};
 use proc_macro2::{Ident, Span};

@@ -1,19 +1,23 @@
 //! Clauses.
 //!
 //! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
-//! its `;`, so that the next one is read too.
+//! its `;`, or up to the clause that begins where the `;` is missing, so that the next one is read too.
 
 use super::expression::DEPTH;
+use super::unfitting;
 use super::{Check, Coordinate, Definition, Discretization, Entry, Expression, Indices, Rule, System};
+use crate::habits::Habit;
 use crate::messages::{Errors, Message, error, nearest};
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use syn::buffer::Cursor;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::punctuated::Punctuated;
 use syn::{Attribute, Path, Result, Token, Visibility};
 
 /// The words that open a clause.
-const CLAUSES: [&str; 9] = ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
+pub(super) const CLAUSES: [&str; 9] =
+    ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
 
 /// Names of types that the emitted code uses without a path.
 const TYPES: [&str; 6] = ["T", "W", "bool", "f64", "str", "usize"];
@@ -26,6 +30,9 @@ const TOKENS: usize = 200_000;
 
 /// Letters that a name may have.
 const LETTERS: usize = 200;
+
+/// What an index or a length is followed by.
+const INSIDE_BRACKETS: &str = "an operator or `]`";
 
 /// Pairs of delimiters that an expression may stand in: those of the system, of a rule, of an index.
 const CLAUSE_DEPTH: usize = 3;
@@ -155,7 +162,9 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
     while !body.is_empty() {
         if let Err(found) = clause(&body, &mut system) {
             errors.add(found);
-            skip_clause(&body);
+            if !unfitting::begins_clause(&body) {
+                skip_clause(&body);
+            }
         }
     }
     if !input.is_empty() {
@@ -202,6 +211,7 @@ fn skip_clause(body: ParseStream) {
 
 fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     let attributes = input.call(Attribute::parse_outer)?;
+    let start = input.cursor();
     let Ok(word) = input.call(Ident::parse_any) else {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
@@ -211,8 +221,14 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     match word.to_string().as_str() {
         "const" => system.constants.extend(list(input, &mut |input| definition(input, &attributes))?),
         "param" => system.parameters.extend(list(input, &mut |input| definition(input, &attributes))?),
-        "coord" => system.coordinates.extend(list(input, &mut coordinate)?),
+        "coord" => {
+            system.coordinates.extend(list(input, &mut coordinate)?);
+            return end_of_names(input, start);
+        }
         "let" => system.lets.extend(list(input, &mut |input| indexed(input, &attributes))?),
+        "force" if input.peek(Token![=]) || input.peek(syn::token::Paren) => {
+            return Err(error(input.span(), &Message::Habit(Habit::ForceWithoutCoordinate)));
+        }
         "force" => system.forces.extend(list(input, &mut |input| indexed(input, &attributes))?),
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
         "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
@@ -228,7 +244,10 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             }
             return Ok(());
         }
-        "discretize" => system.discretizations.push(Discretization::Named(list(input, &mut rule_name)?)),
+        "discretize" => {
+            system.discretizations.push(Discretization::Named(list(input, &mut rule_name)?));
+            return end_of_names(input, start);
+        }
         "check" => {
             system.checks.push(check(word.span(), input)?);
             if input.peek(Token![;]) {
@@ -238,10 +257,11 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         }
         found => {
             let near = nearest(found, CLAUSES);
-            return Err(error(word.span(), &Message::UnknownClause { found: found.to_owned(), near }));
+            let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
+            return Err(error(word.span(), &Message::UnknownClause { found: found.to_owned(), near, is_defined }));
         }
     }
-    semicolon(input)
+    semicolon(input, start)
 }
 
 /// `midpoint`, in a list of rules
@@ -256,8 +276,9 @@ fn rule_name(input: ParseStream) -> Result<Ident> {
 fn rule_lines(input: ParseStream) -> Result<Rule> {
     let mut rule = Rule { span: input.span(), lines: Vec::new() };
     while !input.is_empty() {
+        let start = input.cursor();
         rule.lines.push(definition(input, &[])?);
-        semicolon(input)?;
+        semicolon(input, start)?;
     }
     Ok(rule)
 }
@@ -271,13 +292,12 @@ fn check(span: Span, input: ParseStream) -> Result<Check> {
     syn::braced!(inner in input);
     let mut entries = Vec::new();
     while !inner.is_empty() {
+        let start = inner.cursor();
         entries.push(entry(&inner)?);
-        if inner.peek(Token![,]) {
-            inner.parse::<Token![,]>()?;
-        } else if inner.peek(Token![;]) {
-            inner.parse::<Token![;]>()?;
-        } else if !inner.is_empty() {
-            return Err(error(inner.span(), &Message::Expected { what: "an operator, `,` or `;`" }));
+        let comma: Option<Token![,]> = inner.parse()?;
+        let semicolon: Option<Token![;]> = inner.parse()?;
+        if comma.is_none() && semicolon.is_none() && !inner.is_empty() {
+            return Err(unfitting::end_of_definition(&inner, start, "an operator, `,` or `;`"));
         }
     }
     Ok(Check { span, entries })
@@ -302,11 +322,14 @@ fn entry(input: ParseStream) -> Result<Entry> {
     Ok(Entry { velocity, definition: Definition { indices, ..value_of(name, input, Vec::new())? } })
 }
 
-/// One or more, separated by commas.
+/// One or more, separated by commas; the last one may have one too.
 fn list<P>(input: ParseStream, one: &mut dyn FnMut(ParseStream) -> Result<P>) -> Result<Vec<P>> {
     let mut found = vec![one(input)?];
     while input.peek(Token![,]) {
         input.parse::<Token![,]>()?;
+        if input.peek(Token![;]) {
+            break;
+        }
         found.push(one(input)?);
     }
     Ok(found)
@@ -330,25 +353,21 @@ fn indices(input: ParseStream) -> Result<Option<Indices>> {
     }
     let inner;
     syn::bracketed!(inner in input);
-    let range = inner.peek(syn::Ident) && inner.peek2(Token![in]);
-    let indices =
-        if range { Indices::Range(Expression::range(&inner, 0)?) } else { Indices::One(Expression::parse(&inner)?) };
-    close(&inner)?;
-    Ok(Some(indices))
-}
-
-/// Nothing may be left in the brackets.
-fn close(inner: ParseStream) -> Result<()> {
-    if inner.is_empty() {
-        return Ok(());
+    if !(inner.peek(syn::Ident) && inner.peek2(Token![in])) {
+        return Ok(Some(Indices::One(Expression::alone(&inner, 0, INSIDE_BRACKETS)?)));
     }
-    Err(error(inner.span(), &Message::Expected { what: "an operator or `]`" }))
+    let start = inner.cursor();
+    let range = Expression::range(&inner, 0)?;
+    if !inner.is_empty() {
+        return Err(unfitting::operator(&inner, start, INSIDE_BRACKETS));
+    }
+    Ok(Some(Indices::Range(range)))
 }
 
 /// `= 1`
 fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
     if !input.peek(Token![=]) {
-        return Err(error(input.span(), &Message::Expected { what: "`=`" }));
+        return Err(unfitting::equals(input, &name));
     }
     input.parse::<Token![=]>()?;
     Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
@@ -362,8 +381,7 @@ fn coordinate(input: ParseStream) -> Result<Coordinate> {
     }
     let inner;
     syn::bracketed!(inner in input);
-    let length = Some(Expression::parse(&inner)?);
-    close(&inner)?;
+    let length = Some(Expression::alone(&inner, 0, INSIDE_BRACKETS)?);
     Ok(Coordinate { name, length })
 }
 
@@ -379,9 +397,18 @@ fn name(input: ParseStream) -> Result<Ident> {
     Ok(name)
 }
 
-fn semicolon(input: ParseStream) -> Result<()> {
+/// The end of a clause of expressions, which began at `start`.
+fn semicolon(input: ParseStream, start: Cursor) -> Result<()> {
     if input.peek(Token![;]) {
         return input.parse::<Token![;]>().map(|_| ());
     }
-    Err(error(input.span(), &Message::Expected { what: "an operator or `;`" }))
+    Err(unfitting::end_of_definition(input, start, "an operator or `;`"))
+}
+
+/// The end of a clause of names, which began at `start`.
+fn end_of_names(input: ParseStream, start: Cursor) -> Result<()> {
+    if input.peek(Token![;]) {
+        return input.parse::<Token![;]>().map(|_| ());
+    }
+    Err(unfitting::end_of_names(input, start))
 }

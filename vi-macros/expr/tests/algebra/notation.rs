@@ -39,6 +39,17 @@ impl<'a> Reader<'a> {
         word
     }
 
+    /// What may follow the digits of a number: those behind a point, and a power of ten.
+    fn scale(&mut self) -> (&'a str, i32) {
+        let fraction = if self.take('.') { self.word(|character| character.is_ascii_digit()) } else { "" };
+        if !self.take('e') {
+            return (fraction, 0);
+        }
+        let sign = if self.take('-') { -1 } else { 1 };
+        let power: i32 = self.word(|character| character.is_ascii_digit()).parse().expect("a power of ten");
+        (fraction, sign * power)
+    }
+
     fn sum(&mut self) -> Expr {
         // A leading minus is that of the whole first term.
         let mut left = if self.take('-') {
@@ -96,7 +107,10 @@ impl<'a> Reader<'a> {
         }
         if self.rest.starts_with(|character: char| character.is_ascii_digit()) {
             let digits = self.word(|character| character.is_ascii_digit());
-            return self.pool.number(Rational::from_integer(digits.parse().expect("digits")));
+            let (fraction, power) = self.scale();
+            let number = Rational::from_integer(format!("{digits}{fraction}").parse().expect("digits"));
+            let places = i32::try_from(fraction.len()).expect("few digits");
+            return self.pool.number(number * Rational::from_integer(10.into()).pow(power - places));
         }
         let name = self.word(char::is_alphanumeric);
         assert!(!name.is_empty(), "no operand before `{}`", self.rest);

@@ -18,6 +18,22 @@ fn check(table: &str) {
     assert!(rows > 3, "a table of rules");
 }
 
+/// Numbers of many digits are written short where that says the same.
+#[test]
+fn long_numbers() {
+    check(
+        "1000000000000000000 => 1e18
+         12000000000000000000*x => 1.2e19*x
+         -1e150*x/3 - y => -1e150*x/3 - y
+         6.62607015e-34*x => 6.62607015e-34*x
+         x/y/2e30 => 5e-31*x/y
+         x^1e150 => x^1e150
+         x^(1e-20) => x^1e-20
+         x + 123456789012345678 => x + 123456789012345678
+         99999999999999999*x => 99999999999999999*x",
+    );
+}
+
 #[test]
 fn sums() {
     check(

@@ -1,0 +1,224 @@
+//! What people write by habit, of Rust, of other languages and of paper, and what this language writes for it.
+//!
+//! In: how it was written. Out: a message, what is wrong and what to write; of a word alone the help, or nothing.
+
+/// Something that is written otherwise in this language. The fields of a variant are the words that its text names.
+#[allow(missing_docs)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Habit {
+    /// `x**2`.
+    DoubleStar,
+    /// `x^1/2`.
+    PowerOverNumber { exponent: &'static str },
+    /// `|x|`.
+    Bars,
+    /// `x'`.
+    Prime,
+    /// `xdot`, for the velocity of a coordinate.
+    VelocityByName { name: String, coordinate: String },
+    /// `2 x`, `m g`.
+    MissingOperator { left: String, right: String, is_number: bool },
+    /// `sin x`.
+    FunctionWithoutParentheses { name: String, argument: String },
+    /// `x.sin()`.
+    Method { name: String },
+    /// `f64::consts::PI`.
+    Path,
+    /// `x: f64`.
+    Type,
+    /// A number with letters behind it.
+    NumberSuffix { digits: String, suffix: String },
+    /// `1.0f64`.
+    TypeOfNumber { digits: String, name: String },
+    /// `i as f64`.
+    Conversion,
+    /// `1.e-3`, `.5`.
+    PointWithoutDigits { number: String },
+    /// `if`, `match`.
+    Condition,
+    /// `0..=3`.
+    InclusiveRange,
+    /// `dot(q)[0]`.
+    IndexBehind,
+    /// A clause, or a line of a rule, without `;` at its end.
+    MissingSemicolon { after: String },
+    /// A definition without `=`.
+    MissingValue { name: String },
+    /// `coord x = 1`.
+    ValueOfCoordinate,
+    /// `force = …`.
+    ForceWithoutCoordinate,
+}
+
+impl Habit {
+    /// What is wrong.
+    #[must_use]
+    pub fn what(&self) -> String {
+        match self {
+            Self::DoubleStar => "`**` is no operator".to_owned(),
+            Self::PowerOverNumber { exponent } => format!("`a^{exponent}/b` is `(a^{exponent}) / b`"),
+            Self::Bars => "bars are no absolute value".to_owned(),
+            Self::Prime => "a prime is no derivative".to_owned(),
+            Self::VelocityByName { name, .. } => format!("unknown name `{name}`"),
+            Self::MissingOperator { left, right, .. } => {
+                format!("an operator is missing between `{left}` and `{right}`")
+            }
+            Self::FunctionWithoutParentheses { name, .. } => format!("`{name}` is a function"),
+            Self::Method { name } => format!("`.{name}(…)`: numbers have no methods"),
+            Self::Path => "names have no paths".to_owned(),
+            Self::Type => "types are not written".to_owned(),
+            Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
+            Self::TypeOfNumber { digits, name } => format!("the number `{digits}` has the type `{name}`"),
+            Self::Conversion => "numbers need no conversion".to_owned(),
+            Self::PointWithoutDigits { .. } => "a number has digits on both sides of its point".to_owned(),
+            Self::Condition => "an expression has no conditions".to_owned(),
+            Self::InclusiveRange => "a range stops before its end".to_owned(),
+            Self::IndexBehind => "an index stands behind a name only".to_owned(),
+            Self::MissingSemicolon { after } => format!("`;` is missing behind `{after}`"),
+            Self::MissingValue { name } => format!("`{name}` has no value"),
+            Self::ValueOfCoordinate => "a coordinate is declared without a value".to_owned(),
+            Self::ForceWithoutCoordinate => "a force on no coordinate".to_owned(),
+        }
+    }
+
+    /// What to write.
+    #[must_use]
+    pub fn help(&self) -> String {
+        match self {
+            Self::DoubleStar => "write `x^2` for a power".to_owned(),
+            Self::PowerOverNumber { exponent } => {
+                format!("write `a^({exponent}/b)` for a root; a quotient has its own parentheses, `(a^{exponent})/b`")
+            }
+            Self::Bars => "write `abs(x)`".to_owned(),
+            Self::Prime => "write `dot(x)` for the velocity of `x`; another name is `x_1`, say".to_owned(),
+            Self::VelocityByName { coordinate, .. } => format!("write `dot({coordinate})`, the velocity of `{coordinate}`"),
+            Self::MissingOperator { left, right, is_number: true } => {
+                format!("write `{left} * {right}` for a product; units are not written")
+            }
+            Self::MissingOperator { left, right, .. } => format!("write `{left} * {right}` for a product"),
+            Self::FunctionWithoutParentheses { name, argument } => {
+                format!("write its argument in parentheses: `{name}({argument})`")
+            }
+            Self::Method { name } => function(name)
+                .unwrap_or_else(|| format!("write it as a function, `{name}(…)`, with all its arguments")),
+            Self::Path => "write names alone, as `pi` and `sin(x)`; a constant of the code around is a `param`".to_owned(),
+            Self::Type => {
+                "write `param m = 1.0;`, `coord x;`, `let a = …;`: every number is of one type, that of the run".to_owned()
+            }
+            Self::NumberSuffix { digits, suffix } => {
+                format!("write `{digits} * {suffix}` for a product; units are not written")
+            }
+            Self::TypeOfNumber { digits, .. } => format!("write `{digits}`: numbers are exact and have no type"),
+            Self::Conversion => "leave `as` out; an index is a number, as in `i / 2`".to_owned(),
+            Self::PointWithoutDigits { number } => format!("write `{number}`"),
+            Self::Condition => CONDITION.to_owned(),
+            Self::InclusiveRange => "write `0..N + 1` for the indices 0 to N".to_owned(),
+            Self::IndexBehind => "write `dot(q[0])` for the velocity of `q[0]`, and name other arrays with `let`".to_owned(),
+            Self::MissingSemicolon { .. } => {
+                "every clause ends with `;`; entries of one list are separated by `,`".to_owned()
+            }
+            Self::MissingValue { name } => {
+                format!("write `{name} = 1.0`: a `param` has a default, which its field may replace")
+            }
+            Self::ValueOfCoordinate => {
+                "write `coord x;`: where a run starts, its `State` says, and where checks start, `check { x = 1; h = 0.01; }`; what stays constant is a `param`"
+                    .to_owned()
+            }
+            Self::ForceWithoutCoordinate => {
+                "write the coordinate that it acts on: `force x = …;`, `force q[0] = …;`".to_owned()
+            }
+        }
+    }
+
+    /// A number with letters behind it, which may be a type of Rust.
+    pub(crate) fn of_suffix(digits: &str, suffix: &str) -> Self {
+        let (digits, name) = (digits.to_owned(), suffix.trim_start_matches('_').to_owned());
+        if TYPES.contains(&name.as_str()) {
+            return Self::TypeOfNumber { digits, name };
+        }
+        Self::NumberSuffix { digits, suffix: suffix.to_owned() }
+    }
+}
+
+/// Types of numbers of Rust.
+const TYPES: [&str; 14] =
+    ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
+
+/// Clauses.
+const CLAUSES: [(&[&str], &str); 8] = [
+    (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
+    (&["coordinate", "coordinates", "var", "dof"], "write `coord x, y;`"),
+    (&["constant", "constants", "static"], "write `const g = 9.81;`"),
+    (&["lagrangian", "Lagrangian", "Lagrange"], "write `L = …;`"),
+    (&["rayleigh", "Rayleigh", "damping", "friction"], "write `dissipation = …;`, Rayleigh's function"),
+    (&["constraint", "constraints", "constrain", "subject", "holonomic"], CONSTRAINT),
+    (
+        &["for", "while", "loop"],
+        "write `force q[i in 0..8] = …;` or `let e[i in 0..8] = …;` for each entry, and `sum(i in 0..8, …)`",
+    ),
+    (&["if", "match"], CONDITION),
+];
+
+/// Functions.
+const FUNCTIONS: [(&[&str], &str); 20] = [
+    (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
+    (&["log10"], "write `ln(a) / ln(10)`"),
+    (&["log2"], "write `ln(a) / ln(2)`"),
+    (&["max"], "write `(a + b + abs(a - b)) / 2` for the larger of a and b"),
+    (&["min"], "write `(a + b - abs(a - b)) / 2` for the smaller of a and b"),
+    (&["arcsin"], "write `asin(a)`"),
+    (&["arccos"], "write `acos(a)`"),
+    (&["arctan", "atg", "arctg"], "write `atan(a)`"),
+    (&["arctan2"], "write `atan2(y, x)`"),
+    (&["tg"], "write `tan(a)`"),
+    (&["cot", "cotan", "ctg"], "write `1 / tan(a)`"),
+    (&["sec"], "write `1 / cos(a)`"),
+    (&["csc", "cosec"], "write `1 / sin(a)`"),
+    (&["asinh", "arsinh", "arcsinh"], "write `ln(a + sqrt(a^2 + 1))`"),
+    (&["cbrt"], "write `a^(1/3)`"),
+    (&["square", "sqr", "sq"], "write `a^2`"),
+    (&["powi", "powf", "power"], "write `a^b`"),
+    (&["fabs", "norm"], "write `abs(a)` for a number, `sqrt(a^2 + b^2)` for a vector"),
+    (&["sgn", "signum"], "write `sign(a)`"),
+    (&["heaviside", "step", "theta"], "write `(1 + sign(a)) / 2`"),
+];
+
+/// Derivatives by time, which are one function here.
+const DERIVATIVES: [&str; 5] = ["diff", "der", "ddt", "d", "D"];
+
+/// Names.
+const NAMES: [(&[&str], &str); 4] = [
+    (&["π", "PI", "Pi", "M_PI"], "write `pi`"),
+    (&["e"], "write `exp(x)` for e^x, `exp(1)` for the number"),
+    (&["time"], "write `t`"),
+    (&["lambda", "λ", "multiplier"], CONSTRAINT),
+];
+
+/// What to do about a constraint.
+pub(crate) const CONSTRAINT: &str = "the language has no constraints: choose coordinates that satisfy them, as the angle of a rod, or hold \
+    them with a stiff spring, `- k * (…)^2 / 2` in `L`";
+
+/// What to do about a distinction of cases.
+const CONDITION: &str = "a formula holds everywhere: write `abs(a)` and `sign(a)`, as in `(1 + sign(a)) / 2`, which is 1 where a is positive and 0 where it is negative";
+
+/// What a clause by another name is called.
+pub(crate) fn clause(word: &str) -> Option<String> {
+    find(&CLAUSES, word)
+}
+
+/// What a function by another name is called.
+pub(crate) fn function(name: &str) -> Option<String> {
+    if DERIVATIVES.contains(&name) {
+        return Some("write `dot(a)` for a derivative by time; derivatives of `L` are taken for you".to_owned());
+    }
+    find(&FUNCTIONS, name)
+}
+
+/// What something by another name is called.
+pub(crate) fn name(name: &str) -> Option<String> {
+    find(&NAMES, name)
+}
+
+fn find(table: &[(&[&str], &str)], word: &str) -> Option<String> {
+    table.iter().find(|(words, _)| words.contains(&word)).map(|(_, help)| (*help).to_owned())
+}

@@ -1,0 +1,180 @@
+//! What a token that does not fit was meant to be.
+//!
+//! In: the input at the token, and where the clause began. Out: the error, at the token that is wrong: habits of Rust, of other languages
+//! and of paper say what to write here; all others say what the grammar expects.
+
+use super::parse::CLAUSES;
+use crate::habits::Habit;
+use crate::messages::{Message, error};
+use proc_macro2::{Delimiter, Span, TokenTree};
+use syn::buffer::Cursor;
+use syn::parse::ParseStream;
+use syn::{Error, Ident, Token};
+use vi_expr::Function;
+
+/// Characters of a token that a message shows.
+const CHARACTERS: usize = 24;
+
+/// Where an operand is expected: a number, a name or a parenthesis.
+pub(super) fn operand(input: ParseStream) -> Error {
+    let cursor = input.cursor();
+    let point = || cursor.punct().filter(|(punct, _)| punct.as_char() == '.');
+    let habit = match cursor.ident() {
+        Some((word, _)) if word == "if" || word == "match" => Some(Habit::Condition),
+        Some(_) => None,
+        None if input.peek(Token![|]) => Some(Habit::Bars),
+        None => point()
+            .and_then(|(_, behind)| behind.literal())
+            .map(|(digits, _)| Habit::PointWithoutDigits { number: format!("0.{}", short(digits.to_string())) }),
+    };
+    told(input.span(), habit, "a number, a name or `(`")
+}
+
+/// Behind an expression that began at `start`: neither an operator nor what ends it, which `what` names.
+pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) -> Error {
+    let Some((next, behind)) = input.cursor().token_tree() else {
+        return told(input.span(), None, what);
+    };
+    let previous = previous(input, start);
+    let habit = match &next {
+        TokenTree::Punct(punct) => match punct.as_char() {
+            '.' => {
+                let (word, habit) = behind_point(behind, previous.as_ref());
+                return told(word.unwrap_or_else(|| punct.span()), habit, what);
+            }
+            '\'' => Some(Habit::Prime),
+            '|' => Some(Habit::Bars),
+            ':' if input.peek(Token![::]) => Some(Habit::Path),
+            ':' => Some(Habit::Type),
+            _ => None,
+        },
+        TokenTree::Ident(word) if word == "as" => Some(Habit::Conversion),
+        TokenTree::Literal(literal) if literal.to_string().starts_with('\'') => Some(Habit::Prime),
+        TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket => Some(Habit::IndexBehind),
+        TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => None,
+        TokenTree::Ident(_) | TokenTree::Literal(_) | TokenTree::Group(_) => {
+            previous.map(|left| missing_operator(&left, &next))
+        }
+    };
+    told(input.span(), habit, what)
+}
+
+/// What is said at a token: what is written in place of a habit, or what the grammar expects.
+fn told(span: Span, habit: Option<Habit>, what: &'static str) -> Error {
+    error(span, &habit.map_or(Message::Expected { what }, Message::Habit))
+}
+
+/// Where a definition that began at `start` does not end with `;`, or with something else that `what` names.
+pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'static str) -> Error {
+    match previous(input, start) {
+        Some(last) if ends(input) => no_semicolon(&last),
+        _ => operator(input, start, what),
+    }
+}
+
+/// Where a clause of names that began at `start` does not end with `;`.
+pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
+    let is_coordinates = start.ident().is_some_and(|(word, _)| word == "coord");
+    match previous(input, start) {
+        Some(last) if ends(input) => no_semicolon(&last),
+        _ if is_coordinates && input.peek(Token![=]) => told(input.span(), Some(Habit::ValueOfCoordinate), ""),
+        _ if input.peek(Token![:]) => told(input.span(), Some(Habit::Type), ""),
+        _ => told(input.span(), None, "`,` or `;`"),
+    }
+}
+
+/// Where the `=` of a definition is expected.
+pub(super) fn equals(input: ParseStream, name: &Ident) -> Error {
+    if input.peek(Token![;]) || input.peek(Token![,]) || ends(input) {
+        return error(name.span(), &Message::Habit(Habit::MissingValue { name: name.to_string() }));
+    }
+    told(input.span(), input.peek(Token![:]).then_some(Habit::Type), "`=`")
+}
+
+/// Whether a clause begins here, by its word.
+pub(super) fn begins_clause(input: ParseStream) -> bool {
+    let Some((word, _)) = input.cursor().ident() else { return false };
+    if word == "L" { input.peek2(Token![=]) } else { CLAUSES.contains(&word.to_string().as_str()) }
+}
+
+/// Whether what was before ends here: nothing is left, or a clause begins, or another definition.
+fn ends(input: ParseStream) -> bool {
+    input.is_empty() || begins_clause(input) || input.peek(syn::Ident) && input.peek2(Token![=])
+}
+
+fn no_semicolon(last: &TokenTree) -> Error {
+    let span = match last {
+        TokenTree::Group(group) => group.span_close(),
+        other => other.span(),
+    };
+    error(span, &Message::Habit(Habit::MissingSemicolon { after: text(last) }))
+}
+
+/// The token before the next one, of those from `start` on.
+fn previous(input: ParseStream, start: Cursor) -> Option<TokenTree> {
+    let mut cursor = start;
+    let mut last = None;
+    while cursor != input.cursor() {
+        let (token, behind) = cursor.token_tree()?;
+        last = Some(token);
+        cursor = behind;
+    }
+    last
+}
+
+/// Behind a point, with its place: a method, or the exponent of a number without digits behind its point.
+fn behind_point(behind: Cursor, previous: Option<&TokenTree>) -> (Option<Span>, Option<Habit>) {
+    let Some((word, behind)) = behind.ident() else { return (None, None) };
+    let text = word.to_string();
+    let is_exponent = text.starts_with(['e', 'E']) && text.chars().skip(1).all(|digit| digit.is_ascii_digit());
+    if let Some(TokenTree::Literal(digits)) = previous
+        && is_exponent
+    {
+        // `1.e3` has its digits in the word, `1.e-3` behind it.
+        let sign = behind.punct().filter(|_| text.len() == 1);
+        let exponent = sign.as_ref().and_then(|(_, behind)| behind.literal());
+        let signed = sign.zip(exponent).map(|((sign, _), (exponent, _))| format!("{}{exponent}", sign.as_char()));
+        let number = short(format!("{digits}.0{text}{}", signed.unwrap_or_default()));
+        return (Some(word.span()), Some(Habit::PointWithoutDigits { number }));
+    }
+    let habit = behind.group(Delimiter::Parenthesis).map(|_| Habit::Method { name: text });
+    (habit.is_some().then(|| word.span()), habit)
+}
+
+/// Two operands side by side.
+fn missing_operator(left: &TokenTree, right: &TokenTree) -> Habit {
+    let is_number = matches!((left, right), (TokenTree::Literal(_), TokenTree::Ident(_)));
+    match left {
+        TokenTree::Ident(name) if is_function(name) => {
+            Habit::FunctionWithoutParentheses { name: text(left), argument: text(right) }
+        }
+        _ => Habit::MissingOperator { left: text(left), right: text(right), is_number },
+    }
+}
+
+/// Whether a name is one of a function.
+pub(super) fn is_function(name: &Ident) -> bool {
+    let name = name.to_string();
+    name == "dot" || name == "sqrt" || Function::from_name(&name).is_some()
+}
+
+/// A token in a message; a group by its delimiters.
+fn text(token: &TokenTree) -> String {
+    match token {
+        TokenTree::Group(group) => match group.delimiter() {
+            Delimiter::Bracket => "[…]".to_owned(),
+            Delimiter::Brace => "{…}".to_owned(),
+            Delimiter::Parenthesis | Delimiter::None => "(…)".to_owned(),
+        },
+        other => short(other.to_string()),
+    }
+}
+
+/// A text, or its beginning.
+fn short(mut text: String) -> String {
+    if let Some((end, _)) = text.char_indices().nth(CHARACTERS) {
+        text.truncate(end);
+        text.push('…');
+    }
+    text
+}
