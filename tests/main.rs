@@ -22,6 +22,7 @@ mod resonances;
 mod restarts;
 mod robustness;
 mod rules;
+mod scaled;
 mod single_precision;
 mod solvability;
 mod step_law;

@@ -345,8 +345,54 @@ const _: () = {
             let real = T::real;
             real(0.0)
         }
+
+        /// The point, its energy, its power, and
+        ///
+        /// `g = sqrt(x^2 + y^2)^(3/2)`
+        ///
+        /// 29 operations.
+        #[inline(always)]
+        fn scaled_point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::ScaledPoint<2, T, Self::Mass> {
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x + y * y;
+            let s2 = s1.sqrt();
+            let s3 = s1.recip();
+            let s4 = s3 * s2;
+            let s5 = s2.sqrt();
+            let s6 = s3 * s3 * s2;
+            ::vi_core::collocation::ScaledPoint {
+                point: ::vi_core::collocation::Point {
+                    momentum: ::vi_core::SVector::from([x_dot, y_dot]),
+                    force: ::vi_core::SVector::from([
+                        -(self.mu * x * s6),
+                        -(self.mu * y * s6),
+                    ]),
+                    mass: ::vi_core::linear::Banded {
+                        rows: [[real(1.0)], [real(1.0)]],
+                    },
+                },
+                energy: x_dot * x_dot * real(0.5) + y_dot * y_dot * real(0.5)
+                    - self.mu * s4,
+                power: real(0.0),
+                g: s2 * s5,
+                g_dq: ::vi_core::SVector::from([
+                    x * s4 * s5 * real(1.5),
+                    y * s4 * s5 * real(1.5),
+                ]),
+                g_dt: real(0.0),
+            }
+        }
     }
 
+    impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<2, T>
+    for Kepler<T> {}
     impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         /// `ld = h*L`
         ///

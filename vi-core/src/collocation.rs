@@ -6,6 +6,8 @@
 //! momentum   L_v(t, q, v)          mass   M = L_vv(t, q, v)          force   L_q + f          power   dE/dt = f·v − L_t
 //! ```
 //!
+//! A system with the clause `time_scale = g;` gives g of the time transformation `dt = g(t, q) dτ` besides ([`TimeScale`]).
+//!
 //! The velocity that belongs to p follows by `v + M⁻¹ (p − L_v(v))`, at once where L is quadratic in v, else again and again.
 
 use crate::lagrangian::Lagrangian;
@@ -26,7 +28,29 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> {
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
     /// What the motion gains of energy by time: `f·v − L_t`.
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
+    /// All that a step in scaled time takes at a point, from one evaluation; g = 1 for a system without a time scale.
+    #[inline(always)]
+    fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, Self::Mass> {
+        ScaledPoint {
+            point: self.point(t, q, v),
+            energy: self.energy(t, q, v),
+            power: self.power(t, q, v),
+            g: T::one(),
+            g_dq: SVector::zeros(),
+            g_dt: T::zero(),
+        }
+    }
 }
+
+/// A system with a time scale, `dt = g(t, q) dτ`: the clause `time_scale = g;` of `lagrangian!`. Its g is that of
+/// [`Collocation::scaled_point`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no time scale",
+    label = "nothing says how this system scales its time",
+    note = "write the clause `time_scale = …;` in its `lagrangian!`, as `time_scale = r^(3/2);`",
+    note = "`Gauss` takes steps of a given length in time without it"
+)]
+pub trait TimeScale<const N: usize, T: Real = f64>: Collocation<N, T> {}
 
 /// The equations of motion at a point (t, q, v).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,4 +61,21 @@ pub struct Point<const N: usize, T, M> {
     pub force: SVector<T, N>,
     /// `M = L_vv`.
     pub mass: M,
+}
+
+/// The equations of motion at a point (t, q, v), with what scales the time there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaledPoint<const N: usize, T, M> {
+    /// The point.
+    pub point: Point<N, T, M>,
+    /// `v·L_v − L`.
+    pub energy: T,
+    /// `f·v − L_t`.
+    pub power: T,
+    /// g, time by scaled time.
+    pub g: T,
+    /// `∂g/∂q`.
+    pub g_dq: SVector<T, N>,
+    /// `∂g/∂t`.
+    pub g_dt: T,
 }

@@ -2,7 +2,7 @@
 //! are calls.
 
 use crate::called::Called;
-use crate::collocation::{Collocation, Point};
+use crate::collocation::{Collocation, Point, ScaledPoint, TimeScale};
 use crate::discrete::DiscreteLagrangian;
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian, Parameters};
@@ -90,7 +90,14 @@ macro_rules! collocation {
             fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
                 S::power(self, t, q, v)
             }
+
+            #[inline(always)]
+            fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, S::Mass> {
+                S::scaled_point(self, t, q, v)
+            }
         }
+
+        impl<const N: usize, T: Real, S: TimeScale<N, T>$(, $rule: Rule)?> TimeScale<N, T> for $wrapper {}
     };
 }
 

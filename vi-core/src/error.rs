@@ -74,6 +74,13 @@ pub enum StepError {
         /// Estimate of h ω, ω the fastest rate of the equations linearized in the middle of the step.
         stiffness: f64,
     },
+    /// The time scale g of `dt = g dτ` is not positive, or not finite.
+    TimeScale {
+        /// Time at which it was met.
+        t: f64,
+        /// Its value there.
+        g: f64,
+    },
     /// A matrix that has to be inverted is singular.
     Singular {
         /// Time at which it was met.
@@ -154,6 +161,9 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings in iteration {iterations}, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
             ),
+            StepError::TimeScale { t, g } => {
+                write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
+            }
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
@@ -194,6 +204,9 @@ impl fmt::Display for StepError {
                 h.abs()
             ),
             Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
+            Self::TimeScale { .. } => {
+                f.write_str("; take shorter steps, or write a `time_scale` that is positive there")
+            }
             Self::OtherSystem { parameter: None, .. } => {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }

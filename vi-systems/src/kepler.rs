@@ -14,6 +14,7 @@ lagrangian! {
         coord x, y;
         let r = sqrt(x^2 + y^2);
         L = (dot(x)^2 + dot(y)^2) / 2 + mu / r;
+        time_scale = r^(3/2);
         discretize midpoint;
         check { x = 0.6, y = 0.1, dot(x) = -0.2, dot(y) = 1.4; h = 0.02; }
     }

@@ -22,6 +22,7 @@
 //! | `polynomial` | the motion between the nodes of a step |
 //! | `integrator` | what it shares with the other integrators |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
+//! | [`scaled`] | steps in scaled time, for systems that say how |
 //!
 //! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor. AFTER AN ERROR the integrator
 //! holds the last good state and keeps returning that error.
@@ -35,6 +36,7 @@ mod newton;
 mod pair;
 mod polynomial;
 mod rounding;
+pub mod scaled;
 mod separable;
 mod stages;
 mod sweep;

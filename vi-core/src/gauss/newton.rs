@@ -59,6 +59,11 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         }
     }
 
+    /// Takes another length of a step; what is factored is that of the last one until the next linearization.
+    pub(super) fn set_step(&mut self, h: f64) {
+        self.h = h;
+    }
+
     /// Linearizes the equations of a system at the point (t, q, v).
     pub(super) fn linearize<Y: Convertible<N>>(
         &mut self,

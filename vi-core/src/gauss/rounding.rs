@@ -20,12 +20,12 @@ use crate::real::{Real, Rounded};
 use nalgebra::SVector;
 
 /// The vector of one stage.
-fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usize) -> SVector<Rounded, N> {
+pub(super) fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usize) -> SVector<Rounded, N> {
     SVector::from_fn(|k, _| Rounded::nearest(of[k][i]))
 }
 
 /// Whether a row is zero as far as its arithmetic can tell.
-fn is_rounding(row: Rounded) -> bool {
+pub(super) fn is_rounding(row: Rounded) -> bool {
     row.to_f64().abs() <= FLOOR * f64::EPSILON * row.ulps()
 }
 

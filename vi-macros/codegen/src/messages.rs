@@ -62,6 +62,12 @@ pub enum Message {
     SecondDissipation,
     /// A Rayleigh function without velocities.
     NoDissipation,
+    /// A second line `time_scale = …;`.
+    SecondTimeScale,
+    /// A time scale that depends on velocities, by this name.
+    VelocityInTimeScale { name: String },
+    /// A time scale that is a number, and not a positive one.
+    TimeScaleNotPositive,
     /// A slot that L_d does not depend on.
     UnusedSlot { name: &'static str },
     /// No line `L = …;`.
@@ -144,7 +150,7 @@ fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
 
 /// What to do about a word that opens no clause; behind one that is defined stands `=`.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
-    let clauses = "the clauses are const, param, coord, let, L, force, dissipation, discretize, check";
+    let clauses = "the clauses are const, param, coord, let, L, force, dissipation, time_scale, discretize, check";
     let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
@@ -187,6 +193,9 @@ impl Message {
             Self::UnusedParameter { name } => format!("the parameter `{name}` acts on nothing"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
             Self::NoDissipation => "`dissipation` does not depend on any velocity".to_owned(),
+            Self::SecondTimeScale => "a second `time_scale`".to_owned(),
+            Self::VelocityInTimeScale { name } => format!("a time scale cannot depend on the velocities in `{name}`"),
+            Self::TimeScaleNotPositive => "the time scale is not positive".to_owned(),
             Self::UnusedSlot { name } => format!("`Ld` does not depend on `{name}`"),
             Self::MissingLagrangian => "the system has no Lagrangian".to_owned(),
             Self::SecondLagrangian => "a second `L`".to_owned(),
@@ -279,6 +288,9 @@ impl Message {
             Self::NoDissipation => {
                 "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
             }
+            Self::SecondTimeScale => "write `time_scale` once".to_owned(),
+            Self::VelocityInTimeScale { .. } => "use positions, time, constants and parameters".to_owned(),
+            Self::TimeScaleNotPositive => "dt = g dτ: g is positive wherever the system moves".to_owned(),
             Self::UnusedSlot { .. } => "a discrete Lagrangian depends on both ends of its interval".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),

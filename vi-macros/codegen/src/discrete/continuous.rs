@@ -6,6 +6,7 @@
 //! momentum p = L_v          energy = v·L_v − L          mass M = L_vv
 //! M a = L_q + f − L_vt − L_vq v        dp/dt = L_q + f        dE/dt = −L_t + f·v
 //! D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
+//! g, ∂g/∂q, ∂g/∂t                                       time scale, dt = g dτ
 //! ```
 
 use super::fields::Fields;
@@ -38,6 +39,8 @@ pub struct Continuous {
     pub quadratic: bool,
     /// D.
     pub step_density: Expr,
+    /// g and its derivatives, where the system has a time scale.
+    pub time_scale: Option<TimeScale>,
     /// What can lose its value first: variables and parameters, calls, roots and quotients, then L and f; parts before
     /// wholes.
     pub watched: Vec<Expr>,
@@ -45,6 +48,16 @@ pub struct Continuous {
     pub autonomous: bool,
     /// Per coordinate: it does not appear in L and has no force.
     pub cyclic: Vec<bool>,
+}
+
+/// The time scale of the transformation dt = g(t, q) dτ.
+pub struct TimeScale {
+    /// g.
+    pub g: Expr,
+    /// ∂g/∂q.
+    pub g_dq: Vec<Expr>,
+    /// ∂g/∂t.
+    pub g_dt: Expr,
 }
 
 /// Derives the continuous functions.
@@ -124,8 +137,19 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         momentum_is_mass_times_velocity,
         mass_times_acceleration,
         step_density: pool.sum(&density),
+        time_scale: model.time_scale.map(|g| time_scale(pool, g, dimension)),
         autonomous: autonomous && !forced_time,
     })
+}
+
+fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {
+    let mut by = |variable: Variable| {
+        pool.derivative(g, &mut |pool, symbol| {
+            if *symbol == Symbol::Continuous(variable) { pool.one() } else { pool.zero() }
+        })
+    };
+    let g_dq = (0..dimension).map(|index| by(Variable::Coordinate(index))).collect();
+    TimeScale { g, g_dq, g_dt: by(Variable::Time) }
 }
 
 fn watched(pool: &Pool<Symbol>, model: &Model) -> Vec<Expr> {

@@ -13,7 +13,7 @@ mod slots;
 mod step;
 pub mod system;
 
-pub use continuous::Continuous;
+pub use continuous::{Continuous, TimeScale};
 pub use fields::Fields;
 pub use slots::Slots;
 pub use step::Equations;

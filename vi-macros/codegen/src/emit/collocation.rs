@@ -1,9 +1,10 @@
 //! `impl Collocation`: the equations of motion in first order, at one point.
 
 use super::Source;
-use super::body::{VelocityFrom, state_parts};
+use super::body::{Body, VelocityFrom, state_parts};
 use super::lagrangian::{number, vector_of};
 use super::matrix::matrix;
+use crate::discrete::TimeScale;
 use crate::program::{FunctionId, Output};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -14,6 +15,12 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let constant_mass = source.findings.constant_mass;
     let separable = source.findings.force_of_position;
     let (form, point) = point(source);
+    let scaled_point = source.system.continuous.time_scale.as_ref().map(|scale| scaled_point(source, scale));
+    let has_time_scale = scaled_point.is_some().then(|| {
+        quote! {
+            impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#dimension, T> for #name<T> {}
+        }
+    });
     let power = number(source, FunctionId::Power, &source.formula("dE/dt", source.system.continuous.power));
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
@@ -22,7 +29,9 @@ pub(super) fn item(source: &Source) -> TokenStream {
             const SEPARABLE: bool = #separable;
             #point
             #power
+            #scaled_point
         }
+        #has_time_scale
     }
 }
 
@@ -36,9 +45,7 @@ fn point(source: &Source) -> (TokenStream, TokenStream) {
     };
     let inputs = state_parts(&body, source.model);
     let statements = &body.statements;
-    let (form, mass) = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
-    let momentum = vector_of(body.results.vector(Output::Momentum));
-    let force = vector_of(body.results.vector(Output::AppliedForce));
+    let (form, value) = point_of(source, &body);
     let function = quote! {
         #documentation
         #[inline(always)]
@@ -49,8 +56,49 @@ fn point(source: &Source) -> (TokenStream, TokenStream) {
             v: &::vi_core::SVector<T, #dimension>,
         ) -> ::vi_core::collocation::Point<#dimension, T, Self::Mass> {
             #inputs #statements
-            ::vi_core::collocation::Point { momentum: #momentum, force: #force, mass: #mass }
+            #value
         }
     };
     (form, function)
+}
+
+/// The form of the mass matrix, and the point that a body computes.
+fn point_of(source: &Source, body: &Body) -> (TokenStream, TokenStream) {
+    let (form, mass) = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
+    let momentum = vector_of(body.results.vector(Output::Momentum));
+    let force = vector_of(body.results.vector(Output::AppliedForce));
+    (form, quote!(::vi_core::collocation::Point { momentum: #momentum, force: #force, mass: #mass }))
+}
+
+/// The function of all that a step in scaled time takes at a point.
+fn scaled_point(source: &Source, scale: &TimeScale) -> TokenStream {
+    let dimension = source.dimension();
+    let formula = format!("The point, its energy, its power, and\n\n{}", source.formula("g", scale.g));
+    let Some((body, documentation)) = source.documented(FunctionId::ScaledPoint, &formula, VelocityFrom::Argument)
+    else {
+        return TokenStream::new();
+    };
+    let inputs = state_parts(&body, source.model);
+    let statements = &body.statements;
+    let (_, point) = point_of(source, &body);
+    let energy = body.results.number(Output::Energy);
+    let power = body.results.number(Output::Power);
+    let g = body.results.number(Output::TimeScale);
+    let g_dq = vector_of(body.results.vector(Output::TimeScaleDq));
+    let g_dt = body.results.number(Output::TimeScaleDt);
+    quote! {
+        #documentation
+        #[inline(always)]
+        fn scaled_point(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::collocation::ScaledPoint<#dimension, T, Self::Mass> {
+            #inputs #statements
+            ::vi_core::collocation::ScaledPoint {
+                point: #point, energy: #energy, power: #power, g: #g, g_dq: #g_dq, g_dt: #g_dt
+            }
+        }
+    }
 }

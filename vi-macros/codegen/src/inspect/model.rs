@@ -5,6 +5,7 @@
 use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
+use crate::discrete::TimeScale;
 use crate::model::Coordinate;
 
 /// The head of what is told of a system by a further rule.
@@ -38,8 +39,15 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     functions.extend(Line::equations(derived, ("p", "p"), &of.momentum));
     functions.push(Line::equation(derived, ("E", "E"), of.energy));
     functions.push(Line::equation(derived, ("D", "D"), of.step_density));
-    vec![
+    let mut sections = vec![
         Section { title: "System", lines },
         Section { title: "Lagrangian L, force f, momentum p, energy E, step density D", lines: functions },
-    ]
+    ];
+    if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
+        let mut lines = vec![Line::equation(derived, ("g", "g"), *g)];
+        lines.extend(Line::equations(derived, ("(∂g/∂q)", "(\\partial g/\\partial q)"), g_dq));
+        lines.push(Line::equation(derived, ("∂g/∂t", "\\partial g/\\partial t"), *g_dt));
+        sections.push(Section { title: "Time scale g, dt = g dτ", lines });
+    }
+    sections
 }

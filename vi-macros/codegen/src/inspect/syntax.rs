@@ -17,6 +17,7 @@ pub(super) fn text(system: &System) -> String {
     lines.extend(system.lagrangians.iter().map(definition));
     lines.extend(system.forces.iter().map(|of| format!("force {}", definition(of))));
     lines.extend(system.dissipations.iter().map(definition));
+    lines.extend(system.time_scales.iter().map(definition));
     for discretization in &system.discretizations {
         match discretization {
             Discretization::Named(names) => {

@@ -4,7 +4,7 @@
 
 use super::context::Context;
 use super::scope::Meaning;
-use super::{Coordinate, Model, Parameter, Rule, check_state, force, mass, rule};
+use super::{Coordinate, Model, Parameter, Rule, check_state, force, mass, rule, time_scale};
 use crate::limits::{COORDINATES, bounded};
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
@@ -26,11 +26,13 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
     let forces = force::forces(&mut context, &system.forces, &system.dissipations, coordinates.len());
     let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
+    let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
     let check_state = check_state::check_state(&mut context, &system.checks, coordinates.len());
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
-        let acting: Vec<Expr> = lagrangian.into_iter().chain(forces.iter().copied()).chain(of_rule).collect();
+        let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
+        let acting: Vec<Expr> = acting.chain(of_rule).collect();
         context.every_parameter_acts(&system.parameters, &acting);
     }
     let Context { pool, errors, .. } = context;
@@ -56,6 +58,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         lagrangian,
         forced,
         forces,
+        time_scale,
         rule,
         check_state,
     })
@@ -156,7 +159,7 @@ impl Context<'_> {
         Some(lagrangian)
     }
 
-    /// A parameter that none of L, f and the rule depends on is a mistake of spelling or of thought.
+    /// A parameter that none of L, f, the time scale and the rule depends on is a mistake of spelling or of thought.
     fn every_parameter_acts(&mut self, parameters: &[Definition], acting: &[Expr]) {
         let acting = self.pool.symbols_of(acting);
         for (index, parameter) in parameters.iter().enumerate() {

@@ -13,6 +13,7 @@ mod point;
 mod resolve;
 pub(crate) mod rule;
 mod scope;
+mod time_scale;
 
 pub use check_state::CheckState;
 pub use point::Point;
@@ -43,6 +44,8 @@ pub struct Model {
     pub forces: Vec<Expr>,
     /// Whether a force is declared that is not identically zero.
     pub forced: bool,
+    /// g(t, q) of the time transformation dt = g dτ, where one is declared.
+    pub time_scale: Option<Expr>,
     /// How L becomes L_d.
     pub rule: Rule,
     /// The state at which the system is checked, if it says so.

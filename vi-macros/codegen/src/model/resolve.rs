@@ -234,6 +234,7 @@ impl Scope {
             }
             Some(Meaning::Array { .. } | Meaning::Coordinates { .. }) => Message::ArrayWithoutIndex { name: text },
             Some(Meaning::OfState) => Message::NotInRule { name: text },
+            Some(Meaning::Moving) => Message::VelocityInTimeScale { name: text },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_)) => {
                 Message::FunctionWithoutArguments { name: text }
             }
@@ -299,6 +300,7 @@ impl Scope {
     fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
         match self.meaning(&name) {
             Some(Meaning::OfState) => Message::NotInRule { name },
+            Some(Meaning::Moving) => Message::VelocityInTimeScale { name },
             Some(Meaning::Dot | Meaning::Lagrangian | Meaning::Force(_)) => Message::FunctionWithoutArguments { name },
             Some(_) => Message::NotArray { name },
             None => self.unknown(pool, name),
@@ -334,6 +336,7 @@ impl Scope {
                 let components = (0..dimension).map(|index| pool.symbol(at_point(Quantity::Force(index), point)));
                 return Ok(Value::Vector(components.collect()));
             }
+            Some(Meaning::Moving) => return Err(error(function.span(), &Message::VelocityInTimeScale { name })),
             _ => {}
         }
         let known = Function::from_name(&name);

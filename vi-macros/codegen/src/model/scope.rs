@@ -49,6 +49,8 @@ pub(super) enum Meaning {
     Force(usize),
     /// Something that changes with the state, which a rule does not know but as an argument of L and f.
     OfState,
+    /// Something that depends on velocities, which a time scale does not know.
+    Moving,
     /// Something that was reported wrong where it was declared: it reads as 1, with or without an index.
     Wrong,
 }
@@ -93,6 +95,20 @@ impl Scope {
             self.names.entry(name.clone()).or_insert(meaning);
         }
         self
+    }
+
+    /// The names that a time scale may use: what depends on velocities means nothing there.
+    pub(super) fn of_time_scale(&self, pool: &Pool<Symbol>) -> Self {
+        let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+        let moves = |expr: &Expr| pool.depends_on(*expr, &is_velocity);
+        let meaning = |meaning: &Meaning| match meaning {
+            Meaning::Dot => Meaning::Moving,
+            Meaning::Number(value) if moves(value) => Meaning::Moving,
+            Meaning::Array { entries, .. } if entries.iter().any(moves) => Meaning::Moving,
+            _ => meaning.clone(),
+        };
+        let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
+        Self { names, points: Vec::new() }
     }
 
     /// The number of a point where L or f is evaluated; the same for equal points.
@@ -160,7 +176,7 @@ impl Scope {
 
     /// The declared name nearest to a misspelt one.
     pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
-        self.near_of(pool, name, |known| self.meaning(known) != Some(&Meaning::OfState))
+        self.near_of(pool, name, |known| !matches!(self.meaning(known), Some(Meaning::OfState | Meaning::Moving)))
     }
 
     /// The coordinate nearest to a misspelt name.

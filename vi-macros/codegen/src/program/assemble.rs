@@ -8,7 +8,7 @@ use super::results::{FunctionId, Output, Results};
 use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
 use super::{Function, Program};
-use crate::discrete::{DiscreteSystem, Fields};
+use crate::discrete::{DiscreteSystem, Fields, TimeScale};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
@@ -130,17 +130,31 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let momentum = (Output::Momentum, vec![of.momentum.clone()]);
     let mass_times_acceleration = (Output::MassTimesAcceleration, vec![of.mass_times_acceleration.clone()]);
     let applied_force = (Output::AppliedForce, vec![of.applied_force.clone()]);
-    Ok(vec![
+    let mut functions = vec![
         assembly.function(FunctionId::Lagrangian, number(of.lagrangian))?,
         assembly.function(FunctionId::Energy, number(of.energy))?,
         assembly.function(FunctionId::Momentum, vector(&of.momentum))?,
         assembly.function(FunctionId::Force, vector(&of.force))?,
         assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?,
-        assembly.function(FunctionId::Point, vec![momentum, applied_force, mass])?,
+        assembly.function(FunctionId::Point, vec![momentum.clone(), applied_force.clone(), mass.clone()])?,
         assembly.function(FunctionId::Power, number(of.power))?,
         assembly.function(FunctionId::StepDensity, number(of.step_density))?,
         assembly.function(FunctionId::NonFinite, vector(&of.watched))?,
-    ])
+    ];
+    if let Some(TimeScale { g, g_dq, g_dt }) = &of.time_scale {
+        let quantities = vec![
+            momentum,
+            applied_force,
+            mass,
+            (Output::Energy, vec![vec![of.energy]]),
+            (Output::Power, vec![vec![of.power]]),
+            (Output::TimeScale, vec![vec![*g]]),
+            (Output::TimeScaleDq, vec![g_dq.clone()]),
+            (Output::TimeScaleDt, vec![vec![*g_dt]]),
+        ];
+        functions.push(assembly.function(FunctionId::ScaledPoint, quantities)?);
+    }
+    Ok(functions)
 }
 
 /// A number as the value of a function.

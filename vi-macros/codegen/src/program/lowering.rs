@@ -69,7 +69,7 @@ impl<'a> Lowering<'a> {
 /// With which exponents a base occurs.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Occurrence {
-    /// Some exponent is an odd multiple of 1/2.
+    /// Some exponent is an odd multiple of 1/2 or of 1/4.
     pub(super) has_root: bool,
     pub(super) uses_below: usize,
 }
@@ -77,7 +77,7 @@ pub(super) struct Occurrence {
 impl Occurrence {
     pub(super) fn record(&mut self, exponent: &Rational) {
         self.uses_below += usize::from(exponent.is_negative());
-        self.has_root |= exponent.denom().to_u32() == Some(2);
+        self.has_root |= matches!(exponent.denom().to_u32(), Some(2 | 4));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Powers as products, roots and one division.
 //!
 //! In: the exponents with which each base occurs in one function. Out: operations. Integer powers are products of
-//! squares; half-integer ones are these times one root; where a base is divided by more than once, its reciprocal is
+//! squares; half-integer ones are these times one root, quarters these times the root of that; where a base is divided by more than once, its reciprocal is
 //! computed once. A root below is a root above and a reciprocal, `x^(−3/2) = (1/x)² √x`: the two do not wait for each other.
 
 use super::lowering::{Factor, Lowering};
@@ -25,7 +25,10 @@ impl Lowering<'_> {
     pub(super) fn factor(&mut self, base: Expr, exponent: &Rational) -> Factor {
         let value = self.value(base);
         let occurrence = self.occurrences.get(base).copied().unwrap_or_default();
-        let Some(halves) = halves(exponent) else {
+        let Some(halves) = multiple(exponent, 2) else {
+            if let Some(quarters) = multiple(exponent, 4) {
+                return Factor::Above(self.quarters(value, quarters));
+            }
             let exponent = self.operations.constant(exponent.to_f64().unwrap_or(f64::NAN));
             return Factor::Above(self.operations.add(Operation::Call2(Function::Pow, value, exponent)));
         };
@@ -57,6 +60,22 @@ impl Lowering<'_> {
         Factor::Below(whole(self, value))
     }
 
+    /// `value^(quarters/4)`, an odd number of them: whole powers of the value or of its reciprocal, times roots.
+    fn quarters(&mut self, value: OperationId, quarters: i32) -> OperationId {
+        let root = self.operations.add(Operation::SquareRoot(value));
+        let mut power = self.operations.add(Operation::SquareRoot(root));
+        if quarters.rem_euclid(4) == 3 {
+            power = self.operations.add(Operation::Multiply(root, power));
+        }
+        let whole = quarters.div_euclid(4);
+        if whole == 0 {
+            return power;
+        }
+        let base = if whole < 0 { self.operations.add(Operation::Reciprocal(value)) } else { value };
+        let whole = self.integer_power(base, whole.unsigned_abs());
+        self.operations.add(Operation::Multiply(whole, power))
+    }
+
     /// `value^count` by squaring; `count` is at least one.
     fn integer_power(&mut self, value: OperationId, count: u32) -> OperationId {
         if count <= 1 {
@@ -83,12 +102,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Twice an exponent, where that is an integer.
-fn halves(exponent: &Rational) -> Option<i32> {
-    let numerator = exponent.numer().to_i32()?;
-    match exponent.denom().to_u32() {
-        Some(1) => numerator.checked_mul(2),
-        Some(2) => Some(numerator),
-        _ => None,
-    }
+/// An exponent times `parts`, where that is an integer.
+fn multiple(exponent: &Rational, parts: i32) -> Option<i32> {
+    let product = exponent * Rational::from_integer(parts.into());
+    if product.is_integer() { product.numer().to_i32() } else { None }
 }

@@ -20,6 +20,8 @@ pub enum FunctionId {
     Point,
     /// f·v − L_t.
     Power,
+    /// L_v, L_q + f, M, v·L_v − L, f·v − L_t, and the time scale with its derivatives.
+    ScaledPoint,
     /// D.
     StepDensity,
     /// What L and f are made of.
@@ -66,6 +68,7 @@ impl FunctionId {
             Self::Acceleration => "acceleration",
             Self::Point => "point",
             Self::Power => "power",
+            Self::ScaledPoint => "scaled_point",
             Self::StepDensity => "step_density",
             Self::NonFinite => "non_finite",
             Self::Ld => "ld",
@@ -99,6 +102,16 @@ pub enum Output {
     MassTimesAcceleration,
     /// L_q + f.
     AppliedForce,
+    /// v·L_v − L.
+    Energy,
+    /// f·v − L_t.
+    Power,
+    /// g of dt = g dτ.
+    TimeScale,
+    /// ∂g/∂q.
+    TimeScaleDq,
+    /// ∂g/∂t.
+    TimeScaleDt,
     /// r, the momentum row.
     Residual,
     /// A = ∂r/∂v.

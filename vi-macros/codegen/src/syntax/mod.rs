@@ -32,6 +32,8 @@ pub struct System {
     pub forces: Vec<Definition>,
     /// `dissipation = …;`, each one that was written.
     pub dissipations: Vec<Definition>,
+    /// `time_scale = …;`, each one that was written.
+    pub time_scales: Vec<Definition>,
     /// `discretize …;`, each one that was written.
     pub discretizations: Vec<Discretization>,
     /// `check { … }`, each one that was written.

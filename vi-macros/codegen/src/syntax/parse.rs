@@ -16,8 +16,8 @@ use syn::punctuated::Punctuated;
 use syn::{Attribute, Path, Result, Token, Visibility};
 
 /// The words that open a clause.
-pub(super) const CLAUSES: [&str; 9] =
-    ["const", "param", "coord", "let", "L", "force", "dissipation", "discretize", "check"];
+pub(super) const CLAUSES: [&str; 10] =
+    ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
 
 /// Names of types that the emitted code uses without a path.
 const TYPES: [&str; 6] = ["T", "W", "bool", "f64", "str", "usize"];
@@ -152,6 +152,7 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         lagrangians: Vec::new(),
         forces: Vec::new(),
         dissipations: Vec::new(),
+        time_scales: Vec::new(),
         discretizations: Vec::new(),
         checks: Vec::new(),
     };
@@ -232,6 +233,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         "force" => system.forces.extend(list(input, &mut |input| indexed(input, &attributes))?),
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
         "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
+        "time_scale" => system.time_scales.push(value_of(word, input, attributes)?),
         "discretize" if input.peek(syn::token::Brace) => {
             let lines;
             syn::braced!(lines in input);

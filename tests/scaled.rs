@@ -1,0 +1,419 @@
+//! Gauss steps in scaled time: against references, by their order, by what they keep, and where they fail.
+
+use crate::support::slope;
+use std::f64::consts::PI;
+use vi_core::collocation::{Collocation, TimeScale};
+use vi_core::real::Dual;
+use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::{Gauss, Lagrangian, SVector, ScaledGauss, State, StepError, lagrangian};
+use vi_systems::Kepler;
+
+lagrangian! {
+    /// Kepler's problem, its time scaled by the distance.
+    struct ByDistance {
+        coord x, y;
+        let r = sqrt(x^2 + y^2);
+        L = (dot(x)^2 + dot(y)^2) / 2 + 1 / r;
+        time_scale = r;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// Force, time, varying mass and damping at once, and a time scale of time and place.
+    struct Everything {
+        param a = 1.0, c = 0.1, w = 1.0, b = 0.5;
+        coord x, y;
+        L = (1 + x^2 / 3) * dot(x)^2 / 2 + a * dot(y)^2 / 2 + x * dot(x) * dot(y) / 5 - cos(w * t) * x * y / 4 - x^2 - y^4 / 4;
+        force x = -c * dot(x) + sin(t) / 5;
+        force y = -c * dot(x) * dot(y);
+        time_scale = 1 + b * x^2 / 2 + sin(t) * y / 3;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// A free particle whose time stands still at x = 1.
+    struct Wall {
+        coord x;
+        L = dot(x)^2 / 2;
+        time_scale = 1 - x;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    /// A spring so stiff that sweeps do not contract, and a slow one.
+    struct Stiff {
+        param k = 1e6;
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2) / 2 - k * x^2 / 2 - y^2 / 2;
+        time_scale = 1 / (1 + y^2);
+        discretize midpoint;
+    }
+}
+
+/// Parameters other than the defaults.
+const EVERYTHING: Everything = Everything { a: 1.4, c: 0.15, w: 1.3, b: 0.7 };
+
+/// What a step in scaled time asks of a system.
+trait System<const N: usize>: TimeScale<N> + Convertible<N> + FixedStepping<N> + Copy {}
+impl<const N: usize, S: TimeScale<N> + Convertible<N> + FixedStepping<N> + Copy> System<N> for S {}
+
+/// t, x, y, p_x, p_y and E after 1 and 5 steps of Δτ = 0.1 of `EVERYTHING` from t = 0.2, q = (0.4, −0.3), v = (0.2, 0.7): collocation of
+/// Hamilton's equations of K = g (H − E), whose derivatives are differences of K, in 50 digits.
+const REFERENCE: [(usize, [[f64; 6]; 2]); 4] = [
+    (
+        1,
+        [
+            [
+                0.303649497195335277,
+                0.417006859266767892,
+                -0.227619497683330771,
+                0.193854675765023865,
+                0.986106582095668968,
+                0.508660570793476297,
+            ],
+            [
+                0.724421024112671958,
+                0.409452988399575694,
+                0.0637027618447844459,
+                -0.112753275437655727,
+                0.953317475387332095,
+                0.509680974819943717,
+            ],
+        ],
+    ),
+    (
+        2,
+        [
+            [
+                0.303689730983441096,
+                0.417026362465570322,
+                -0.227587056102203601,
+                0.193672972195282722,
+                0.986121540136031108,
+                0.508622094685001375,
+            ],
+            [
+                0.724607507069327929,
+                0.409208621689205102,
+                0.0638218120607933058,
+                -0.113533332498702121,
+                0.953329766607192383,
+                0.509510417292672417,
+            ],
+        ],
+    ),
+    (
+        3,
+        [
+            [
+                0.303689738296340154,
+                0.417026337696126848,
+                -0.22758703727060196,
+                0.193672904222043451,
+                0.986121534689984204,
+                0.508622079123078008,
+            ],
+            [
+                0.72460754297459199,
+                0.409208420059627216,
+                0.0638219109391079979,
+                -0.113533680068485107,
+                0.953329693331526233,
+                0.509510351669330011,
+            ],
+        ],
+    ),
+    (
+        4,
+        [
+            [
+                0.303689738295529849,
+                0.417026337703556367,
+                -0.227587037265614514,
+                0.193672904222490395,
+                0.986121534685810365,
+                0.50862207912455852,
+            ],
+            [
+                0.724607542971175998,
+                0.409208420077592041,
+                0.0638219109658686621,
+                -0.113533680066045078,
+                0.953329693307823357,
+                0.509510351679009825,
+            ],
+        ],
+    ),
+];
+
+fn follows<const S: usize>(reference: &[[f64; 6]; 2]) {
+    let state = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
+    let mut run = ScaledGauss::<_, 2, S>::new(EVERYTHING, state, 0.1).expect("a valid start");
+    for (steps, exact) in [1, 4].into_iter().zip(reference) {
+        let before = run.state().t;
+        for _ in 0..steps {
+            run.step().expect("a step");
+        }
+        let State { t, q, p } = run.state();
+        let found = [t, q[0], q[1], p[0], p[1], run.energy()];
+        let off = found.iter().zip(exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
+        println!("{S} stages: off by {off:.1e}, the last residual {:.1e}", run.residual());
+        // Measured: 4.5e-16.
+        assert!(off <= 1e-15, "{S} stages: {found:?}, not {exact:?}");
+        assert!(steps > 1 || (run.h() - (t - before)).abs() < 1e-15);
+        assert!(run.residual() <= 4.0 && run.iterations() > 0);
+    }
+}
+
+#[test]
+fn steps_are_those_of_the_extended_hamiltonian() {
+    for (stages, reference) in &REFERENCE {
+        match stages {
+            1 => follows::<1>(reference),
+            2 => follows::<2>(reference),
+            3 => follows::<3>(reference),
+            4 => follows::<4>(reference),
+            _ => panic!("{stages} stages have no reference"),
+        }
+    }
+}
+
+#[test]
+fn a_scaled_point_is_the_point_and_its_derivatives() {
+    let t = 0.7;
+    let q = SVector::from([0.4, -0.3]);
+    let v = SVector::from([0.2, 0.7]);
+    let at = EVERYTHING.scaled_point(t, &q, &v);
+    assert_eq!(at.energy, EVERYTHING.energy(t, &q, &v));
+    assert_eq!(at.power, EVERYTHING.power(t, &q, &v));
+    let point = EVERYTHING.point(t, &q, &v);
+    assert!((at.point.force - point.force).amax() + (at.point.momentum - point.momentum).amax() < 1e-15);
+    assert!((at.g - (1.0 + 0.7 * 0.4 * 0.4 / 2.0 - 0.7_f64.sin() * 0.1)).abs() < 1e-15, "{}", at.g);
+    let dual = Convertible::<2>::convert::<Dual<f64>>(&EVERYTHING);
+    let lifted = v.map(Dual::fixed);
+    let by_time = dual.scaled_point(Dual::variable(t), &q.map(Dual::fixed), &lifted).g.slope;
+    assert!((at.g_dt - by_time).abs() < 1e-15 && by_time != 0.0, "{} and {by_time}", at.g_dt);
+    for k in 0..2 {
+        let mut moved = q.map(Dual::fixed);
+        moved[k].slope = 1.0;
+        let by_place = dual.scaled_point(Dual::fixed(t), &moved, &lifted).g.slope;
+        assert!((at.g_dq[k] - by_place).abs() < 1e-15 && by_place != 0.0, "{} and {by_place}", at.g_dq[k]);
+    }
+    let plain = vi_systems::Pendulum::default().scaled_point(t, &SVector::from([0.3]), &SVector::from([0.1]));
+    assert_eq!((plain.g, plain.g_dq[0], plain.g_dt), (1.0, 0.0, 0.0));
+}
+
+/// The error at the times that steps of a ladder reach, against plain steps of 16 stages to the same times.
+fn order<const S: usize>(longest: f64, tolerance: f64) {
+    let state = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
+    let points: Vec<(f64, f64)> = [4_u32, 6, 8, 12, 16]
+        .into_iter()
+        .map(|count| {
+            let dtau = 4.0 * longest / f64::from(count);
+            let mut run = ScaledGauss::<_, 2, S>::new(EVERYTHING, state, dtau).expect("a valid start");
+            let reached = run.by_ref().take(count as usize).last().expect("steps").expect("a step");
+            let mut plain =
+                Gauss::<_, 2, 16>::new(EVERYTHING, state, (reached.t - state.t) / 16.0).expect("a valid start");
+            let exact = plain.by_ref().take(16).last().expect("steps").expect("a step");
+            (dtau, (reached.q - exact.q).amax().max((reached.p - exact.p).amax()))
+        })
+        .collect();
+    let slope = slope(&format!("{S} stages"), &points, 1e-13);
+    let expected = f64::from(2 * u32::try_from(S).expect("a few stages"));
+    assert!((slope - expected).abs() <= tolerance * expected, "{S} stages: slope {slope}, {points:?}");
+}
+
+#[test]
+fn the_order_is_twice_the_number_of_stages() {
+    // Slopes measured: 2.01, 3.98, 5.98, 8.05.
+    order::<1>(0.05, 0.03);
+    order::<2>(0.2, 0.03);
+    order::<3>(0.3, 0.03);
+    order::<4>(0.4, 0.05);
+}
+
+/// The start in the pericentre of an orbit with a = 1 and e = 0.9.
+fn eccentric(system: &impl System<2>) -> State<2> {
+    State::at(system, 0.0, [0.1, 0.0], [0.0, 19.0_f64.sqrt()])
+}
+
+/// The period in scaled time of an orbit with a = 1 and g = r^power: dt = r du, u the eccentric anomaly.
+fn scaled_period(power: f64) -> f64 {
+    let count = 4096;
+    let anomalies = (0..count).map(|k| 2.0 * PI * f64::from(k) / f64::from(count));
+    anomalies.map(|u| (1.0 - 0.9 * u.cos()).powf(1.0 - power)).sum::<f64>() * 2.0 * PI / f64::from(count)
+}
+
+/// The error of the position after three periods, the last step a plain one of the length that is left.
+fn three_periods<const S: usize>(system: impl System<2>, dtau: f64) -> f64 {
+    let end = 6.0 * PI;
+    let mut last = eccentric(&system);
+    for state in ScaledGauss::<_, 2, S>::new(system, last, dtau).expect("a valid start") {
+        let state = state.expect("a step");
+        if state.t > end {
+            break;
+        }
+        last = state;
+    }
+    let reached = Gauss::<_, 2, 16>::new(system, last, end - last.t).expect("a valid start").step().expect("a step");
+    (reached.q - eccentric(&system).q).norm()
+}
+
+#[test]
+fn few_steps_follow_an_eccentric_orbit() {
+    let by_distance = |n: f64| scaled_period(1.0) / n;
+    let by_rate = |n: f64| scaled_period(1.5) / n;
+    let kepler = Kepler::default();
+    let distance = ByDistance::default();
+    // Steps per period 15, 30, 60, 120. The period itself is rounded: what is left is 4.4e-13.
+    let found = [
+        (three_periods::<4>(distance, by_distance(15.0)), 1.7e-4),
+        (three_periods::<4>(distance, by_distance(30.0)), 2.0e-7),
+        (three_periods::<4>(distance, by_distance(60.0)), 1.4e-10),
+        (three_periods::<4>(distance, by_distance(120.0)), 5e-13),
+        (three_periods::<4>(kepler, by_rate(15.0)), 1.7e-7),
+        (three_periods::<4>(kepler, by_rate(30.0)), 6.5e-10),
+        (three_periods::<4>(kepler, by_rate(60.0)), 3.0e-12),
+        (three_periods::<8>(kepler, by_rate(15.0)), 5e-13),
+        (three_periods::<8>(kepler, by_rate(30.0)), 5e-13),
+    ];
+    for (error, limit) in found {
+        println!("off by {error:.2e}");
+        assert!(error > 0.0 && error <= limit, "off by {error:e}, limit {limit:e}");
+    }
+    // Plain steps, 120 in a period.
+    let end = 6.0 * PI;
+    let mut plain = Gauss::<_, 2, 4>::new(kepler, eccentric(&kepler), end / 360.0).expect("a valid start");
+    let reached = plain.by_ref().take(360).last().expect("steps").expect("a step");
+    assert!((reached.q - eccentric(&kepler).q).norm() > 0.05);
+}
+
+#[test]
+fn angular_momentum_and_energy_are_kept() {
+    let system = Kepler::default();
+    let start = eccentric(&system);
+    let spin = |state: &State<2>| state.q[0] * state.p[1] - state.q[1] * state.p[0];
+    let period = scaled_period(1.5);
+    let mut run = ScaledGauss::<_, 2, 4>::new(system, start, period / 20.0).expect("a valid start");
+    let energy = run.energy();
+    let mut excess = Vec::new();
+    let mut turned = 0.0_f64;
+    for _ in 0..1000 {
+        let mut largest = 0.0_f64;
+        for _ in 0..20 {
+            let state = run.step().expect("a step");
+            turned = turned.max((spin(&state) - spin(&start)).abs());
+            largest = largest.max(run.excess().expect("an energy").abs());
+        }
+        excess.push(largest);
+    }
+    assert_eq!(run.energy(), energy, "nothing acts on E");
+    let first = excess[..10].iter().copied().fold(0.0, f64::max);
+    let last = excess[990..].iter().copied().fold(0.0, f64::max);
+    println!(
+        "angular momentum off by {turned:.1e}; H − E up to {first:.2e} in ten periods, {last:.2e} in the last ten of 1000"
+    );
+    // Measured: 1.3e-15; 9.9e-9 and 9.9e-9.
+    assert!(turned < 4e-15, "{turned:e}");
+    assert!(first > 1e-10 && last < 1.1 * first, "{first:e}, {last:e}");
+}
+
+#[test]
+fn time_runs_backwards() {
+    let start = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
+    let mut there = ScaledGauss::<_, 2, 8>::new(EVERYTHING, start, 0.1).expect("a valid start");
+    let end = there.by_ref().take(40).last().expect("steps").expect("a step");
+    let mut back = ScaledGauss::<_, 2, 8>::new(EVERYTHING, end, -0.1).expect("a valid start");
+    let found = back.by_ref().take(40).last().expect("steps").expect("a step");
+    assert!(back.h() < 0.0 && back.dtau() < 0.0 && there.h() > 0.0);
+    let off = (found.t - start.t).abs().max((found.q - start.q).amax()).max((found.p - start.p).amax());
+    // Measured: 2.2e-15.
+    assert!(off < 1e-14, "{off:e}");
+}
+
+#[test]
+fn a_restarted_run_is_the_same_bit_for_bit() {
+    let start = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
+    let mut run = ScaledGauss::<_, 2, 3>::new(EVERYTHING, start, 0.1).expect("a valid start");
+    for steps in [0, 1, 7] {
+        assert!(run.by_ref().take(steps).all(|state| state.is_ok()));
+        let mut again = ScaledGauss::restart(EVERYTHING, run.checkpoint()).expect("its own checkpoint");
+        let mut on = run.clone();
+        for _ in 0..5 {
+            assert_eq!(on.step(), again.step());
+            assert_eq!(on.checkpoint(), again.checkpoint());
+        }
+    }
+    let other = Everything { b: 0.8, ..EVERYTHING };
+    let refused = ScaledGauss::restart(other, run.checkpoint()).expect_err("another parameter");
+    assert!(matches!(refused, StepError::OtherSystem { parameter: Some("b"), .. }), "{refused}");
+}
+
+#[test]
+fn stiff_steps_are_solved_by_newton() {
+    let system = Stiff::default();
+    // At rest in the stiff direction, so that what is left of it says how well steps are solved.
+    let start = State::at(&system, 0.0, [0.0, 1.0], [0.0, 0.0]);
+    let mut run = ScaledGauss::<_, 2, 4>::new(system, start, 0.2).expect("a valid start");
+    let reached = run.by_ref().take(50).last().expect("steps").expect("a step");
+    let exact = [reached.t.cos(), -reached.t.sin()];
+    let off = (reached.q[1] - exact[0]).abs().max((reached.p[1] - exact[1]).abs());
+    println!("at t = {:.3} off by {off:.1e}, x = {:.1e}", reached.t, reached.q[0]);
+    // Measured: 1.6e-9.
+    assert!(off < 3e-9 && reached.q[0].abs() < 1e-15, "{off:e}, {:e}", reached.q[0]);
+    let moving = State::at(&system, 0.0, [1e-3, 1.0], [0.0, 0.0]);
+    let mut run = ScaledGauss::<_, 2, 4>::new(system, moving, 0.2).expect("a valid start");
+    for _ in 0..50 {
+        let state = run.step().unwrap_or_else(|error| panic!("{error}"));
+        assert!(state.q[0].abs() < 1.1e-3 && run.iterations() > 0);
+    }
+}
+
+/// The error of a run, and that the run still has its last state and keeps the error.
+fn ends<const N: usize, const S: usize>(mut run: ScaledGauss<impl System<N>, N, S>) -> StepError {
+    for _ in 0..10_000 {
+        let before = run.state();
+        if let Err(error) = run.step() {
+            assert_eq!(run.state(), before);
+            assert_eq!(run.step(), Err(error));
+            return error;
+        }
+    }
+    panic!("a run without an end");
+}
+
+#[test]
+fn a_time_scale_that_is_not_positive_is_an_error_with_its_value() {
+    let beyond = State::at(&Wall::default(), 0.5, [1.5], [1.0]);
+    let error = ScaledGauss::<_, 1, 4>::new(Wall::default(), beyond, 0.1).expect_err("g < 0");
+    assert_eq!(error, StepError::TimeScale { t: 0.5, g: -0.5 });
+    assert!(error.to_string().starts_with("the time scale is g = -5.000e-1 at t = 0.500000000"), "{error}");
+    // A long step from before the wall.
+    let before = State::at(&Wall::default(), 0.0, [0.0], [1.0]);
+    let run = ScaledGauss::<_, 1, 4>::new(Wall::default(), before, 30.0).expect("a valid start");
+    let error = ends(run);
+    assert!(matches!(error, StepError::TimeScale { g, .. } if g <= 0.0), "{error}");
+    // Short steps never arrive.
+    let mut run = ScaledGauss::<_, 1, 4>::new(Wall::default(), before, 0.1).expect("a valid start");
+    let reached = run.by_ref().take(100).last().expect("steps").expect("a step");
+    assert!((reached.q[0] - (1.0 - (-10.0_f64).exp())).abs() < 1e-13, "{reached:?}");
+}
+
+#[test]
+fn what_cannot_be_stepped_is_refused_with_its_numbers() {
+    let system = Kepler::default();
+    let start = eccentric(&system);
+    for dtau in [0.0, f64::NAN, f64::INFINITY, 1e-310] {
+        let error = ScaledGauss::<_, 2, 4>::new(system, start, dtau).expect_err("no step");
+        assert!(matches!(error, StepError::InvalidInput { input: "the step Δτ in scaled time", .. }), "{error}");
+    }
+    let lost = State { q: SVector::from([f64::NAN, 0.0]), ..start };
+    let error = ScaledGauss::<_, 2, 4>::new(system, lost, 0.1).expect_err("no state");
+    assert!(matches!(error, StepError::NonFinite { .. } | StepError::TimeScale { .. }), "{error}");
+    // Half a period in one step.
+    let error = ends(ScaledGauss::<_, 2, 4>::new(system, start, 40.0).expect("a valid start"));
+    assert!(matches!(error, StepError::StagesUnsettled { .. } | StepError::NonFinite { .. }), "{error}");
+}

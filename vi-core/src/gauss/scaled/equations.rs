@@ -1,0 +1,372 @@
+//! The stages of a step in scaled time.
+//!
+//! In: the equations of motion, `dt = g dτ` and H at the stages. Out: velocities, times, energies, and what they change by,
+//!
+//! ```text
+//! T_i = t0 + Σ_j first_ij w_j g_j                 w_j = Δτ b_j
+//! Q_i = q0 + Σ_j first_ij w_j g_j V_j
+//! E_i = E0 + Σ_j first_ij w_j E'_j                E' = g (f·V − L_t) + (H − E) ∂g/∂t
+//! L_v(T_i, Q_i, V_i) = p0 + Σ_j first_ij w_j P'_j         P' = g (L_q + f) − (H − E) ∂g/∂q
+//! ```
+//!
+//! A sweep evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from P', and moves T, Q and E
+//! by the new g, V and E'.
+
+use super::super::newton::Newton;
+use super::super::stages::{Stages, change, constant_mass, product, scaled, set, stage, weights};
+use super::super::sweep::{Equations, Increment};
+use super::super::tableau::Tableau;
+use crate::collocation::Collocation;
+use crate::linear::Matrix;
+use crate::node::Node;
+use crate::real::{Lane, Real};
+use nalgebra::{SMatrix, SVector};
+
+/// What a step is found from: velocities, and what time and energy change by, at its stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rates<const N: usize, const S: usize> {
+    pub(super) velocity: Stages<N, S>,
+    /// `dt/dτ = g`.
+    pub(super) g: [f64; S],
+    /// `dE/dτ`.
+    pub(super) energy: [f64; S],
+}
+
+/// Times and energies of the stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Clock<const S: usize> {
+    pub(super) time: [f64; S],
+    pub(super) energy: [f64; S],
+}
+
+/// The equations of a step; see the [module](self).
+pub(super) struct Scaled<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
+where
+    T: Real,
+{
+    system: &'a Y,
+    node: &'a Node<N>,
+    dtau: f64,
+    /// M, where it is constant.
+    mass: Option<Y::Mass>,
+    /// What positions, times and energies follow from.
+    rates: Rates<N, S>,
+    clock: Clock<S>,
+    /// Velocities, times and energies at which the equations were evaluated last.
+    velocity: Stages<N, S>,
+    evaluated: Clock<S>,
+    /// `dp/dτ` there.
+    force: Stages<N, S>,
+    /// The largest H, and v·p, there: what an energy is a sum of.
+    energy_scale: f64,
+}
+
+impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> Scaled<'a, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    /// The equations of the step of length Δτ from `node`, with a guess of the rates at its stages.
+    #[inline(always)]
+    pub(super) fn new(system: &'a Y, node: &'a Node<N>, dtau: f64, rates: Rates<N, S>) -> Self {
+        let mass = Y::CONSTANT_MASS.then(|| constant_mass(system, node));
+        let clock = Clock { time: [node.t; S], energy: [node.energy; S] };
+        let force = [[0.0; S]; N];
+        let velocity = rates.velocity;
+        let mut equations =
+            Self { system, node, dtau, mass, rates, clock, velocity, evaluated: clock, force, energy_scale: 0.0 };
+        equations.advance_clock();
+        equations
+    }
+
+    /// `low + Σ_j first_ij w_j x_j` at the stages i.
+    #[inline(always)]
+    fn integral(&self, of: &[f64; S], low: f64) -> [f64; S] {
+        let first = const { &Tableau::<S>::VALUES.first };
+        let weights = weights(self.dtau);
+        product::<S, FUSED>(first, &scaled(&weights, of), &[low; S])
+    }
+
+    /// Moves times and energies by the rates at hand.
+    #[inline(always)]
+    fn advance_clock(&mut self) {
+        let time = self.integral(&self.rates.g, self.node.t_low);
+        let energy = self.integral(&self.rates.energy, self.node.energy_low);
+        for i in 0..S {
+            self.clock.time[i] = self.node.t + time[i];
+            self.clock.energy[i] = self.node.energy + energy[i];
+        }
+    }
+
+    /// Where the rates at hand lead.
+    #[inline(always)]
+    fn positions(&self) -> Stages<N, S> {
+        let mut x = [[0.0; S]; N];
+        for k in 0..N {
+            let moved = self.integral(&scaled(&self.rates.g, &self.rates.velocity[k]), self.node.q_low[k]);
+            for i in 0..S {
+                x[k][i] = self.node.q[k] + moved[i];
+            }
+        }
+        x
+    }
+
+    /// Evaluates the equations at the positions x, calls `keep` with each mass matrix, and returns what is missing in the momenta.
+    #[inline(always)]
+    fn evaluate(&mut self, x: &Stages<N, S>, mut keep: impl FnMut(usize, &Y::Mass)) -> Stages<N, S> {
+        // Arrays of this function do not overlap, so far as the compiler knows: it makes vectors of their loops.
+        let velocity = self.rates.velocity;
+        let clock = self.clock;
+        let x = *x;
+        let mut force = [[0.0; S]; N];
+        let mut momentum = [[0.0; S]; N];
+        let mut g = [0.0; S];
+        let mut gain = [0.0; S];
+        let mut size = [0.0; S];
+        for i in 0..S {
+            let v = stage::<N, S, T>(&velocity, i);
+            let at = self.system.scaled_point(T::real(clock.time[i]), &stage(&x, i), &v);
+            let excess = at.energy - T::real(clock.energy[i]);
+            let mut p_rate = at.point.force;
+            let mut action = T::zero();
+            for k in 0..N {
+                p_rate[k] = at.g * at.point.force[k] - excess * at.g_dq[k];
+                action += v[k] * at.point.momentum[k];
+            }
+            set(&mut force, i, &p_rate);
+            set(&mut momentum, i, &at.point.momentum);
+            g[i] = at.g.to_f64();
+            gain[i] = (at.g * at.power + excess * at.g_dt).to_f64();
+            size[i] = at.energy.to_f64().abs() + action.to_f64().abs();
+            keep(i, &at.point.mass);
+        }
+        self.velocity = velocity;
+        self.evaluated = clock;
+        self.force = force;
+        self.rates.g = g;
+        self.rates.energy = gain;
+        self.energy_scale = size.into_iter().fold(0.0, f64::max);
+        let mut missing = [[0.0; S]; N];
+        for k in 0..N {
+            let gained = self.integral(&force[k], self.node.p_low[k]);
+            for i in 0..S {
+                missing[k][i] = gained[i] + (self.node.p[k] - momentum[k][i]);
+            }
+        }
+        missing
+    }
+
+    /// Adds corrections to the velocities, and follows the rates.
+    #[inline(always)]
+    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
+        for k in 0..N {
+            for i in 0..S {
+                self.rates.velocity[k][i] += correction[k][i];
+            }
+        }
+        self.advance_clock();
+        self.positions()
+    }
+
+    /// The corrections of the velocities by the constant mass matrix.
+    #[inline(always)]
+    fn by_constant_mass(&mut self, mass: Y::Mass, x: &Stages<N, S>) -> Stages<N, S> {
+        let missing = self.evaluate(x, |_, _| {});
+        let mut correction = [[0.0; S]; N];
+        for i in 0..S {
+            set(&mut correction, i, &mass.solve_unchecked(&stage::<N, S, T>(&missing, i)));
+        }
+        correction
+    }
+
+    /// The same by the mass matrix of each stage, whose inverse waits for the momenta of all stages.
+    #[inline(always)]
+    fn by_varying_mass(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        let mut inverse = [[[0.0; S]; N]; N];
+        let missing = self.evaluate(x, |i, mass| {
+            let columns = mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
+            for k in 0..N {
+                for l in 0..N {
+                    inverse[k][l][i] = columns[(k, l)].to_f64();
+                }
+            }
+        });
+        let mut correction = [[0.0; S]; N];
+        for k in 0..N {
+            for l in 0..N {
+                for i in 0..S {
+                    let sum = &mut correction[k][i];
+                    *sum = Lane::<FUSED>::multiply_add(inverse[k][l][i], missing[l][i], *sum);
+                }
+            }
+        }
+        correction
+    }
+
+    /// `Σ_j w_j x_j`.
+    #[inline(always)]
+    fn quadrature(&self, of: &[f64; S]) -> f64 {
+        let weights = weights::<S>(self.dtau);
+        let mut sum = 0.0;
+        for i in 0..S {
+            sum = Lane::<FUSED>::multiply_add(weights[i], of[i], sum);
+        }
+        sum
+    }
+}
+
+impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Scaled<'_, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    const PATIENCE: u32 = 5;
+
+    #[inline(always)]
+    fn start(&self) -> Stages<N, S> {
+        self.positions()
+    }
+
+    #[inline(always)]
+    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        let correction = match self.mass {
+            Some(mass) if Y::CONSTANT_MASS => self.by_constant_mass(mass, x),
+            _ => self.by_varying_mass(x),
+        };
+        self.follow(&correction)
+    }
+
+    #[inline(always)]
+    fn increment(&self) -> Increment<N> {
+        let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
+        for k in 0..N {
+            increment.velocity[k] = self.quadrature(&scaled(&self.rates.g, &self.velocity[k])) / self.dtau;
+            increment.momentum[k] = self.quadrature(&self.force[k]);
+        }
+        increment
+    }
+
+    #[inline(always)]
+    fn guess(&self) -> Stages<N, S> {
+        self.rates.velocity
+    }
+
+    #[inline(always)]
+    fn velocities(&self) -> Option<Stages<N, S>> {
+        Some(self.velocity)
+    }
+
+    /// With those of times, which count as positions, and of energies.
+    #[inline(always)]
+    fn change_of_velocities(&self) -> f64 {
+        let Clock { time, energy } = self.evaluated;
+        let velocity = change(&self.velocity, &self.rates.velocity, &SVector::zeros());
+        let time = change(&[time], &[self.clock.time], &SVector::from([self.node.t])) * LIKE_A_POSITION;
+        let energy = change(&[energy], &[self.clock.energy], &SVector::from([self.energy_scale]));
+        velocity.max(time).max(energy) + 0.0 * (velocity + time + energy)
+    }
+}
+
+/// Roundings of a velocity that count as one of a position.
+const LIKE_A_POSITION: f64 = 16.0;
+
+/// The equations of the stages, corrected by simplified Newton iterations on the motion by `h = g Δτ`, g that of the middle: what g
+/// changes by is left to the iteration, since it is no faster than the motion that it follows.
+pub(super) struct Stiff<'a, Y: Collocation<N>, const N: usize, const S: usize> {
+    equations: Scaled<'a, f64, Y, N, S, false>,
+    newton: &'a mut Newton<N, S>,
+}
+
+impl<'a, Y: Collocation<N>, const N: usize, const S: usize> Stiff<'a, Y, N, S> {
+    /// Equations with their linearization.
+    pub(super) fn new(equations: Scaled<'a, f64, Y, N, S, false>, newton: &'a mut Newton<N, S>) -> Self {
+        Self { equations, newton }
+    }
+}
+
+impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stiff<'_, Y, N, S> {
+    // There is no other way left.
+    const PATIENCE: u32 = u32::MAX;
+
+    fn start(&self) -> Stages<N, S> {
+        self.equations.start()
+    }
+
+    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        let missing = self.equations.evaluate(x, |_, _| {});
+        let correction = self.newton.correction(&missing);
+        self.equations.follow(&correction)
+    }
+
+    fn increment(&self) -> Increment<N> {
+        self.equations.increment()
+    }
+
+    fn guess(&self) -> Stages<N, S> {
+        self.equations.guess()
+    }
+
+    fn velocities(&self) -> Option<Stages<N, S>> {
+        self.equations.velocities()
+    }
+
+    fn change_of_velocities(&self) -> f64 {
+        self.equations.change_of_velocities()
+    }
+}
+
+/// The equations of a step with the clock of its stages.
+pub(super) trait Clocked<const N: usize, const S: usize>: Equations<N, S> {
+    /// What time and energy gain over the step, by the evaluation of the last sweep.
+    fn gains(&self) -> [f64; 2];
+    /// The rates at hand: what is extrapolated to the next step.
+    fn rates(&self) -> Rates<N, S>;
+    /// Velocities at which the last sweep evaluated.
+    fn velocity(&self) -> Stages<N, S>;
+    /// Times and energies at which the last sweep evaluated.
+    fn evaluated(&self) -> Clock<S>;
+}
+
+impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Clocked<N, S> for Scaled<'_, T, Y, N, S, FUSED>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    #[inline(always)]
+    fn gains(&self) -> [f64; 2] {
+        [self.quadrature(&self.rates.g), self.quadrature(&self.rates.energy)]
+    }
+
+    #[inline(always)]
+    fn rates(&self) -> Rates<N, S> {
+        self.rates
+    }
+
+    #[inline(always)]
+    fn velocity(&self) -> Stages<N, S> {
+        self.velocity
+    }
+
+    #[inline(always)]
+    fn evaluated(&self) -> Clock<S> {
+        self.evaluated
+    }
+}
+
+impl<Y: Collocation<N>, const N: usize, const S: usize> Clocked<N, S> for Stiff<'_, Y, N, S> {
+    fn gains(&self) -> [f64; 2] {
+        self.equations.gains()
+    }
+
+    fn rates(&self) -> Rates<N, S> {
+        self.equations.rates()
+    }
+
+    fn velocity(&self) -> Stages<N, S> {
+        self.equations.velocity()
+    }
+
+    fn evaluated(&self) -> Clock<S> {
+        self.equations.evaluated()
+    }
+}

@@ -1,0 +1,387 @@
+//! Gauss steps in scaled time, `dt = g(t, q) dτ`: steps of order 2S that follow the motion.
+//!
+//! In: a system with the clause `time_scale = g;`, a state, the step Δτ in scaled time (negative: backwards), and the number of stages S,
+//! 1 to 16. Out: an iterator of states, at times whose distance is about g Δτ. A step is Gauss collocation of the Hamiltonian
+//! `K = g (H − E)` in extended phase space, where t is a coordinate and −E its momentum: with Δτ constant, h is short where g is small.
+//! With `H = V·P − L` at a stage and F = L_q + f,
+//!
+//! ```text
+//! t' = g        q' = g v        p' = g F − (H − E) ∂g/∂q        E' = g (f·v − L_t) + (H − E) ∂g/∂t        L_v = p
+//! ```
+//!
+//! all four collocated. Along the motion H = E: E starts as H of the first state, and is constant where the system is autonomous, has
+//! no force and g no time in it. The map is symplectic in extended phase space where no force acts, time-symmetric, and keeps the momenta of
+//! symmetries that g shares, as the angular momentum for g(r) (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, VIII.2.1;
+//! Leimkuhler and Reich, *Simulating Hamiltonian Dynamics*, chapter 9).
+//!
+//! | file | part of a step |
+//! |---|---|
+//! | `equations` | the equations of the stages, solved by sweeps, else by simplified Newton iterations |
+//! | `rounding` | whether stages that stall are solved, by running error analysis |
+//!
+//! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor; g is positive and finite at all of
+//! them. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+
+mod equations;
+mod rounding;
+
+use super::newton::Newton;
+use super::stages::{Stages, extrapolated, stage};
+use super::sweep::{self, Convergence, Increment, Sweeps};
+use crate::checkpoint;
+use crate::collocation::{Collocation, TimeScale};
+use crate::compensated;
+use crate::error::StepError;
+use crate::node::Node;
+use crate::real::{Lane, Real, Rounded};
+use crate::state::State;
+use crate::stepping::{Convertible, FixedStepping};
+use equations::{Clock, Clocked, Rates, Scaled, Stiff};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+use vi_dispatch::{Instructions, Loop};
+
+/// Steps of order 2 STAGES in scaled time; see the [module](self).
+#[derive(Clone, Debug)]
+pub struct ScaledGauss<S, const N: usize, const STAGES: usize> {
+    system: S,
+    instructions: Instructions,
+    run: Run<N, STAGES>,
+    /// Made where the first step needs it.
+    newton: Option<Box<Newton<N, STAGES>>>,
+    failure: Option<StepError>,
+}
+
+/// Everything that a run of [`ScaledGauss`] carries, to be stored and resumed bit for bit.
+pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Run<N, STAGES>>;
+
+/// What a run carries from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Run<const N: usize, const S: usize> {
+    node: Node<N>,
+    dtau: f64,
+    /// Length of the last step in time; before the first one `g Δτ`.
+    h: f64,
+    /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
+    velocities: SMatrix<f64, S, N>,
+    /// The same of g and of dE/dτ, a column each.
+    clock: SMatrix<f64, S, 2>,
+    convergence: Convergence,
+}
+
+impl<S, const N: usize, const STAGES: usize> ScaledGauss<S, N, STAGES>
+where
+    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// The integrator of `system` from `state` with the step `dtau`, in units of scaled time: the time over the unit of g.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for a Δτ that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a state or energy,
+    /// [`StepError::TimeScale`] where g is not positive and finite, [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity
+    /// belongs to its momenta.
+    pub fn new(system: S, state: State<N>, dtau: f64) -> Result<Self, StepError> {
+        check_dtau(dtau)?;
+        let v = state.velocity(&system)?;
+        let at = system.scaled_point(state.t, &state.q, &v);
+        check_time_scale(state.t, at.g)?;
+        let node = Node::new(state, at.energy);
+        node.check_finite(state.t)?;
+        let velocities = SMatrix::from_fn(|_, k| v[k]);
+        // The energy is H here, so that dE/dτ has no other part.
+        let clock = SMatrix::from_fn(|_, column| if column == 0 { at.g } else { at.g * at.power });
+        let run = Run { node, dtau, h: at.g * dtau, velocities, clock, convergence: Convergence::NONE };
+        Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
+    }
+
+    /// Everything that the run carries, and of which system with which parameters. Allocates.
+    pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
+        checkpoint::Checkpoint::of(&self.system, self.run)
+    }
+
+    /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.
+    ///
+    /// # Errors
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
+    /// [`StepError::InvalidInput`] for one that no run can have left.
+    pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
+        let run = checkpoint.run_of(&system)?;
+        check_dtau(run.dtau)?;
+        let t = if run.node.t.is_finite() { run.node.t } else { 0.0 };
+        run.node.check_finite(t)?;
+        if !run.velocities.iter().chain(run.clock.iter()).chain([&run.h]).all(|entry| entry.is_finite()) {
+            return Err(StepError::NonFinite { t, quantity: "last stages", expression: None });
+        }
+        Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
+    }
+
+    /// Takes one step and returns the state reached.
+    ///
+    /// # Errors
+    /// [`StepError::StagesUnsettled`] where the stages do not come to rest: Δτ is too long for the fastest motion of the system;
+    /// [`StepError::TimeScale`] where g is not positive and finite at a stage; [`StepError::NonFinite`]. The same error again after an
+    /// error.
+    pub fn step(&mut self) -> Result<State<N>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        // No `?`: with it a step copies the run once more.
+        match self.solve() {
+            Ok(run) => self.run = run,
+            Err(failure) => {
+                self.failure = Some(failure);
+                return Err(failure);
+            }
+        }
+        Ok(self.run.node.state())
+    }
+
+    /// The run after the next step.
+    fn solve(&mut self) -> Result<Run<N, STAGES>, StepError> {
+        let swept = self.instructions.run(Solve { system: &self.system, run: &self.run });
+        let run = self.run.after(&swept);
+        if swept.is_at_floor() && run.is_sound() { Ok(run) } else { self.solve_with_care(&swept) }
+    }
+
+    /// The run after a step that sweeps do not bring to the rounding of its positions, or whose g is not positive.
+    #[cold]
+    fn solve_with_care(&mut self, swept: &Solved<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
+        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+        let plain;
+        let solved = if swept.sweeps.convergence.change.is_nan() {
+            plain = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
+            &plain
+        } else {
+            swept
+        };
+        if let Some(run) = self.accepted(solved) {
+            return Ok(run);
+        }
+        let solved = self.solve_stiff();
+        match self.accepted(&solved) {
+            Some(run) => Ok(run),
+            None => Err(self.failure_of(&solved)),
+        }
+    }
+
+    /// The run after a step, if it is solved.
+    fn accepted(&self, solved: &Solved<N, STAGES>) -> Option<Run<N, STAGES>> {
+        let run = self.run.after(solved);
+        let Run { node, dtau, .. } = &self.run;
+        let is_solved =
+            || solved.is_at_floor() || rounding::are_solved(&self.system.convert::<Rounded>(), node, *dtau, solved);
+        (run.is_sound() && is_solved()).then_some(run)
+    }
+
+    /// Why a step was not solved.
+    fn failure_of(&self, solved: &Solved<N, STAGES>) -> StepError {
+        let Run { node, dtau, h, .. } = &self.run;
+        for i in 0..STAGES {
+            let t = solved.clock.time[i];
+            let q = stage(&solved.sweeps.positions, i);
+            let is_known = t.is_finite() && q.iter().all(|q: &f64| q.is_finite());
+            if is_known && let Err(failure) = check_time_scale(t, self.system.scaled_point(t, &q, &SVector::zeros()).g)
+            {
+                return failure;
+            }
+        }
+        let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
+        let v = match node.state().velocity(&self.system) {
+            Ok(v) => v,
+            Err(failure) => return failure,
+        };
+        let explained = lost.explained(&self.system, node, *h, &v);
+        if let StepError::NonFinite { expression: Some(_), .. } = explained {
+            return explained;
+        }
+        let Convergence { sweeps, change, contraction } = solved.sweeps.convergence;
+        // What is not a number was beyond all.
+        let [change, contraction] =
+            [change, contraction].map(|ratio| if ratio.is_nan() { f64::INFINITY } else { ratio });
+        let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
+        let h = self.system.scaled_point(node.t, &node.q, &v).g * dtau;
+        StepError::StagesUnsettled { t: node.t, h, iterations: sweeps, change, contraction, stiffness }
+    }
+
+    /// The step by simplified Newton iterations about its middle.
+    fn solve_stiff(&mut self) -> Solved<N, STAGES> {
+        let Self { system, run, newton, .. } = self;
+        let rates = run.guess::<false>();
+        let equations = Scaled::<f64, S, N, STAGES, false>::new(system, &run.node, run.dtau, rates);
+        let middle = STAGES / 2;
+        let h = run.dtau * rates.g[middle];
+        let q = stage(&sweep::Equations::start(&equations), middle);
+        let v = stage(&rates.velocity, middle);
+        let newton = newton.get_or_insert_with(|| Box::new(Newton::new(h)));
+        newton.set_step(h);
+        newton.linearize(system, run.node.t + 0.5 * h, &q, &v);
+        finished(Stiff::new(equations, newton), run)
+    }
+
+    /// The state reached last.
+    pub fn state(&self) -> State<N> {
+        self.run.node.state()
+    }
+
+    /// The system.
+    pub fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// The step, in units of scaled time.
+    pub fn dtau(&self) -> f64 {
+        self.run.dtau
+    }
+
+    /// Length of the last step in time, `Δτ Σ b_i g_i`; before the first step what it is about to be, `g Δτ` at the first state. It
+    /// differs from step to step.
+    pub fn h(&self) -> f64 {
+        self.run.h
+    }
+
+    /// The energy E that is carried, as a momentum of the time is, in the units of L: H of the first state, and from there what the power
+    /// `f·v − L_t` adds. Constant where the system is autonomous, has no force and g no time in it.
+    pub fn energy(&self) -> f64 {
+        self.run.node.energy
+    }
+
+    /// `H − E` at the state reached last, in the units of L: by so much the step misses the energy of the motion. It stays small and does
+    /// not drift, while `K = g (H − E)` is zero along the motion.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to the momenta.
+    pub fn excess(&self) -> Result<f64, StepError> {
+        let energy = self.run.node.state().energy(&self.system)?;
+        Ok(energy - self.run.node.energy)
+    }
+
+    /// What the stages of the last step leave of their equations, in roundings of the coordinates. Zero before the first step.
+    pub fn residual(&self) -> f64 {
+        self.run.convergence.change
+    }
+
+    /// Sweeps over the stages that the last step took.
+    pub fn iterations(&self) -> u32 {
+        self.run.convergence.sweeps
+    }
+}
+
+impl<const N: usize, const S: usize> Run<N, S> {
+    /// Rates at the stages of the next step: the polynomials of the last one, further on.
+    #[inline(always)]
+    fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
+        let mut velocity = self.velocities.data.0;
+        let mut clock = self.clock.data.0;
+        if self.convergence.has_begun() {
+            velocity = extrapolated::<N, S, FUSED>(&velocity);
+            clock = extrapolated::<2, S, FUSED>(&clock);
+        }
+        let [g, energy] = clock;
+        Rates { velocity, g, energy }
+    }
+
+    /// The run after a step.
+    #[inline(always)]
+    fn after(&self, solved: &Solved<N, S>) -> Self {
+        let Solved { increment, gains: [h, energy], rates, sweeps, .. } = solved;
+        let mut node = self.node;
+        compensated::add_rounded(&mut node.t, &mut node.t_low, *h);
+        compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * self.dtau));
+        compensated::add_vector(&mut node.p, &mut node.p_low, &increment.momentum);
+        node.add_energy(*energy);
+        let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
+        let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
+        Self { node, dtau: self.dtau, h: *h, velocities, clock, convergence: sweeps.convergence }
+    }
+
+    /// Whether it is finite, and g positive at all stages.
+    #[inline(always)]
+    fn is_sound(&self) -> bool {
+        self.node.is_finite() && self.clock.column(0).iter().all(|g| *g > 0.0)
+    }
+}
+
+/// A solved step.
+struct Solved<const N: usize, const S: usize> {
+    increment: Increment<N>,
+    /// What time and energy gain.
+    gains: [f64; 2],
+    /// What the next step is extrapolated from.
+    rates: Rates<N, S>,
+    /// Velocities, times and energies at which the last sweep evaluated.
+    velocity: Stages<N, S>,
+    clock: Clock<S>,
+    sweeps: Sweeps<N, S>,
+}
+
+impl<const N: usize, const S: usize> Solved<N, S> {
+    /// Whether the stages are at the rounding of their positions.
+    fn is_at_floor(&self) -> bool {
+        self.sweeps.convergence.is_at_floor()
+    }
+}
+
+/// The solution of the next step of a run, by the instructions of the processor.
+struct Solve<'a, Y, const N: usize, const S: usize> {
+    system: &'a Y,
+    run: &'a Run<N, S>,
+}
+
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
+    type Output = Solved<N, S>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Solved<N, S> {
+        let system = self.system.convert::<Lane<FUSED>>();
+        solved::<Lane<FUSED>, _, N, S, FUSED>(&system, self.run)
+    }
+}
+
+/// The next step of a run, the equations evaluated in the numbers T.
+#[inline(always)]
+fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(system: &Y, run: &Run<N, S>) -> Solved<N, S>
+where
+    T: Real,
+    Y: Collocation<N, T>,
+{
+    let rates = run.guess::<FUSED>();
+    finished(Scaled::<T, Y, N, S, FUSED>::new(system, &run.node, run.dtau, rates), run)
+}
+
+#[inline(always)]
+fn finished<const N: usize, const S: usize>(mut equations: impl Clocked<N, S>, run: &Run<N, S>) -> Solved<N, S> {
+    let sweeps = sweep::solve(&mut equations, &run.node.q, &run.convergence);
+    Solved {
+        increment: equations.increment(),
+        gains: equations.gains(),
+        rates: equations.rates(),
+        velocity: equations.velocity(),
+        clock: equations.evaluated(),
+        sweeps,
+    }
+}
+
+/// A step in scaled time must lead somewhere.
+fn check_dtau(dtau: f64) -> Result<(), StepError> {
+    if dtau.is_normal() {
+        return Ok(());
+    }
+    let allowed = "finite, not zero and not subnormal";
+    Err(StepError::InvalidInput { input: "the step Δτ in scaled time", allowed, value: dtau })
+}
+
+/// Time must go on.
+fn check_time_scale(t: f64, g: f64) -> Result<(), StepError> {
+    if g > 0.0 && g.is_finite() { Ok(()) } else { Err(StepError::TimeScale { t, g }) }
+}
+
+impl<S, const N: usize, const STAGES: usize> Iterator for ScaledGauss<S, N, STAGES>
+where
+    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+{
+    type Item = Result<State<N>, StepError>;
+
+    /// The next step; never `None`. After an error, the same error.
+    fn next(&mut self) -> Option<Self::Item> {
+        Some(self.step())
+    }
+}

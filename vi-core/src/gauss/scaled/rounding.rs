@@ -1,0 +1,79 @@
+//! Whether what the stages of a step in scaled time leave of their equations is rounding, by running error analysis.
+//!
+//! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out:
+//! whether every row is at most four of its bounds,
+//!
+//! ```text
+//! q0 + Δτ Σ a_ij g_j V_j − Q_i        p0 + Δτ Σ a_ij P'_j − L_v(T_i, Q_i, V_i)        t0 + Δτ Σ a_ij g_j − T_i        E0 + Δτ Σ a_ij E'_j − E_i
+//! ```
+//!
+//! It is asked where changes stall above the rounding of the unknowns: where terms cancel, their sum is known less well.
+
+use super::super::rounding::{is_rounding, nearest};
+use super::super::tableau::Tableau;
+use super::Solved;
+use crate::collocation::{Collocation, ScaledPoint};
+use crate::node::Node;
+use crate::real::Rounded;
+use nalgebra::SVector;
+
+/// Numbers of a stage: what time, position and energy are there, or change by.
+struct Place<const N: usize> {
+    t: Rounded,
+    q: SVector<Rounded, N>,
+    energy: Rounded,
+}
+
+/// Whether the stages of the step of length Δτ from `node` satisfy their equations.
+pub(super) fn are_solved<Y, const N: usize, const S: usize>(
+    system: &Y,
+    node: &Node<N>,
+    dtau: f64,
+    solved: &Solved<N, S>,
+) -> bool
+where
+    Y: Collocation<N, Rounded>,
+{
+    let Tableau { b, first, .. } = const { &Tableau::<S>::VALUES };
+    let Solved { sweeps, velocity, clock, .. } = solved;
+    // What a row comes to at stage i: the sum over the stages, from where it starts.
+    let sum = |i: usize, start: [f64; 2], of: &dyn Fn(usize) -> Rounded| {
+        let weight = |j: usize| Rounded::nearest(first[j][i]) * Rounded::nearest(dtau * b[j]);
+        let start = Rounded::exact(start[0]) + Rounded::exact(start[1]);
+        (0..S).fold(start, |sum, j| sum + weight(j) * of(j))
+    };
+    let at = |i: usize, Place { t, q, energy }: &Place<N>| {
+        let v = nearest(velocity, i);
+        let at = system.scaled_point(*t, q, &v);
+        let excess = at.energy - *energy;
+        (at, excess, v)
+    };
+    let places: [Place<N>; S] = core::array::from_fn(|i| {
+        let [t, energy] = [clock.time[i], clock.energy[i]].map(Rounded::nearest);
+        Place { t, q: nearest(&sweeps.positions, i), energy }
+    });
+    let rates: [Place<N>; S] = core::array::from_fn(|i| {
+        let (ScaledPoint { g, g_dt, power, .. }, excess, v) = at(i, &places[i]);
+        Place { t: g, q: v.map(|v| g * v), energy: g * power + excess * g_dt }
+    });
+    // Times, positions and energies follow from their rates, and carry the rounding of that sum.
+    let followed: [Place<N>; S] = core::array::from_fn(|i| Place {
+        t: sum(i, [node.t, node.t_low], &|j| rates[j].t),
+        q: SVector::from_fn(|k, _| sum(i, [node.q[k], node.q_low[k]], &|j| rates[j].q[k])),
+        energy: sum(i, [node.energy, node.energy_low], &|j| rates[j].energy),
+    });
+    let points: [_; S] = core::array::from_fn(|i| {
+        let (ScaledPoint { point, g, g_dq, .. }, excess, _) = at(i, &followed[i]);
+        let force = point.force.zip_map(&g_dq, |force, g_dq| g * force - excess * g_dq);
+        (point.momentum, force)
+    });
+    (0..S).all(|i| {
+        let (place, reached) = (&places[i], &followed[i]);
+        is_rounding(reached.t - place.t)
+            && is_rounding(reached.energy - place.energy)
+            && (0..N).all(|k| {
+                let p = sum(i, [node.p[k], node.p_low[k]], &|j| points[j].1[k]);
+                is_rounding(reached.q[k] - place.q[k]) && is_rounding(p - points[i].0[k])
+            })
+    })
+}

@@ -1,0 +1,24 @@
+//! The time scale: g of the time transformation dt = g(t, q) dτ.
+//!
+//! In: the lines `time_scale = g;`. Out: g, an expression of the time, coordinates and parameters; none where none is declared.
+
+use super::context::Context;
+use crate::messages::Message;
+use crate::syntax::Definition;
+use vi_expr::Expr;
+
+/// The time scale of a system, if it has one.
+pub(super) fn time_scale(context: &mut Context, written: &[Definition]) -> Option<Expr> {
+    let (first, others) = written.split_first()?;
+    for other in others {
+        context.errors.at(other.name.span(), &Message::SecondTimeScale);
+    }
+    let mut scope = context.scope.of_time_scale(context.pool);
+    let value = scope.expression(context.pool, &first.value);
+    let value = context.report(value)?;
+    let is_number = context.pool.symbols(value).is_empty() && !context.is_too_large();
+    if is_number && context.pool.evaluate(value, &mut |_| f64::NAN) <= 0.0 {
+        context.errors.at(first.value.span, &Message::TimeScaleNotPositive);
+    }
+    Some(value)
+}
