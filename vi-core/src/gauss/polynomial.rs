@@ -64,7 +64,7 @@ impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
 }
 
 /// The coefficients `u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i` of values at the stages.
-fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
+pub(super) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
     let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
     let mut coefficients = [[0.0; S]; N];
     let mut factor = 1.0;
@@ -80,7 +80,7 @@ fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages
 }
 
 /// `Σ_k u_k basis_k` of each coordinate, the small ones first.
-fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64; S]) -> SVector<f64, N> {
+pub(super) fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64; S]) -> SVector<f64, N> {
     let mut total = SVector::<f64, N>::zeros();
     for (total, row) in total.iter_mut().zip(coefficients) {
         for k in (0..S).rev() {
@@ -91,7 +91,7 @@ fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64
 }
 
 /// P_k(2θ − 1), k = 0 … S − 1, by `(k + 1) P_{k+1} = (2k + 1) x P_k − k P_{k−1}`.
-fn polynomials<const S: usize>(part: f64) -> [f64; S] {
+pub(super) fn polynomials<const S: usize>(part: f64) -> [f64; S] {
     let x = 2.0 * part - 1.0;
     let mut values = [0.0; S];
     let mut last = [0.0, 1.0];
@@ -105,7 +105,7 @@ fn polynomials<const S: usize>(part: f64) -> [f64; S] {
 }
 
 /// `∫_0^θ P_k(2u − 1) du`, k = 0 … S − 1.
-fn integrals<const S: usize>(part: f64) -> [f64; S] {
+pub(super) fn integrals<const S: usize>(part: f64) -> [f64; S] {
     let x = 2.0 * part - 1.0;
     let mut values = [0.0; S];
     let mut last = [1.0, x];

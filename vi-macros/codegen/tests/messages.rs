@@ -59,6 +59,34 @@ fn names() {
 }
 
 #[test]
+fn time_scales() {
+    let rest = |clauses: &str| {
+        format!("coord x, y[2]; let speed = dot(x)^2; let e[i in 0..2] = dot(y[i]); {clauses} {OF_THREE}")
+    };
+    case(
+        &rest("time_scale = 1 + «dot»(x)^2;"),
+        "a time scale cannot depend on the velocities in `dot`\nhelp: use positions",
+    );
+    case(&rest("time_scale = 1 + «speed»;"), "a time scale cannot depend on the velocities in `speed`");
+    case(&rest("time_scale = 1 + «e»[0]^2;"), "a time scale cannot depend on the velocities in `e`");
+    case(&rest("time_scale = «0»;"), "the time scale is not positive");
+    case(&rest("time_scale = «cos»(pi);"), "the time scale is not positive");
+    case(&rest("time_scale = 1 + x^2; «time_scale» = 1;"), "a second `time_scale`");
+    case(&rest("let zero = x - x; time_scale = 1 / «zero»;"), "division by zero");
+    case(&rest("time_scale = «ln»(x - x);"), "this expression has no value");
+    case(&rest("time_scale = 1 + «z»;"), "unknown name `z`");
+    case(&rest("time_scale = 1 + «y»;"), "`y` is an array");
+    case(&rest("param «a» = 1; time_scale = 1 + x^2;"), "the parameter `a` acts on nothing");
+    case(&rest("«time_scales» = 1;"), "unknown clause `time_scales`\nhelp: did you mean `time_scale`?");
+    // One that acts there alone acts.
+    let accepted = rest("param a = 1; time_scale = sqrt(a + x^2 + sum(i in 0..2, y[i]^2) + sin(t)^2);");
+    assert_eq!(errors(&format!("struct System {{ {accepted} }}")), []);
+}
+
+/// The rest of a right system of three coordinates.
+const OF_THREE: &str = "L = (dot(x)^2 + dot(y[0])^2 + dot(y[1])^2) / 2; discretize midpoint;";
+
+#[test]
 fn velocities() {
     case("param «a» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the parameter `a` acts on nothing");
     case(

@@ -203,9 +203,16 @@ where
         correction
     }
 
+    /// `dp/dτ` where the rates at hand lead.
+    pub(super) fn momentum_rates(&mut self) -> Stages<N, S> {
+        let x = self.positions();
+        self.evaluate(&x, |_, _| {});
+        self.force
+    }
+
     /// `Σ_j w_j x_j`.
     #[inline(always)]
-    fn quadrature(&self, of: &[f64; S]) -> f64 {
+    pub(super) fn quadrature(&self, of: &[f64; S]) -> f64 {
         let weights = weights::<S>(self.dtau);
         let mut sum = 0.0;
         for i in 0..S {

@@ -17,19 +17,23 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `equations` | the equations of the stages, solved by sweeps, else by simplified Newton iterations |
+//! | `path` | the motion between the nodes of a step |
+//! | `integrator` | what it shares with the other integrators; steps of a given length in time |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
 //!
 //! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor; g is positive and finite at all of
 //! them. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 mod equations;
+mod integrator;
+mod path;
 mod rounding;
 
 use super::newton::Newton;
 use super::stages::{Stages, extrapolated, stage};
 use super::sweep::{self, Convergence, Increment, Sweeps};
 use crate::checkpoint;
-use crate::collocation::{Collocation, TimeScale};
+use crate::collocation::{Collocation, ScaledPoint, TimeScale};
 use crate::compensated;
 use crate::error::StepError;
 use crate::node::Node;
@@ -38,6 +42,7 @@ use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
 use equations::{Clock, Clocked, Rates, Scaled, Stiff};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
+pub use path::Polynomial;
 use vi_dispatch::{Instructions, Loop};
 
 /// Steps of order 2 STAGES in scaled time; see the [module](self).
@@ -60,7 +65,8 @@ pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoin
 pub struct Run<const N: usize, const S: usize> {
     node: Node<N>,
     dtau: f64,
-    /// Length of the last step in time; before the first one `g Δτ`.
+    /// Length of the last step in scaled time, and in time; before the first one Δτ and `g Δτ`.
+    taken: f64,
     h: f64,
     /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
     velocities: SMatrix<f64, S, N>,
@@ -81,15 +87,8 @@ where
     /// belongs to its momenta.
     pub fn new(system: S, state: State<N>, dtau: f64) -> Result<Self, StepError> {
         check_dtau(dtau)?;
-        let v = state.velocity(&system)?;
-        let at = system.scaled_point(state.t, &state.q, &v);
-        check_time_scale(state.t, at.g)?;
-        let node = Node::new(state, at.energy);
-        node.check_finite(state.t)?;
-        let velocities = SMatrix::from_fn(|_, k| v[k]);
-        // The energy is H here, so that dE/dτ has no other part.
-        let clock = SMatrix::from_fn(|_, column| if column == 0 { at.g } else { at.g * at.power });
-        let run = Run { node, dtau, h: at.g * dtau, velocities, clock, convergence: Convergence::NONE };
+        let energy = state.energy(&system)?;
+        let run = Run::new(&system, Node::new(state, energy), dtau)?;
         Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
     }
 
@@ -108,7 +107,7 @@ where
         check_dtau(run.dtau)?;
         let t = if run.node.t.is_finite() { run.node.t } else { 0.0 };
         run.node.check_finite(t)?;
-        if !run.velocities.iter().chain(run.clock.iter()).chain([&run.h]).all(|entry| entry.is_finite()) {
+        if !run.velocities.iter().chain(run.clock.iter()).chain([&run.taken, &run.h]).all(|entry| entry.is_finite()) {
             return Err(StepError::NonFinite { t, quantity: "last stages", expression: None });
         }
         Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
@@ -238,9 +237,9 @@ where
         self.run.h
     }
 
-    /// The energy E that is carried, as a momentum of the time is, in the units of L: H of the first state, and from there what the power
+    /// The discrete energy E that is carried, −E the momentum of the time, in the units of L: H of the first state, and from there what the power
     /// `f·v − L_t` adds. Constant where the system is autonomous, has no force and g no time in it.
-    pub fn energy(&self) -> f64 {
+    pub fn discrete_energy(&self) -> f64 {
         self.run.node.energy
     }
 
@@ -266,17 +265,36 @@ where
 }
 
 impl<const N: usize, const S: usize> Run<N, S> {
-    /// Rates at the stages of the next step: the polynomials of the last one, further on.
+    /// A run that begins at a node, the rates of its first step guessed constant.
+    fn new<Y: TimeScale<N>>(system: &Y, node: Node<N>, dtau: f64) -> Result<Self, StepError> {
+        node.check_finite(node.t)?;
+        let State { t, q, .. } = node.state();
+        let v = node.state().velocity(system)?;
+        let ScaledPoint { energy, power, g, g_dt, .. } = system.scaled_point(t, &q, &v);
+        check_time_scale(t, g)?;
+        let gain = g * power + (energy - node.energy) * g_dt;
+        let velocities = SMatrix::from_fn(|_, k| v[k]);
+        let clock = SMatrix::from_fn(|_, column| if column == 0 { g } else { gain });
+        Ok(Self { node, dtau, taken: dtau, h: g * dtau, velocities, clock, convergence: Convergence::NONE })
+    }
+
+    /// Rates at the stages of the last step.
+    #[inline(always)]
+    fn rates(&self) -> Rates<N, S> {
+        let [g, energy] = self.clock.data.0;
+        Rates { velocity: self.velocities.data.0, g, energy }
+    }
+
+    /// Rates at the stages of the next step: the polynomials of the last one, further on; after a step of another length its last ones.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
-        let mut velocity = self.velocities.data.0;
-        let mut clock = self.clock.data.0;
-        if self.convergence.has_begun() {
-            velocity = extrapolated::<N, S, FUSED>(&velocity);
-            clock = extrapolated::<2, S, FUSED>(&clock);
+        let Rates { velocity, g, energy } = self.rates();
+        if self.convergence.has_begun() && self.taken == self.dtau {
+            let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
+            return Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy };
         }
-        let [g, energy] = clock;
-        Rates { velocity, g, energy }
+        let last = |row: [f64; S]| [row[S - 1]; S];
+        Rates { velocity: velocity.map(last), g: last(g), energy: last(energy) }
     }
 
     /// The run after a step.
@@ -290,7 +308,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
         node.add_energy(*energy);
         let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
         let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
-        Self { node, dtau: self.dtau, h: *h, velocities, clock, convergence: sweeps.convergence }
+        Self { node, dtau: self.dtau, taken: self.dtau, h: *h, velocities, clock, convergence: sweeps.convergence }
     }
 
     /// Whether it is finite, and g positive at all stages.

@@ -1,0 +1,100 @@
+//! The motion over a step in scaled time: its collocation polynomials.
+//!
+//! In: what time, positions and momenta change by at the stages. Out: q and p at any time of the step. With θ the part of the step in scaled
+//! time and x = 2θ − 1, all three are polynomials of θ,
+//!
+//! ```text
+//! t(θ) = t0 + Δτ Σ_k g_k I_k(θ)        q(θ) = q0 + Δτ Σ_k (g v)_k I_k(θ)        p(θ) = p0 + Δτ Σ_k (dp/dτ)_k I_k(θ)
+//! ```
+//!
+//! and θ follows from t, which grows where g is positive. Coefficients and I_k are those of a Gauss step in time.
+
+use super::super::polynomial::{coefficients, integrals, polynomials, sum};
+use super::super::stages::{Stages, scaled};
+use super::Run;
+use super::equations::Scaled;
+use crate::collocation::Collocation;
+use crate::integrator::Path;
+use crate::node::Node;
+use crate::state::State;
+use nalgebra::SVector;
+
+/// The motion over a step of S stages; see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial<const N: usize, const S: usize> {
+    /// Where the step began.
+    start: State<N>,
+    dtau: f64,
+    /// Coefficients of `dt/dτ`, `dq/dτ` and `dp/dτ` in Legendre polynomials.
+    time: Stages<1, S>,
+    position: Stages<N, S>,
+    momentum: Stages<N, S>,
+}
+
+/// Iterations after which a part of a step is known.
+const ITERATIONS: u32 = 60;
+
+impl<const N: usize, const S: usize> Polynomial<N, S> {
+    /// The motion over the last step of a run, which began at `start`.
+    pub(super) fn of<Y: Collocation<N>>(system: &Y, run: &Run<N, S>, start: State<N>) -> Self {
+        let rates = run.rates();
+        // E is the one from which the step came to that of the node.
+        let mut node = Node::new(start, run.node.energy);
+        node.energy -= Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates).quadrature(&rates.energy);
+        let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates);
+        let momentum = coefficients(&equations.momentum_rates());
+        let position = coefficients(&rates.velocity.map(|row| scaled(&rates.g, &row)));
+        Self { start, dtau: run.taken, time: coefficients(&[rates.g]), position, momentum }
+    }
+
+    /// The time at a part of the step, and its derivative by the part.
+    fn time(&self, part: f64) -> [f64; 2] {
+        let passed = sum(&self.time, &integrals::<S>(part))[0];
+        let g = sum(&self.time, &polynomials::<S>(part))[0];
+        [self.start.t + self.dtau * passed, self.dtau * g]
+    }
+
+    /// The part of the step that is over at the time t: by Newton's iteration, halved where it leaves what is known to hold the part.
+    /// Beyond the ends time goes on as there.
+    fn part(&self, t: f64) -> f64 {
+        for end in [0.0, 1.0] {
+            let [time, slope] = self.time(end);
+            let beyond = (t - time) / slope;
+            if beyond == 0.0 || (beyond > 0.0) == (end > 0.5) {
+                return end + beyond;
+            }
+        }
+        let [mut low, mut high] = [0.0, 1.0];
+        let mut part = 0.5;
+        for _ in 0..ITERATIONS {
+            let [time, slope] = self.time(part);
+            let left = (t - time) / slope;
+            if left > 0.0 {
+                low = part;
+            } else {
+                high = part;
+            }
+            let next = part + left;
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            if (next - part).abs() <= f64::EPSILON {
+                return next;
+            }
+            part = next;
+        }
+        part
+    }
+}
+
+impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
+    fn state(&self, t: f64) -> State<N> {
+        let integrals = integrals::<S>(self.part(t));
+        let q = self.start.q + sum(&self.position, &integrals) * self.dtau;
+        let p = self.start.p + sum(&self.momentum, &integrals) * self.dtau;
+        State { t, q, p }
+    }
+
+    fn velocity(&self, t: f64) -> SVector<f64, N> {
+        let basis = polynomials::<S>(self.part(t));
+        sum(&self.position, &basis) / sum(&self.time, &basis)[0]
+    }
+}
