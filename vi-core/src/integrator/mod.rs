@@ -36,7 +36,8 @@ pub trait Integrator<const N: usize>: Clone {
     /// Everything that a run carries, with the name and the parameters of the system.
     type Checkpoint;
 
-    /// A step is at most so many times as long as [`Integrator::h`] says: 1 where it is always that long.
+    /// A step is at most so many times as long as [`Integrator::h`] says: 1 where it is always that long, infinite where
+    /// nothing is known.
     const LONGEST: f64;
 
     /// Takes one step, and returns the state reached.

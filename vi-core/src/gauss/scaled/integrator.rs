@@ -85,7 +85,8 @@ where
     type Path = Polynomial<N, STAGES>;
     type Checkpoint = Checkpoint<N, STAGES>;
 
-    const H_IS_GIVEN: bool = false;
+    // Nothing bounds how g changes from one step to the next.
+    const LONGEST: f64 = f64::INFINITY;
 
     fn step(&mut self) -> Result<State<N>, StepError> {
         self.step()

@@ -289,7 +289,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
         let Rates { velocity, g, energy } = self.rates();
-        if self.convergence.has_begun() && self.taken == self.dtau {
+        if self.convergence.has_begun() && self.taken.to_bits() == self.dtau.to_bits() {
             let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
             return Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy };
         }
