@@ -1,10 +1,12 @@
-//! The systems that the command knows by name, each with a place to start from.
+//! The systems that the command knows by name, each with a place to start from: those of the program that the command stands in
+//! ([`crate::main!`]), then the ready ones.
 //!
 //! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
 
 use crate::failure::Failure;
 use crate::system::{self, System};
 use crate::table::Table;
+use std::sync::OnceLock;
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::EnergyStepping;
 use vi_systems::{
@@ -12,8 +14,28 @@ use vi_systems::{
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };
 
+/// The systems of a program of one's own, set once before its command is read.
+static OWN: OnceLock<Own> = OnceLock::new();
+
+/// The systems of a program of one's own; [`crate::main!`] writes it.
+#[derive(Clone, Copy)]
+pub struct Own {
+    /// The text of the files that declare them.
+    pub sources: &'static [&'static str],
+    /// The systems.
+    pub entries: fn() -> Vec<Entry>,
+}
+
+impl Own {
+    /// Makes these systems known to the command.
+    pub(crate) fn declare(self) {
+        // A second set of systems in one process is none.
+        let _ = OWN.set(self);
+    }
+}
+
 /// A system in the catalogue.
-pub(crate) struct Entry {
+pub struct Entry {
     /// The system, with the default parameters.
     pub(crate) system: Box<dyn System>,
     /// What it is.
@@ -24,6 +46,17 @@ pub(crate) struct Entry {
     pub(crate) v: Vec<f64>,
     /// Default step.
     pub(crate) h: f64,
+}
+
+impl Entry {
+    /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
+    #[must_use]
+    pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    where
+        S: EnergyStepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    {
+        entry::<S, N>(about, q, v, h)
+    }
 }
 
 fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
@@ -37,8 +70,30 @@ where
 const LOWEST_MODE: [f64; 16] =
     [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996, 0.996, 0.962, 0.895, 0.798, 0.674, 0.526, 0.361, 0.184];
 
-/// All systems, in the order in which they are listed.
+/// The text of the files that declare the systems.
+pub(crate) fn sources() -> impl Iterator<Item = &'static str> {
+    let own = OWN.get().map_or(&[][..], |own| own.sources);
+    own.iter().copied().chain(vi_systems::SOURCES)
+}
+
+/// All systems, in the order in which they are listed: one's own hide ready ones of the same name.
 pub(crate) fn entries() -> Vec<Entry> {
+    let mut all = OWN.get().map_or_else(Vec::new, |own| (own.entries)());
+    let own: Vec<&str> = all.iter().map(|entry| entry.system.name()).collect();
+    let others: Vec<Entry> = ready().into_iter().filter(|entry| !own.contains(&entry.system.name())).collect();
+    all.extend(others);
+    all
+}
+
+/// The name of the first system of one's own.
+pub(crate) fn first_own() -> Result<String, Failure> {
+    let first = OWN.get().and_then(|own| (own.entries)().into_iter().next());
+    let none = || Failure::Input("name a system, as `vi-lab list` does, or a scene file".to_owned());
+    first.map(|entry| entry.system.name().to_owned()).ok_or_else(none)
+}
+
+/// The ready systems.
+fn ready() -> Vec<Entry> {
     let rest = [0.0];
     let inclined = [0.8, 0.0];
     vec![

@@ -33,7 +33,7 @@ pub(crate) fn explain(Arguments { system, latex }: &Arguments) -> Result<String,
 
 /// The mathematics of a ready system.
 fn ready(name: &str) -> Result<inspect::Explanation, Failure> {
-    let mut declared = vi_systems::SOURCES.into_iter().filter_map(|text| source::declarations(text).ok()).flatten();
+    let mut declared = catalogue::sources().filter_map(|text| source::declarations(text).ok()).flatten();
     let explained = declared.find_map(|tokens| {
         // The name stands first of all that a declaration says: no other system needs to be derived.
         let system = vi_codegen::syntax::parse::system(tokens.clone()).ok()?;

@@ -9,6 +9,7 @@
 //! | `system`, `simulation` | any system and one run of it, their types erased: all that is compiled once for each system |
 //! | `counting`, `rival`, `start` | what stands below them: evaluations, DOP853, an accurate start |
 //! | `catalogue` | the systems by name, each with a place to start from |
+//! | `new` | `vi-lab new`: a crate of one's own with all of this command |
 //! | `run` | `vi-lab run`: rows as CSV or NPY |
 //! | `paper` | `vi-lab paper`: figures, tables and the page |
 //! | `stability` | `vi-lab stability`: where methods fail, as maps |
@@ -28,6 +29,7 @@ mod html;
 mod input;
 mod interrupt;
 mod machine;
+mod new;
 mod numbers;
 mod paper;
 mod progress;
@@ -41,6 +43,7 @@ mod system;
 mod table;
 mod work_precision;
 
+pub use catalogue::{Entry, Own};
 use clap::{Parser, Subcommand};
 use failure::Failure;
 use std::io::{self, Write as _};
@@ -76,11 +79,49 @@ enum Action {
     Expand(expand::Arguments),
     /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
     Explain(explain::Arguments),
+    /// Write a crate with a system of your own and all of this command for it
+    New(new::Arguments),
     /// List the systems, their parameters and where they start
     List,
 }
 
+/// Gives a program the command `vi-lab` for systems of its own, beside the ready ones: `run`, `stability`, `work-precision`, `explain`, scenes.
+///
+/// ```text
+/// vi_lab::main! {
+///     sources: ["main.rs"],        // files that declare the systems, beside this one: for `explain`
+///     systems: [
+///         Pendulum { about: "mass on a rod", q: [1.0], v: [0.0], h: 0.01 },
+///     ],
+/// }
+/// ```
+///
+/// A system needs `Default`, which every parameter with a value gives it, and a rule with a step density. `q`, `v` and `h` are where a run starts that
+/// is not told otherwise: coordinates, velocities, a step.
+#[macro_export]
+macro_rules! main {
+    (
+        sources: [$($source:literal),* $(,)?],
+        systems: [$($system:ident { about: $about:expr, q: $q:expr, v: $v:expr, h: $h:expr $(,)? }),+ $(,)?] $(,)?
+    ) => {
+        fn main() -> ::std::process::ExitCode {
+            $crate::main_with($crate::Own {
+                sources: &[$(include_str!($source)),*],
+                entries: || vec![$($crate::Entry::new::<$system, _>($about, $q, $v, $h)),+],
+            })
+        }
+    };
+}
+
+/// Runs the command line of this process, for systems of one's own too.
+#[must_use]
+pub fn main_with(own: Own) -> ExitCode {
+    own.declare();
+    main()
+}
+
 /// Runs the command line of this process.
+#[must_use]
 pub fn main() -> ExitCode {
     let outcome = match Command::try_parse() {
         Ok(Command { action }) => act(action),
@@ -118,6 +159,7 @@ fn act(action: Action) -> Result<(), Failure> {
         Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments)?),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),
         Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
+        Action::New(arguments) => print(&new::write(&arguments)?),
         Action::List => print(&catalogue::table().text()),
     }
 }

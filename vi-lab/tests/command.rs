@@ -135,7 +135,7 @@ fn a_failing_step_leaves_the_output_so_far() {
 fn wrong_input_is_one_line_and_status_2() {
     let cases: [(&[&str], &str); 24] = [
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
-        (&["run", "double-well"], "give the length of the run, --steps N or --until T"),
+        (&["run"], "name a system, as `vi-lab list` does, or a scene file"),
         (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
         (&["run", "double-well", "--steps", "1", "--set", "k=1"], "double-well has no parameter `k`; it has `m`"),
         (

@@ -51,9 +51,9 @@ Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 
 (SIGINT, SIGTERM); 141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there \
 are whole; only a second signal ends the command at once.")]
 pub(crate) struct Arguments {
-    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml
+    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
     #[arg(value_name = "SYSTEM|SCENE.toml")]
-    pub(crate) target: String,
+    pub(crate) target: Option<String>,
     /// Integrator [default: fixed]
     #[arg(long)]
     pub(crate) method: Option<Method>,
@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
     /// Step, or first step [default: the system's]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
-    /// Number of steps, such as 1000 or 1e6
+    /// Number of steps, such as 1e6 [default: 1000]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) steps: Option<u64>,
     /// Steps until this time is reached
@@ -274,7 +274,7 @@ mod tests {
 
     /// Why the run ends, and the times of its rows.
     fn followed(every: u64, fourth: Result<(), StepError>, signal: &dyn Fn() -> Option<Signal>) -> (Failure, Vec<f64>) {
-        let target = "double-well".to_owned();
+        let target = Some("double-well".to_owned());
         let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
         let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));

@@ -12,6 +12,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Steps of a run that is not told otherwise.
+const USUAL_STEPS: u64 = 1000;
+
 /// A run, ready to begin.
 pub(super) struct Request {
     /// The system, with its parameters set.
@@ -128,9 +131,13 @@ impl Request {
     /// # Errors
     /// [`Failure::Input`] for the first input that is wrong.
     pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
-        let extension = Path::new(&arguments.target).extension();
+        let target = match &arguments.target {
+            Some(target) => target.clone(),
+            None => catalogue::first_own()?,
+        };
+        let extension = Path::new(&target).extension();
         let is_scene = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        let scene = if is_scene { Scene::read(&arguments.target)? } else { Scene::of_system(&arguments.target) };
+        let scene = if is_scene { Scene::read(&target)? } else { Scene::of_system(&target) };
         let entry = catalogue::find(&scene.system)?;
         let mut system = entry.system;
         for (name, value) in &scene.parameters {
@@ -240,7 +247,7 @@ fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length,
         ))),
         (None, Some(until)) => Ok(Length::Until(until)),
         (Some(_), Some(_)) => Err(Failure::Input("give either --steps or --until, not both".to_owned())),
-        (None, None) => Err(Failure::Input("give the length of the run, --steps N or --until T".to_owned())),
+        (None, None) => Ok(Length::Steps(USUAL_STEPS)),
     }
 }
 
@@ -249,7 +256,7 @@ mod tests {
     use super::*;
 
     fn arguments(target: &str) -> Arguments {
-        Arguments { target: target.to_owned(), steps: Some(10), ..Arguments::default() }
+        Arguments { target: Some(target.to_owned()), steps: Some(10), ..Arguments::default() }
     }
 
     fn message(arguments: &Arguments) -> String {
@@ -263,7 +270,7 @@ mod tests {
             change(&mut arguments);
             message(&arguments)
         };
-        let cases: [(String, &str); 15] = [
+        let cases: [(String, &str); 14] = [
             (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
             (
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
@@ -287,7 +294,6 @@ mod tests {
             ),
             (with(|a| a.v = Some(vec![f64::NAN])), "the velocities (--v) must be finite, not NaN"),
             (with(|a| a.h = Some(0.0)), "the step (--h) must not be zero"),
-            (with(|a| a.steps = None), "give the length of the run, --steps N or --until T"),
             (with(|a| a.until = Some(1.0)), "give either --steps or --until, not both"),
             (
                 with(|a| (a.steps, a.until, a.h) = (None, Some(1.0), Some(-0.1))),

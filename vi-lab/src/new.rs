@@ -1,0 +1,73 @@
+//! `vi-lab new`: a crate with a system of one's own, and all of this command for it.
+//!
+//! In: a name. Out: a folder with a crate that builds and runs as it is: the manifest, with profiles in which debug builds step fast and
+//! release builds are short; a program with one system; a README of five lines.
+
+use crate::failure::Failure;
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The command line of `vi-lab new`.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Name of the crate, and of its folder
+    #[arg(value_name = "NAME")]
+    name: PathBuf,
+}
+
+const MANIFEST: &str = include_str!("new/manifest.toml");
+const PROGRAM: &str = include_str!("new/main.rs");
+const README: &str = include_str!("new/README.md");
+const IGNORED: &str = "/target\n";
+
+/// Writes the crate.
+pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Failure> {
+    let name = folder.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    if !is_crate_name(name) {
+        let allowed = "letters, digits, - and _, the first a letter";
+        return Err(Failure::Input(format!("`{}` is no name of a crate; it has {allowed}", folder.display())));
+    }
+    if folder.exists() {
+        return Err(Failure::Input(format!("{} is there already", folder.display())));
+    }
+    let file = |path: PathBuf, text: &str| {
+        fs::write(&path, text).map_err(|error| Failure::File { name: path.display().to_string(), error })
+    };
+    let source = folder.join("src");
+    fs::create_dir_all(&source).map_err(|error| Failure::File { name: source.display().to_string(), error })?;
+    file(folder.join("Cargo.toml"), &MANIFEST.replace("NAME", name).replace("LIBRARIES", &libraries()))?;
+    file(folder.join("README.md"), &README.replace("NAME", name))?;
+    file(folder.join(".gitignore"), IGNORED)?;
+    file(source.join("main.rs"), PROGRAM)?;
+    Ok(format!("{}: a crate with one system\n\n    cd {0} && cargo run --release -- run", folder.display()))
+}
+
+/// Whether Cargo takes a name for a crate.
+fn is_crate_name(name: &str) -> bool {
+    let mut letters = name.chars();
+    letters.next().is_some_and(|first| first.is_ascii_alphabetic())
+        && letters.all(|letter| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_'))
+}
+
+/// The lines of the manifest that say where the libraries are: beside this command, where its source still stands, else by version.
+fn libraries() -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("vi-core/Cargo.toml").is_file());
+    let line = |name: &str| match root {
+        // Quoted as Rust does, which TOML reads: both escape backslashes and quotes alike.
+        Some(root) => format!("{name} = {{ path = {:?} }}", root.join(name).display().to_string()),
+        None => format!("{name} = {:?}", env!("CARGO_PKG_VERSION")),
+    };
+    [line("vi-core"), line("vi-lab")].join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_crate_name;
+
+    #[test]
+    fn names_are_those_of_crates() {
+        assert!(["mine", "my-system_2", "A"].into_iter().all(is_crate_name));
+        assert!(["", "2d", "-a", "a b", "ä", "a/b", "a.b", ".."].into_iter().all(|name| !is_crate_name(name)));
+    }
+}

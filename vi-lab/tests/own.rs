@@ -1,0 +1,75 @@
+//! Systems of a user's own in the command: the program that `vi-lab new` writes, run as it is, and the crate around it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Runs a program, and returns exit status, standard output and standard error.
+fn run(program: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } = Command::new(program).args(arguments).output().expect("the command runs");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (status.code(), text(stdout), text(stderr))
+}
+
+fn lab() -> PathBuf {
+    PathBuf::from(env!("CARGO_BIN_EXE_vi-lab"))
+}
+
+/// The program of a new crate, which Cargo builds as an example of this one.
+fn own() -> PathBuf {
+    let program = lab().with_file_name("examples").join("own");
+    assert!(
+        program.is_file(),
+        "`cargo test -p vi-lab` builds it, as long as it is not told to build `--test own` alone"
+    );
+    program
+}
+
+#[test]
+fn every_tool_knows_the_system() {
+    let (status, rows, errors) = run(&own(), &["run"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(rows.contains("# system: SpringPendulum") && rows.contains("\nt,r,θ,p_r,p_θ,H,E,h\n"), "{rows}");
+    // 1000 steps, their start, six lines of words.
+    assert_eq!(rows.lines().filter(|line| !line.starts_with('#')).count(), 1002);
+    let (_, set, _) = run(&own(), &["run", "spring-pendulum", "--set", "k=80", "--method", "energy", "--steps", "10"]);
+    assert!(set.contains("k = 80"), "{set}");
+    let (status, list, _) = run(&own(), &["list"]);
+    let first = list.lines().nth(3).expect("a row");
+    assert!(status == Some(0) && first.contains("spring-pendulum") && list.contains("kepler"), "{list}");
+    let (status, text, _) = run(&own(), &["explain", "spring-pendulum"]);
+    assert!(status == Some(0) && text.starts_with("SpringPendulum\n") && text.contains("p_θ = m*r^2*dot(θ)"), "{text}");
+    let (status, _, errors) = run(&own(), &["run", "spring-pendulun"]);
+    assert_eq!(status, Some(2));
+    assert_eq!(errors, "error: there is no system `spring-pendulun`; did you mean `spring-pendulum`?\n");
+}
+
+#[test]
+fn a_new_crate_has_what_it_needs() {
+    let folder = std::env::temp_dir().join(format!("vi-lab-new-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a folder");
+    let name = folder.join("mine");
+    let (status, text, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(text.contains("cargo run --release -- run"), "{text}");
+    let manifest = fs::read_to_string(name.join("Cargo.toml")).expect("a manifest");
+    let manifest: toml::Table = manifest.parse().expect("TOML");
+    assert_eq!(manifest["package"]["name"].as_str(), Some("mine"));
+    for library in ["vi-core", "vi-lab"] {
+        let path = manifest["dependencies"][library]["path"].as_str().expect("a path");
+        assert!(Path::new(path).join("Cargo.toml").is_file(), "{path}");
+    }
+    let program = fs::read_to_string(name.join("src/main.rs")).expect("a program");
+    assert!(program.contains("lagrangian!") && program.contains("vi_lab::main!"));
+    let readme = fs::read_to_string(name.join("README.md")).expect("a README");
+    assert!(readme.starts_with("# mine\n") && !readme.contains("NAME"));
+    // What is there is not written over.
+    let (status, _, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
+    assert_eq!((status, errors), (Some(2), format!("error: {} is there already\n", name.display())));
+    for wrong in ["2d", "a b", "ä", ".."] {
+        let (status, output, errors) = run(&lab(), &["new", wrong]);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{wrong}");
+        assert!(errors.contains("is no name of a crate"), "{errors}");
+    }
+    fs::remove_dir_all(&folder).expect("the folder goes");
+}
