@@ -33,7 +33,7 @@ lagrangian! {
 
 lagrangian! {
     /// Force, time, varying mass and damping at once.
-    struct Everything {
+    pub(crate) struct Everything {
         param a = 1.4, c = 0.15, w = 1.3;
         coord x, y;
         L = (1 + x^2 / 3) * dot(x)^2 / 2 + a * dot(y)^2 / 2 + x * dot(x) * dot(y) / 5 - cos(w * t) * x * y / 4 - x^2 - y^4 / 4;
@@ -44,7 +44,7 @@ lagrangian! {
 }
 
 /// What a Gauss step asks of a system.
-trait System<const N: usize>: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy {}
+pub(crate) trait System<const N: usize>: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy {}
 impl<const N: usize, S: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy> System<N> for S {}
 
 /// The run after so many steps of a reference, against it: nodes, and the discrete energy of the last interval.

@@ -30,6 +30,13 @@ impl<R, T: Scalar> Checkpoint<R, T> {
         Self { system: S::NAME.to_owned(), rule: S::RULE.map(str::to_owned), parameters, run }
     }
 
+    /// The checkpoint of a part of the run, and the rest of it.
+    pub(crate) fn split<P, Q>(self, parts: impl FnOnce(R) -> (P, Q)) -> (Checkpoint<P, T>, Q) {
+        let Self { system, rule, parameters, run } = self;
+        let (run, rest) = parts(run);
+        (Checkpoint { system, rule, parameters, run }, rest)
+    }
+
     /// The run, where it is one of this system by this rule with these parameters.
     pub(crate) fn run_of<const N: usize, S: FixedStepping<N, T>>(self, system: &S) -> Result<R, StepError> {
         let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };

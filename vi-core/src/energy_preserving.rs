@@ -31,10 +31,10 @@
 mod bracket;
 mod checkpoint;
 mod equations;
-mod fallback;
+pub(crate) mod fallback;
 mod guess;
 mod integrator;
-mod interval;
+pub(crate) mod interval;
 mod predicted;
 mod run;
 mod starts;

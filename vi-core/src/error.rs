@@ -17,6 +17,23 @@ pub enum StepError {
         /// Step density D at the last good node.
         density: f64,
     },
+    /// No energy-preserving Gauss step leads forward from here: its step density vanishes or changes its sign.
+    NoForwardGaussStep {
+        /// Time of the last good node.
+        t: f64,
+        /// Length of the last good step.
+        h: f64,
+        /// Stages s of the step.
+        stages: usize,
+        /// `H(t, q, p) − E'`: where a step exists it is `C_s h^2s (D_s + D_*)` to leading order.
+        excess: f64,
+        /// Step density D_s at the last good node.
+        density: f64,
+        /// The shift D_*.
+        shift: f64,
+        /// The largest `|D_s|` that the run has met.
+        largest: f64,
+    },
     /// The step density vanishes: the length of the step is not determined.
     DegenerateStep {
         /// Time of the last good node.
@@ -137,6 +154,10 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "no energy-preserving step leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e})"
             ),
+            StepError::NoForwardGaussStep { t, h, stages, excess, density, shift, .. } => write!(
+                f,
+                "no energy-preserving step of {stages} stages leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e}, shifted by {shift:.3e})"
+            ),
             StepError::DegenerateStep { t, h, density } => write!(
                 f,
                 "the step length is not determined at t = {t:.9} (last h = {h:.3e}, step density D = {density:.3e})"
@@ -190,6 +211,11 @@ impl fmt::Display for StepError {
             Self::NoForwardStep { .. } | Self::DegenerateStep { .. } => {
                 f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on")
             }
+            Self::NoForwardGaussStep { h, largest, .. } => write!(
+                f,
+                "; `with_shift({:.3e})`, beyond the largest |D| so far, makes steps that exist here, other numbers of stages have other densities, and `with_fallback(Fallback::FixedSteps)` or `Gauss` with h = {h:.3e} goes on",
+                2.0 * largest
+            ),
             Self::StepRatio { .. } => f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
             Self::StepBounds { found, .. } => write!(
                 f,

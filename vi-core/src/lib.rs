@@ -66,6 +66,7 @@ pub use energy_preserving::{EnergyPreserving, Fallback};
 pub use error::StepError;
 pub use fixed_step::FixedStep;
 pub use gauss::Gauss;
+pub use gauss::energy::EnergyPreservingGauss;
 pub use gauss::scaled::ScaledGauss;
 pub use integrator::Integrator;
 pub use lagrangian::Lagrangian;

@@ -22,11 +22,13 @@ pub(crate) use assignments;
 pub(crate) mod dual;
 mod lane;
 mod rounded;
+mod series;
 pub mod sine;
 
 pub use dual::Dual;
 pub use lane::Lane;
 pub use rounded::Rounded;
+pub use series::Series;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

@@ -70,6 +70,7 @@ impl<const N: usize, T: Scalar> Step<N, T> {
 
 /// How a step of the energy-preserving integrator was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Method<T = f64> {
     /// From the momentum and the energy equation.
     EnergyPreserving,

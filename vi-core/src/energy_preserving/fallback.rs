@@ -24,7 +24,7 @@ use crate::real::Scalar;
 
 /// With the fallback a step may be longer than the last by this factor at most: where D falls linearly to zero, the step
 /// law gives it at the distance of 0.7 h.
-pub(super) const GROWTH: f64 = 1.5;
+pub(crate) const GROWTH: f64 = 1.5;
 
 /// What a run of [`EnergyPreserving`](crate::EnergyPreserving) does where no energy-preserving step exists, or none within the bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,13 +65,13 @@ impl<T: Scalar> Default for Switches<T> {
 /// The shortest and the longest step allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct StepBounds<T> {
-    pub(super) h_min: T,
-    pub(super) h_max: T,
+pub(crate) struct StepBounds<T> {
+    pub(crate) h_min: T,
+    pub(crate) h_max: T,
 }
 
 impl<T: Scalar> StepBounds<T> {
-    pub(super) fn check(&self) -> Result<(), StepError> {
+    pub(crate) fn check(&self) -> Result<(), StepError> {
         let (h_min, h_max) = (self.h_min.to_f64(), self.h_max.to_f64());
         let invalid = |input, allowed, value| Err(StepError::InvalidInput { input, allowed, value });
         if !(h_min >= 0.0 && h_min.is_finite()) {
@@ -84,18 +84,18 @@ impl<T: Scalar> StepBounds<T> {
     }
 
     #[inline]
-    pub(super) fn admit(&self, h: T) -> bool {
+    pub(crate) fn admit(&self, h: T) -> bool {
         h >= self.h_min && h <= self.h_max
     }
 
     /// The error for a step of the length `found`.
     #[cold]
-    pub(super) fn refusal(&self, t: T, found: T) -> StepError {
+    pub(crate) fn refusal(&self, t: T, found: T) -> StepError {
         let Self { h_min, h_max } = self;
         StepError::StepBounds { t: t.to_f64(), found: found.to_f64(), h_min: h_min.to_f64(), h_max: h_max.to_f64() }
     }
 
-    pub(super) fn clamp(&self, h: T) -> T {
+    pub(crate) fn clamp(&self, h: T) -> T {
         if h < self.h_min {
             self.h_min
         } else if h > self.h_max {
@@ -109,23 +109,23 @@ impl<T: Scalar> StepBounds<T> {
 /// Fixed steps under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Phase<T> {
+pub(crate) struct Phase<T> {
     /// Their length.
-    pub(super) h: T,
+    pub(crate) h: T,
     /// Whether the energy-preserving step would be shorter than they are, rather than longer or absent.
-    pub(super) shorter: bool,
+    pub(crate) shorter: bool,
     /// Length of the last energy-preserving step.
-    pub(super) law_h: T,
+    pub(crate) law_h: T,
     /// D of its interval.
-    pub(super) law_density: T,
+    pub(crate) law_density: T,
     /// D in the middle of the next interval, extrapolated.
-    pub(super) density_next: T,
+    pub(crate) density_next: T,
     /// Discrete energy of the last fixed interval less the energy that the node carries.
-    pub(super) gap: T,
+    pub(crate) gap: T,
 }
 
 impl<T: Scalar> Phase<T> {
-    pub(super) fn check(&self) -> Result<(), StepError> {
+    pub(crate) fn check(&self) -> Result<(), StepError> {
         check_step("the fixed step h", self.h)?;
         check_step("the last energy-preserving step h", self.law_h)?;
         let numbers = [self.law_density, self.density_next, self.gap];
@@ -139,22 +139,22 @@ impl<T: Scalar> Phase<T> {
     }
 
     /// Discrete energy of the node that the last fixed step reached.
-    pub(super) fn energy<const N: usize>(&self, node: &Node<N, T>) -> T {
+    pub(crate) fn energy<const N: usize>(&self, node: &Node<N, T>) -> T {
         node.energy + (node.energy_low + self.gap)
     }
 
     /// Whether the step law asks for the fixed length in the next interval, or one beyond on the side of the
-    /// energy-preserving steps.
-    pub(super) fn is_over(&self) -> bool {
+    /// energy-preserving steps. The law is `h |D|^(1/power) = constant`.
+    pub(crate) fn is_over(&self, power: f64) -> bool {
         let ratio = self.law_density.to_f64() / self.density_next.to_f64();
-        let h = self.law_h.to_f64() * ratio.cbrt();
+        let h = self.law_h.to_f64() * ratio.powf(power.recip());
         let fixed = self.h.to_f64();
         ratio > 0.0 && if self.shorter { h >= fixed } else { h <= fixed }
     }
 }
 
 /// A step must lead forward.
-pub(super) fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
+pub(crate) fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
     let value = h.to_f64();
     if value.is_normal() && value > 0.0 {
         Ok(())

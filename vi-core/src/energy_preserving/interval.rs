@@ -4,7 +4,7 @@ use crate::real::Real;
 use nalgebra::SVector;
 
 /// A step may be longer or shorter than the last one by this factor at most.
-pub(super) const RATIO: f64 = 3.0;
+pub(crate) const RATIO: f64 = 3.0;
 
 /// The interval that the next step follows.
 #[derive(Clone, Copy, Debug, PartialEq)]

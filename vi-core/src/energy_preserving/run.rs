@@ -255,7 +255,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
         system: &S,
         phase: Phase<T>,
     ) -> Result<Step<N, T>, StepError> {
-        if !phase.is_over() {
+        if !phase.is_over(3.0) {
             return self.fixed_step(system, phase);
         }
         let kept = self.node;

@@ -30,6 +30,8 @@
 // The index is that of several arrays, of which a vector register holds neighbours.
 #![allow(clippy::needless_range_loop)]
 
+mod energies;
+pub mod energy;
 mod general;
 mod integrator;
 mod newton;
@@ -50,15 +52,15 @@ use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
+use energies::energies;
 use general::General;
 pub use integrator::Motion;
 use nalgebra::SMatrix;
 use newton::{Newton, Stiff};
 pub use polynomial::Polynomial;
 use separable::Separable;
-use stages::{Stages, extrapolated, stage, time};
+use stages::{Stages, extrapolated, stage};
 use sweep::{Convergence, Equations, Increment, Sweeps};
-use tableau::Tableau;
 use vi_dispatch::{Instructions, Loop};
 
 /// Fixed steps of order 2 STAGES; see the [module](self).
@@ -221,6 +223,7 @@ where
         let middle = STAGES / 2;
         let q = stage(&equations.start(), middle);
         let v = stage(&equations.guess(), middle);
+        newton.set_step(run.h);
         newton.linearize(system, run.node.t + 0.5 * run.h, &q, &v);
         finished(Stiff::new(equations, newton), run)
     }
@@ -257,17 +260,7 @@ where
     /// before the first step, and where it is not finite: forces may be finite where L is not.
     pub fn discrete_energy(&self) -> Option<f64> {
         let Self { system, run, .. } = self;
-        let Tableau { b, c, .. } = const { &Tableau::<STAGES>::VALUES };
-        let equations = general(system, &run.before, run.h, run.stages.data.0);
-        let x = equations.start();
-        let velocities = equations.guess();
-        let mut energy = 0.0;
-        for i in 0..STAGES {
-            let t = time::<N, STAGES, false, f64>(&run.before, run.h, i);
-            let q = stage(&x, i);
-            let v = stage(&velocities, i);
-            energy += b[i] * (system.energy(t, &q, &v) + run.h * c[i] * system.power(t, &q, &v));
-        }
+        let energy = energies(system, &run.before, run.h, run.stages.data.0, 0.0).end;
         (run.convergence.has_begun() && energy.is_finite()).then_some(energy)
     }
 

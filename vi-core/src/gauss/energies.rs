@@ -1,0 +1,104 @@
+//! The discrete energies of a step.
+//!
+//! In: the stages of a step of length h from a node. Out: what its energy is at its start and at its end,
+//!
+//! ```text
+//! E0 =  D1 L_d + g_d⁻ = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i
+//! E1 = −D3 L_d − g_d⁺ = Σ b_i En_i + h Σ b_i c_i (f·v − L_t)_i
+//! ```
+//!
+//! less a number that is close to them: energies of stages differ from it by little, exactly, so that no sum of large terms is rounded.
+
+use super::general;
+use super::stages::Stages;
+use super::sweep::Equations;
+use super::tableau::Tableau;
+use crate::collocation::Collocation;
+use crate::node::Node;
+use crate::real::{Real, Rounded};
+use crate::stepping::Convertible;
+use nalgebra::SVector;
+
+/// The energies of a step less a given number, and how large their terms are; see the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Energies<T = f64> {
+    /// E0, less the number.
+    pub(super) start: T,
+    /// E1, less the number.
+    pub(super) end: T,
+    /// `E1 − E0`.
+    pub(super) work: T,
+    /// The mean of `|v·p| + |En|` over the stages.
+    pub(super) size: T,
+}
+
+/// The energies, less `base`, of the step of length h from `node` with the stages of its equations.
+#[inline(always)]
+pub(super) fn energies<Y, const N: usize, const S: usize>(
+    system: &Y,
+    node: &Node<N>,
+    h: f64,
+    stages: Stages<N, S>,
+    base: f64,
+) -> Energies
+where
+    Y: Collocation<N>,
+{
+    let equations = general(system, node, h, stages);
+    let interval = Interval { node, h, positions: equations.start(), velocities: equations.guess() };
+    interval.energies(system, base, |number| number)
+}
+
+/// The same in numbers that carry a bound of their rounding, each number of the stages the nearest to the one that is meant.
+pub(super) fn bounded_energies<Y, const N: usize, const S: usize>(
+    system: &Y,
+    node: &Node<N>,
+    h: f64,
+    stages: Stages<N, S>,
+    base: f64,
+) -> Energies<Rounded>
+where
+    Y: Collocation<N> + Convertible<N>,
+{
+    let equations = general(system, node, h, stages);
+    let interval = Interval { node, h, positions: equations.start(), velocities: equations.guess() };
+    interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest)
+}
+
+/// A step with the positions and the velocities at its stages.
+struct Interval<'a, const N: usize, const S: usize> {
+    node: &'a Node<N>,
+    h: f64,
+    positions: Stages<N, S>,
+    velocities: Stages<N, S>,
+}
+
+impl<const N: usize, const S: usize> Interval<'_, N, S> {
+    #[inline(always)]
+    fn energies<T: Real, Y: Collocation<N, T>>(
+        &self,
+        system: &Y,
+        base: f64,
+        number: impl Fn(f64) -> T + Copy,
+    ) -> Energies<T> {
+        let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
+        let mut mean = T::zero();
+        let mut size = T::zero();
+        let mut done = T::zero();
+        let mut left = T::zero();
+        for i in 0..S {
+            let t = number(self.node.t + (self.node.t_low + self.h * c[i]));
+            let q = SVector::from_fn(|k, _| number(self.positions[k][i]));
+            let v = SVector::from_fn(|k, _| number(self.velocities[k][i]));
+            let energy = system.energy(t, &q, &v);
+            mean += T::real(b[i]) * (energy - T::real(base));
+            size += T::real(b[i]) * (v.dot(&system.momentum(t, &q, &v)).abs() + energy.abs());
+            if !Y::AUTONOMOUS || Y::FORCED {
+                let work = T::real(self.h * b[i]) * system.power(t, &q, &v);
+                done += work * T::real(c[i]);
+                left += work * T::real(1.0 - c[i]);
+            }
+        }
+        Energies { start: mean - left, end: mean + done, work: done + left, size }
+    }
+}

@@ -1,0 +1,85 @@
+//! The step density of order 2s.
+//!
+//! In: a system and a state. Out: the number that the length of an energy-preserving step of s stages follows from,
+//!
+//! ```text
+//! H − E0(h) = C_s h^2s D_s + O(h^(2s+1))        C_s = (s!)⁴/((2s)!)³ = 1/8, 1/864, 1/288000
+//! D_s = (d/dτ)^2s H(t + τ, π_q(τ), π_p(τ)) at τ = 0        π = Taylor polynomial of degree s of the forced motion
+//! ```
+//!
+//! H the energy as a function of (t, q, p). The motion, and H along π, are computed as power series in τ, from the functions of a point
+//! that the steps use: D_s owes nothing to the steps. For s = 1 it is [`Lagrangian::step_density`](crate::Lagrangian::step_density).
+//! `docs/theory.md` derives it.
+
+use crate::collocation::Collocation;
+use crate::error::StepError;
+use crate::linear::Matrix;
+use crate::real::Series;
+use crate::state::State;
+use crate::stepping::{Convertible, FixedStepping};
+use nalgebra::SVector;
+
+/// `C_s` of s stages; see the [module](self).
+pub(super) const fn constant(stages: usize) -> f64 {
+    match stages {
+        1 => 1.0 / 8.0,
+        2 => 1.0 / 864.0,
+        3 => 1.0 / 288_000.0,
+        _ => {
+            panic!("an energy-preserving Gauss step has 1 to 3 stages: the length of one with more is lost in rounding")
+        }
+    }
+}
+
+/// The step density `D_s` of s = STAGES stages at a state, in units of energy by time to the power 2s. An energy-preserving step exists, for
+/// small h, while it keeps its sign. Computed in power series, for analysis rather than for the loop of a step.
+///
+/// # Errors
+/// [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity belongs to the momenta, [`StepError::NonFinite`] where D_s has no
+/// value.
+pub fn step_density<S, const N: usize, const STAGES: usize>(system: &S, state: &State<N>) -> Result<f64, StepError>
+where
+    S: Convertible<N> + FixedStepping<N>,
+{
+    const { constant(STAGES) };
+    let series = system.convert::<Series>();
+    let t = Series::variable(state.t);
+    let start = state.q.map(Series::fixed);
+    let momentum = state.p.map(Series::fixed);
+    let mut q = start;
+    let mut p = momentum;
+    let mut v = state.velocity(system)?.map(Series::fixed);
+    // Each integration makes one more term right.
+    for _ in 0..STAGES {
+        v = velocity(&series, t, [&q, &p], v);
+        let force = series.point(t, &q, &v).force;
+        q = start + v.map(|v| v.integral());
+        p = momentum + force.map(|force| force.integral());
+    }
+    let q = q.map(|q| q.truncated(STAGES));
+    let p = p.map(|p| p.truncated(STAGES));
+    // The velocities are those of π up to the term s − 1; each iteration doubles the number of right terms.
+    v = velocity(&series, t, [&q, &p], v);
+    v = velocity(&series, t, [&q, &p], v);
+    let energy = crate::Lagrangian::energy(&series, t, &q, &v);
+    let density = energy.derivative(2 * STAGES);
+    if density.is_finite() {
+        Ok(density)
+    } else {
+        Err(StepError::NonFinite { t: state.t, quantity: "step density", expression: None })
+    }
+}
+
+/// The velocity after one of Newton's iterations on `L_v(t, q, v) = p`.
+fn velocity<S, const N: usize>(
+    system: &S,
+    t: Series,
+    [q, p]: [&SVector<Series, N>; 2],
+    v: SVector<Series, N>,
+) -> SVector<Series, N>
+where
+    S: Collocation<N, Series>,
+{
+    let point = system.point(t, q, &v);
+    v + point.mass.solve_unchecked(&(p - point.momentum))
+}

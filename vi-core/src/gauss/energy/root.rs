@@ -1,0 +1,74 @@
+//! The length of the next step, where the lengths before tell it nearly.
+//!
+//! In: the node and its excess `H − E`. Out: the step whose energy is E to rounding, by secants in ln h:
+//!
+//! ```text
+//! y(h) = ln[(H − E0(h))/(H − E)]        ln h ← ln h − y/slope        slope = 2s + O(h), that of the step before
+//! ```
+//!
+//! where y = 0 is the root. Two or three lengths are tried, each from the stages of the one before.
+
+use super::EnergyPreservingGauss;
+use super::trial::Trial;
+use crate::collocation::Collocation;
+use crate::newton::FLOOR;
+use crate::stepping::{Convertible, FixedStepping};
+
+/// Lengths that are tried.
+const TRIALS: u32 = 8;
+/// Roundings of the energy at which no better length is looked for.
+const SOLVED: f64 = 0.25;
+/// Largest factor between two lengths that are tried.
+const FACTOR: f64 = 1.5;
+/// Roundings by which two energies differ that tell a slope to three digits.
+const TOLD: f64 = 1e4;
+
+impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// The order, which is the slope of `ln (H − E0)` over ln h to leading order.
+    #[allow(clippy::cast_precision_loss)]
+    pub(super) const SLOPE: f64 = 2.0 * STAGES as f64;
+
+    /// The next step; none where secants do not lead to one.
+    pub(super) fn root(&mut self) -> Option<Trial<N, STAGES>> {
+        let h = self.course.predicted_length();
+        let stages = self.stages_for(h);
+        let mut trial = self.trial(h, stages).ok()?;
+        let mut best = trial;
+        let mut slope = self.course.slope;
+        let mut sweeps = trial.after.convergence.sweeps;
+        for _ in 1..TRIALS {
+            if trial.roundings() <= SOLVED {
+                break;
+            }
+            let left = trial.residual / self.course.excess;
+            let factor = (-(-left).ln_1p() / slope).exp();
+            if !(1.0 / FACTOR..=FACTOR).contains(&factor) {
+                return None;
+            }
+            let h = trial.h() * factor;
+            if h.to_bits() == trial.h().to_bits() {
+                break;
+            }
+            let next = self.trial(h, trial.stages_for(h)).ok()?;
+            if (next.residual - trial.residual).abs() > TOLD * f64::EPSILON * trial.size {
+                let measured = ((-next.residual / self.course.excess).ln_1p() - (-left).ln_1p()) / factor.ln();
+                slope = measured.clamp(0.5 * Self::SLOPE, 2.0 * Self::SLOPE);
+            }
+            sweeps += next.after.convergence.sweeps;
+            trial = next;
+            if trial.roundings() < best.roundings() {
+                best = trial;
+            }
+        }
+        best.after.convergence.sweeps = sweeps;
+        let has_stalled = best.h().to_bits() != trial.h().to_bits();
+        let is_root = best.roundings() <= FLOOR || has_stalled && self.is_preserved(&best);
+        if is_root {
+            self.course.slope = slope;
+        }
+        is_root.then_some(best)
+    }
+}

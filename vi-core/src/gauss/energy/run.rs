@@ -1,0 +1,156 @@
+//! What a run carries from step to step.
+//!
+//! In: a run, between two steps. Out: a [`Checkpoint`], and the run again (see [`crate::checkpoint`]).
+
+use super::EnergyPreservingGauss;
+use crate::checkpoint;
+use crate::collocation::Collocation;
+use crate::energy_preserving::fallback::{Fallback, Phase, StepBounds, Switches, check_step};
+use crate::error::StepError;
+use crate::gauss::{self, Gauss};
+use crate::state::Method;
+use crate::stepping::{Convertible, FixedStepping};
+
+/// Everything that a run of [`EnergyPreservingGauss`] carries, to be stored and resumed bit for bit.
+pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Run<N, STAGES>>;
+
+/// A run between two steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Run<const N: usize, const S: usize> {
+    gauss: gauss::Run<N, S>,
+    course: Course,
+}
+
+/// So many lengths are extrapolated.
+const LENGTHS: usize = 4;
+
+/// What a run carries beside its node and its stages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Course {
+    /// Lengths of the last steps, the newest first; how many there are.
+    lengths: [f64; LENGTHS],
+    known: usize,
+    /// Change of `ln (H − E0)` by that of ln h.
+    pub(super) slope: f64,
+    /// `H − E'` at the node.
+    pub(super) excess: f64,
+    /// The size of the terms of H there.
+    pub(super) size: f64,
+    /// `D_s + D_*` of the last two steps, the newest first; none before the first step.
+    pub(super) densities: Option<[f64; 2]>,
+    /// The largest `|D_s|` met.
+    pub(super) largest: f64,
+    /// D_*.
+    pub(super) shift: f64,
+    /// What the last step leaves of its energy, in roundings.
+    pub(super) residual: f64,
+    pub(super) method: Method,
+    pub(super) bounds: Option<StepBounds<f64>>,
+    pub(super) fallback: Fallback,
+    /// The fixed steps under way.
+    pub(super) phase: Option<Phase<f64>>,
+    pub(super) switches: Switches,
+}
+
+impl Course {
+    /// Before the first step, which has about the length h.
+    pub(super) fn new(h: f64, slope: f64) -> Self {
+        Self {
+            lengths: [h; LENGTHS],
+            known: 1,
+            slope,
+            excess: 0.0,
+            size: 0.0,
+            densities: None,
+            largest: 0.0,
+            shift: 0.0,
+            residual: 0.0,
+            method: Method::EnergyPreserving,
+            bounds: None,
+            fallback: Fallback::Stop,
+            phase: None,
+            switches: Switches::default(),
+        }
+    }
+
+    /// Length of the last step.
+    pub(super) fn h(&self) -> f64 {
+        let [h, ..] = self.lengths;
+        h
+    }
+
+    /// The length of the next step, by the polynomial through the last ones; that of the last one where this leads too far.
+    pub(super) fn predicted_length(&self) -> f64 {
+        let [a, b, c, d] = self.lengths;
+        let h = match self.known {
+            1 => a,
+            2 => a + (a - b),
+            3 => a + (2.0 * (a - b) - (b - c)),
+            _ => a + (3.0 * (a - b) - 3.0 * (b - c) + (c - d)),
+        };
+        if h > 0.75 * a && h < 1.5 * a { h } else { a }
+    }
+
+    /// Adds the length of a step, and its density.
+    pub(super) fn push(&mut self, h: f64, density: f64) {
+        let [a, b, c, _] = self.lengths;
+        // The length with which a run starts is no step.
+        self.known = if self.densities.is_none() { 1 } else { LENGTHS.min(self.known + 1) };
+        self.lengths = [h, a, b, c];
+        self.densities = Some([density, self.density().unwrap_or(density)]);
+        self.largest = self.largest.max((density - self.shift).abs());
+    }
+
+    /// `D_s + D_*` of the last step.
+    pub(super) fn density(&self) -> Option<f64> {
+        self.densities.map(|[density, _]| density)
+    }
+
+    /// Starts the extrapolation of lengths anew, from the last one.
+    pub(super) fn forget_lengths(&mut self) {
+        self.known = 1;
+    }
+
+    /// Whether a step can follow: what a file says may be anything.
+    fn check(&self, t: f64) -> Result<(), StepError> {
+        let Self { slope, excess, size, densities, largest, shift, residual, switches, .. } = *self;
+        let [last, before] = densities.unwrap_or_default();
+        let numbers = [slope, excess, size, last, before, largest, shift, residual];
+        let costs = [switches.energy_change, switches.energy_cost];
+        if !numbers.iter().chain(&costs).all(|number| number.is_finite()) {
+            return Err(StepError::NonFinite { t, quantity: "last interval", expression: None });
+        }
+        for h in self.lengths {
+            check_step("a length of the last steps", h)?;
+        }
+        check_step("the slope of the energy over the length", slope)?;
+        if let Some(bounds) = &self.bounds {
+            bounds.check()?;
+        }
+        self.phase.as_ref().map_or(Ok(()), Phase::check)
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// Everything that the run carries, and of which system with which parameters. Allocates.
+    pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
+        checkpoint::Checkpoint::of(&self.gauss.system, Run { gauss: self.gauss.run, course: self.course })
+    }
+
+    /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.
+    ///
+    /// # Errors
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
+    /// [`StepError::InvalidInput`] for one that no run can have left.
+    pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
+        let (checkpoint, course) = checkpoint.split(|Run { gauss, course }| (gauss, course));
+        let gauss = Gauss::restart(system, checkpoint)?;
+        course.check(gauss.run.node.t)?;
+        Ok(Self { gauss, course, failure: None })
+    }
+}

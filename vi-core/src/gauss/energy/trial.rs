@@ -1,0 +1,124 @@
+//! A step of some length.
+//!
+//! In: the node, a length h, and a guess of the stages. Out: the step of that length, its stages solved to rounding, and by how much its
+//! energy differs from the one to preserve. Stages are guessed by the polynomial through those of a step before, wherever its
+//! nodes are.
+
+use super::EnergyPreservingGauss;
+use super::density::constant;
+use crate::collocation::Collocation;
+use crate::error::StepError;
+use crate::gauss::energies::{bounded_energies, energies};
+use crate::gauss::stages::Stages;
+use crate::gauss::tableau::Tableau;
+use crate::gauss::{self, sweep::Convergence};
+use crate::newton::FLOOR;
+use crate::stepping::{Convertible, FixedStepping};
+use nalgebra::SMatrix;
+
+/// A step of some length, solved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trial<const N: usize, const S: usize> {
+    /// The run after it.
+    pub(super) after: gauss::Run<N, S>,
+    /// `E0(h) − C_s h^2s D_* − E'`.
+    pub(super) residual: f64,
+    /// `E1 − E0`.
+    pub(super) work: f64,
+    /// The size of the terms of E0.
+    pub(super) size: f64,
+}
+
+impl<const N: usize, const S: usize> Trial<N, S> {
+    pub(super) fn h(&self) -> f64 {
+        self.after.h
+    }
+
+    /// The residual in roundings of the terms of E0.
+    pub(super) fn roundings(&self) -> f64 {
+        self.residual.abs() / (f64::EPSILON * self.size + f64::MIN_POSITIVE)
+    }
+
+    /// The stages of the step of length h from the same node, so far as this one tells.
+    pub(super) fn stages_for(&self, h: f64) -> Stages<N, S> {
+        let ratio = h / self.h();
+        at(&self.after.stages.data.0, |c| ratio * c)
+    }
+}
+
+/// What the polynomials through the stages of a step are elsewhere: at `place(c_i)` in units of its length.
+#[inline(always)]
+pub(super) fn at<const N: usize, const S: usize>(stages: &Stages<N, S>, place: impl Fn(f64) -> f64) -> Stages<N, S> {
+    let c = const { &Tableau::<S>::VALUES.c };
+    let mut values = [[0.0; S]; N];
+    for i in 0..S {
+        for j in 0..S {
+            let mut basis = 1.0;
+            for k in 0..S {
+                if k != j {
+                    basis *= (place(c[i]) - c[k]) / (c[j] - c[k]);
+                }
+            }
+            for k in 0..N {
+                values[k][i] += basis * stages[k][j];
+            }
+        }
+    }
+    values
+}
+
+impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// `C_s h^2s`.
+    pub(super) fn power(h: f64) -> f64 {
+        (1..STAGES).fold(h * h, |power, _| power * (h * h)) * const { constant(STAGES) }
+    }
+
+    /// The stages of the next step of length h, by those of the last one.
+    pub(super) fn stages_for(&self, h: f64) -> Stages<N, STAGES> {
+        let run = &self.gauss.run;
+        let stages = &run.stages.data.0;
+        if run.convergence.has_begun() { at(stages, |c| 1.0 + c * (h / run.h)) } else { *stages }
+    }
+
+    /// The step of length h from the node, by a guess of its stages.
+    ///
+    /// # Errors
+    /// Those of [`Gauss::step`](crate::Gauss::step).
+    pub(super) fn trial(&mut self, h: f64, stages: Stages<N, STAGES>) -> Result<Trial<N, STAGES>, StepError> {
+        let kept = self.gauss.run;
+        let run = &mut self.gauss.run;
+        run.h = h;
+        run.stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(stages));
+        // Where no sweep was before, stages are taken as they are, not carried further.
+        run.convergence = Convergence { sweeps: 0, ..kept.convergence };
+        let solved = self.gauss.solve();
+        self.gauss.run = kept;
+        let after = solved?;
+        let node = &self.gauss.run.node;
+        let energies = energies(&self.gauss.system, node, h, after.stages.data.0, node.energy);
+        let residual = energies.start - node.energy_low - Self::power(h) * self.course.shift;
+        if !residual.is_finite() {
+            return Err(StepError::NonFinite { t: node.t, quantity: "energy", expression: None });
+        }
+        Ok(Trial { after, residual, work: energies.work, size: energies.size })
+    }
+
+    /// Whether the energy of a trial is the one to preserve as far as its arithmetic can tell, and tells the length.
+    #[cold]
+    pub(super) fn is_preserved(&self, trial: &Trial<N, STAGES>) -> bool {
+        let node = &self.gauss.run.node;
+        let energies = bounded_energies(&self.gauss.system, node, trial.h(), trial.after.stages.data.0, node.energy);
+        let rounding = f64::EPSILON * energies.start.ulps();
+        trial.residual.abs() <= FLOOR * rounding && self.course.excess.abs() >= Self::least_excess(rounding)
+    }
+
+    /// The least `|H − E|` that tells a length, where energies are rounded by so much.
+    pub(super) fn least_excess(rounding: f64) -> f64 {
+        // The length is known to this part of itself, so that the numbers of its step are.
+        const PARTS: f64 = 1000.0;
+        PARTS * rounding / Self::SLOPE
+    }
+}
