@@ -11,8 +11,8 @@ use vi_core::real::Rounded;
 use vi_core::state::Method;
 use vi_core::{EnergyPreserving, EnergyPreservingGauss, Fallback, Gauss, Lagrangian, SVector, State, StepError};
 use vi_systems::{
-    DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, HarmonicOscillator, HenonHeiles, Kepler,
-    ParametricPendulum, Pendulum, SphericalPendulum,
+    DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, HenonHeiles, Kepler, ParametricPendulum,
+    Pendulum, SphericalPendulum,
 };
 
 /// `C_s = (s!)⁴/((2s)!)³`.
@@ -761,7 +761,7 @@ fn bounds_are_kept() {
         longest = longest.max(run.h());
     }
     println!("{:?}", run.switches());
-    assert_eq!(longest, 0.05);
+    assert!((longest - 0.05).abs() < 1e-12, "{longest}");
     assert!(run.switches().returns > 3 && run.switches().reseeds == 0, "{:?}", run.switches());
 }
 
