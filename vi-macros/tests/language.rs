@@ -2,8 +2,10 @@
 
 #![allow(missing_docs, reason = "a test")]
 
+use vi_core::lagrangian::Parameters;
 use vi_core::real::{Dual, Real};
-use vi_core::{Lagrangian, SVector, lagrangian};
+use vi_core::stepping::{Batch, EnergyStepping};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, lagrangian};
 
 lagrangian! {
     /// Elastic pendulum whose pivot moves, its bob above a curved ground: positions are named, velocities follow.
@@ -52,4 +54,108 @@ fn dot_is_the_derivative_by_time() {
     }
     // Measured 2.9e-16, of values between 0.1 and 100.
     assert!(largest < 6e-16, "{largest:e}");
+}
+
+lagrangian! {
+    /// Two masses between walls, by arrays of parameters.
+    #[derive(PartialOrd)]
+    struct Listed {
+        const N = 2;
+        /// Masses.
+        param m[N] = [1.5, 0.25 * N];
+        /// Stiffnesses.
+        param k[N + 1] = 3.0, c = 0.1, only[1] = [0.7];
+        coord q[N];
+        let stretch[i in 1..N] = q[i] - q[i - 1];
+        let walls = k[0] * q[0]^2 + k[N] * q[N - 1]^2;
+        L = sum(i in 0..N, m[i] * dot(q[i])^2) / 2 - sum(i in 1..N, k[i] * stretch[i]^2) / 2 - walls / 2 - only[0] * q[0]^4;
+        force q[i in 0..N] = -c * m[i] * dot(q[i]);
+        discretize midpoint;
+        check { q[i in 0..2] = 0.3 + i, dot(q[0]) = 0.2; h = 0.01; }
+    }
+}
+
+lagrangian! {
+    /// The same by parameters alone.
+    struct Named {
+        param m0 = 1.5, m1 = 0.5, k0 = 3.0, k1 = 3.0, k2 = 3.0, c = 0.1, only = 0.7;
+        coord x, y;
+        let walls = k0 * x^2 + k2 * y^2;
+        L = (m0 * dot(x)^2 + m1 * dot(y)^2) / 2 - k1 * (y - x)^2 / 2 - walls / 2 - only * x^4;
+        force x = -c * m0 * dot(x), y = -c * m1 * dot(y);
+        discretize midpoint;
+    }
+}
+
+/// Where 100 steps of both integrators end.
+fn ends<S: EnergyStepping<2> + Copy>(system: S) -> [SVector<f64, 2>; 2] {
+    let (q, v) = ([0.4, -0.7], [0.3, 1.1]);
+    let start = State::at(&system, 0.0, q, v);
+    let fixed = FixedStep::new(system, start, 0.02).expect("a start").take(100).last().expect("steps").expect("a step");
+    let energy = EnergyPreserving::from_midpoint(system, 0.0, q, v, 0.02).expect("a start");
+    [fixed.q, energy.take(100).last().expect("steps").expect("a step").q]
+}
+
+#[test]
+fn an_array_of_parameters_is_that_many_parameters() {
+    let (listed, named) = (Listed::default(), Named::default());
+    assert_eq!(ends(listed), ends(named));
+    let other = Listed { m: [0.9, 2.5], k: [1.0, 7.0, 4.0], ..listed };
+    let by_name = Named { m0: 0.9, m1: 2.5, k0: 1.0, k1: 7.0, k2: 4.0, ..named };
+    assert_eq!(ends(other), ends(by_name));
+    assert_ne!(ends(other), ends(listed));
+}
+
+#[test]
+fn an_array_of_parameters_is_a_field() {
+    let mut listed = Listed::default();
+    assert_eq!((listed.m, listed.k, listed.c, listed.only), ([1.5, 0.5], [3.0; 3], 0.1, [0.7]));
+    assert_eq!(format!("{listed:?}"), "Listed { m: [1.5, 0.5], k: [3.0, 3.0, 3.0], c: 0.1, only: [0.7] }");
+    let names = ["m[0]", "m[1]", "k[0]", "k[1]", "k[2]", "c", "only[0]"];
+    assert_eq!(<Listed as Lagrangian<2>>::PARAMETERS, names);
+    for (index, name) in names.into_iter().enumerate() {
+        let value = 10.0 + f64::from(u8::try_from(index).expect("few parameters"));
+        *listed.parameter_mut(name).expect("a parameter") = value;
+        assert_eq!(Lagrangian::<2>::parameter(&listed, index).to_bits(), value.to_bits());
+    }
+    assert_eq!((listed.m, listed.k, listed.c, listed.only), ([10.0, 11.0], [12.0, 13.0, 14.0], 15.0, [16.0]));
+    for other in ["m", "m[2]", "m[-1]", "m_0", "only"] {
+        assert!(listed.parameter_mut(other).is_none(), "{other}");
+    }
+    assert_eq!(listed.convert::<f32>().convert::<f64>(), listed);
+    let systems = [listed, Listed::default()];
+    let rows = Listed::rows(&systems);
+    assert_eq!([0, 1].map(|index| Listed::from_rows(&rows, index)), systems);
+}
+
+lagrangian! {
+    /// A chain of unlike masses, long enough for loops.
+    struct LongListed {
+        const N = 40;
+        param m[N] = 1.25, k[N] = 2.0;
+        coord q[N];
+        L = sum(i in 0..N, m[i] * dot(q[i])^2) / 2 - sum(i in 1..N, k[i] * (q[i] - q[i - 1])^2) / 2 - k[0] * q[0]^4;
+        discretize midpoint;
+    }
+}
+
+/// Momentum and force of a long chain by hand, with unlike parameters.
+#[test]
+fn every_entry_of_a_long_array_acts_in_its_place() {
+    let mut chain = LongListed::default();
+    let number = |index: usize| f64::from(u8::try_from(index).expect("few"));
+    for index in 0..40 {
+        chain.m[index] = 1.0 + number(index) / 7.0;
+        chain.k[index] = 2.0 + (number(index) * 1.3).sin();
+    }
+    let q = SVector::<f64, 40>::from_fn(|i, _| (number(i) * 0.9).cos());
+    let v = SVector::<f64, 40>::from_fn(|i, _| (number(i) * 0.4).sin());
+    let momentum = SVector::<f64, 40>::from_fn(|i, _| chain.m[i] * v[i]);
+    assert!((chain.momentum(0.0, &q, &v) - momentum).amax() < 1e-14);
+    let spring = |i: usize| if i == 0 { 4.0 * chain.k[0] * q[0].powi(3) } else { chain.k[i] * (q[i] - q[i - 1]) };
+    let beyond = |i: usize| if i + 1 < 40 { spring(i + 1) } else { 0.0 };
+    let acceleration = SVector::<f64, 40>::from_fn(|i, _| (beyond(i) - spring(i)) / chain.m[i]);
+    let found = chain.acceleration(0.0, &q, &v).expect("a mass matrix");
+    assert!((found - acceleration).amax() < 1e-13, "{:e}", (found - acceleration).amax());
+    assert!(acceleration.amax() > 1.0);
 }

@@ -9,6 +9,9 @@ use vi_expr::{Pool, TooLarge};
 /// Coordinates that a system may have.
 pub(crate) const COORDINATES: usize = 256;
 
+/// Entries that an array of parameters may have.
+pub(crate) const PARAMETERS: usize = 256;
+
 /// Distinct terms that the expressions of one system may have together, those of all stages.
 const TERMS: usize = 75_000;
 

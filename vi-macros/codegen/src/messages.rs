@@ -48,6 +48,12 @@ pub enum Message {
     NotInteger,
     /// A length of an array out of bounds.
     Length { given: i64, limit: usize },
+    /// A length of an array of parameters out of bounds.
+    ParametersLength { given: i64, limit: usize },
+    /// A list of values that is not as long as its array.
+    ParameterValues { name: String, length: usize, values: usize },
+    /// A list of values for a parameter that is no array.
+    ParameterWithoutLength { name: String, values: usize },
     /// An index out of the range of its array.
     IndexRange { name: String, index: i64, first: i64, end: i64 },
     /// A range that ends before it begins.
@@ -186,6 +192,11 @@ impl Message {
             Self::NoValue => "this expression has no value".to_owned(),
             Self::NotInteger => "this has to be a constant integer".to_owned(),
             Self::Length { given, .. } => format!("an array of {given} coordinates"),
+            Self::ParametersLength { given, .. } => format!("an array of {given} parameters"),
+            Self::ParameterValues { name, length, values } => {
+                format!("`{name}` has the length {length}, and a list of {values}")
+            }
+            Self::ParameterWithoutLength { name, .. } => format!("`{name}` is no array, and has a list of values"),
             Self::IndexRange { name, index, first, end } => format!("`{name}[{index}]` is out of range {first}..{end}"),
             Self::BackwardRange { from, to } => format!("the range {from}..{to} ends before it begins"),
             Self::NotArray { name } => format!("`{name}` is not an array"),
@@ -279,6 +290,9 @@ impl Message {
             }
             Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
+            Self::ParametersLength { limit, .. } => format!("an array of parameters has 1 to {limit} entries"),
+            Self::ParameterValues { .. } => "write one value for each entry, or one for all: `m[3] = 1.0`".to_owned(),
+            Self::ParameterWithoutLength { name, values } => format!("write its length: `param {name}[{values}] = […];`"),
             Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
             Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),
             Self::BackwardRange { .. } => "write the smaller bound first; the second one is not included".to_owned(),

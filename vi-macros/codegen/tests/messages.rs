@@ -393,6 +393,51 @@ fn arrays() {
 }
 
 #[test]
+fn arrays_of_parameters() {
+    let system = |parameters: &str| {
+        let lagrangian = "L = m[0] * dot(x)^2 / 2 - m[1] * x^2";
+        format!("const N = 2; {parameters}; coord x; {lagrangian}; discretize midpoint;")
+    };
+    for right in [
+        "param m[2] = 1.0",
+        "param m[N] = [1, N^2]",
+        "param a = 2, m[2] = [1, 2,],; let b = a; dissipation = b * dot(x)^2",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
+    }
+    case(
+        &system("param m[2] = [1, 2, «3», 4]"),
+        "`m` has the length 2, and a list of 4\nhelp: write one value for each",
+    );
+    case(&system("param m[«N»] = [1]"), "`m` has the length 2, and a list of 1");
+    case(&system("param m[«2»] = []"), "`m` has the length 2, and a list of 0");
+    case(
+        &system("param «m» = [1, 2]"),
+        "`m` is no array, and has a list of values\nhelp: write its length: `param m[2] = […];`",
+    );
+    case(&system("param m[«0»] = 1"), "an array of 0 parameters\nhelp: an array of parameters has 1 to 256 entries");
+    case(&system("param m[«257»] = 1"), "an array of 257 parameters");
+    case(&system("param m[«1.5»] = 1"), "this has to be a constant integer");
+    case(&system("param m[«x»] = 1"), "unknown name `x`");
+    case(&system("param m[«i» in 0..2] = 1"), "expected a length, as in `q[8]`");
+    case(&system("param m[2«,» 2] = 1"), "expected an operator or `]`");
+    case(&system("param m[2] = [1 «2»]"), "an operator is missing between `1` and `2`");
+    case(&system("param m[2] = [1, «x»]"), "unknown name `x`");
+    case(&system("param m[2] = [1, «exp»(1000)]"), "the value of `m` is not finite");
+    case(&system("param «m»[2]"), "`m` has no value\nhelp: write `m = 1.0`");
+    case(&system("param m[2] = 1, «m» = 2"), "the name `m` is declared twice");
+    case(&system("param «m»[3] = 1"), "the parameter `m[2]` acts on nothing");
+    case(&system("param m[2] = 1, «k»[4] = 1"), "the parameter `k` acts on nothing");
+    case(&system("param m[2] = 1; let a = m[«2»]"), "`m[2]` is out of range 0..2\nhelp: the indices are 0 to 1");
+    case(&system("param m[2] = 1; let a = «m»"), "`m` is an array\nhelp: write one entry, `m[0]`, or a sum over it");
+    case(&system("param m[2] = 1; let a = dot(«m»[0])"), "`dot(m)`: `m` does not change with time");
+    case(&system("param m[2] = 1; const a = «m»[0]"), "unknown name `m`");
+    case(&system("param m[2] = 1; force «m»[0] = 1"), "a force on `m`, which is not a coordinate");
+    // A wrong array is reported once, whatever is made of it.
+    case(&system("param m[«3»] = [1, 2]; let a = sum(i in 0..9, m[i])"), "`m` has the length 3");
+}
+
+#[test]
 fn dissipation() {
     let system = |line: &str| format!("coord x; L = dot(x)^2; {line} discretize midpoint;");
     case(&system("dissipation = dot(x)^2; «dissipation» = dot(x)^2;"), "a second `dissipation`");

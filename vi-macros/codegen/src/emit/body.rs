@@ -176,7 +176,7 @@ impl Printer<'_> {
         let sine = match operation {
             Operation::Input(Symbol::Parameter(index)) => {
                 let system = if self.in_pieces { format_ident!("system") } else { format_ident!("self") };
-                return Formula::parameter(&system, &self.model.parameters[*index].name);
+                return Formula::parameter(&system, &self.model.parameters[*index]);
             }
             Operation::Input(symbol) => {
                 return self.component(symbol).unwrap_or_else(|| {

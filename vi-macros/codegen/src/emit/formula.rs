@@ -2,6 +2,7 @@
 //!
 //! In: an operation and what its operands are written as. Out: tokens, with the parentheses that precedence needs.
 
+use crate::model::Parameter;
 use crate::program::{Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -33,9 +34,10 @@ impl Formula {
         Self::atom(quote!(#ident), 0)
     }
 
-    /// A field of the system.
-    pub(super) fn parameter(system: &Ident, ident: &Ident) -> Self {
-        Self::atom(quote!(#system.#ident), 0)
+    /// A parameter of the system.
+    pub(super) fn parameter(system: &Ident, parameter: &Parameter) -> Self {
+        let place = parameter.place();
+        Self::atom(quote!(#system.#place), 0)
     }
 
     /// What binds as tightly as a name.
@@ -102,6 +104,15 @@ impl Formula {
         let tokens = argument.map(Self::tokens);
         let operations = on.operations + argument.map_or(0, |argument| argument.operations) + 1;
         Self::atom(quote!(#receiver.#name(#tokens)), operations)
+    }
+}
+
+impl Parameter {
+    /// Where it is in the struct: `k`, or `m[3]`.
+    pub(super) fn place(&self) -> TokenStream {
+        let name = &self.name;
+        let index = self.index.map(Literal::usize_unsuffixed).into_iter();
+        quote!(#name #([#index])*)
     }
 }
 

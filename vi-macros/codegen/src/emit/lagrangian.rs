@@ -4,7 +4,7 @@ use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
 use super::entries::{self, Entry};
 use super::matrix::matrix;
-use crate::model::Coordinate;
+use crate::model::{Coordinate, Parameter};
 use crate::program::{FunctionId, Output};
 use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
@@ -20,8 +20,8 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let (name, dimension) = (&model.name, source.dimension());
     let (text, coordinates) = (name.to_string(), model.coordinates.iter().map(Coordinate::text));
     let (autonomous, forced, cyclic) = (of.autonomous, model.forced, &of.cyclic);
-    let parameters: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
-    let names = parameters.iter().map(ToString::to_string);
+    let parameters = model.parameters.iter().map(Parameter::place);
+    let names = model.parameters.iter().map(Parameter::text);
     let functions = [
         number(source, FunctionId::Lagrangian, &source.formula("L", of.lagrangian)),
         number(source, FunctionId::Energy, &source.formula("v·L_v − L", of.energy)),

@@ -100,7 +100,7 @@ impl<'a> Names<'a> {
     fn wanted(&self, symbol: &Symbol) -> String {
         let coordinate = |index: &usize| self.model.coordinates[*index].ident();
         match symbol {
-            Symbol::Parameter(index) => self.model.parameters[*index].name.to_string(),
+            Symbol::Parameter(index) => self.model.parameters[*index].ident(),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(index),
             Symbol::Continuous(Variable::Velocity(index)) | Symbol::StepVelocity(index) => {

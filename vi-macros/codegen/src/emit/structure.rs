@@ -2,8 +2,10 @@
 
 use super::formula::number;
 use super::{Source, conditions};
+use crate::limits::PARAMETERS;
+use crate::model::Parameter;
 use crate::rules::RULES;
-use crate::syntax::{Discretization, Kind, System};
+use crate::syntax::{self, Discretization, Expression, Kind, System};
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -14,11 +16,13 @@ use syn::Attribute;
 pub(super) fn structure(source: &Source, further: &[Source]) -> TokenStream {
     let model = source.model;
     let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
-    let fields = model.parameters.iter().map(|parameter| {
-        let (name, attributes) = (&parameter.name, &parameter.attributes);
-        let default = format!(" Parameter `{name}`, {} by default.", parameter.default_text());
+    let fields = model.fields().filter_map(|field| {
+        let Parameter { name, attributes, index, .. } = field.first()?;
         let pause = pause(attributes);
-        quote!(#(#attributes)* #pause #[doc = #default] pub #name: T)
+        let default = default_words(field);
+        let length = Literal::usize_unsuffixed(field.len());
+        let of = if index.is_some() { quote!([T; #length]) } else { quote!(T) };
+        Some(quote!(#(#attributes)* #pause #[doc = #default] pub #name: #of))
     });
     let found = found(source);
     let found_further = further.iter().filter_map(found_further);
@@ -36,6 +40,27 @@ pub(super) fn structure(source: &Source, further: &[Source]) -> TokenStream {
     }
 }
 
+/// What the documentation says of the default of a field.
+fn default_words(field: &[Parameter]) -> String {
+    let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
+    match field {
+        [Parameter { name, index: None, .. }] => format!(" Parameter `{name}`, {} by default.", defaults.join(", ")),
+        entries => {
+            let named = entries.first().zip(entries.last());
+            let names = named.map(|(first, last)| format!("`{}` to `{}`", first.text(), last.text()));
+            let same = entries.windows(2).all(|pair| pair[0].default == pair[1].default);
+            let values = if same { format!("each {}", defaults[0]) } else { defaults.join(", ") };
+            format!(" Parameters {}, {values} by default.", names.unwrap_or_default())
+        }
+    }
+}
+
+/// The parameters of a field as an expression, by what is written for one of them: that, or an array.
+fn field_value(field: &[Parameter], one: impl Fn(&Parameter) -> TokenStream) -> TokenStream {
+    let values = field.iter().map(one);
+    if field.iter().any(|parameter| parameter.index.is_some()) { quote!([#(#values),*]) } else { quote!(#(#values)*) }
+}
+
 /// What every system derives.
 fn derived() -> TokenStream {
     quote!(#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)])
@@ -45,11 +70,18 @@ fn derived() -> TokenStream {
 pub(super) fn parameters(source: &Source) -> TokenStream {
     let model = source.model;
     let name = &model.name;
-    let names: Vec<_> = model.parameters.iter().map(|parameter| &parameter.name).collect();
-    let texts = names.iter().map(ToString::to_string);
-    let defaults = model.parameters.iter().map(|parameter| number(parameter.default));
-    let arms =
-        names.iter().zip(texts).map(|(name, text)| quote!(#text => ::core::option::Option::Some(&mut self.#name)));
+    let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
+    let defaults = model.fields().map(|field| field_value(field, |parameter| number(parameter.default)));
+    let converted = model.fields().map(|field| {
+        field_value(field, |parameter| {
+            let place = parameter.place();
+            quote!(U::real(self.#place.to_f64()))
+        })
+    });
+    let arms = model.parameters.iter().map(|parameter| {
+        let (text, place) = (parameter.text(), parameter.place());
+        quote!(#text => ::core::option::Option::Some(&mut self.#place))
+    });
     let (_, marker_value) = marker(names.is_empty());
     quote! {
         impl ::core::default::Default for #name<f64> {
@@ -61,7 +93,7 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
         impl<T: ::vi_core::real::Real> #name<T> {
             /// The same system in another kind of number, every parameter rounded to it.
             pub fn convert<U: ::vi_core::real::Real>(&self) -> #name<U> {
-                #name { #(#names: U::real(self.#names.to_f64()),)* #marker_value }
+                #name { #(#names: #converted,)* #marker_value }
             }
         }
 
@@ -94,19 +126,32 @@ pub(super) fn convertible(source: &Source) -> TokenStream {
 /// The implementation of `Batch`: parameters side by side.
 pub(super) fn batch(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
-    let names: Vec<_> = source.model.parameters.iter().map(|parameter| &parameter.name).collect();
+    let model = source.model;
+    let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
+    let side_by_side = model.fields().map(|field| {
+        field_value(field, |parameter| {
+            let place = parameter.place();
+            quote!(::core::array::from_fn(|index| systems[index].#place))
+        })
+    });
+    let one = model.fields().map(|field| {
+        field_value(field, |parameter| {
+            let place = parameter.place();
+            quote!(rows.#place[index])
+        })
+    });
     let (_, marker_value) = marker(names.is_empty());
     quote! {
         impl ::vi_core::stepping::Batch<#dimension> for #name<f64> {
             type Rows<const W: usize> = #name<[f64; W]>;
 
             fn rows<const W: usize>(systems: &[Self; W]) -> Self::Rows<W> {
-                #name { #(#names: ::core::array::from_fn(|index| systems[index].#names),)* #marker_value }
+                #name { #(#names: #side_by_side,)* #marker_value }
             }
 
             #[inline(always)]
             fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
-                #name { #(#names: rows.#names[index],)* #marker_value }
+                #name { #(#names: #one,)* #marker_value }
             }
         }
     }
@@ -169,10 +214,15 @@ impl Broken {
 fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
     // A parameter that is declared twice is one of the errors, and one field.
-    let parameters: BTreeMap<String, &Ident> =
-        system.parameters.iter().map(|parameter| (parameter.name.to_string(), &parameter.name)).collect();
-    let parameters: Vec<&Ident> = parameters.into_values().collect();
-    let (marker, marker_value) = marker(parameters.is_empty());
+    let parameters: BTreeMap<String, &syntax::Parameter> =
+        system.parameters.iter().map(|parameter| (parameter.name.to_string(), parameter)).collect();
+    let names: Vec<&Ident> = parameters.values().map(|parameter| &parameter.name).collect();
+    let lengths = parameters.values().map(|parameter| field_length(system, parameter));
+    let lengths: Vec<Option<Literal>> = lengths.map(|length| length.map(Literal::usize_unsuffixed)).collect();
+    let types = lengths.iter().map(|length| length.as_ref().map_or_else(|| quote!(T), |length| quote!([T; #length])));
+    let zeros =
+        lengths.iter().map(|length| length.as_ref().map_or_else(|| quote!(0.0), |length| quote!([0.0; #length])));
+    let (marker, marker_value) = marker(names.is_empty());
     let traits = dimension(system).map(|dimension| {
         let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &dimension, rule.as_ref()));
         let lagrangian = stub_lagrangian(name, &dimension);
@@ -183,7 +233,7 @@ fn stub(system: &System) -> TokenStream {
         #(#conditions)*
         #derived
         #[allow(missing_docs, dead_code, non_snake_case)]
-        #visibility struct #name<T = ::core::primitive::f64> { #(pub #parameters: T,)* #marker }
+        #visibility struct #name<T = ::core::primitive::f64> { #(pub #names: #types,)* #marker }
         #(#conditions)*
         #[allow(unused_imports)]
         const _: () = {
@@ -191,7 +241,7 @@ fn stub(system: &System) -> TokenStream {
 
             impl ::core::default::Default for #name<f64> {
                 fn default() -> Self {
-                    Self { #(#parameters: 0.0,)* #marker_value }
+                    Self { #(#names: #zeros,)* #marker_value }
                 }
             }
             #traits
@@ -199,16 +249,32 @@ fn stub(system: &System) -> TokenStream {
     }
 }
 
-/// The number of coordinates, where every length is a plain number.
+/// The number of coordinates, where every length is a plain number or a constant that is one.
 fn dimension(system: &System) -> Option<Literal> {
     let lengths = system.coordinates.iter().map(|coordinate| match &coordinate.length {
         None => Some(1),
-        Some(length) => match &length.kind {
-            Kind::Number(number) => number.to_usize(),
-            _ => None,
-        },
+        Some(length) => plain_length(system, length),
     });
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
+}
+
+/// The length of the field of an array of parameters, where it can be told: 1 elsewhere.
+fn field_length(system: &System, parameter: &syntax::Parameter) -> Option<usize> {
+    let told = plain_length(system, parameter.length.as_ref()?).filter(|length| (1..=PARAMETERS).contains(length));
+    let values = match &parameter.default {
+        syntax::Default::Each(values) => values.len(),
+        syntax::Default::Same(_) => 1,
+    };
+    Some(told.unwrap_or(values))
+}
+
+/// A length that is a plain number, or the name of a constant that is one.
+fn plain_length(system: &System, length: &Expression) -> Option<usize> {
+    let number = match &length.kind {
+        Kind::Name(name) => &system.constants.iter().find(|constant| constant.name == *name)?.value.kind,
+        other => other,
+    };
+    if let Kind::Number(number) = number { number.to_usize() } else { None }
 }
 
 /// The rules of a system, each as the last argument of a trait: first its own, by default, then those of its list that there are.

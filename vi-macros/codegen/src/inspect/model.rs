@@ -26,7 +26,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     for (index, parameter) in model.parameters.iter().enumerate() {
         let symbol = name::latex(derived, &crate::symbol::Symbol::Parameter(index));
         lines.push(Line::Words {
-            text: format!("parameter {} = {}", parameter.name, parameter.default_text()),
+            text: format!("parameter {} = {}", parameter.text(), parameter.default_text()),
             latex: format!("Parameter `{symbol}`, by default `{}`", parameter.default_text()),
         });
     }

@@ -7,6 +7,7 @@
 use crate::Derived;
 use crate::model::Coordinate;
 use crate::symbol::{Field, Quantity, Symbol, Variable};
+use proc_macro2::Ident;
 
 /// A letter, or a word in its stead, with indices.
 pub(super) struct Name {
@@ -116,8 +117,13 @@ const GREEK: [(char, &str); 37] = [
 
 /// The name of a coordinate.
 pub(super) fn coordinate(of: &Coordinate) -> Name {
-    let name = Name::of(&of.name.to_string());
-    match of.index {
+    entry(&of.name, of.index)
+}
+
+/// A name with its index in an array.
+fn entry(name: &Ident, index: Option<usize>) -> Name {
+    let name = Name::of(&name.to_string());
+    match index {
         Some(index) => name.with(index.to_string()),
         None => name,
     }
@@ -132,7 +138,7 @@ fn named(derived: &Derived, symbol: &Symbol) -> Name {
     let of = |index: &usize| derived.model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
     match symbol {
         Symbol::Parameter(index) => {
-            derived.model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| Name::of(&of.name.to_string()))
+            derived.model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| entry(&of.name, of.index))
         }
         Symbol::Continuous(Variable::Time) => Name::of("t"),
         Symbol::Continuous(Variable::Coordinate(index)) => of(index),

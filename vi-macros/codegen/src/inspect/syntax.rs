@@ -2,13 +2,15 @@
 //!
 //! In: a [`System`] as written. Out: its clauses by kind, numbers exact, and the parentheses that are needed.
 
-use crate::syntax::{Definition, Discretization, Expression, Indices, Kind, Operator, Range, System};
+use crate::syntax::{
+    Default, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System,
+};
 
 /// The clauses of a system.
 pub(super) fn text(system: &System) -> String {
     let mut lines = Vec::new();
     lines.extend(system.constants.iter().map(|of| format!("const {}", definition(of))));
-    lines.extend(system.parameters.iter().map(|of| format!("param {}", definition(of))));
+    lines.extend(system.parameters.iter().map(parameter));
     for coordinate in &system.coordinates {
         let length = coordinate.length.as_ref().map(|length| format!("[{}]", expression(length)));
         lines.push(format!("coord {}{};", coordinate.name, length.unwrap_or_default()));
@@ -32,6 +34,15 @@ pub(super) fn text(system: &System) -> String {
         }
     }
     format!("struct {} {{\n    {}\n}}\n", system.name, lines.join("\n    "))
+}
+
+fn parameter(of: &Parameter) -> String {
+    let length = of.length.as_ref().map(|length| format!("[{}]", expression(length))).unwrap_or_default();
+    let default = match &of.default {
+        Default::Same(value) => expression(value),
+        Default::Each(values) => format!("[{}]", values.iter().map(expression).collect::<Vec<_>>().join(", ")),
+    };
+    format!("param {}{length} = {default};", of.name)
 }
 
 fn definition(of: &Definition) -> String {

@@ -5,10 +5,10 @@
 use super::context::Context;
 use super::scope::Meaning;
 use super::{Coordinate, Model, Parameter, Rule, check_state, force, mass, rule, time_scale};
-use crate::limits::{COORDINATES, bounded};
+use crate::limits::{COORDINATES, PARAMETERS, bounded};
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
-use crate::syntax::{self, Definition, Indices, System};
+use crate::syntax::{self, Default, Definition, Expression, Indices, System};
 use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, Pool};
@@ -20,7 +20,7 @@ use vi_expr::{Expr, Pool};
 pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<Model> {
     let mut context = Context::new(pool);
     context.constants(&system.constants);
-    let defaults = context.parameters(&system.parameters);
+    let parameters = context.parameters(&system.parameters);
     let coordinates = context.coordinates(&system.coordinates, &system.name);
     context.lets(&system.lets);
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
@@ -33,7 +33,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
         let acting: Vec<Expr> = acting.chain(of_rule).collect();
-        context.every_parameter_acts(&system.parameters, &acting);
+        context.every_parameter_acts(&parameters, &acting);
     }
     let Context { pool, errors, .. } = context;
     errors.finish(())?;
@@ -44,16 +44,11 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     // What an exhausted pool says means nothing.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
-    let parameters = system.parameters.iter().zip(defaults).map(|(written, default)| Parameter {
-        attributes: written.attributes.clone(),
-        name: written.name.clone(),
-        default,
-    });
     Ok(Model {
         attributes: system.attributes.clone(),
         visibility: system.visibility.clone(),
         name: system.name.clone(),
-        parameters: parameters.collect(),
+        parameters,
         coordinates,
         lagrangian,
         forced,
@@ -67,18 +62,73 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
 impl Context<'_> {
     fn constants(&mut self, constants: &[Definition]) {
         for constant in constants {
-            let (value, _) = self.number(constant);
+            let (value, _) = self.number(&constant.value, &constant.name);
             self.declare(&constant.name, Meaning::Number(value));
         }
     }
 
-    fn parameters(&mut self, parameters: &[Definition]) -> Vec<f64> {
-        let defaults: Vec<f64> = parameters.iter().map(|parameter| self.number(parameter).1).collect();
-        for (index, parameter) in parameters.iter().enumerate() {
-            let symbol = self.pool.symbol(Symbol::Parameter(index));
-            self.declare(&parameter.name, Meaning::Number(symbol));
+    /// The parameters with their defaults, arrays entry by entry.
+    fn parameters(&mut self, declared: &[syntax::Parameter]) -> Vec<Parameter> {
+        let fields: Vec<Option<Vec<f64>>> = declared.iter().map(|parameter| self.defaults(parameter)).collect();
+        let mut parameters = Vec::new();
+        for (syntax::Parameter { attributes, name, length, .. }, defaults) in declared.iter().zip(fields) {
+            let Some(defaults) = defaults else {
+                self.declare(name, Meaning::Wrong);
+                continue;
+            };
+            let mut entries = Vec::with_capacity(defaults.len());
+            for (index, default) in defaults.into_iter().enumerate() {
+                entries.push(self.pool.symbol(Symbol::Parameter(parameters.len())));
+                let index = length.is_some().then_some(index);
+                parameters.push(Parameter { attributes: attributes.clone(), name: name.clone(), index, default });
+            }
+            let meaning = match (length, entries.first()) {
+                (None, Some(only)) => Meaning::Number(*only),
+                _ => Meaning::Array { first: 0, entries },
+            };
+            self.declare(name, meaning);
         }
-        defaults
+        parameters
+    }
+
+    /// The default of a parameter, or those of the entries of an array; where its length is wrong, a report.
+    fn defaults(&mut self, parameter: &syntax::Parameter) -> Option<Vec<f64>> {
+        let syntax::Parameter { name, length, default, .. } = parameter;
+        let length = match length {
+            Some(written) => Some((self.length_of_parameters(written)?, written.span)),
+            None => None,
+        };
+        let written = match default {
+            Default::Same(value) => {
+                let (_, number) = self.number(value, name);
+                return Some(vec![number; length.map_or(1, |(length, _)| length)]);
+            }
+            Default::Each(written) => written,
+        };
+        let numbers: Vec<f64> = written.iter().map(|value| self.number(value, name).1).collect();
+        let values = numbers.len();
+        let Some((length, span)) = length else {
+            self.errors.at(name.span(), &Message::ParameterWithoutLength { name: name.to_string(), values });
+            return None;
+        };
+        if values != length {
+            // At the first value too many; where some are missing, at the length.
+            let span = written.get(length).map_or(span, |value| value.span);
+            self.errors.at(span, &Message::ParameterValues { name: name.to_string(), length, values });
+            return None;
+        }
+        Some(numbers)
+    }
+
+    /// The length of an array of parameters; where it is wrong, a report.
+    fn length_of_parameters(&mut self, written: &Expression) -> Option<usize> {
+        let length = self.scope.integer(self.pool, written);
+        let given = self.report(length)?;
+        let fitting = usize::try_from(given).ok().filter(|length| (1..=PARAMETERS).contains(length));
+        if fitting.is_none() {
+            self.errors.at(written.span, &Message::ParametersLength { given, limit: PARAMETERS });
+        }
+        fitting
     }
 
     fn coordinates(&mut self, declared: &[syntax::Coordinate], system: &Ident) -> Vec<Coordinate> {
@@ -122,7 +172,7 @@ impl Context<'_> {
         for named in lets {
             match &named.indices {
                 None => {
-                    let value = self.value(named);
+                    let value = self.value(&named.value);
                     self.declare(&named.name, Meaning::Number(value));
                 }
                 Some(Indices::Range(range)) => {
@@ -151,7 +201,7 @@ impl Context<'_> {
         for other in others {
             self.errors.at(other.name.span(), &Message::SecondLagrangian);
         }
-        let lagrangian = self.value(first);
+        let lagrangian = self.value(&first.value);
         let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
         if self.errors.is_empty() && !self.pool.depends_on(lagrangian, &moves) {
             self.errors.at(first.name.span(), &Message::NoVelocity);
@@ -159,12 +209,20 @@ impl Context<'_> {
         Some(lagrangian)
     }
 
-    /// A parameter that none of L, f, the time scale and the rule depends on is a mistake of spelling or of thought.
-    fn every_parameter_acts(&mut self, parameters: &[Definition], acting: &[Expr]) {
+    /// A parameter that none of L, f, the time scale and the rule depends on is a mistake of spelling or of thought. Of an array in which no
+    /// entry acts the name is told, else the first entry that does not.
+    fn every_parameter_acts(&mut self, parameters: &[Parameter], acting: &[Expr]) {
         let acting = self.pool.symbols_of(acting);
-        for (index, parameter) in parameters.iter().enumerate() {
-            if !acting.contains(&Symbol::Parameter(index)) && !self.is_too_large() {
-                let name = parameter.name.to_string();
+        let mut first = 0;
+        for field in parameters.chunk_by(|left, right| left.name == right.name) {
+            let acts = |place: usize| acting.contains(&Symbol::Parameter(first + place));
+            let idle = (0..field.len()).find(|place| !acts(*place));
+            let acts_at_all = (0..field.len()).any(acts);
+            first += field.len();
+            if let Some(parameter) = idle.and_then(|place| field.get(place))
+                && !self.is_too_large()
+            {
+                let name = if acts_at_all { parameter.text() } else { parameter.name.to_string() };
                 self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
             }
         }

@@ -41,7 +41,7 @@ pub(super) fn check_state(context: &mut Context, written: &[syntax::Check], dime
             continue;
         }
         let twice = if !velocity && definition.indices.is_none() && definition.name == "t" {
-            let (_, number) = context.number(definition);
+            let (_, number) = context.number(&definition.value, &definition.name);
             t.replace(number).is_some()
         } else {
             let numbers = if *velocity { &mut v } else { &mut q };
@@ -62,7 +62,7 @@ fn plain(entry: &Entry) -> bool {
 
 /// A positive number.
 fn step(context: &mut Context, written: &Definition) -> f64 {
-    let (_, h) = context.number(written);
+    let (_, h) = context.number(&written.value, &written.name);
     if h <= 0.0 {
         context.errors.at(written.value.span, &Message::StepNotPositive);
     }

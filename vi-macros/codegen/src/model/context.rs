@@ -7,7 +7,7 @@ use super::scope::{Meaning, Scope};
 use crate::limits::bounded;
 use crate::messages::{Errors, Message};
 use crate::symbol::Symbol;
-use crate::syntax::Definition;
+use crate::syntax::Expression;
 use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Pool};
@@ -51,16 +51,16 @@ impl<'a> Context<'a> {
         None
     }
 
-    /// The exact expression of a definition; a wrong one is reported and read as 1, so that later lines are checked.
-    pub(super) fn value(&mut self, written: &Definition) -> Expr {
-        let value = self.scope.expression(self.pool, &written.value);
+    /// The exact expression that is written; a wrong one is reported and read as 1, so that later lines are checked.
+    pub(super) fn value(&mut self, written: &Expression) -> Expr {
+        let value = self.scope.expression(self.pool, written);
         self.report(value).unwrap_or_else(|| self.pool.one())
     }
 
-    /// The finite number that a constant definition stands for.
-    pub(super) fn number(&mut self, written: &Definition) -> (Expr, f64) {
+    /// The finite number that a constant expression stands for, which defines this name.
+    pub(super) fn number(&mut self, written: &Expression, name: &Ident) -> (Expr, f64) {
         let value = self.value(written);
-        match self.finite(value, written.value.span, &written.name) {
+        match self.finite(value, written.span, name) {
             Some(number) => (value, number),
             None => (self.pool.one(), 1.0),
         }

@@ -46,14 +46,14 @@ pub(super) type Other<'a> = &'a dyn Fn(String, Option<String>) -> Message;
 pub(super) fn entries(context: &mut Context, line: &Definition, other: Other) -> Option<Vec<(usize, Expr)>> {
     let name = line.name.to_string();
     let wanted = match (context.scope.meaning(&name).cloned(), &line.indices) {
-        (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, context.value(line))]),
+        (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, context.value(&line.value))]),
         (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
         (Some(Meaning::Wrong), _) => Ok(Vec::new()),
         (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
         (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(context, line, indices),
         _ => {
             // The value may be wrong too.
-            context.value(line);
+            context.value(&line.value);
             let near = context.scope.near_coordinate(context.pool, &name);
             Err(error(line.name.span(), &other(name, near)))
         }
@@ -93,7 +93,7 @@ fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr])
     for other in others {
         context.errors.at(other.name.span(), &Message::SecondDissipation);
     }
-    let rayleigh = context.value(first);
+    let rayleigh = context.value(&first.value);
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     if context.errors.is_empty() && !context.pool.depends_on(rayleigh, &moves) {
         context.errors.at(first.name.span(), &Message::NoDissipation);

@@ -34,7 +34,7 @@ pub struct Model {
     pub visibility: syn::Visibility,
     /// Name of the struct.
     pub name: Ident,
-    /// Runtime parameters.
+    /// Runtime parameters, the entries of an array side by side.
     pub parameters: Vec<Parameter>,
     /// Coordinates.
     pub coordinates: Vec<Coordinate>,
@@ -65,27 +65,51 @@ impl Coordinate {
     /// The name as the user writes it: `x`, or `q[3]`.
     #[must_use]
     pub fn text(&self) -> String {
-        self.index.map_or_else(|| self.name.to_string(), |index| format!("{}[{index}]", self.name))
+        text(&self.name, self.index)
     }
 
     /// The name as an identifier: `x`, or `q_3`.
     #[must_use]
     pub fn ident(&self) -> String {
-        self.index.map_or_else(|| self.name.to_string(), |index| format!("{}_{index}", self.name))
+        ident(&self.name, self.index)
     }
 }
 
-/// A runtime parameter.
+/// A name as an identifier, in an array with its index.
+fn ident(name: &Ident, index: Option<usize>) -> String {
+    index.map_or_else(|| name.to_string(), |index| format!("{name}_{index}"))
+}
+
+/// A name as the user writes it, in an array with its index.
+fn text(name: &Ident, index: Option<usize>) -> String {
+    index.map_or_else(|| name.to_string(), |index| format!("{name}[{index}]"))
+}
+
+/// A runtime parameter, or one entry of an array of them.
 pub struct Parameter {
-    /// Its doc comments.
+    /// The attributes and doc comments of its field.
     pub attributes: Vec<syn::Attribute>,
-    /// Its name.
+    /// The name of its field.
     pub name: Ident,
+    /// Its index in an array.
+    pub index: Option<usize>,
     /// Its value in `Default`.
     pub default: f64,
 }
 
 impl Parameter {
+    /// The name as the user writes it: `k`, or `m[3]`.
+    #[must_use]
+    pub fn text(&self) -> String {
+        text(&self.name, self.index)
+    }
+
+    /// The name as an identifier: `k`, or `m_3`.
+    #[must_use]
+    pub fn ident(&self) -> String {
+        ident(&self.name, self.index)
+    }
+
     /// Its default in words, `0.04` or `1e150`.
     #[must_use]
     pub fn default_text(&self) -> String {
@@ -95,6 +119,11 @@ impl Parameter {
 }
 
 impl Model {
+    /// The parameters field by field of the struct: a parameter alone, or the entries of an array.
+    pub fn fields(&self) -> impl Iterator<Item = &[Parameter]> {
+        self.parameters.chunk_by(|left, right| left.name == right.name)
+    }
+
     /// Number of coordinates.
     #[must_use]
     pub fn dimension(&self) -> usize {
@@ -107,7 +136,7 @@ impl Model {
         use crate::symbol::{Field, Quantity, Variable};
         let coordinate = |index: usize| self.coordinates[index].text();
         match symbol {
-            Symbol::Parameter(index) => self.parameters[*index].name.to_string(),
+            Symbol::Parameter(index) => self.parameters[*index].text(),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(*index),
             Symbol::Continuous(Variable::Velocity(index)) => format!("dot({})", coordinate(*index)),

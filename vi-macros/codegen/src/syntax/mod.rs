@@ -20,8 +20,8 @@ pub struct System {
     pub name: Ident,
     /// `const a = …;` in order.
     pub constants: Vec<Definition>,
-    /// `param a = …;` in order.
-    pub parameters: Vec<Definition>,
+    /// `param a = …, m[3] = …;` in order.
+    pub parameters: Vec<Parameter>,
     /// `coord x, q[8];` in order.
     pub coordinates: Vec<Coordinate>,
     /// `let a = …;` in order.
@@ -69,6 +69,26 @@ pub enum Indices {
     Range(Range),
     /// `[0]`: this entry.
     One(Expression),
+}
+
+/// A parameter, or an array of them.
+pub struct Parameter {
+    /// Attributes and doc comments of its field.
+    pub attributes: Vec<syn::Attribute>,
+    /// Its name.
+    pub name: Ident,
+    /// The length of an array.
+    pub length: Option<Expression>,
+    /// Its default.
+    pub default: Default,
+}
+
+/// What a parameter is by default.
+pub enum Default {
+    /// `= 1.0`: this, and in an array each entry.
+    Same(Expression),
+    /// `= [1.0, 2.0]`: the entries of an array, in order.
+    Each(Vec<Expression>),
 }
 
 /// A coordinate, or an array of them.

@@ -5,7 +5,9 @@
 
 use super::expression::DEPTH;
 use super::unfitting;
-use super::{Check, Coordinate, Definition, Discretization, Entry, Expression, Indices, Rule, System};
+use super::{
+    Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Parameter, Rule, System,
+};
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, error, nearest};
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
@@ -221,7 +223,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
     }
     match word.to_string().as_str() {
         "const" => system.constants.extend(list(input, &mut |input| definition(input, &attributes))?),
-        "param" => system.parameters.extend(list(input, &mut |input| definition(input, &attributes))?),
+        "param" => system.parameters.extend(list(input, &mut |input| parameter(input, &attributes))?),
         "coord" => {
             system.coordinates.extend(list(input, &mut coordinate)?);
             return end_of_names(input, start);
@@ -368,23 +370,50 @@ fn indices(input: ParseStream) -> Result<Option<Indices>> {
 
 /// `= 1`
 fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
-    if !input.peek(Token![=]) {
-        return Err(unfitting::equals(input, &name));
-    }
-    input.parse::<Token![=]>()?;
+    equals(input, &name)?;
     Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
+}
+
+/// The `=` behind a name.
+fn equals(input: ParseStream, name: &Ident) -> Result<()> {
+    if !input.peek(Token![=]) {
+        return Err(unfitting::equals(input, name));
+    }
+    input.parse::<Token![=]>().map(|_| ())
+}
+
+/// `a = 1`, `m[3] = 1` or `m[3] = [1, 2, 3]`
+fn parameter(input: ParseStream, attributes: &[Attribute]) -> Result<Parameter> {
+    let name = name(input)?;
+    let length = length(input)?;
+    equals(input, &name)?;
+    let default = if input.peek(syn::token::Bracket) {
+        let inner;
+        syn::bracketed!(inner in input);
+        Default::Each(Expression::list(&inner, 1, "an operator, `,` or `]`")?)
+    } else {
+        Default::Same(Expression::parse(input)?)
+    };
+    Ok(Parameter { attributes: attributes.to_vec(), name, length, default })
 }
 
 /// `x` or `q[8]`
 fn coordinate(input: ParseStream) -> Result<Coordinate> {
     let name = name(input)?;
+    Ok(Coordinate { name, length: length(input)? })
+}
+
+/// Nothing, or the length of an array, `[8]`
+fn length(input: ParseStream) -> Result<Option<Expression>> {
     if !input.peek(syn::token::Bracket) {
-        return Ok(Coordinate { name, length: None });
+        return Ok(None);
     }
     let inner;
     syn::bracketed!(inner in input);
-    let length = Some(Expression::alone(&inner, 0, INSIDE_BRACKETS)?);
-    Ok(Coordinate { name, length })
+    if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
+        return Err(error(inner.span(), &Message::Expected { what: "a length, as in `q[8]`" }));
+    }
+    Expression::alone(&inner, 0, INSIDE_BRACKETS).map(Some)
 }
 
 fn name(input: ParseStream) -> Result<Ident> {
