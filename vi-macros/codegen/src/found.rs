@@ -81,8 +81,8 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
     let mass = matrix(FunctionId::Acceleration, Output::Mass);
     let momentum = program.function(FunctionId::Momentum);
     let velocities =
-        |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_) | Symbol::Continuous(Variable::Velocity(_)));
-    let parameters = |symbol: &Symbol| matches!(symbol, Symbol::Parameter(_));
+        |symbol: &Symbol| matches!(symbol, Symbol::Parameter { .. } | Symbol::Continuous(Variable::Velocity(_)));
+    let parameters = |symbol: &Symbol| matches!(symbol, Symbol::Parameter { .. });
     let constant_mass =
         mass.is_some_and(|(function, rows)| inputs(function, rows.iter().flatten()).iter().all(parameters));
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
@@ -134,7 +134,7 @@ fn inputs<'a>(function: &Function, results: impl Iterator<Item = &'a OperationId
 
 fn dependence(function: &Function, rows: &[Vec<OperationId>]) -> Dependence {
     let of = |symbol: Symbol| match symbol {
-        Symbol::Parameter(_) => Dependence::Parameters,
+        Symbol::Parameter { .. } => Dependence::Parameters,
         Symbol::Step => Dependence::Step,
         Symbol::StepVelocity(_) => Dependence::Unknown,
         _ => Dependence::Node,
@@ -151,7 +151,7 @@ fn affine(function: &Function) -> bool {
     for id in function.operations.needed(residual.iter().chain(increment)) {
         let degree = |id: &OperationId| degrees.get(*id).copied().flatten();
         let found = match function.operations.get(id) {
-            Operation::Constant(_) | Operation::Input(Symbol::Parameter(_) | Symbol::Step) => Some(0),
+            Operation::Constant(_) | Operation::Input(Symbol::Parameter { .. } | Symbol::Step) => Some(0),
             Operation::Input(_) => Some(1),
             Operation::Negate(a) => degree(a),
             Operation::Add(a, b) | Operation::Subtract(a, b) => degree(a).zip(degree(b)).map(|(a, b)| a.max(b)),

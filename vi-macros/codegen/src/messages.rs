@@ -194,7 +194,7 @@ impl Message {
             Self::Length { given, .. } => format!("an array of {given} coordinates"),
             Self::ParametersLength { given, .. } => format!("an array of {given} parameters"),
             Self::ParameterValues { name, length, values } => {
-                format!("`{name}` has the length {length}, and a list of {values}")
+                format!("`{name}` has the length {length}, and a list of {values} values")
             }
             Self::ParameterWithoutLength { name, .. } => format!("`{name}` is no array, and has a list of values"),
             Self::IndexRange { name, index, first, end } => format!("`{name}[{index}]` is out of range {first}..{end}"),
@@ -291,7 +291,7 @@ impl Message {
             Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
             Self::ParametersLength { limit, .. } => format!("an array of parameters has 1 to {limit} entries"),
-            Self::ParameterValues { .. } => "write one value for each entry, or one for all: `m[3] = 1.0`".to_owned(),
+            Self::ParameterValues { length, .. } => format!("write {length} of them, or one for all: `= 1.0`"),
             Self::ParameterWithoutLength { name, values } => format!("write its length: `param {name}[{values}] = […];`"),
             Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
             Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),

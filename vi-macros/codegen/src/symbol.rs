@@ -38,8 +38,13 @@ pub struct Field {
 /// A symbol of the compiler.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Symbol {
-    /// Runtime parameter, by index.
-    Parameter(usize),
+    /// Runtime parameter, by index, and the index of the first one of its array, if it is in one.
+    Parameter {
+        /// Among all parameters.
+        index: usize,
+        /// That of the first entry of the array.
+        array: Option<usize>,
+    },
     /// Variable of the continuous system.
     Continuous(Variable),
     /// Acceleration a_i; appears in the step density only.
@@ -88,7 +93,10 @@ impl Symbol {
                 of_variable(variable).map(|(of, index)| (Self::AtPoint(*point, of), index))
             }
             Self::Low(of) => of.component().map(|(of, index)| (Self::Low(Box::new(of)), index)),
-            Self::Parameter(_) | Self::T0 | Self::T1 | Self::Step | Self::E0 | Self::Field(_) => None,
+            Self::Parameter { index, array } => {
+                array.map(|first| (Self::Parameter { index: first, array: Some(first) }, index - first))
+            }
+            Self::T0 | Self::T1 | Self::Step | Self::E0 | Self::Field(_) => None,
         }
     }
 }

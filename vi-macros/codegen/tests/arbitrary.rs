@@ -14,7 +14,7 @@ const INPUTS: u64 = 4000;
 const LONGEST: usize = 32_000_000;
 
 /// Right systems, which together use every clause and every form of expression.
-const SYSTEMS: [&str; 10] = [
+const SYSTEMS: [&str; 11] = [
     "struct A { param m = 1, k = 2.5e-1; coord x; let v = dot(x); L = m * v^2 / 2 - k * x^2; force x = -0.1 * v; discretize midpoint; }",
     "pub struct B { const N = 3; param a = N / 2; coord q[N], y; let e[i in 1..N] = q[i] - q[i - 1]; L = sum(i in 0..N, dot(q[i])^2) + dot(y)^2 - a * sum(i in 1..N, e[i]^2 * cos(y)); force q[i in 0..2] = sin(t * i); discretize trapezoidal; }",
     "/// Doc.\n struct C { coord θ, φ; L = (dot(θ)^2 + sin(θ)^2 * dot(φ)^2) / 2 + cos(θ); dissipation = dot(θ)^2 + dot(θ)^4; discretize midpoint; }",
@@ -24,6 +24,7 @@ const SYSTEMS: [&str; 10] = [
     "struct G { coord x; L = -(1 - dot(x)^2)^(1/2) - cosh(x) + sinh(x)^3 / (1 + tan(x))^4; force x = 1 / (2 + cos(t)); discretize trapezoidal; }",
     "struct I { const N = 3; coord q[N]; let a = q[0] + 1; let b[i in 0..N] = a * a * (q[i] + i); L = sum(i in 0..N, dot(q[i])^2) - sum(i in 0..N, sum(j in 0..i, b[i] * b[j]^2))^2 / 3^20; discretize midpoint; }",
     "struct J { const u = 1e-30; coord x, y; let w = sinh(x) * (1 + x)^3 * (2 + y)^(1/3); L = u * dot(x)^2 + dot(y)^2 / u - w * w^2 - sum(i in 1..9, x^i / i); discretize { Ld = h * (L(t0, q0, (q1 - q0)/h) / 3 + 2 * L(t1, q1, (q1 - q0)/h) / 3); } check { x = 0.1; h = 1e-2; } }",
+    "struct K { const N = 2; param m[N] = [1, 2.5], l[N + 1] = 0.5, k = 1,; coord q[N]; let x[i in 0..N] = sum(j in 0..i + 1, l[j] * sin(q[j]) + t * l[N]); L = sum(i in 0..N, m[i] * dot(x[i])^2 + dot(q[i])^2) - k * x[1]; force q[0] = -dot(x[0] * x[1]); discretize midpoint, trapezoidal,; }",
     "struct H { const M = 4; coord u[M]; let a[i in 0..M] = sum(j in 0..i + 1, dot(u[j]) * cos(u[j])); L = sum(i in 0..M, a[i]^2 + dot(u[i])^2); discretize midpoint; }",
 ];
 

@@ -243,7 +243,10 @@ fn habits() {
     says("m «g»", "an operator is missing between `m` and `g`\nhelp: write `m * g` for a product");
     says("(m «g»)", "an operator is missing between `m` and `g`");
     says("x^2 «(»x + 1)", "an operator is missing between `2` and `(…)`\nhelp: write `2 * (…)` for a product");
-    says("sin(x) «cos»(x)", "an operator is missing between `(…)` and `cos`\nhelp: write `(…) * cos` for a product");
+    says(
+        "sin(x) «cos»(x)",
+        "an operator is missing between `sin(…)` and `cos(…)`\nhelp: write `sin(…) * cos(…)` for a",
+    );
     says("sin «x»", "`sin` is a function\nhelp: write its argument in parentheses: `sin(x)`");
     says("«sin»^2(x)", "`sin` is a function\nhelp: write its argument: `sin(…)`; a power stands behind it, `sin(…)^2`");
     says("x^«1»/2", "`a^1/b` is `(a^1) / b`\nhelp: write `a^(1/b)` for a root");
@@ -407,7 +410,7 @@ fn arrays_of_parameters() {
     }
     case(
         &system("param m[2] = [1, 2, «3», 4]"),
-        "`m` has the length 2, and a list of 4\nhelp: write one value for each",
+        "`m` has the length 2, and a list of 4 values\nhelp: write 2 of them, or one for all: `= 1.0`",
     );
     case(&system("param m[«N»] = [1]"), "`m` has the length 2, and a list of 1");
     case(&system("param m[«2»] = []"), "`m` has the length 2, and a list of 0");
@@ -521,7 +524,7 @@ fn checks() {
     case(&system("check { x = «exp»(1000); h = 1; }"), "the value of `x` is not finite");
     case(&system("check { x = 1 / «0»; h = 1; }"), "division by zero");
     case(&system("check { h = «x»; }"), "`h` is not a constant");
-    case(&system("check { x = 1 «dot»(x) = 2; h = 1; }"), "an operator is missing between `1` and `dot`");
+    case(&system("check { x = 1 «dot»(x) = 2; h = 1; }"), "an operator is missing between `1` and `dot(…)`");
     case(&system("check { x = «1» y = 2; h = 1; }"), "`;` is missing behind `1`");
     case(&system("check { x = 1 «{»} h = 1; }"), "expected an operator, `,` or `;`");
     case(&system("check «;»"), "expected `{` and a place");

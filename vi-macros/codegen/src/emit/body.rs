@@ -121,6 +121,12 @@ impl<'a> Printer<'a> {
         for vector in vectors {
             self.vectors.insert(vector.clone(), self.names.vector(&vector));
         }
+        let arrays = self.vectors.iter().filter_map(|(vector, name)| {
+            let Symbol::Parameter { index, .. } = vector else { return None };
+            let field = &self.model.parameters[*index].name;
+            Some(quote!(let #name = &self.#field;))
+        });
+        let arrays: TokenStream = arrays.collect();
         self.name_inputs(needed, velocity);
         let (first, last) = loops.singles();
         for id in first {
@@ -136,7 +142,7 @@ impl<'a> Printer<'a> {
             self.write(id);
         }
         let after = self.statements(None, usize::MAX);
-        self.body(quote!(let real = T::real; #before #statements #after))
+        self.body(quote!(let real = T::real; #arrays #before #statements #after))
     }
 }
 
@@ -149,7 +155,7 @@ impl Printer<'_> {
             if let (Symbol::StepVelocity(index), VelocityFrom::Interval) = (symbol, velocity) {
                 symbols.extend([Symbol::Step, Symbol::Q0(*index), Symbol::Q1(*index)]);
             }
-            if !matches!(symbol, Symbol::Parameter(_)) {
+            if !matches!(symbol, Symbol::Parameter { .. }) {
                 symbols.insert(symbol.clone());
             }
         }
@@ -174,7 +180,7 @@ impl Printer<'_> {
             return text.from(&self.operand(*start));
         }
         let sine = match operation {
-            Operation::Input(Symbol::Parameter(index)) => {
+            Operation::Input(Symbol::Parameter { index, .. }) => {
                 let system = if self.in_pieces { format_ident!("system") } else { format_ident!("self") };
                 return Formula::parameter(&system, &self.model.parameters[*index]);
             }

@@ -58,6 +58,7 @@ impl<'a> Names<'a> {
                 self.at_point(&variable, *point)
             }
             Symbol::Continuous(Variable::Coordinate(_)) => "q".to_owned(),
+            Symbol::Parameter { index, .. } => self.model.parameters[*index].name.to_string(),
             // Of velocities, and of nothing else that has components.
             _ => "v".to_owned(),
         }
@@ -100,7 +101,7 @@ impl<'a> Names<'a> {
     fn wanted(&self, symbol: &Symbol) -> String {
         let coordinate = |index: &usize| self.model.coordinates[*index].ident();
         match symbol {
-            Symbol::Parameter(index) => self.model.parameters[*index].ident(),
+            Symbol::Parameter { index, .. } => self.model.parameters[*index].ident(),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(index),
             Symbol::Continuous(Variable::Velocity(index)) | Symbol::StepVelocity(index) => {

@@ -43,22 +43,30 @@ pub(super) fn structure(source: &Source, further: &[Source]) -> TokenStream {
 /// What the documentation says of the default of a field.
 fn default_words(field: &[Parameter]) -> String {
     let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
-    match field {
-        [Parameter { name, index: None, .. }] => format!(" Parameter `{name}`, {} by default.", defaults.join(", ")),
-        entries => {
-            let named = entries.first().zip(entries.last());
-            let names = named.map(|(first, last)| format!("`{}` to `{}`", first.text(), last.text()));
-            let same = entries.windows(2).all(|pair| pair[0].default == pair[1].default);
-            let values = if same { format!("each {}", defaults[0]) } else { defaults.join(", ") };
-            format!(" Parameters {}, {values} by default.", names.unwrap_or_default())
-        }
+    let (Some(first), Some(last)) = (field.first(), field.last()) else { return String::new() };
+    if first.index.is_none() {
+        return format!(" Parameter `{}`, {} by default.", first.name, defaults.join(", "));
     }
+    let same = defaults.iter().all(|default| *default == defaults[0]);
+    let values = if same { format!("each {}", defaults[0]) } else { defaults.join(", ") };
+    format!(" Parameters `{}` to `{}`, {values} by default.", first.text(), last.text())
 }
 
-/// The parameters of a field as an expression, by what is written for one of them: that, or an array.
-fn field_value(field: &[Parameter], one: impl Fn(&Parameter) -> TokenStream) -> TokenStream {
-    let values = field.iter().map(one);
-    if field.iter().any(|parameter| parameter.index.is_some()) { quote!([#(#values),*]) } else { quote!(#(#values)*) }
+/// The value of a field, by what one parameter is that stands at a place of the struct: that, or an array of such.
+fn field_value(field: &[Parameter], one: impl Fn(TokenStream) -> TokenStream) -> Option<TokenStream> {
+    let Parameter { name, index, .. } = field.first()?;
+    if index.is_none() {
+        return Some(one(quote!(#name)));
+    }
+    let entry = one(quote!(#name[entry]));
+    Some(quote!(::core::array::from_fn(|entry| #entry)))
+}
+
+/// The default of a field.
+fn default_value(field: &[Parameter]) -> TokenStream {
+    let values = field.iter().map(|parameter| number(parameter.default));
+    let is_array = field.iter().any(|parameter| parameter.index.is_some());
+    if is_array { quote!([#(#values),*]) } else { quote!(#(#values)*) }
 }
 
 /// What every system derives.
@@ -71,13 +79,9 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
     let model = source.model;
     let name = &model.name;
     let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
-    let defaults = model.fields().map(|field| field_value(field, |parameter| number(parameter.default)));
-    let converted = model.fields().map(|field| {
-        field_value(field, |parameter| {
-            let place = parameter.place();
-            quote!(U::real(self.#place.to_f64()))
-        })
-    });
+    let defaults = model.fields().map(default_value);
+    let one = |place| quote!(U::real(self.#place.to_f64()));
+    let converted = model.fields().filter_map(|field| field_value(field, one));
     let arms = model.parameters.iter().map(|parameter| {
         let (text, place) = (parameter.text(), parameter.place());
         quote!(#text => ::core::option::Option::Some(&mut self.#place))
@@ -128,18 +132,10 @@ pub(super) fn batch(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let model = source.model;
     let names: Vec<_> = model.fields().filter_map(<[Parameter]>::first).map(|parameter| &parameter.name).collect();
-    let side_by_side = model.fields().map(|field| {
-        field_value(field, |parameter| {
-            let place = parameter.place();
-            quote!(::core::array::from_fn(|index| systems[index].#place))
-        })
-    });
-    let one = model.fields().map(|field| {
-        field_value(field, |parameter| {
-            let place = parameter.place();
-            quote!(rows.#place[index])
-        })
-    });
+    let row = |place| quote!(::core::array::from_fn(|index| systems[index].#place));
+    let one = |place| quote!(rows.#place[index]);
+    let side_by_side = model.fields().filter_map(|field| field_value(field, row));
+    let alone = model.fields().filter_map(|field| field_value(field, one));
     let (_, marker_value) = marker(names.is_empty());
     quote! {
         impl ::vi_core::stepping::Batch<#dimension> for #name<f64> {
@@ -151,7 +147,7 @@ pub(super) fn batch(source: &Source) -> TokenStream {
 
             #[inline(always)]
             fn from_rows<const W: usize>(rows: &Self::Rows<W>, index: usize) -> Self {
-                #name { #(#names: #one,)* #marker_value }
+                #name { #(#names: #alone,)* #marker_value }
             }
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
         latex: format!("Coordinates `{}`", in_latex.join(", ")),
     }];
     for (index, parameter) in model.parameters.iter().enumerate() {
-        let symbol = name::latex(derived, &crate::symbol::Symbol::Parameter(index));
+        let symbol = name::latex(derived, &parameter.symbol(index));
         lines.push(Line::Words {
             text: format!("parameter {} = {}", parameter.text(), parameter.default_text()),
             latex: format!("Parameter `{symbol}`, by default `{}`", parameter.default_text()),

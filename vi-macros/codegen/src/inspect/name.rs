@@ -137,7 +137,7 @@ pub(super) fn latex(derived: &Derived, symbol: &Symbol) -> String {
 fn named(derived: &Derived, symbol: &Symbol) -> Name {
     let of = |index: &usize| derived.model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
     match symbol {
-        Symbol::Parameter(index) => {
+        Symbol::Parameter { index, .. } => {
             derived.model.parameters.get(*index).map_or_else(|| Name::of("a"), |of| entry(&of.name, of.index))
         }
         Symbol::Continuous(Variable::Time) => Name::of("t"),

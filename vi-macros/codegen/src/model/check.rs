@@ -78,9 +78,10 @@ impl Context<'_> {
             };
             let mut entries = Vec::with_capacity(defaults.len());
             for (index, default) in defaults.into_iter().enumerate() {
-                entries.push(self.pool.symbol(Symbol::Parameter(parameters.len())));
                 let index = length.is_some().then_some(index);
-                parameters.push(Parameter { attributes: attributes.clone(), name: name.clone(), index, default });
+                let parameter = Parameter { attributes: attributes.clone(), name: name.clone(), index, default };
+                entries.push(self.pool.symbol(parameter.symbol(parameters.len())));
+                parameters.push(parameter);
             }
             let meaning = match (length, entries.first()) {
                 (None, Some(only)) => Meaning::Number(*only),
@@ -213,16 +214,14 @@ impl Context<'_> {
     /// entry acts the name is told, else the first entry that does not.
     fn every_parameter_acts(&mut self, parameters: &[Parameter], acting: &[Expr]) {
         let acting = self.pool.symbols_of(acting);
-        let mut first = 0;
-        for field in parameters.chunk_by(|left, right| left.name == right.name) {
-            let acts = |place: usize| acting.contains(&Symbol::Parameter(first + place));
-            let idle = (0..field.len()).find(|place| !acts(*place));
-            let acts_at_all = (0..field.len()).any(acts);
-            first += field.len();
-            if let Some(parameter) = idle.and_then(|place| field.get(place))
+        let acts = |(before, parameter): (usize, &Parameter)| acting.contains(&parameter.symbol(before));
+        let acts: Vec<(&Parameter, bool)> = parameters.iter().zip(parameters.iter().enumerate().map(acts)).collect();
+        for field in acts.chunk_by(|(left, _), (right, _)| left.name == right.name) {
+            if let Some((parameter, _)) = field.iter().find(|(_, acts)| !acts)
                 && !self.is_too_large()
             {
-                let name = if acts_at_all { parameter.text() } else { parameter.name.to_string() };
+                let some_act = field.iter().any(|(_, acts)| *acts);
+                let name = if some_act { parameter.text() } else { parameter.name.to_string() };
                 self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
             }
         }

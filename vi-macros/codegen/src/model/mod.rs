@@ -98,6 +98,12 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Its symbol, where so many parameters stand before it.
+    #[must_use]
+    pub fn symbol(&self, before: usize) -> Symbol {
+        Symbol::Parameter { index: before, array: self.index.map(|place| before - place) }
+    }
+
     /// The name as the user writes it: `k`, or `m[3]`.
     #[must_use]
     pub fn text(&self) -> String {
@@ -136,7 +142,7 @@ impl Model {
         use crate::symbol::{Field, Quantity, Variable};
         let coordinate = |index: usize| self.coordinates[index].text();
         match symbol {
-            Symbol::Parameter(index) => self.parameters[*index].text(),
+            Symbol::Parameter { index, .. } => self.parameters[*index].text(),
             Symbol::Continuous(Variable::Time) => "t".to_owned(),
             Symbol::Continuous(Variable::Coordinate(index)) => coordinate(*index),
             Symbol::Continuous(Variable::Velocity(index)) => format!("dot({})", coordinate(*index)),

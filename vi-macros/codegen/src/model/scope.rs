@@ -84,7 +84,7 @@ impl Scope {
     /// The same with what a system declares, but for the names that stand for something already: numbers of constants and parameters
     /// keep their meaning.
     pub(super) fn with_constants_of(mut self, system: &Self, pool: &Pool<Symbol>) -> Self {
-        let is_constant = |expr: &Expr| !pool.depends_on(*expr, &|symbol| !matches!(symbol, Symbol::Parameter(_)));
+        let is_constant = |expr: &Expr| !pool.depends_on(*expr, &|symbol| !matches!(symbol, Symbol::Parameter { .. }));
         for (name, meaning) in &system.names {
             let meaning = match meaning {
                 Meaning::Number(value) if is_constant(value) => meaning.clone(),

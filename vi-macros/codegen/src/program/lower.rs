@@ -81,7 +81,7 @@ impl Lowering<'_> {
             Node::Call(_, arguments) => arguments.clone(),
         };
         let found = match self.pool.node(expr) {
-            Node::Symbol(Symbol::Parameter(_)) => Dependence::Parameters,
+            Node::Symbol(Symbol::Parameter { .. }) => Dependence::Parameters,
             Node::Symbol(Symbol::Step) => Dependence::Run,
             Node::Symbol(_) => Dependence::Step,
             _ => children.into_iter().map(|child| self.dependence(child)).max().unwrap_or(Dependence::None),

@@ -6,16 +6,18 @@
 use super::expression::DEPTH;
 use super::unfitting;
 use super::{
-    Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Parameter, Rule, System,
+    Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Kind, Parameter, Rule, System,
 };
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, error, nearest};
+use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use syn::buffer::Cursor;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::punctuated::Punctuated;
 use syn::{Attribute, Path, Result, Token, Visibility};
+use vi_expr::Rational;
 
 /// The words that open a clause.
 pub(super) const CLAUSES: [&str; 10] =
@@ -222,17 +224,17 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         fitting(&attributes, &word)?;
     }
     match word.to_string().as_str() {
-        "const" => system.constants.extend(list(input, &mut |input| definition(input, &attributes))?),
-        "param" => system.parameters.extend(list(input, &mut |input| parameter(input, &attributes))?),
+        "const" => list(input, &mut |input| definition(input, &attributes).map(|one| system.constants.push(one)))?,
+        "param" => list(input, &mut |input| parameter(input, &attributes, &mut system.parameters))?,
         "coord" => {
-            system.coordinates.extend(list(input, &mut coordinate)?);
+            list(input, &mut |input| coordinate(input).map(|one| system.coordinates.push(one)))?;
             return end_of_names(input, start);
         }
-        "let" => system.lets.extend(list(input, &mut |input| indexed(input, &attributes))?),
+        "let" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.lets.push(one)))?,
         "force" if input.peek(Token![=]) || input.peek(syn::token::Paren) => {
             return Err(error(input.span(), &Message::Habit(Habit::ForceWithoutCoordinate)));
         }
-        "force" => system.forces.extend(list(input, &mut |input| indexed(input, &attributes))?),
+        "force" => list(input, &mut |input| indexed(input, &attributes).map(|one| system.forces.push(one)))?,
         "L" => system.lagrangians.push(value_of(word, input, attributes)?),
         "dissipation" => system.dissipations.push(value_of(word, input, attributes)?),
         "time_scale" => system.time_scales.push(value_of(word, input, attributes)?),
@@ -249,7 +251,9 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
             return Ok(());
         }
         "discretize" => {
-            system.discretizations.push(Discretization::Named(list(input, &mut rule_name)?));
+            let mut names = Vec::new();
+            list(input, &mut |input| rule_name(input).map(|name| names.push(name)))?;
+            system.discretizations.push(Discretization::Named(names));
             return end_of_names(input, start);
         }
         "check" => {
@@ -327,16 +331,16 @@ fn entry(input: ParseStream) -> Result<Entry> {
 }
 
 /// One or more, separated by commas; the last one may have one too.
-fn list<P>(input: ParseStream, one: &mut dyn FnMut(ParseStream) -> Result<P>) -> Result<Vec<P>> {
-    let mut found = vec![one(input)?];
+fn list(input: ParseStream, one: &mut dyn FnMut(ParseStream) -> Result<()>) -> Result<()> {
+    one(input)?;
     while input.peek(Token![,]) {
         input.parse::<Token![,]>()?;
         if input.peek(Token![;]) {
             break;
         }
-        found.push(one(input)?);
+        one(input)?;
     }
-    Ok(found)
+    Ok(())
 }
 
 /// `a = 1`
@@ -382,19 +386,28 @@ fn equals(input: ParseStream, name: &Ident) -> Result<()> {
     input.parse::<Token![=]>().map(|_| ())
 }
 
-/// `a = 1`, `m[3] = 1` or `m[3] = [1, 2, 3]`
-fn parameter(input: ParseStream, attributes: &[Attribute]) -> Result<Parameter> {
+/// `a = 1`, `m[3] = 1` or `m[3] = [1, 2, 3]`; one whose default cannot be read is 0, so that its field is there for the code around.
+fn parameter(input: ParseStream, attributes: &[Attribute], parameters: &mut Vec<Parameter>) -> Result<()> {
     let name = name(input)?;
     let length = length(input)?;
-    equals(input, &name)?;
-    let default = if input.peek(syn::token::Bracket) {
-        let inner;
-        syn::bracketed!(inner in input);
-        Default::Each(Expression::list(&inner, 1, "an operator, `,` or `]`")?)
-    } else {
-        Default::Same(Expression::parse(input)?)
+    let read = equals(input, &name).and_then(|()| default(input));
+    let zero = || Default::Same(Expression { span: name.span(), kind: Kind::Number(Rational::zero()) });
+    let (default, outcome) = match read {
+        Ok(default) => (default, Ok(())),
+        Err(error) => (zero(), Err(error)),
     };
-    Ok(Parameter { attributes: attributes.to_vec(), name, length, default })
+    parameters.push(Parameter { attributes: attributes.to_vec(), name, length, default });
+    outcome
+}
+
+/// `1` or `[1, 2, 3]`
+fn default(input: ParseStream) -> Result<Default> {
+    if !input.peek(syn::token::Bracket) {
+        return Expression::parse(input).map(Default::Same);
+    }
+    let inner;
+    syn::bracketed!(inner in input);
+    Expression::list(&inner, 1, "an operator, `,` or `]`").map(Default::Each)
 }
 
 /// `x` or `q[8]`

@@ -53,7 +53,7 @@ pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) ->
         TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket => Some(Habit::IndexBehind),
         TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => None,
         TokenTree::Ident(_) | TokenTree::Literal(_) | TokenTree::Group(_) => {
-            previous.map(|left| missing_operator(&left, &next))
+            previous.map(|left| missing_operator(&left, &next, behind))
         }
     };
     told(input.span(), habit, what)
@@ -102,32 +102,59 @@ fn ends(input: ParseStream) -> bool {
     input.is_empty() || begins_clause(input) || input.peek(syn::Ident) && input.peek2(Token![=])
 }
 
-fn no_semicolon(last: &TokenTree) -> Error {
-    let span = match last {
+fn no_semicolon(last: &Previous) -> Error {
+    let span = match &last.token {
         TokenTree::Group(group) => group.span_close(),
         other => other.span(),
     };
-    error(span, &Message::Habit(Habit::MissingSemicolon { after: text(last) }))
+    error(span, &Message::Habit(Habit::MissingSemicolon { after: last.text() }))
 }
 
-/// The token before the next one, of those from `start` on.
-fn previous(input: ParseStream, start: Cursor) -> Option<TokenTree> {
+/// What stands before a token that does not fit.
+struct Previous {
+    /// The last token before.
+    token: TokenTree,
+    /// A name that stands before it.
+    name: Option<Ident>,
+}
+
+impl Previous {
+    /// The operand that ends here: `m`, `2`, `m[…]`, `sin(…)`.
+    fn text(&self) -> String {
+        operand_text(self.name.as_ref(), &self.token)
+    }
+}
+
+/// What stands before the next token, of the tokens from `start` on.
+fn previous(input: ParseStream, start: Cursor) -> Option<Previous> {
     let mut cursor = start;
-    let mut last = None;
+    let mut last: Option<Previous> = None;
     while cursor != input.cursor() {
         let (token, behind) = cursor.token_tree()?;
-        last = Some(token);
+        let name = match last {
+            Some(Previous { token: TokenTree::Ident(name), .. }) => Some(name),
+            _ => None,
+        };
+        last = Some(Previous { token, name });
         cursor = behind;
     }
     last
 }
 
+/// A name with what stands in brackets or parentheses behind it, or a token alone.
+fn operand_text(name: Option<&Ident>, token: &TokenTree) -> String {
+    match (name, token) {
+        (Some(name), TokenTree::Group(_)) => format!("{name}{}", text(token)),
+        _ => text(token),
+    }
+}
+
 /// Behind a point, with its place: a method, or the exponent of a number without digits behind its point.
-fn behind_point(behind: Cursor, previous: Option<&TokenTree>) -> (Option<Span>, Option<Habit>) {
+fn behind_point(behind: Cursor, previous: Option<&Previous>) -> (Option<Span>, Option<Habit>) {
     let Some((word, behind)) = behind.ident() else { return (None, None) };
     let text = word.to_string();
     let is_exponent = text.starts_with(['e', 'E']) && text.chars().skip(1).all(|digit| digit.is_ascii_digit());
-    if let Some(TokenTree::Literal(digits)) = previous
+    if let Some(Previous { token: TokenTree::Literal(digits), .. }) = previous
         && is_exponent
     {
         // `1.e3` has its digits in the word, `1.e-3` behind it.
@@ -141,14 +168,21 @@ fn behind_point(behind: Cursor, previous: Option<&TokenTree>) -> (Option<Span>, 
     (habit.is_some().then(|| word.span()), habit)
 }
 
-/// Two operands side by side.
-fn missing_operator(left: &TokenTree, right: &TokenTree) -> Habit {
-    let is_number = matches!((left, right), (TokenTree::Literal(_), TokenTree::Ident(_)));
-    match left {
+/// Two operands side by side; what stands `behind` the name of the right one may belong to it.
+fn missing_operator(left: &Previous, right: &TokenTree, behind: Cursor) -> Habit {
+    let group = behind.token_tree().map(|(token, _)| token).filter(|token| matches!(token, TokenTree::Group(_)));
+    let right_text = match (right, group) {
+        (TokenTree::Ident(name), Some(group)) => operand_text(Some(name), &group),
+        _ => text(right),
+    };
+    match &left.token {
         TokenTree::Ident(name) if is_function(name) => {
-            Habit::FunctionWithoutParentheses { name: text(left), argument: text(right) }
+            Habit::FunctionWithoutParentheses { name: name.to_string(), argument: right_text }
         }
-        _ => Habit::MissingOperator { left: text(left), right: text(right), is_number },
+        token => {
+            let is_number = matches!((token, right), (TokenTree::Literal(_), TokenTree::Ident(_)));
+            Habit::MissingOperator { left: left.text(), right: right_text, is_number }
+        }
     }
 }
 
