@@ -154,6 +154,15 @@ fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
     near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
 }
 
+/// What to do about a name that is reserved.
+fn another_name(name: &str) -> String {
+    match name {
+        "t" => "`t` is the time; choose another name".to_owned(),
+        "L" | "f" => format!("`{name}` stands for the Lagrangian or the force; choose another name"),
+        _ => "choose another name".to_owned(),
+    }
+}
+
 /// What to do about a word that opens no clause; behind one that is defined stands `=`.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
     let clauses = "the clauses are const, param, coord, let, L, force, dissipation, time_scale, discretize, check";
@@ -253,11 +262,7 @@ impl Message {
     pub fn help(&self) -> String {
         match self {
             Self::Duplicate { .. } => "rename one of them".to_owned(),
-            Self::Reserved { name } => match name.as_str() {
-                "t" => "`t` is the time; choose another name".to_owned(),
-                "L" | "f" => format!("`{name}` stands for the Lagrangian or the force; choose another name"),
-                _ => "choose another name".to_owned(),
-            },
+            Self::Reserved { name } => another_name(name),
             Self::ReservedType { .. } => "generated code uses this type; choose another name".to_owned(),
             Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
             Self::AttributeOfClause => {
