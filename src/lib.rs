@@ -9,3 +9,6 @@ pub mod choosing {}
 
 #[doc = include_str!("../docs/cookbook.md")]
 pub mod cookbook {}
+
+#[doc = include_str!("../docs/theory.md")]
+pub mod theory {}

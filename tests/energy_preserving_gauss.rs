@@ -421,6 +421,10 @@ fn the_step_law_holds_up_to_the_square_of_the_step() {
         law::<1, 2>(pendulum.0, pendulum.1, 0.04, 0.0, 5.0) / law::<1, 2>(pendulum.0, pendulum.1, 0.02, 0.0, 5.0),
         law::<1, 2>(pendulum.0, pendulum.1, 0.04, 1e4, 5.0) / law::<1, 2>(pendulum.0, pendulum.1, 0.02, 1e4, 5.0),
     ];
+    // Of a system that depends on the time too.
+    let timed = scenes::parametric_pendulum();
+    let timed = [0.2, 0.1].map(|h| law::<1, 2>(timed.system, (timed.q, timed.v), h, 5.0, 20.0));
+    let orders = [orders[0], orders[1], orders[2], orders[3], orders[4], timed[0] / timed[1]];
     println!("{orders:?}");
     // Measured: 3.85 to 4.58.
     assert!(orders.iter().all(|ratio| (ratio - 4.0).abs() < 0.8), "{orders:?}");
