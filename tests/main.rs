@@ -11,6 +11,7 @@ mod failures;
 mod flow;
 mod forms;
 mod gauss;
+mod gauss_slots;
 mod hunt;
 mod integrators;
 mod invariants;

@@ -1,12 +1,13 @@
 //! `vi-lab explain`: the mathematics of a system.
 //!
 //! In: the name of a ready system, or a file of Rust with systems of one's own. Out: L, f, L_d, its slot derivatives, the
-//! equations of a step, what the generator found out, and operation counts, as text or as a LaTeX document. The ready
+//! equations of a step, what the generator found out, and operation counts, or the equations of a Gauss step, as text or as a LaTeX document. The ready
 //! systems are read from the files that the library itself is made of.
 
 use super::{catalogue, expand};
 use crate::failure::Failure;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use proc_macro2::TokenStream;
 use std::path::Path;
 use vi_codegen::inspect::{self, source};
 
@@ -19,27 +20,58 @@ pub(crate) struct Arguments {
     /// Write a LaTeX document
     #[arg(long)]
     latex: bool,
+    /// Show the steps of this rule instead of those by the rules that the system is declared with
+    #[arg(long, value_enum)]
+    rule: Option<Rule>,
+    /// Stages of a Gauss step, 1 to 16; 2 unless this is given
+    #[arg(long, value_name = "S", requires = "rule", value_parser = clap::value_parser!(u8).range(1..=MOST))]
+    stages: Option<u8>,
+}
+
+/// A rule that no system is declared with, since each has its steps.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Rule {
+    /// Collocation at the Gauss points
+    Gauss,
+}
+
+/// Most stages of a Gauss step.
+const MOST: i64 = 16;
+
+impl Arguments {
+    /// The mathematics that is asked for.
+    fn explained(&self, tokens: TokenStream) -> syn::Result<inspect::Explanation> {
+        match self.rule {
+            Some(Rule::Gauss) => inspect::explain_gauss(tokens, usize::from(self.stages.unwrap_or(2))),
+            None => inspect::explain(tokens),
+        }
+    }
 }
 
 /// Explains a system.
-pub(crate) fn explain(Arguments { system, latex }: &Arguments) -> Result<String, Failure> {
+pub(crate) fn explain(arguments: &Arguments) -> Result<String, Failure> {
+    let Arguments { system, latex, .. } = arguments;
     let show = |explanation: inspect::Explanation| if *latex { explanation.latex() } else { explanation.text() };
+    let explained = |tokens| arguments.explained(tokens);
     if Path::new(system).extension().is_some_and(|extension| extension == "rs") {
-        return expand::each(Path::new(system), |tokens| inspect::explain(tokens).map(show));
+        return expand::each(Path::new(system), |tokens| explained(tokens).map(show));
     }
     let entry = catalogue::find(system)?;
-    ready(entry.system.name()).map(show)
+    ready(entry.system.name(), explained).map(show)
 }
 
 /// The mathematics of a ready system.
-fn ready(name: &str) -> Result<inspect::Explanation, Failure> {
+fn ready(
+    name: &str,
+    explained: impl Fn(TokenStream) -> syn::Result<inspect::Explanation>,
+) -> Result<inspect::Explanation, Failure> {
     let mut declared = catalogue::sources().filter_map(|text| source::declarations(text).ok()).flatten();
-    let explained = declared.find_map(|tokens| {
+    let found = declared.find_map(|tokens| {
         // The name stands first of all that a declaration says: no other system needs to be derived.
         let system = vi_codegen::syntax::parse::system(tokens.clone()).ok()?;
-        (system.name == name).then(|| inspect::explain(tokens))
+        (system.name == name).then(|| explained(tokens))
     });
-    match explained {
+    match found {
         Some(Ok(explanation)) => Ok(explanation),
         Some(Err(error)) => Err(Failure::Input(format!("{name}: {error}"))),
         None => Err(Failure::Input(format!("the declaration of {name} is not at hand"))),
@@ -54,7 +86,7 @@ mod tests {
     fn every_system_of_the_catalogue_is_explained() {
         for entry in catalogue::entries() {
             let name = entry.system.name();
-            let explanation = ready(name).unwrap_or_else(|failure| panic!("{failure}"));
+            let explanation = ready(name, inspect::explain).unwrap_or_else(|failure| panic!("{failure}"));
             assert_eq!(explanation.title, name);
         }
     }

@@ -648,6 +648,15 @@ fn a_system_is_explained_in_text_and_in_latex() {
     assert!(latex.contains("A_{x,x} &= m + \\frac{k h^{2}}{4} + \\frac{c h}{2}"), "{latex}");
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/../vi-systems/src/damped_oscillator.rs");
     assert_eq!(lab(&["explain", own]).1, text, "a file is explained as a ready system is");
+    let (status, text, errors) = lab(&["explain", "damped-oscillator", "--rule", "gauss", "--stages", "3"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    for line in ["    a_12 = 2/9 - sqrt(15)/15", "    F_x_i = -c*x_dot_i - k*x_i", "    E1 = -D3 L_d - g_d⁺"] {
+        assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
+    }
+    let (status, of_two, _) = lab(&["explain", own, "--rule", "gauss"]);
+    assert!(status == Some(0) && of_two.contains("\n    b_2 = 1/2\n"), "{of_two}");
+    assert_eq!(lab(&["explain", "kepler", "--rule", "gauss", "--stages", "17"]).0, Some(2));
+    assert_eq!(lab(&["explain", "kepler", "--stages", "2"]).0, Some(2), "stages are those of a Gauss step");
     let (status, _, errors) = lab(&["explain", "keppler"]);
     assert_eq!((status, errors.as_str()), (Some(2), "error: there is no system `keppler`; did you mean `kepler`?\n"));
 }

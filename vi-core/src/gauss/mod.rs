@@ -21,6 +21,7 @@
 //! | `newton` | else by simplified Newton iterations about the middle of the step |
 //! | `polynomial` | the motion between the nodes of a step |
 //! | `integrator` | what it shares with the other integrators |
+//! | `slots` | its discrete Lagrangian, with derivatives, forces and powers, for checks |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
 //! | [`scaled`] | steps in scaled time, for systems that say how |
 //!
@@ -40,6 +41,7 @@ mod polynomial;
 mod rounding;
 pub mod scaled;
 mod separable;
+mod slots;
 mod stages;
 mod sweep;
 mod tableau;
@@ -59,6 +61,7 @@ use nalgebra::SMatrix;
 use newton::{Newton, Stiff};
 pub use polynomial::Polynomial;
 use separable::Separable;
+pub use slots::Slots;
 use stages::{Stages, extrapolated, stage};
 use sweep::{Convergence, Equations, Increment, Sweeps};
 use vi_dispatch::{Instructions, Loop};
@@ -262,6 +265,13 @@ where
         let Self { system, run, .. } = self;
         let energy = energies(system, &run.before, run.h, run.stages.data.0, 0.0).end;
         (run.convergence.has_begun() && energy.is_finite()).then_some(energy)
+    }
+
+    /// The discrete Lagrangian of the last step with its derivatives, discrete forces and powers, for checks: `−D2 L_d − f_d⁻ = p0`,
+    /// `D4 L_d + f_d⁺ = p1`. `None` before the first step, after a step of another length ([`Gauss::step_of`]), and where one of them is not finite.
+    pub fn slots(&self) -> Option<Slots<N>> {
+        let slots = self.run.convergence.has_begun().then(|| Slots::of(&self.system, &self.run));
+        slots.filter(Slots::is_finite)
     }
 
     /// Sweeps over the stages that the last step took.

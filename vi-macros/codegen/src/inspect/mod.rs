@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `syntax` | the clauses as they were parsed |
 //! | `model`, `discrete`, `findings` | chapters of the explanation |
+//! | `gauss` | a chapter: the equations of a Gauss step |
 //! | `explanation` | chapters as text and as LaTeX |
 //! | `latex`, `name` | an expression, a symbol in LaTeX |
 //! | `program` | the functions, operation by operation |
@@ -15,6 +16,7 @@
 mod discrete;
 mod explanation;
 mod findings;
+mod gauss;
 pub mod latex;
 mod model;
 mod name;
@@ -69,6 +71,20 @@ pub fn explain(tokens: TokenStream) -> Result<Explanation> {
     let own: [Chapter; 3] = [model::sections, discrete::sections, findings::sections];
     Ok(explanation(&derivations, &own, &[discrete::sections, findings::of_steps]))
 }
+
+/// The mathematics of the Gauss steps of a system, of so many stages (1 to [`GAUSS_STAGES`]): L and f, then tableau, equations and slots.
+///
+/// # Errors
+/// What is wrong with the system.
+pub fn explain_gauss(tokens: TokenStream, stages: usize) -> Result<Explanation> {
+    let Derivations { mut own, .. } = derive(&parse::system(tokens)?)?;
+    let mut sections = model::sections(&own);
+    sections.extend(gauss::sections(&mut own, stages.clamp(1, GAUSS_STAGES)));
+    Ok(Explanation { title: own.model.name.to_string(), sections })
+}
+
+/// Most stages that a Gauss step has.
+pub const GAUSS_STAGES: usize = 16;
 
 type Chapter = fn(&Derived) -> Vec<Section>;
 

@@ -134,6 +134,13 @@ pub(super) fn latex(derived: &Derived, symbol: &Symbol) -> String {
     named(derived, symbol).text()
 }
 
+/// A symbol of L and f at a stage of a step, by the index of that.
+pub(super) fn at_stage(derived: &Derived, symbol: &Symbol, stage: &str) -> String {
+    let name = named(derived, symbol);
+    let name = if matches!(symbol, Symbol::Continuous(_)) { name.with(stage) } else { name };
+    name.text()
+}
+
 fn named(derived: &Derived, symbol: &Symbol) -> Name {
     let of = |index: &usize| derived.model.coordinates.get(*index).map_or_else(|| Name::of("q"), coordinate);
     match symbol {
