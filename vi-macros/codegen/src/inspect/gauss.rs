@@ -88,15 +88,14 @@ fn tableau(derived: &mut Derived, stages: usize) -> Vec<Line> {
         let index = indices.join(separator);
         lines.push(said(&format!("{name}_{index}"), &text, &format!("{name}_{{{index}}}"), &in_latex));
     };
-    for i in 0..stages {
-        add("c", &[i], c[i]);
+    for (name, values) in [("c", c), ("b", b)] {
+        for (i, value) in values.into_iter().enumerate() {
+            add(name, &[i], value);
+        }
     }
-    for i in 0..stages {
-        add("b", &[i], b[i]);
-    }
-    for i in 0..stages {
-        for j in 0..stages {
-            add("a", &[i, j], a[i][j]);
+    for (i, row) in a.into_iter().enumerate() {
+        for (j, value) in row.into_iter().enumerate() {
+            add("a", &[i, j], value);
         }
     }
     lines
