@@ -390,11 +390,9 @@ impl Scope {
         let [argument] = arguments else {
             return Err(error(span, &Message::Arity { name: "dot".to_owned(), takes: 1, given: arguments.len() }));
         };
-        // An array is named by its entries, whatever its index, and other expressions not at all.
-        let (name, text) = match &argument.kind {
-            Kind::Name(name) => (Some(name), name.to_string()),
-            Kind::Entry(name, _) => (Some(name), format!("{name}[…]")),
-            _ => (None, "…".to_owned()),
+        let name = match &argument.kind {
+            Kind::Name(name) | Kind::Entry(name, _) => Some(name),
+            _ => None,
         };
         match (&argument.kind, name.and_then(|name| self.meaning(&name.to_string()))) {
             (_, Some(Meaning::Wrong)) => return Ok(pool.one()),
@@ -421,7 +419,13 @@ impl Scope {
             return Err(error(name.span(), &Message::DotOfConstant { name: name.to_string() }));
         }
         if pool.depends_on(value, &|symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)))) {
-            return Err(error(argument.span, &Message::Acceleration { name: format!("dot({text})") }));
+            // An array is named by its entries, whatever its index, and other expressions not at all.
+            let name = match &argument.kind {
+                Kind::Name(name) => format!("dot({name})"),
+                Kind::Entry(name, _) => format!("dot({name}[…])"),
+                _ => "dot(…)".to_owned(),
+            };
+            return Err(error(argument.span, &Message::Acceleration { name }));
         }
         Ok(pool.derivative(value, &mut |pool, symbol| match symbol {
             Symbol::Continuous(Variable::Time) => pool.one(),
