@@ -17,7 +17,7 @@ use crate::stepping::{Convertible, FixedStepping};
 /// Lengths that are tried.
 const TRIALS: u32 = 8;
 /// Roundings of the energy at which no better length is looked for.
-const SOLVED: f64 = 0.25;
+const SOLVED: f64 = 0.5;
 /// Largest factor between two lengths that are tried.
 const FACTOR: f64 = 1.5;
 /// Roundings by which two energies differ that tell a slope to three digits.
@@ -35,36 +35,41 @@ where
     pub(super) fn root(&mut self) -> Option<Trial<N, STAGES>> {
         let h = self.course.predicted_length();
         let stages = self.stages_for(h);
-        let mut trial = self.trial(h, stages).ok()?;
-        let mut best = trial;
+        let mut best = self.trial(h, stages).ok()?;
+        let mut last = best.residual;
+        let mut h = h;
         let mut slope = self.course.slope;
-        let mut sweeps = trial.after.convergence.sweeps;
+        let mut sweeps = best.after.convergence.sweeps;
+        let mut has_stalled = false;
         for _ in 1..TRIALS {
-            if trial.roundings() <= SOLVED {
+            if best.roundings() <= SOLVED {
                 break;
             }
-            let left = trial.residual / self.course.excess;
-            let factor = (-(-left).ln_1p() / slope).exp();
+            let y = (-last / self.course.excess).ln_1p();
+            let factor = (-y / slope).exp();
             if !(1.0 / FACTOR..=FACTOR).contains(&factor) {
                 return None;
             }
-            let h = trial.h() * factor;
-            if h.to_bits() == trial.h().to_bits() {
+            let before = h;
+            h *= factor;
+            if h.to_bits() == before.to_bits() {
                 break;
             }
-            let next = self.trial(h, trial.stages_for(h)).ok()?;
-            if (next.residual - trial.residual).abs() > TOLD * f64::EPSILON * trial.size {
-                let measured = ((-next.residual / self.course.excess).ln_1p() - (-left).ln_1p()) / factor.ln();
+            let next = self.trial(h, best.stages_for(h)).ok()?;
+            if (next.residual - last).abs() > TOLD * f64::EPSILON * next.size {
+                let measured = ((-next.residual / self.course.excess).ln_1p() - y) / factor.ln();
                 slope = measured.clamp(0.5 * Self::SLOPE, 2.0 * Self::SLOPE);
             }
             sweeps += next.after.convergence.sweeps;
-            trial = next;
-            if trial.roundings() < best.roundings() {
-                best = trial;
+            last = next.residual;
+            has_stalled = next.roundings() >= best.roundings();
+            if !has_stalled {
+                best = next;
+            } else if best.roundings() <= 1.0 {
+                break;
             }
         }
         best.after.convergence.sweeps = sweeps;
-        let has_stalled = best.h().to_bits() != trial.h().to_bits();
         let is_root = best.roundings() <= FLOOR || has_stalled && self.is_preserved(&best);
         if is_root {
             self.course.slope = slope;

@@ -22,15 +22,14 @@ pub struct Run<const N: usize, const S: usize> {
     course: Course,
 }
 
-/// So many lengths are extrapolated.
-const LENGTHS: usize = 4;
-
 /// What a run carries beside its node and its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Course {
-    /// Lengths of the last steps, the newest first; how many there are.
-    lengths: [f64; LENGTHS],
+    /// Length of the last step.
+    h: f64,
+    /// `(H − E) √(h₋ h₊)` at the last nodes between two steps, the newest first; how many there are.
+    products: [f64; 3],
     known: usize,
     /// Change of `ln (H − E0)` by that of ln h.
     pub(super) slope: f64,
@@ -58,8 +57,9 @@ impl Course {
     /// Before the first step, which has about the length h.
     pub(super) fn new(h: f64, slope: f64) -> Self {
         Self {
-            lengths: [h; LENGTHS],
-            known: 1,
+            h,
+            products: [0.0; 3],
+            known: 0,
             slope,
             excess: 0.0,
             size: 0.0,
@@ -77,28 +77,33 @@ impl Course {
 
     /// Length of the last step.
     pub(super) fn h(&self) -> f64 {
-        let [h, ..] = self.lengths;
-        h
+        self.h
     }
 
-    /// The length of the next step, by the polynomial through the last ones; that of the last one where this leads too far.
+    /// The length of the next step. By the step law `(H − E) √(h₋ h₊)` is nearly constant from node to node, and is extrapolated. The length of the
+    /// last one where this leads too far.
     pub(super) fn predicted_length(&self) -> f64 {
-        let [a, b, c, d] = self.lengths;
-        let h = match self.known {
+        let [a, b, c] = self.products;
+        let product = match self.known {
+            0 => return self.h,
             1 => a,
             2 => a + (a - b),
-            3 => a + (2.0 * (a - b) - (b - c)),
-            _ => a + (3.0 * (a - b) - 3.0 * (b - c) + (c - d)),
+            _ => a + (2.0 * (a - b) - (b - c)),
         };
-        if h > 0.75 * a && h < 1.5 * a { h } else { a }
+        let mean = product / self.excess;
+        let h = mean * mean / self.h;
+        if h > 0.75 * self.h && h < 1.5 * self.h { h } else { self.h }
     }
 
-    /// Adds the length of a step, and its density.
+    /// Adds the length of a step from the node, and its density.
     pub(super) fn push(&mut self, h: f64, density: f64) {
-        let [a, b, c, _] = self.lengths;
         // The length with which a run starts is no step.
-        self.known = if self.densities.is_none() { 1 } else { LENGTHS.min(self.known + 1) };
-        self.lengths = [h, a, b, c];
+        if self.densities.is_some() {
+            let [a, b, _] = self.products;
+            self.products = [self.excess * (self.h * h).sqrt(), a, b];
+            self.known = 3.min(self.known + 1);
+        }
+        self.h = h;
         self.densities = Some([density, self.density().unwrap_or(density)]);
         self.largest = self.largest.max((density - self.shift).abs());
     }
@@ -110,7 +115,7 @@ impl Course {
 
     /// Starts the extrapolation of lengths anew, from the last one.
     pub(super) fn forget_lengths(&mut self) {
-        self.known = 1;
+        self.known = 0;
     }
 
     /// Whether a step can follow: what a file says may be anything.
@@ -118,13 +123,12 @@ impl Course {
         let Self { slope, excess, size, densities, largest, shift, residual, switches, .. } = *self;
         let [last, before] = densities.unwrap_or_default();
         let numbers = [slope, excess, size, last, before, largest, shift, residual];
+        let products = self.products;
         let costs = [switches.energy_change, switches.energy_cost];
-        if !numbers.iter().chain(&costs).all(|number| number.is_finite()) {
+        if !numbers.iter().chain(&products).chain(&costs).all(|number| number.is_finite()) {
             return Err(StepError::NonFinite { t, quantity: "last interval", expression: None });
         }
-        for h in self.lengths {
-            check_step("a length of the last steps", h)?;
-        }
+        check_step("the last step h", self.h)?;
         check_step("the slope of the energy over the length", slope)?;
         if let Some(bounds) = &self.bounds {
             bounds.check()?;

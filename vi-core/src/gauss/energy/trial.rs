@@ -50,13 +50,14 @@ impl<const N: usize, const S: usize> Trial<N, S> {
 #[inline(always)]
 pub(super) fn at<const N: usize, const S: usize>(stages: &Stages<N, S>, place: impl Fn(f64) -> f64) -> Stages<N, S> {
     let c = const { &Tableau::<S>::VALUES.c };
+    let scales = const { &scales::<S>() };
     let mut values = [[0.0; S]; N];
     for i in 0..S {
         for j in 0..S {
-            let mut basis = 1.0;
+            let mut basis = scales[j];
             for k in 0..S {
                 if k != j {
-                    basis *= (place(c[i]) - c[k]) / (c[j] - c[k]);
+                    basis *= place(c[i]) - c[k];
                 }
             }
             for k in 0..N {
@@ -65,6 +66,24 @@ pub(super) fn at<const N: usize, const S: usize>(stages: &Stages<N, S>, place: i
         }
     }
     values
+}
+
+/// `Π_{k ≠ j} 1/(c_j − c_k)`.
+const fn scales<const S: usize>() -> [f64; S] {
+    let c = &Tableau::<S>::VALUES.c;
+    let mut scales = [1.0; S];
+    let mut j = 0;
+    while j < S {
+        let mut k = 0;
+        while k < S {
+            if k != j {
+                scales[j] /= c[j] - c[k];
+            }
+            k += 1;
+        }
+        j += 1;
+    }
+    scales
 }
 
 impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
@@ -88,14 +107,15 @@ where
     /// # Errors
     /// Those of [`Gauss::step`](crate::Gauss::step).
     pub(super) fn trial(&mut self, h: f64, stages: Stages<N, STAGES>) -> Result<Trial<N, STAGES>, StepError> {
-        let kept = self.gauss.run;
         let run = &mut self.gauss.run;
+        let kept = (run.h, run.stages, run.convergence);
         run.h = h;
         run.stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(stages));
         // Where no sweep was before, stages are taken as they are, not carried further.
-        run.convergence = Convergence { sweeps: 0, ..kept.convergence };
+        run.convergence = Convergence { sweeps: 0, ..run.convergence };
         let solved = self.gauss.solve();
-        self.gauss.run = kept;
+        let run = &mut self.gauss.run;
+        (run.h, run.stages, run.convergence) = kept;
         let after = solved?;
         let node = &self.gauss.run.node;
         let energies = energies(&self.gauss.system, node, h, after.stages.data.0, node.energy);
