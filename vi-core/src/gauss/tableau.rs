@@ -20,7 +20,7 @@
 use super::pair::Pair;
 
 /// Highest degree of the polynomial that starts a step: beyond, it amplifies rounding more than it guesses.
-const DEGREE: usize = 7;
+pub(super) const DEGREE: usize = 7;
 
 /// The coefficients of S stages; see the [module](self).
 #[derive(Debug)]

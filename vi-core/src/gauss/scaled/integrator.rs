@@ -12,10 +12,11 @@ use crate::integrator::Integrator;
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
+use nalgebra::SVector;
 
 /// Trials of Δτ for a step of a given length in time.
 const TRIALS: u32 = 60;
-/// Roundings of the length by which such a step may miss it: the quadrature that the length is.
+/// Roundings of the length by which such a step may miss it, where they are more than one of the time: the quadrature that the length is.
 const MISSED: f64 = 16.0;
 
 impl<S, const N: usize, const STAGES: usize> ScaledGauss<S, N, STAGES>
@@ -33,26 +34,26 @@ where
             return Err(failure);
         }
         check_step(h)?;
-        let start = Run::new(&self.system, self.run.node, self.run.dtau)?;
-        let run = self.run_of(h, &start)?;
+        let run = self.run_of(h)?;
         self.run = Run { h: self.run.h, dtau: self.run.dtau, ..run };
         Ok(self.state())
     }
 
     /// The run after a step of the length h: Newton's iteration on `t(Δτ) = t0 + h`, whose derivative is g at the end, halved where it leaves
     /// what is known to hold Δτ.
-    fn run_of(&self, h: f64, start: &Run<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
-        let t = start.node.t;
-        let missed = MISSED * f64::EPSILON * h.abs().max(0.5 * t.abs() * f64::EPSILON);
+    fn run_of(&self, h: f64) -> Result<Run<N, STAGES>, StepError> {
+        let State { t, q, .. } = self.state();
+        let g = self.system.scaled_point(t, &q, &SVector::zeros()).g;
+        check_time_scale(t, g)?;
+        let missed = f64::EPSILON * (MISSED * h.abs()).max(t.abs());
         // None is tried that is longer than twice what is known to be too short.
         let [mut low, mut high] = [0.0, f64::INFINITY];
-        let mut length = (h * start.dtau / start.h).abs().min(start.dtau.abs());
+        let mut length = (h / g).abs().min(self.run.dtau.abs());
         let mut residuals = Residuals::new();
         let mut residual = 0.0;
         for _ in 0..TRIALS {
             let dtau = length.copysign(h);
-            let mut aside =
-                Self { system: self.system, run: Run { dtau, taken: dtau, ..*start }, newton: None, ..*self };
+            let mut aside = Self { system: self.system, run: Run { dtau, ..self.run }, newton: None, ..*self };
             let run = aside.solve()?;
             let left = (h - run.h) * h.signum();
             if left.abs() <= missed {

@@ -30,8 +30,10 @@ mod path;
 mod rounding;
 
 use super::newton::Newton;
-use super::stages::{Stages, extrapolated, stage};
+use super::polynomial::{coefficients, polynomials, sum};
+use super::stages::{Stages, extrapolated, set, stage};
 use super::sweep::{self, Convergence, Increment, Sweeps};
+use super::tableau::{DEGREE, Tableau};
 use crate::checkpoint;
 use crate::collocation::{Collocation, ScaledPoint, TimeScale};
 use crate::compensated;
@@ -285,16 +287,40 @@ impl<const N: usize, const S: usize> Run<N, S> {
         Rates { velocity: self.velocities.data.0, g, energy }
     }
 
-    /// Rates at the stages of the next step: the polynomials of the last one, further on; after a step of another length its last ones.
+    /// Rates at the stages of the next step: the polynomials of the last one, further on.
     #[inline(always)]
     fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
-        let Rates { velocity, g, energy } = self.rates();
-        if self.convergence.has_begun() && self.taken.to_bits() == self.dtau.to_bits() {
-            let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
-            return Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy };
+        if !self.convergence.has_begun() {
+            return self.rates();
         }
-        let last = |row: [f64; S]| [row[S - 1]; S];
-        Rates { velocity: velocity.map(last), g: last(g), energy: last(energy) }
+        if self.taken.to_bits() != self.dtau.to_bits() {
+            return self.guess_of_another_length();
+        }
+        let Rates { velocity, g, energy } = self.rates();
+        let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
+        Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy }
+    }
+
+    /// The same where the next step is of another length: by so much further on, but not far; else the rates of the last stage.
+    #[cold]
+    fn guess_of_another_length(&self) -> Rates<N, S> {
+        let c = const { &Tableau::<S>::VALUES.c };
+        let ratio = self.dtau / self.taken;
+        if !(ratio > 0.0 && ratio <= FARTHEST) {
+            let last = |row: [f64; S]| [row[S - 1]; S];
+            let Rates { velocity, g, energy } = self.rates();
+            return Rates { velocity: velocity.map(last), g: last(g), energy: last(energy) };
+        }
+        let velocity = coefficients(&self.velocities.data.0);
+        let clock = coefficients(&self.clock.data.0);
+        let mut rates = self.rates();
+        for i in 0..S {
+            let mut basis = polynomials::<S>(1.0 + ratio * c[i]);
+            basis.iter_mut().skip(DEGREE + 1).for_each(|value| *value = 0.0);
+            set(&mut rates.velocity, i, &sum(&velocity, &basis));
+            [rates.g[i], rates.energy[i]] = sum(&clock, &basis).into();
+        }
+        rates
     }
 
     /// The run after a step.
@@ -317,6 +343,9 @@ impl<const N: usize, const S: usize> Run<N, S> {
         self.node.is_finite() && self.clock.column(0).iter().all(|g| *g > 0.0)
     }
 }
+
+/// Lengths of the last step by which its polynomials guess ahead at most.
+const FARTHEST: f64 = 2.0;
 
 /// A solved step.
 struct Solved<const N: usize, const S: usize> {
