@@ -5,6 +5,7 @@ mod checks;
 mod composition;
 mod declarations;
 mod derivatives;
+mod derivatives_of_runs;
 mod energy_preserving_gauss;
 mod extremes;
 mod failures;

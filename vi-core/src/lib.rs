@@ -15,6 +15,7 @@
 //! | [`composition`] | fixed steps of order 4, 6 and 8 |
 //! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
 //! | [`integrator`] | what all integrators share: states at times, on a grid, at events; inputs |
+//! | [`derivatives`] | variations of steps and runs, gradients, Lyapunov exponents |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`checkpoint`] | a run between two steps, with the system that it is of |
 //! | [`error`] | every way in which a step can fail, with its numbers |
@@ -38,6 +39,7 @@ mod compensated;
 pub mod composition;
 pub mod condition;
 mod delegate;
+pub mod derivatives;
 pub mod discrete;
 pub mod energy_preserving;
 pub mod error;

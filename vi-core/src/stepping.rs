@@ -6,7 +6,7 @@
 
 use crate::collocation::Collocation;
 use crate::discrete::DiscreteLagrangian;
-use crate::lagrangian::Lagrangian;
+use crate::lagrangian::{Lagrangian, Parameters};
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
@@ -68,7 +68,7 @@ pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<
 /// A system that can be evaluated in other kinds of numbers, as every generated one can.
 pub trait Convertible<const N: usize, R = Own> {
     /// The same system in the numbers T.
-    type In<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R>;
+    type In<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R> + Parameters<T>;
 
     /// The same system, every parameter rounded to T.
     fn convert<T: Real>(&self) -> Self::In<T>;

@@ -106,6 +106,11 @@ where
         Ok(self)
     }
 
+    /// What the run does where no step exists.
+    pub(crate) fn fallback(&self) -> Fallback {
+        self.run.fallback
+    }
+
     /// How often the run has changed its method, and what that cost.
     pub fn switches(&self) -> Switches<T> {
         self.run.switches

@@ -22,6 +22,7 @@
 //! | `polynomial` | the motion between the nodes of a step |
 //! | `integrator` | what it shares with the other integrators |
 //! | `slots` | its discrete Lagrangian, with derivatives, forces and powers, for checks |
+//! | `variation` | derivatives of a step |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
 //! | [`scaled`] | steps in scaled time, for systems that say how |
 //!
@@ -45,6 +46,7 @@ mod slots;
 mod stages;
 mod sweep;
 mod tableau;
+mod variation;
 
 use crate::checkpoint;
 use crate::collocation::Collocation;

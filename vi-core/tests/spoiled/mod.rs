@@ -89,8 +89,8 @@ impl<S> Spoiled<S> {
     }
 }
 
-impl<S: Parameters> Parameters for Spoiled<S> {
-    fn parameter_mut(&mut self, name: &str) -> Option<&mut f64> {
+impl<T: Real, S: Parameters<T>> Parameters<T> for Spoiled<S> {
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
         self.system.parameter_mut(name)
     }
 }

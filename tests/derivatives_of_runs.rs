@@ -1,0 +1,448 @@
+//! Variations of steps and runs: against dual numbers of a step that is solved in them, differences, symplecticity, and published exponents.
+
+use nalgebra::{DMatrix, DVector};
+use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
+use vi_core::linear::Matrix;
+use vi_core::node::Node;
+use vi_core::real::Dual;
+use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::{
+    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, SVector, Scheme, State, StepError, lagrangian,
+    nalgebra,
+};
+use vi_systems::{
+    ChargedParticle, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HenonHeiles, Kepler, NPendulum,
+    ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
+};
+
+lagrangian! {
+    /// Force, time, varying mass and damping at once.
+    struct Everything {
+        param a = 1.4, c = 0.15, w = 1.3;
+        coord x, y;
+        L = (1 + x^2 / 3) * dot(x)^2 / 2 + a * dot(y)^2 / 2 + x * dot(x) * dot(y) / 5 - cos(w * t) * x * y / 4 - x^2 - y^4 / 4;
+        force x = -c * dot(x) + sin(w * t) / 5;
+        force y = -c * dot(x) * dot(y);
+        discretize midpoint;
+    }
+}
+
+/// The columns of the tangent map over `steps` steps.
+fn tangent_map<I: Differentiable<N>, const N: usize>(run: I, steps: usize) -> (I, DMatrix<f64>) {
+    let mut tangent = Tangent::new(run, Variation::of_state());
+    for _ in 0..steps {
+        tangent.step().expect("solvable");
+    }
+    let column = |variation: &Variation<N>| {
+        let entries = variation.q.iter().chain(variation.p.iter()).copied();
+        DVector::from_iterator(2 * N, entries)
+    };
+    let columns: Vec<_> = tangent.variations().iter().map(column).collect();
+    (tangent.run().clone(), DMatrix::from_columns(&columns))
+}
+
+/// How far a map is from a symplectic one, relative to its square.
+fn defect(map: &DMatrix<f64>) -> f64 {
+    let n = map.nrows() / 2;
+    let form = DMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+        (true, false) if j == i + n => 1.0,
+        (false, true) if i == j + n => -1.0,
+        _ => 0.0,
+    });
+    let scale = map.norm_squared().max(1.0);
+    (map.transpose() * &form * map - form).amax() / scale
+}
+
+fn is_symplectic<S, const N: usize>(system: S, q: [f64; N], v: [f64; N], h: f64) -> f64
+where
+    S: Convertible<N> + FixedStepping<N> + vi_core::collocation::Collocation<N>,
+{
+    let start = State::at(&system, 0.3, q, v);
+    let (_, fixed) = tangent_map(FixedStep::new(system, start, h).expect("valid"), 20);
+    let (_, gauss) = tangent_map(Gauss::<_, N, 3>::new(system, start, h).expect("valid"), 20);
+    let (_, composed) = tangent_map(Composition::new(system, Scheme::SUZUKI_4, start, h).expect("valid"), 20);
+    let identity = DMatrix::identity(2 * N, 2 * N);
+    assert!((&fixed - &identity).amax() > 1e-3, "{}: nothing moves", S::NAME);
+    defect(&fixed).max(defect(&gauss)).max(defect(&composed))
+}
+
+#[test]
+fn tangent_maps_are_symplectic() {
+    let defects = [
+        is_symplectic(DoubleWell::default(), [0.8], [0.1], 0.1),
+        is_symplectic(Pendulum { m: 1.3, l: 0.7, g: 9.81 }, [1.0], [0.2], 0.05),
+        is_symplectic(ParametricPendulum::default(), [0.5], [0.1], 0.05),
+        is_symplectic(RotatingHoop::default(), [1.0], [0.3], 0.05),
+        is_symplectic(Kepler { mu: 1.7 }, [0.8, 0.1], [0.0, 1.3], 0.05),
+        is_symplectic(HenonHeiles::default(), [0.0, 0.1], [0.5, 0.0], 0.1),
+        is_symplectic(DoublePendulum::default(), [1.0, 0.7], [0.1, 0.0], 0.02),
+        is_symplectic(SphericalPendulum::default(), [0.8, 0.0], [0.0, 4.0], 0.02),
+        is_symplectic(ChargedParticle::default(), [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.05),
+        is_symplectic(NPendulum::default(), [0.6, 0.4, 0.2, 0.1], [0.0; 4], 0.02),
+        is_symplectic(FpuChain::default(), core::array::from_fn(|i| (0.3 * (i as f64 + 1.0)).sin()), [0.0; 16], 0.1),
+    ];
+    // At most 4.1e-16.
+    assert!(defects.into_iter().all(|defect| defect < 1e-14), "{defects:?}");
+}
+
+/// The node after a step that is solved in dual numbers from the start: no implicit function theorem.
+fn solved_in_duals<S: FixedStepping<N, Dual<f64>>, const N: usize>(
+    system: &S,
+    node: &mut Node<N, Dual<f64>>,
+    h: f64,
+    v: &mut SVector<Dual<f64>, N>,
+) {
+    let h = Dual::fixed(h);
+    for _ in 0..20 {
+        let equation = system.momentum_equation(node, h, v);
+        *v -= equation.jacobian.solve(&equation.residual);
+    }
+    let increment = system.momentum_residual(node, h, v).increment;
+    node.advance(h, v, &increment);
+}
+
+#[test]
+fn variations_are_those_of_a_run_in_dual_numbers() {
+    let system = Everything { a: 1.1, c: 0.3, w: 0.9 };
+    let start = State::at(&system, 0.2, [0.6, -0.4], [0.3, 0.5]);
+    let mut variations = Variation::of_state();
+    variations.extend(["a", "c", "w"].into_iter().filter_map(Variation::of_parameter::<Everything>));
+    variations.push(Variation { t: 1.0, ..Variation::zero() });
+    assert_eq!(variations.len(), 8);
+    let mut tangent = Tangent::new(FixedStep::new(system, start, 0.1).expect("valid"), variations.clone());
+    for _ in 0..100 {
+        tangent.step().expect("solvable");
+    }
+    for (variation, found) in variations.iter().zip(tangent.variations()) {
+        let mut dual = Convertible::<2>::convert::<Dual<f64>>(&system);
+        for (parameter, slope) in [&mut dual.a, &mut dual.c, &mut dual.w].into_iter().zip(&variation.parameters) {
+            parameter.slope = *slope;
+        }
+        let mut node = Node::new(start, 0.0).map_to_dual();
+        node.t.slope = variation.t;
+        for k in 0..2 {
+            node.q[k].slope = variation.q[k];
+            node.p[k].slope = variation.p[k];
+        }
+        let mut v = SVector::from([Dual::fixed(0.0); 2]);
+        for _ in 0..100 {
+            solved_in_duals(&dual, &mut node, 0.1, &mut v);
+        }
+        for k in 0..2 {
+            let error = (found.q[k] - node.q[k].slope).abs() + (found.p[k] - node.p[k].slope).abs();
+            let size = 1.0 + found.q.norm() + found.p.norm();
+            // 1.4e-15.
+            assert!(error < 5e-15 * size, "{variation:?}: {error}");
+        }
+        assert!(found.q.norm() > 1e-3, "{variation:?} changes nothing");
+    }
+}
+
+trait ToDual<const N: usize> {
+    fn map_to_dual(&self) -> Node<N, Dual<f64>>;
+}
+
+impl<const N: usize> ToDual<N> for Node<N> {
+    fn map_to_dual(&self) -> Node<N, Dual<f64>> {
+        let State { t, q, p } = self.state();
+        Node::new(State { t: Dual::fixed(t), q: q.map(Dual::fixed), p: p.map(Dual::fixed) }, Dual::fixed(0.0))
+    }
+}
+
+/// The largest difference between variations and central differences of third order, relative to their size.
+fn differs<I, const N: usize>(
+    begin: impl Fn(&SVector<f64, N>, &SVector<f64, N>, f64) -> I,
+    steps: usize,
+    name: &str,
+) -> f64
+where
+    I: Differentiable<N>,
+{
+    let zeros = SVector::zeros();
+    let end = |q: &SVector<f64, N>, p: &SVector<f64, N>, parameter: f64| {
+        let mut run = begin(q, p, parameter);
+        for _ in 0..steps {
+            run.step().expect("solvable");
+        }
+        run.state()
+    };
+    let mut variations = Variation::of_state();
+    variations.extend(Variation::of_parameter::<I::System>(name));
+    let mut tangent = Tangent::new(begin(&zeros, &zeros, 0.0), variations.clone());
+    for _ in 0..steps {
+        tangent.step().expect("solvable");
+    }
+    let mut worst = 0.0_f64;
+    for (variation, found) in variations.iter().zip(tangent.variations()) {
+        let shift = |s: f64| {
+            let parameter = if variation.parameters.is_empty() { 0.0 } else { s };
+            end(&(variation.q * s), &(variation.p * s), parameter)
+        };
+        // Richardson: (8 (f(s) − f(−s)) − (f(2s) − f(−2s))) / (12 s)
+        let s = 1e-3;
+        let [a, b, c, d] = [s, -s, 2.0 * s, -2.0 * s].map(shift);
+        let q = ((a.q - b.q) * 8.0 - (c.q - d.q)) / (12.0 * s);
+        let p = ((a.p - b.p) * 8.0 - (c.p - d.p)) / (12.0 * s);
+        let size = 1.0 + found.q.norm() + found.p.norm();
+        worst = worst.max(((q - found.q).norm() + (p - found.p).norm()) / size);
+        assert!(q.norm() + p.norm() > 1e-3, "{variation:?} changes nothing");
+    }
+    worst
+}
+
+#[test]
+fn variations_are_those_of_differences() {
+    let system = |a: f64| Everything { a: 1.4 + a, ..Everything::default() };
+    let start = |q: &SVector<f64, 2>, p: &SVector<f64, 2>| State {
+        t: 0.1,
+        q: SVector::from([0.6, -0.4]) + q,
+        p: SVector::from([0.3, 0.5]) + p,
+    };
+    let errors = [
+        differs(|q, p, a| FixedStep::new(system(a), start(q, p), 0.1).expect("valid"), 30, "a"),
+        differs(|q, p, a| Composition::new(system(a), Scheme::SUZUKI_4, start(q, p), 0.1).expect("valid"), 30, "a"),
+        differs(|q, p, a| Gauss::<_, 2, 1>::new(system(a), start(q, p), 0.1).expect("valid"), 30, "a"),
+        differs(|q, p, a| Gauss::<_, 2, 4>::new(system(a), start(q, p), 0.3).expect("valid"), 10, "a"),
+        differs(
+            |q, p, m| {
+                let well = DoubleWell { m: 1.0 + m };
+                Gauss::<_, 1, 6>::new(
+                    well,
+                    State { t: 0.0, q: SVector::from([0.8]) + q, p: SVector::from([0.1]) + p },
+                    0.4,
+                )
+                .expect("valid")
+            },
+            10,
+            "m",
+        ),
+    ];
+    // 2.0e-11, and 1.8e-9 of the double well: what the differences lack.
+    assert!(errors.into_iter().all(|error| error < 4e-9), "{errors:?}");
+}
+
+#[test]
+fn an_energy_preserving_step_varies_in_its_length() {
+    let system = Everything::default();
+    let (h, v) = (0.05, SVector::from([0.3, 0.5]));
+    let first = EnergyPreserving::from_midpoint(system, 0.1, [0.6, -0.4], v, h).expect("valid");
+    let state = first.state();
+    let energy = first.discrete_energy();
+    let begin = |q: SVector<f64, 2>, p: SVector<f64, 2>, e: f64, a: f64| {
+        let state = State { q: state.q + q, p: state.p + p, ..state };
+        let system = Everything { a: 1.4 + a, ..system };
+        EnergyPreserving::from_state(system, state, energy + e, h, v).expect("valid")
+    };
+    let zeros = SVector::zeros();
+    let mut variations = Variation::of_state();
+    variations.push(Variation { energy: 1.0, ..Variation::zero() });
+    variations.extend(Variation::of_parameter::<Everything>("a"));
+    let mut tangent = Tangent::new(begin(zeros, zeros, 0.0, 0.0), variations.clone());
+    for _ in 0..4 {
+        tangent.step().expect("solvable");
+    }
+    let mut lengths = 0.0_f64;
+    for (variation, found) in variations.iter().zip(tangent.variations()) {
+        let shift = |s: f64| {
+            let a = if variation.parameters.is_empty() { 0.0 } else { s };
+            let mut run = begin(variation.q * s, variation.p * s, variation.energy * s, a);
+            for _ in 0..4 {
+                run.step().expect("solvable");
+            }
+            (run.state(), run.discrete_energy())
+        };
+        // The length follows from a small difference: only short distances are linear.
+        let s = 2e-6;
+        let [(a, ea), (b, eb), (c, ec), (d, ed)] = [s, -s, 2.0 * s, -2.0 * s].map(shift);
+        let richardson = |a: f64, b: f64, c: f64, d: f64| (8.0 * (a - b) - (c - d)) / (12.0 * s);
+        let mut error = (richardson(a.t, b.t, c.t, d.t) - found.t).abs();
+        error += (richardson(ea, eb, ec, ed) - found.energy).abs();
+        let mut size = 1.0 + found.t.abs() + found.energy.abs();
+        for k in 0..2 {
+            error += (richardson(a.q[k], b.q[k], c.q[k], d.q[k]) - found.q[k]).abs();
+            error += (richardson(a.p[k], b.p[k], c.p[k], d.p[k]) - found.p[k]).abs();
+            size += found.q[k].abs() + found.p[k].abs();
+        }
+        lengths = lengths.max(found.t.abs());
+        // 1.1e-10.
+        assert!(error < 1e-9 * size, "{variation:?}: {error} of {size}");
+    }
+    assert!(lengths > 1.0, "the lengths vary: {lengths}");
+    let fallen = first.with_fallback(vi_core::Fallback::FixedSteps);
+    let refused = Tangent::new(fallen, Variation::of_state()).step();
+    assert!(matches!(refused, Err(StepError::InvalidInput { .. })), "{refused:?}");
+}
+
+#[test]
+fn second_variations_are_differences_of_first_ones() {
+    let system = |a: f64| Everything { a: 1.4 + a, ..Everything::default() };
+    let start = State { t: 0.1, q: SVector::from([0.6, -0.4]), p: SVector::from([0.3, 0.5]) };
+    let mut directions = Variation::of_state();
+    directions.extend(Variation::of_parameter::<Everything>("a"));
+    let mut worst = 0.0_f64;
+    let mut largest = 0.0_f64;
+    for one in &directions {
+        for other in &directions {
+            let varied = |s: f64| {
+                let a = if other.parameters.is_empty() { 0.0 } else { s };
+                let state = State { q: start.q + other.q * s, p: start.p + other.p * s, ..start };
+                let mut tangent =
+                    Tangent::new(FixedStep::new(system(a), state, 0.2).expect("valid"), vec![one.clone()]);
+                tangent.step().expect("solvable");
+                let variation = &tangent.variations()[0];
+                (variation.q, variation.p)
+            };
+            let s = 1e-3;
+            let [a, b, c, d] = [s, -s, 2.0 * s, -2.0 * s].map(varied);
+            let q = ((a.0 - b.0) * 8.0 - (c.0 - d.0)) / (12.0 * s);
+            let p = ((a.1 - b.1) * 8.0 - (c.1 - d.1)) / (12.0 * s);
+            let mut run = FixedStep::new(system(0.0), start, 0.2).expect("valid");
+            let before = *run.node();
+            run.step().expect("solvable");
+            let (found_q, found_p) = run.second_variation(&before, one, other).expect("regular");
+            worst = worst.max((q - found_q).norm() + (p - found_p).norm());
+            largest = largest.max(found_q.norm() + found_p.norm());
+        }
+    }
+    // 2.5e-13 and 0.47.
+    assert!(worst < 1e-12 && largest > 0.1, "{worst} {largest}");
+}
+
+/// The squares of the distances from a course, at every node.
+struct Course;
+
+impl<I: Integrator<2, System = Everything>> Objective<I, 2> for Course {
+    fn prepare(&self, step: u64, run: &mut I) -> Result<(), StepError> {
+        #[allow(clippy::cast_precision_loss)] // a few steps
+        let step = step as f64;
+        run.set_parameters(|system| system.c = 0.1 + 0.05 * step.sin())
+    }
+
+    fn parameters(&self) -> &[&str] {
+        &["a", "c", "w"]
+    }
+
+    fn slope(&self, step: u64, state: &State<2>) -> Covector<2> {
+        let weight = if step % 3 == 0 { 1.0 } else { 0.5 };
+        Covector { q: state.q * (2.0 * weight), p: state.p * weight, energy: 0.0 }
+    }
+}
+
+#[test]
+fn adjoint_and_tangent_agree() {
+    fn worst<I: Differentiable<2, System = Everything>>(run: &I, steps: u64) -> f64 {
+        let mut all: Vec<_> = [1, 5, 1000].map(|kept| gradient(run, steps, kept, &Course).expect("solvable")).into();
+        let found = all.pop().expect("three");
+        // However many runs are kept.
+        assert!(all.iter().all(|other| *other == found));
+        let mut variations = Variation::of_state();
+        variations.extend(["a", "c", "w"].into_iter().filter_map(Variation::of_parameter::<Everything>));
+        let mut forward = vec![0.0; variations.len()];
+        let mut run = run.clone();
+        let mut varied = variations.clone();
+        for step in 0..=steps {
+            let slope = Objective::<I, 2>::slope(&Course, step, &run.state());
+            for (sum, variation) in forward.iter_mut().zip(&varied) {
+                *sum += slope.of(variation);
+            }
+            if step < steps {
+                Course.prepare(step, &mut run).expect("regular");
+                let before = *run.node();
+                run.step().expect("solvable");
+                run.vary(&before, &mut varied).expect("regular");
+            }
+        }
+        assert_eq!(found.parameters.len(), usize::try_from(steps).expect("a few"));
+        let of_parameter = |index: usize| found.parameters.iter().map(|row| row[index]).sum::<f64>();
+        let start = &found.start;
+        let backward =
+            [start.q[0], start.q[1], start.p[0], start.p[1], of_parameter(0), of_parameter(1), of_parameter(2)];
+        let size = forward.iter().fold(1.0_f64, |size, entry| size.max(entry.abs()));
+        assert!(size > 10.0);
+        forward.iter().zip(backward).map(|(one, other)| (one - other).abs() / size).fold(0.0, f64::max)
+    }
+    let system = Everything::default();
+    let start = State::at(&system, 0.1, [0.6, -0.4], [0.3, 0.5]);
+    let errors = [
+        worst(&FixedStep::new(system, start, 0.1).expect("valid"), 47),
+        worst(&Gauss::<_, 2, 3>::new(system, start, 0.3).expect("valid"), 20),
+        worst(&Composition::new(system, Scheme::SUZUKI_4, start, 0.2).expect("valid"), 23),
+    ];
+    // 3.6e-16.
+    assert!(errors.into_iter().all(|error| error < 2e-15), "{errors:?}");
+    let none = gradient(&FixedStep::new(system, start, 0.1).expect("valid"), 0, 3, &Course).expect("nothing to take");
+    assert!(none.parameters.is_empty() && (none.start.q - start.q * 2.0).norm() < 1e-15);
+}
+
+#[test]
+fn exponents_of_a_saddle() {
+    // An inverted pendulum at rest leaves its place as exp(ω t), and a run of Gauss steps as the stable root of its rule.
+    let pendulum = Pendulum { m: 1.3, l: 0.5, g: 4.5 };
+    let top = State::at(&pendulum, 0.0, [core::f64::consts::PI], [0.0]);
+    let run = Gauss::<_, 1, 6>::new(pendulum, State { p: SVector::zeros(), ..top }, 0.1).expect("valid");
+    let mut lyapunov = Lyapunov::new(run, 2);
+    let mut growth = [[0.0; 2]; 2];
+    for part in &mut growth {
+        lyapunov.advance(40).expect("solvable");
+        let exponents = lyapunov.exponents();
+        *part = [exponents[0], exponents[1]].map(|exponent| exponent * lyapunov.run().t());
+    }
+    // ω = 3. What the first direction lacked is gone after four units of time: 3.4e-13.
+    let rates = [0, 1].map(|k| (growth[1][k] - growth[0][k]) / 4.0);
+    assert!((rates[0] - 3.0).abs() < 1e-12 && (rates[1] + 3.0).abs() < 1e-12, "{rates:?}");
+}
+
+/// The largest exponent from two motions, whose distance is made small again after every step.
+fn separated<I: Integrator<N>, const N: usize>(run: &I, steps: u32) -> f64 {
+    const NEAR: f64 = 1e-7;
+    let mut run = run.clone();
+    let begin = run.t();
+    let mut q = SVector::<f64, N>::repeat(NEAR);
+    let mut p = SVector::<f64, N>::zeros();
+    let mut growth = 0.0;
+    for _ in 0..steps {
+        let at = run.state();
+        let mut beside = run.clone();
+        beside.set_state(State { q: at.q + q, p: at.p + p, ..at }).expect("valid");
+        let reached = beside.step().expect("solvable");
+        let state = run.step().expect("solvable");
+        q = reached.q - state.q;
+        p = reached.p - state.p;
+        let distance = q.norm().hypot(p.norm());
+        growth += (distance / NEAR).ln();
+        q *= NEAR / distance;
+        p *= NEAR / distance;
+    }
+    growth / (run.t() - begin)
+}
+
+#[test]
+fn exponents_of_chaotic_motion() {
+    fn both<I: Differentiable<N>, const N: usize>(run: I, steps: u32) -> (Vec<f64>, f64) {
+        let mut lyapunov = Lyapunov::new(run.clone(), 2 * N);
+        lyapunov.advance(u64::from(steps)).expect("solvable");
+        (lyapunov.exponents(), separated(&run, steps))
+    }
+    let duffing = DoubleWellDuffing { amplitude: 0.5, ..DoubleWellDuffing::default() };
+    let run = Gauss::<_, 1, 6>::new(duffing, State::at(&duffing, 0.0, [0.8], [0.0]), 0.1).expect("valid");
+    let (driven, of_driven) = both(run, 40_000);
+    let stars = HenonHeiles::default();
+    let energy = 1.0 / 6.0;
+    let p_x = (2.0_f64 * energy - 0.01 - 2.0e-3 / 3.0).sqrt();
+    let chaotic = State { t: 0.0, q: SVector::from([0.0, -0.1]), p: SVector::from([p_x, 0.0]) };
+    assert!((chaotic.energy(&stars).expect("regular") - energy).abs() < 1e-15);
+    let (galaxy, of_galaxy) = both(Gauss::<_, 2, 6>::new(stars, chaotic, 0.4).expect("valid"), 40_000);
+    let pendula = DoublePendulum::default();
+    let start = State::at(&pendula, 0.0, [2.0, 2.0], [0.0, 0.0]);
+    let (swinging, of_swinging) = both(Gauss::<_, 2, 6>::new(pendula, start, 0.02).expect("valid"), 20_000);
+    // 0.0964, 0.1121 and 1.397; off by 7e-4, 4e-4 and 4e-3.
+    for (found, other) in [(driven[0], of_driven), (galaxy[0], of_galaxy), (swinging[0], of_swinging)] {
+        assert!(found > 0.05 && (found / other - 1.0).abs() < 1e-2, "{found} {other}");
+    }
+    // Volumes shrink by damping, at the rate c, or are kept; and exponents come in pairs.
+    assert!((driven.iter().sum::<f64>() + duffing.c).abs() < 1e-9, "{driven:?}");
+    for pairs in [galaxy, swinging] {
+        assert!((pairs[0] + pairs[3]).abs() + (pairs[1] + pairs[2]).abs() < 1e-2, "{pairs:?}");
+        assert!(pairs.iter().sum::<f64>().abs() < 1e-10, "{pairs:?}");
+    }
+}

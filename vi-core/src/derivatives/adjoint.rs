@@ -1,0 +1,156 @@
+//! The gradient of a number that a run leads to, by one sweep backwards.
+//!
+//! In: a run, an [`Objective`] `J = Σ_k g_k(z_k)` over the nodes of its next steps. Out: `∂J/∂z0` and `∂J/∂θ`, by
+//!
+//! ```text
+//! λ_K = ∂g_K/∂z        λ_k = (∂z_{k+1}/∂z_k)ᵀ λ_{k+1} + ∂g_k/∂z        ∂J/∂θ_k = (∂z_{k+1}/∂θ)ᵀ λ_{k+1}
+//! ```
+//!
+//! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, or more where the caller allows it, and one more
+//! run of work (Griewank and Walther, *Evaluating Derivatives*, chapter 12). The derivative of a step costs 2N directions, and one for each parameter that is asked for.
+
+use super::steps::Differentiable;
+use super::variation::Variation;
+use crate::error::StepError;
+use crate::state::State;
+use nalgebra::SVector;
+
+/// How fast a number changes with a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Covector<const N: usize> {
+    /// By the coordinates.
+    pub q: SVector<f64, N>,
+    /// By the momenta.
+    pub p: SVector<f64, N>,
+    /// By the energy that an energy-preserving run keeps.
+    pub energy: f64,
+}
+
+impl<const N: usize> Covector<N> {
+    /// That of what does not depend on the node.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self { q: SVector::zeros(), p: SVector::zeros(), energy: 0.0 }
+    }
+
+    /// What a variation changes the number by.
+    #[must_use]
+    pub fn of(&self, variation: &Variation<N>) -> f64 {
+        self.q.dot(&variation.q) + self.p.dot(&variation.p) + self.energy * variation.energy
+    }
+}
+
+/// What a run is for: a sum of functions of its nodes, and the inputs on the way.
+pub trait Objective<I, const N: usize> {
+    /// Sets the inputs of the step from the node `step`, before it is taken. It has to do the same whenever it is asked.
+    ///
+    /// # Errors
+    /// That of [`crate::Integrator::set_parameters`].
+    fn prepare(&self, _step: u64, _run: &mut I) -> Result<(), StepError> {
+        Ok(())
+    }
+    /// Names of the parameters by which the gradient is wanted; those that the system does not have are left out.
+    fn parameters(&self) -> &[&str] {
+        &[]
+    }
+    /// `∂g/∂z` at the node `step`, 0 to K.
+    fn slope(&self, step: u64, state: &State<N>) -> Covector<N>;
+}
+
+/// The gradient of an objective.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradient<const N: usize> {
+    /// By the node at the start.
+    pub start: Covector<N>,
+    /// By the parameters of each step, a row a step, in the order of [`Objective::parameters`]. Their sum is the gradient by parameters that do
+    /// not change on the way.
+    pub parameters: Vec<Vec<f64>>,
+}
+
+/// The gradient of an objective over the next `steps` steps of a run. `kept` runs are kept on the way at most, and as many again while the sweep goes back; at
+/// least `√steps` of each.
+///
+/// # Errors
+/// That of the step that fails, of its derivative, or of its inputs.
+pub fn gradient<I, const N: usize>(
+    run: &I,
+    steps: u64,
+    kept: usize,
+    objective: &impl Objective<I, N>,
+) -> Result<Gradient<N>, StepError>
+where
+    I: Differentiable<N>,
+{
+    let stride = stride(steps, kept);
+    let mut stations = vec![run.clone()];
+    let mut ahead = run.clone();
+    for step in 0..steps {
+        objective.prepare(step, &mut ahead)?;
+        ahead.step()?;
+        if (step + 1) % stride == 0 && step + 1 < steps {
+            stations.push(ahead.clone());
+        }
+    }
+    let mut slope = objective.slope(steps, &ahead.state());
+    let mut directions = Variation::of_state();
+    if I::KEEPS_ENERGY {
+        directions.push(Variation { energy: 1.0, ..Variation::zero() });
+    }
+    directions.extend(objective.parameters().iter().filter_map(|name| Variation::of_parameter::<I::System>(name)));
+    let mut variations = directions.clone();
+    let mut parameters = Vec::new();
+    let mut last = steps;
+    while let Some(station) = stations.pop() {
+        let first = last.saturating_sub(1) / stride * stride;
+        let runs = between(station, first, last, objective)?;
+        for step in (first..last).rev() {
+            // The run before the step, and after it, with its inputs.
+            let pair = usize::try_from(step - first).unwrap_or(usize::MAX);
+            let [before, after] = [&runs[pair], &runs[pair + 1]];
+            variations.clone_from_slice(&directions);
+            after.vary(before.node(), &mut variations)?;
+            let (back, of_parameters) = pulled_back::<I, N>(&variations, &slope);
+            let own = objective.slope(step, &before.state());
+            slope = Covector { q: back.q + own.q, p: back.p + own.p, energy: back.energy + own.energy };
+            parameters.push(of_parameters);
+        }
+        last = first;
+    }
+    parameters.reverse();
+    Ok(Gradient { start: slope, parameters })
+}
+
+/// Every how many steps a run is kept.
+fn stride(steps: u64, kept: usize) -> u64 {
+    let kept = u64::try_from(kept).unwrap_or(u64::MAX).max(steps.isqrt()).max(1);
+    steps.div_ceil(kept).max(1)
+}
+
+/// The runs at the nodes `first` to `last`.
+fn between<I: Differentiable<N>, const N: usize>(
+    mut run: I,
+    first: u64,
+    last: u64,
+    objective: &impl Objective<I, N>,
+) -> Result<Vec<I>, StepError> {
+    let mut runs = vec![run.clone()];
+    for step in first..last {
+        objective.prepare(step, &mut run)?;
+        run.step()?;
+        runs.push(run.clone());
+    }
+    Ok(runs)
+}
+
+/// The covector at the start of a step, of one at its end, and what the parameters of the step change the number by; from the variations of all directions.
+fn pulled_back<I: Differentiable<N>, const N: usize>(
+    variations: &[Variation<N>],
+    slope: &Covector<N>,
+) -> (Covector<N>, Vec<f64>) {
+    let mut changes = variations.iter().map(|variation| slope.of(variation));
+    let mut next = || changes.next().unwrap_or(0.0);
+    let q = SVector::from_fn(|_, _| next());
+    let p = SVector::from_fn(|_, _| next());
+    let energy = if I::KEEPS_ENERGY { next() } else { 0.0 };
+    (Covector { q, p, energy }, changes.collect())
+}

@@ -1,0 +1,92 @@
+//! Lyapunov exponents.
+//!
+//! In: a run, and how many of the largest exponents are wanted. Out: their estimates, the mean rates at which volumes of so many directions grow along it:
+//!
+//! ```text
+//! λ_1 + … + λ_k = lim ln |δz_1 ∧ … ∧ δz_k| / t
+//! ```
+//!
+//! The directions are made orthogonal again after every step, and the logarithms of what they had grown by are summed. Source: Benettin, Galgani, Giorgilli,
+//! Strelcyn, *Meccanica* 15 (1980) 9. Coordinates and momenta are measured in their own units; the limit does not depend on them, its estimate does, by a term of
+//! order 1/t.
+
+use super::steps::Differentiable;
+use super::tangent::Tangent;
+use super::variation::Variation;
+use crate::compensated;
+use crate::error::StepError;
+
+/// Estimates of the largest Lyapunov exponents along a run; see the [module](self).
+#[derive(Clone, Debug)]
+pub struct Lyapunov<I, const N: usize> {
+    tangent: Tangent<I, N>,
+    start: f64,
+    /// Sums of logarithms, with their low parts.
+    growth: Vec<(f64, f64)>,
+}
+
+impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
+    /// The `count` largest exponents of a run, 2N at most. The first directions are fixed, so that two runs give the same.
+    #[must_use]
+    pub fn new(run: I, count: usize) -> Self {
+        let start = run.t();
+        let count = count.min(2 * N);
+        let mut variations: Vec<Variation<N>> = (0..count).map(oblique).collect();
+        orthogonalize(&mut variations, &mut vec![(0.0, 0.0); count]);
+        Self { tangent: Tangent::new(run, variations), start, growth: vec![(0.0, 0.0); count] }
+    }
+
+    /// Takes so many steps.
+    ///
+    /// # Errors
+    /// That of the step that fails; the estimates are then those up to there.
+    pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
+        for _ in 0..steps {
+            self.tangent.step()?;
+            orthogonalize(self.tangent.variations_mut(), &mut self.growth);
+        }
+        Ok(())
+    }
+
+    /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step.
+    #[must_use]
+    pub fn exponents(&self) -> Vec<f64> {
+        let t = self.tangent.run().t() - self.start;
+        self.growth.iter().map(|(growth, low)| (growth + low) / t).collect()
+    }
+
+    /// The run.
+    pub fn run(&self) -> &I {
+        self.tangent.run()
+    }
+}
+
+/// A direction that no coordinate has alone: a start in an invariant plane would not leave it.
+fn oblique<const N: usize>(index: usize) -> Variation<N> {
+    let mut variation: Variation<N> =
+        if index < N { Variation::of_coordinate(index) } else { Variation::of_momentum(index - N) };
+    let mut part = 0.1;
+    for entry in variation.q.iter_mut().chain(variation.p.iter_mut()) {
+        *entry += part;
+        part *= -0.9;
+    }
+    variation
+}
+
+/// Makes directions orthogonal, of length one, in order, and adds the logarithms of the lengths that they had.
+fn orthogonalize<const N: usize>(variations: &mut [Variation<N>], growth: &mut [(f64, f64)]) {
+    for (index, (sum, low)) in growth.iter_mut().enumerate() {
+        let (before, rest) = variations.split_at_mut(index);
+        let Some(own) = rest.first_mut() else { continue };
+        // Twice is enough (Parlett and Kahan).
+        for other in before.iter().chain(before.iter()) {
+            let along = other.q.dot(&own.q) + other.p.dot(&own.p);
+            own.q -= other.q * along;
+            own.p -= other.p * along;
+        }
+        let length = own.q.norm().hypot(own.p.norm());
+        own.q /= length;
+        own.p /= length;
+        compensated::add(sum, low, length.ln());
+    }
+}

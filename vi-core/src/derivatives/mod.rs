@@ -1,0 +1,31 @@
+//! Derivatives of a motion: by its start, and by the parameters of its system.
+//!
+//! In: a run, and directions in which its start and its parameters vary. Out: the variations of every node, by the implicit function theorem on the solved
+//! step: where u solves `R(u, z0, θ) = 0` and `z1 = Z(u, z0, θ)`,
+//!
+//! ```text
+//! δu = −(∂R/∂u)⁻¹ (∂R/∂z0 δz0 + ∂R/∂θ δθ)        δz1 = ∂Z/∂u δu + ∂Z/∂z0 δz0 + ∂Z/∂θ δθ
+//! ```
+//!
+//! the derivatives of R and Z by dual numbers. They are those of the step that was taken, to rounding, not of the continuous motion: the tangent map of a
+//! variational integrator without force is symplectic, to rounding too. An energy-preserving step varies in its length besides.
+//!
+//! | file | what it gives |
+//! |---|---|
+//! | `variation` | directions, and the dual numbers that they are |
+//! | `steps` | variations of one step, for each integrator |
+//! | `tangent` | variations along a run |
+//! | `adjoint` | the gradient of what a run ends in, by one sweep backwards |
+//! | `lyapunov` | Lyapunov exponents |
+
+mod adjoint;
+mod lyapunov;
+mod steps;
+mod tangent;
+mod variation;
+
+pub use adjoint::{Covector, Gradient, Objective, gradient};
+pub use lyapunov::Lyapunov;
+pub use steps::Differentiable;
+pub use tangent::Tangent;
+pub use variation::Variation;

@@ -1,0 +1,56 @@
+//! Variations along a run.
+//!
+//! In: a run, variations of its node. Out: step after step, with the variations of the node reached. A direction of two degrees of freedom costs half a step or
+//! less; directions of a chaotic motion grow, and it is for the caller to make them shorter again ([`Tangent::variations_mut`]).
+
+use super::steps::Differentiable;
+use super::variation::Variation;
+use crate::error::StepError;
+use crate::state::State;
+
+/// A run, and how its node varies in some directions.
+#[derive(Clone, Debug)]
+pub struct Tangent<I, const N: usize> {
+    run: I,
+    variations: Vec<Variation<N>>,
+    failure: Option<StepError>,
+}
+
+impl<I: Differentiable<N>, const N: usize> Tangent<I, N> {
+    /// A run, and variations of the node at which it is.
+    #[must_use]
+    pub fn new(run: I, variations: Vec<Variation<N>>) -> Self {
+        Self { run, variations, failure: None }
+    }
+
+    /// Takes a step, and returns the state reached.
+    ///
+    /// # Errors
+    /// That of the step, after which the run and its variations are those before; or of [`Differentiable::vary`], after which the variations are none. The same
+    /// error again after an error.
+    pub fn step(&mut self) -> Result<State<N>, StepError> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        let before = *self.run.node();
+        let outcome = self.run.step();
+        let varied = outcome.and_then(|state| self.run.vary(&before, &mut self.variations).map(|()| state));
+        varied.inspect_err(|failure| self.failure = Some(*failure))
+    }
+
+    /// The run.
+    pub fn run(&self) -> &I {
+        &self.run
+    }
+
+    /// The variations of the node at which the run is, in the order given.
+    #[must_use]
+    pub fn variations(&self) -> &[Variation<N>] {
+        &self.variations
+    }
+
+    /// The same, to be changed: made shorter, or orthogonal to each other.
+    pub fn variations_mut(&mut self) -> &mut [Variation<N>] {
+        &mut self.variations
+    }
+}
