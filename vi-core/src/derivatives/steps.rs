@@ -36,9 +36,10 @@ fn singular(t: f64) -> StepError {
     StepError::Singular { t, matrix: "derivative of the equations of a step" }
 }
 
-/// The node after the momentum step `(v, h)`, which numbers of any kind follow: one Newton step from the solved v gives v its
-/// derivative.
-fn momentum_step<T, S, const N: usize>(
+/// The node after the momentum step `(v, h)` of a system, in dual numbers whose values solve it: one Newton step, by the derivative of the same system
+/// in the numbers T, gives v its slope.
+fn momentum_step<T, P, S, const N: usize>(
+    plain: &P,
     system: &S,
     mut node: Node<N, Dual<T>>,
     h: T,
@@ -46,14 +47,14 @@ fn momentum_step<T, S, const N: usize>(
 ) -> Result<Node<N, Dual<T>>, StepError>
 where
     T: Real,
+    P: FixedStepping<N, T>,
     S: FixedStepping<N, Dual<T>>,
 {
+    let jacobian = plain.momentum_equation(&node.map(|number| number.value), h, v).jacobian;
     let h = Dual::fixed(h);
-    let v = v.map(Dual::fixed);
-    let equation = system.momentum_equation(&node, h, &v);
-    let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(|| singular(node.t.to_f64()))?;
-    // The value is the solution already; what is left of its equation is rounding.
-    let v = v.zip_map(&change, |v, change| Dual { value: v.value, slope: -change.slope });
+    let residual = system.momentum_residual(&node, h, &v.map(Dual::fixed)).residual;
+    let change = linear::solve(&jacobian, &residual.map(|entry| entry.slope)).ok_or_else(|| singular(node.t.to_f64()))?;
+    let v = v.zip_map(&change, |value, change| Dual { value, slope: -change });
     let increment = system.momentum_residual(&node, h, &v).increment;
     node.advance(h, &v, &increment);
     Ok(node)
@@ -66,7 +67,7 @@ where
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         for variation in variations {
             let system = variation.system(self.system());
-            let node = momentum_step(&system, variation.node(before), self.h(), &self.v())?;
+            let node = momentum_step(self.system(), &system, variation.node(before), self.h(), &self.v())?;
             variation.take(&node);
         }
         Ok(())
@@ -95,15 +96,14 @@ where
                 parameter.value.slope = other.parameters.get(index).copied().unwrap_or(0.0);
             }
         }
-        let outer = one.node(before).map(|number| number);
         let inner = other.node(before);
-        let node = nested(&outer, &inner);
+        let node = nested(&one.node(before), &inner);
         // The velocity as the other direction varies it; the dual numbers of the first differentiate its equation once more.
         let plain = other.system(self.system());
         let equation = plain.momentum_equation(&inner, Dual::fixed(self.h()), &self.v().map(Dual::fixed));
         let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(|| singular(before.t))?;
         let v = self.v().zip_map(&change, |value, change| Dual { value, slope: -change.slope });
-        let node = momentum_step(&system, node, Dual::fixed(self.h()), &v)?;
+        let node = momentum_step(&plain, &system, node, Dual::fixed(self.h()), &v)?;
         let q = SVector::from_fn(|k, _| node.q[k].slope.slope + node.q_low[k].slope.slope);
         let p = SVector::from_fn(|k, _| node.p[k].slope.slope + node.p_low[k].slope.slope);
         Ok((q, p))
@@ -134,7 +134,7 @@ where
             let system = variation.system(self.system());
             let mut node = variation.node(before);
             for (weight, v) in self.scheme().weights.iter().zip(self.velocities()) {
-                node = momentum_step(&system, node, weight * self.h(), &v)?;
+                node = momentum_step(self.system(), &system, node, weight * self.h(), &v)?;
             }
             variation.take(&node);
         }

@@ -140,22 +140,25 @@ impl<T: Real> Real for Dual<T> {
         self.chain(root, T::real(0.5) / root)
     }
     fn exp(self) -> Self {
-        self.chain(self.value.exp(), self.value.exp())
+        let value = self.value.exp();
+        self.chain(value, value)
     }
     fn ln(self) -> Self {
         self.chain(self.value.ln(), self.value.recip())
     }
     fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
+        self.sin_cos().0
     }
     fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+        self.sin_cos().1
     }
     fn sin_cos(self) -> (Self, Self) {
-        (self.sin(), self.cos())
+        let (sine, cosine) = self.value.sin_cos();
+        (self.chain(sine, cosine), self.chain(cosine, -sine))
     }
     fn tan(self) -> Self {
-        self.sin() / self.cos()
+        let (sine, cosine) = self.sin_cos();
+        sine / cosine
     }
     fn asin(self) -> Self {
         let slope = (T::one() - self.value * self.value).sqrt().recip();
