@@ -1,6 +1,7 @@
 //! The tests across crates, one program: what they share, generated steppers above all, is compiled once.
 
 mod arrays;
+mod bodies;
 mod checks;
 mod composition;
 mod declarations;

@@ -28,10 +28,12 @@ mod harmonic_oscillator;
 mod henon_heiles;
 mod kepler;
 mod n_pendulum;
+mod outer_solar_system;
 mod parametric_pendulum;
 mod pendulum;
 mod rotating_hoop;
 mod spherical_pendulum;
+mod three_body;
 
 pub use charged_particle::ChargedParticle;
 pub use damped_oscillator::DampedOscillator;
@@ -44,13 +46,15 @@ pub use harmonic_oscillator::HarmonicOscillator;
 pub use henon_heiles::HenonHeiles;
 pub use kepler::Kepler;
 pub use n_pendulum::NPendulum;
+pub use outer_solar_system::OuterSolarSystem;
 pub use parametric_pendulum::ParametricPendulum;
 pub use pendulum::Pendulum;
 pub use rotating_hoop::RotatingHoop;
 pub use spherical_pendulum::SphericalPendulum;
+pub use three_body::ThreeBody;
 
 /// The declaration of every system, as the text of the file that holds it.
-pub const SOURCES: [&str; 15] = [
+pub const SOURCES: [&str; 17] = [
     include_str!("charged_particle.rs"),
     include_str!("damped_oscillator.rs"),
     include_str!("double_pendulum.rs"),
@@ -62,8 +66,10 @@ pub const SOURCES: [&str; 15] = [
     include_str!("henon_heiles.rs"),
     include_str!("kepler.rs"),
     include_str!("n_pendulum.rs"),
+    include_str!("outer_solar_system.rs"),
     include_str!("parametric_pendulum.rs"),
     include_str!("pendulum.rs"),
     include_str!("rotating_hoop.rs"),
     include_str!("spherical_pendulum.rs"),
+    include_str!("three_body.rs"),
 ];

@@ -1,0 +1,51 @@
+//! The Sun and the five outer planets.
+
+use vi_core::lagrangian;
+
+lagrangian! {
+    /// Sun, Jupiter, Saturn, Uranus, Neptune and Pluto, in this order, each attracting each.
+    ///
+    /// Lengths in astronomical units, times in days, masses relative to the Sun's; its own includes those of the inner planets.
+    /// Conserved: energy, momentum, angular momentum. Jupiter takes 4333 days for a turn, Pluto 90 600.
+    /// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.3 and table 2.2.
+    pub struct OuterSolarSystem {
+        const N = 6;
+        /// Constant of gravitation.
+        param g = 2.95912208286e-4;
+        /// The Sun with the inner planets.
+        param m0 = 1.00000597682;
+        /// Jupiter.
+        param m1 = 0.000954786104043;
+        /// Saturn.
+        param m2 = 0.000285583733151;
+        /// Uranus.
+        param m3 = 0.0000437273164546;
+        /// Neptune.
+        param m4 = 0.0000517759138449;
+        /// Pluto.
+        param m5 = 1 / 1.3e8;
+        coord x[N], y[N], z[N];
+        let v2[i in 0..N] = dot(x[i])^2 + dot(y[i])^2 + dot(z[i])^2;
+        let r0[i in 1..N] = sqrt((x[i] - x[0])^2 + (y[i] - y[0])^2 + (z[i] - z[0])^2);
+        let r1[i in 2..N] = sqrt((x[i] - x[1])^2 + (y[i] - y[1])^2 + (z[i] - z[1])^2);
+        let r2[i in 3..N] = sqrt((x[i] - x[2])^2 + (y[i] - y[2])^2 + (z[i] - z[2])^2);
+        let r3[i in 4..N] = sqrt((x[i] - x[3])^2 + (y[i] - y[3])^2 + (z[i] - z[3])^2);
+        let r4[i in 5..N] = sqrt((x[i] - x[4])^2 + (y[i] - y[4])^2 + (z[i] - z[4])^2);
+        let sun = m0 * (m1 / r0[1] + m2 / r0[2] + m3 / r0[3] + m4 / r0[4] + m5 / r0[5]);
+        let jupiter = m1 * (m2 / r1[2] + m3 / r1[3] + m4 / r1[4] + m5 / r1[5]);
+        let saturn = m2 * (m3 / r2[3] + m4 / r2[4] + m5 / r2[5]);
+        let uranus = m3 * (m4 / r3[4] + m5 / r3[5]);
+        let neptune = m4 * m5 / r4[5];
+        let kinetic = (m0 * v2[0] + m1 * v2[1] + m2 * v2[2] + m3 * v2[3] + m4 * v2[4] + m5 * v2[5]) / 2;
+        L = kinetic + g * (sun + jupiter + saturn + uranus + neptune);
+        discretize midpoint;
+        check {
+            x[1] = -3.5, y[1] = -3.8, z[1] = -1.6, dot(x[1]) = 0.0057, dot(y[1]) = -0.0041, dot(z[1]) = -0.0019,
+            x[2] = 9.1, y[2] = -3.0, z[2] = -1.6, dot(x[2]) = 0.0017, dot(y[2]) = 0.0048, dot(z[2]) = 0.0019,
+            x[3] = 8.3, y[3] = -16.3, z[3] = -7.3, dot(x[3]) = 0.0035, dot(y[3]) = 0.0014, dot(z[3]) = 0.0006,
+            x[4] = 11.5, y[4] = -25.7, z[4] = -10.8, dot(x[4]) = 0.0029, dot(y[4]) = 0.0011, dot(z[4]) = 0.0004,
+            x[5] = -15.5, y[5] = -25.2, z[5] = -3.2, dot(x[5]) = 0.0028, dot(y[5]) = -0.0017, dot(z[5]) = -0.0014;
+            h = 10.0;
+        }
+    }
+}
