@@ -7,8 +7,9 @@ use crate::failure::Failure;
 use crate::system::{self, System};
 use crate::table::Table;
 use std::sync::OnceLock;
+use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
-use vi_core::stepping::EnergyStepping;
+use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_systems::{
     ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
     HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
@@ -54,7 +55,7 @@ impl Entry {
     #[must_use]
     pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
-        S: EnergyStepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+        S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
     {
         entry::<S, N>(about, q, v, h)
     }
@@ -62,7 +63,7 @@ impl Entry {
 
 fn entry<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry
 where
-    S: EnergyStepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {
     Entry { system: system::erased::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
 }
@@ -211,7 +212,8 @@ fn plain(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::{Method, Plan, Start};
+    use crate::simulation::{Method, Plan, Start, USUAL_STAGES};
+    use core::cell::Cell;
 
     #[test]
     fn names_are_found_in_any_spelling() {
@@ -240,15 +242,24 @@ mod tests {
             let size = entry.system.coordinates().len();
             let name = entry.system.name();
             assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
-            for method in [Method::Fixed, Method::KahanLi6, Method::Energy] {
-                let plan =
-                    Plan { method, start: Start::Midpoint, h: entry.h, t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
-                let mut run = entry.system.begin(&plan).unwrap_or_else(|error| panic!("{name}: {error}"));
+            for method in [Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy] {
+                let plan = Plan {
+                    method,
+                    start: Start::Midpoint,
+                    stages: USUAL_STAGES,
+                    h: entry.h,
+                    t: 0.0,
+                    q: entry.q.clone(),
+                    v: entry.v.clone(),
+                };
+                let evaluations = Cell::new(0);
+                let begun = entry.system.begin(&plan, &evaluations);
+                let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));
                 let first = run.t();
                 for _ in 0..10 {
                     run.advance().unwrap_or_else(|error| panic!("{name}, {method:?}: {error}"));
                 }
-                assert!(run.t() > first, "{name}");
+                assert!(run.t() > first && evaluations.get() > 0, "{name}");
             }
             for (parameter, value) in entry.system.parameters() {
                 assert!(entry.system.set(parameter, value + 1.0), "{name}: {parameter}");

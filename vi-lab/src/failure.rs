@@ -144,7 +144,7 @@ fn advice(error: &StepError, method: Method) -> Option<&'static str> {
         (StepError::NotConverged { .. }, Method::Energy) => {
             Some("take shorter steps with --h, or fixed ones with --method fixed")
         }
-        (StepError::NotConverged { .. }, _) => Some("take shorter steps with --h"),
+        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => Some("take shorter steps with --h"),
         _ => None,
     }
 }

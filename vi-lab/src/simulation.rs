@@ -5,11 +5,16 @@
 //! the numbers are those of the generic integrators, to the last bit, and [`Simulation::advance_by`] is their loop, in
 //! which no call is virtual.
 
+use crate::counting::Counting;
 use crate::start;
 use clap::ValueEnum;
+use core::cell::Cell;
 use serde::Deserialize;
-use vi_core::stepping::EnergyStepping;
-use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, Scheme, State, StepError};
+use vi_core::collocation::Collocation;
+use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_core::{
+    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, Lagrangian, SVector, Scheme, State, StepError,
+};
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -29,9 +34,16 @@ pub(crate) enum Method {
     #[value(name = "kahan-li-8")]
     #[serde(rename = "kahan-li-8")]
     KahanLi8,
+    /// Collocation at Gauss points, of twice the order of its --stages
+    Gauss,
     /// The integrator that solves for its own step and preserves the discrete energy
     Energy,
 }
+
+/// Numbers of stages of the Gauss steps that are built into the command, for each system: each costs a second or two of the compiler.
+pub(crate) const STAGES: [usize; 2] = [4, 8];
+/// The number of stages that nobody asked for: the most accurate steps for their time, from errors of 1e-6 on.
+pub(crate) const USUAL_STAGES: usize = 8;
 
 impl Method {
     /// The scheme of a composition.
@@ -40,7 +52,7 @@ impl Method {
             Self::Suzuki4 => Some(Scheme::SUZUKI_4),
             Self::KahanLi6 => Some(Scheme::KAHAN_LI_6),
             Self::KahanLi8 => Some(Scheme::KAHAN_LI_8),
-            Self::Fixed | Self::Energy => None,
+            Self::Fixed | Self::Gauss | Self::Energy => None,
         }
     }
 
@@ -51,6 +63,7 @@ impl Method {
             Self::Suzuki4 => "suzuki-4",
             Self::KahanLi6 => "kahan-li-6",
             Self::KahanLi8 => "kahan-li-8",
+            Self::Gauss => "gauss",
             Self::Energy => "energy",
         }
     }
@@ -73,6 +86,8 @@ pub(crate) struct Plan {
     pub(crate) method: Method,
     /// The start of the energy-preserving integrator; the others need none.
     pub(crate) start: Start,
+    /// The stages of Gauss steps, one of [`STAGES`]; the others need none.
+    pub(crate) stages: usize,
     /// The step, or the first one.
     pub(crate) h: f64,
     /// Initial time.
@@ -90,6 +105,7 @@ impl Plan {
         match (self.method, self.start) {
             (Method::Energy, Start::Midpoint) => format!("{name}, start midpoint"),
             (Method::Energy, Start::Points) => format!("{name}, start points"),
+            (Method::Gauss, _) => format!("{name}, {} stages", self.stages),
             _ => name.to_owned(),
         }
     }
@@ -166,7 +182,7 @@ pub(crate) trait Simulation {
     /// # Errors
     /// That of the step that fails.
     fn advance_by(&mut self, steps: u64) -> Result<(), StepError> {
-        (0..steps).try_for_each(|_| self.advance())
+        self.advance_until(f64::INFINITY, steps).map(drop)
     }
 
     /// Takes steps until a node at `end` or later is reached, so many at most; returns how many.
@@ -195,38 +211,67 @@ pub(crate) trait Simulation {
     }
 }
 
-/// Starts a run of `system`.
+/// Starts a run of `system`. `evaluations` grows by those of its equations, which [`Counting`] counts; by Gauss steps it grows by the
+/// sweeps of each step times its stages, so that no copy of these steps is built for a system that counts.
 ///
 /// # Errors
 /// What the integrators say of the initial state; [`StepError::InvalidInput`] where the numbers of coordinates or
-/// velocities are not those of the system.
-pub(crate) fn begin<'a, S, const N: usize>(system: S, plan: &Plan) -> Result<Box<dyn Simulation + 'a>, StepError>
+/// velocities are not those of the system, and for stages that are not among [`STAGES`].
+pub(crate) fn begin<'a, S, const N: usize>(
+    system: S,
+    plan: &Plan,
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + 'a,
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
 {
     let t = plan.t;
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;
-    Ok(match (plan.method, plan.method.scheme()) {
-        (Method::Energy, _) => {
+    let state = State::at(&system, t, q, v);
+    let counting = Counting::new(system, evaluations);
+    match plan.method {
+        Method::Fixed => Ok(Run::boxed(FixedStep::new(counting, state, plan.h)?, evaluations)),
+        Method::Suzuki4 => Ok(Run::boxed(Composition::new(counting, Scheme::SUZUKI_4, state, plan.h)?, evaluations)),
+        Method::KahanLi6 => Ok(Run::boxed(Composition::new(counting, Scheme::KAHAN_LI_6, state, plan.h)?, evaluations)),
+        Method::KahanLi8 => Ok(Run::boxed(Composition::new(counting, Scheme::KAHAN_LI_8, state, plan.h)?, evaluations)),
+        Method::Gauss => match plan.stages {
+            4 => gauss::<S, N, 4>(system, state, plan.h, evaluations),
+            8 => gauss::<S, N, 8>(system, state, plan.h, evaluations),
+            #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
+            other => Err(StepError::InvalidInput { input: "number of stages", allowed: "4 or 8", value: other as f64 }),
+        },
+        Method::Energy => {
             let integrator = match plan.start {
-                Start::Midpoint => EnergyPreserving::from_midpoint(system, t, q, v, plan.h)?,
+                Start::Midpoint => EnergyPreserving::from_midpoint(counting, t, q, v, plan.h)?,
                 Start::Points => {
                     let second = start::second_point(&system, t, q, v, plan.h)?;
-                    EnergyPreserving::from_points(system, (t, q), second)?
+                    EnergyPreserving::from_points(counting, (t, q), second)?
                 }
             };
-            Box::new(Energy { integrator })
+            let in_the_middle = |run: &EnergyPreserving<Counting<'a, S>, N>| {
+                let v = run.v();
+                let (t, q) = run.node().midpoint(-run.h(), &v);
+                Ok((t, run.system().energy(t, &q, &v)))
+            };
+            Ok(Box::new(Run { sampled_energy: in_the_middle, ..Run::new(integrator, evaluations) }))
         }
-        (_, Some(scheme)) => {
-            let integrator = Composition::new(system, scheme, State::at(&system, t, q, v), plan.h)?;
-            Box::new(Composed { system, integrator, h: plan.h })
-        }
-        (_, None) => {
-            let state = State::at(&system, t, q, v);
-            Box::new(Fixed { integrator: FixedStep::new(system, state, plan.h)? })
-        }
-    })
+    }
+}
+
+/// Starts a run by Gauss steps of so many stages.
+fn gauss<'a, S, const N: usize, const STAGES: usize>(
+    system: S,
+    state: State<N>,
+    h: f64,
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
+where
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+{
+    let run = Run::new(Gauss::<S, N, STAGES>::new(system, state, h)?, evaluations);
+    let count = |run: &Gauss<S, N, STAGES>| u64::from(run.iterations()) * STAGES as u64;
+    Ok(Box::new(Run { uncounted: Some(count), ..run }))
 }
 
 /// A vector of the system's size.
@@ -243,21 +288,46 @@ pub(crate) fn vector<const N: usize>(values: &[f64], input: &'static str) -> Res
     }
 }
 
-struct Fixed<S: EnergyStepping<N>, const N: usize> {
-    integrator: FixedStep<S, N>,
+/// A run by an integrator.
+struct Run<'a, I, const N: usize> {
+    integrator: I,
+    /// Time and H where the method keeps H best.
+    sampled_energy: fn(&I) -> Result<(f64, f64), StepError>,
+    evaluations: &'a Cell<u64>,
+    /// The evaluations of the last step, where its system does not count them.
+    uncounted: Option<fn(&I) -> u64>,
 }
 
-impl<S: EnergyStepping<N>, const N: usize> Simulation for Fixed<S, N> {
+impl<'a, I: Integrator<N> + 'a, const N: usize> Run<'a, I, N> {
+    /// A run whose system counts its evaluations, and which keeps H best at the nodes.
+    fn new(integrator: I, evaluations: &'a Cell<u64>) -> Self {
+        Self { integrator, sampled_energy: |run| Ok((run.t(), run.energy()?)), evaluations, uncounted: None }
+    }
+
+    /// The same, its type erased.
+    fn boxed(integrator: I, evaluations: &'a Cell<u64>) -> Box<dyn Simulation + 'a> {
+        Box::new(Self::new(integrator, evaluations))
+    }
+
+    /// Adds the evaluations of the step that `integrator` took last.
+    fn count(&self, integrator: &I) {
+        if let Some(of_a_step) = self.uncounted {
+            self.evaluations.update(|count| count + of_a_step(integrator));
+        }
+    }
+}
+
+impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     fn t(&self) -> f64 {
-        self.integrator.state().t
+        self.integrator.t()
     }
 
     fn q(&self) -> Vec<f64> {
-        self.integrator.state().q.as_slice().to_vec()
+        self.integrator.node().q.as_slice().to_vec()
     }
 
     fn p(&self) -> Vec<f64> {
-        self.integrator.state().p.as_slice().to_vec()
+        self.integrator.node().p.as_slice().to_vec()
     }
 
     fn h(&self) -> f64 {
@@ -265,109 +335,31 @@ impl<S: EnergyStepping<N>, const N: usize> Simulation for Fixed<S, N> {
     }
 
     fn energy(&self) -> Result<f64, StepError> {
-        self.integrator.state().energy(self.integrator.system())
+        self.integrator.energy()
     }
 
     fn discrete_energy(&self) -> Option<f64> {
         self.integrator.discrete_energy()
     }
 
-    fn advance(&mut self) -> Result<(), StepError> {
-        self.integrator.step().map(drop)
-    }
-
-    fn advance_by(&mut self, steps: u64) -> Result<(), StepError> {
-        // The loop has an integrator of its own: behind a pointer its numbers would go through memory in every step.
-        let mut integrator = self.integrator.clone();
-        let outcome = (0..steps).try_for_each(|_| integrator.step().map(drop));
-        self.integrator = integrator;
-        outcome
-    }
-}
-
-struct Composed<S: EnergyStepping<N>, const N: usize> {
-    system: S,
-    integrator: Composition<S, N>,
-    h: f64,
-}
-
-impl<S: EnergyStepping<N>, const N: usize> Simulation for Composed<S, N> {
-    fn t(&self) -> f64 {
-        self.integrator.state().t
-    }
-
-    fn q(&self) -> Vec<f64> {
-        self.integrator.state().q.as_slice().to_vec()
-    }
-
-    fn p(&self) -> Vec<f64> {
-        self.integrator.state().p.as_slice().to_vec()
-    }
-
-    fn h(&self) -> f64 {
-        self.h
-    }
-
-    fn energy(&self) -> Result<f64, StepError> {
-        self.integrator.state().energy(&self.system)
-    }
-
-    fn discrete_energy(&self) -> Option<f64> {
-        None
-    }
-
-    fn advance(&mut self) -> Result<(), StepError> {
-        self.integrator.step().map(drop)
-    }
-}
-
-struct Energy<S, const N: usize> {
-    integrator: EnergyPreserving<S, N>,
-}
-
-impl<S: EnergyStepping<N>, const N: usize> Simulation for Energy<S, N> {
-    fn t(&self) -> f64 {
-        self.integrator.state().t
-    }
-
-    fn q(&self) -> Vec<f64> {
-        self.integrator.state().q.as_slice().to_vec()
-    }
-
-    fn p(&self) -> Vec<f64> {
-        self.integrator.state().p.as_slice().to_vec()
-    }
-
-    fn h(&self) -> f64 {
-        self.integrator.h()
-    }
-
-    fn energy(&self) -> Result<f64, StepError> {
-        self.integrator.state().energy(self.integrator.system())
-    }
-
-    fn discrete_energy(&self) -> Option<f64> {
-        Some(self.integrator.discrete_energy())
-    }
-
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
-        let Self { integrator } = self;
-        let v = integrator.v();
-        let (t, q) = integrator.node().midpoint(-integrator.h(), &v);
-        Ok((t, integrator.system().energy(t, &q, &v)))
+        (self.sampled_energy)(&self.integrator)
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
-        self.integrator.step().map(drop)
+        self.integrator.step()?;
+        self.count(&self.integrator);
+        Ok(())
     }
 
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
-        // As in fixed steps, the loop has an integrator of its own.
+        // The loop has an integrator of its own: behind a pointer its numbers would go through memory in every step.
         let mut integrator = self.integrator.clone();
         let mut taken = 0;
         let mut outcome = Ok(());
-        while outcome.is_ok() && taken < most && integrator.node().t < end {
+        while outcome.is_ok() && taken < most && integrator.t() < end {
             outcome = integrator.step().map(drop);
+            self.count(&integrator);
             taken += 1;
         }
         self.integrator = integrator;

@@ -4,13 +4,13 @@
 //! code of the command that is generic over systems: its integrators, its accurate motion and the rival are compiled
 //! once for each system, however many charts use them.
 
-use crate::counting::Counting;
 use crate::rival::{self, Ended};
 use crate::simulation::{self, Plan, Simulation, vector};
 use core::cell::Cell;
 use vi_core::check::Motion;
+use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
-use vi_core::stepping::EnergyStepping;
+use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{SVector, StepError};
 
 /// Where a motion is.
@@ -55,17 +55,11 @@ pub(crate) trait System: Send + Sync {
     /// # Errors
     /// Where the motion cannot be followed.
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError>;
-    /// Starts a run.
+    /// Starts a run; `evaluations` grows by the evaluations of the equations.
     ///
     /// # Errors
     /// What the integrators say of the initial state.
-    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError>;
-    /// Starts a run that counts its evaluations of the equations.
-    ///
-    /// # Errors
-    /// As [`System::begin`].
-    fn begin_counted<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>)
-    -> Result<Box<dyn Simulation + 'a>, StepError>;
+    fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError>;
     /// The point of the same motion at the time `end`, by the rival with a tolerance. `evaluations` grows by the number of
     /// accelerations, also where the run ends early; `watch`, if any, is given time and H at the start and after every step.
     ///
@@ -87,14 +81,14 @@ struct Typed<S, const N: usize>(S);
 /// The system `S` with its default parameters.
 pub(crate) fn erased<S, const N: usize>() -> Box<dyn System>
 where
-    S: EnergyStepping<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {
     Box::new(Typed::<S, N>(S::default()))
 }
 
 impl<S, const N: usize> System for Typed<S, N>
 where
-    S: EnergyStepping<N> + Parameters + Clone + Send + Sync + 'static,
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Clone + Send + Sync + 'static,
 {
     fn name(&self) -> &'static str {
         S::NAME
@@ -141,16 +135,8 @@ where
         sized(from)?.at(&self.0, end).map(erased_point)
     }
 
-    fn begin(&self, plan: &Plan) -> Result<Box<dyn Simulation>, StepError> {
-        simulation::begin(self.0, plan)
-    }
-
-    fn begin_counted<'a>(
-        &self,
-        plan: &Plan,
-        evaluations: &'a Cell<u64>,
-    ) -> Result<Box<dyn Simulation + 'a>, StepError> {
-        simulation::begin(Counting::new(self.0, evaluations), plan)
+    fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError> {
+        simulation::begin(self.0, plan, evaluations)
     }
 
     fn rival(

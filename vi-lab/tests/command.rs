@@ -133,7 +133,7 @@ fn a_failing_step_leaves_the_output_so_far() {
 
 #[test]
 fn wrong_input_is_one_line_and_status_2() {
-    let cases: [(&[&str], &str); 24] = [
+    let cases: [(&[&str], &str); 28] = [
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
         (&["run"], "name a system, as `vi-lab list` does, or a scene file"),
         (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
@@ -166,11 +166,24 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
         (
             &["run", "double-well", "--steps", "1", "--method", "euler"],
-            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, energy]",
+            "invalid value 'euler' for '--method <METHOD>' [possible values: fixed, suzuki-4, kahan-li-6, kahan-li-8, gauss, energy]",
+        ),
+        (
+            &["run", "double-well", "--steps", "1", "--method", "gauss", "--stages", "5"],
+            "Gauss steps of 5 stages are not built into the command; --stages may be 4 or 8",
+        ),
+        (
+            &["run", "double-well", "--steps", "1", "--stages", "4"],
+            "only Gauss steps have --stages; add --method gauss, or leave it out",
+        ),
+        (&["work-precision", "kepler", "--q", "1"], "give 2 finite coordinates (--q), not [1.0]"),
+        (
+            &["work-precision", "kepler", "--rival", "runs/pendulum.csv"],
+            "the runs of a rival on kepler stand in kepler.csv, not in runs/pendulum.csv",
         ),
         (
             &["run", "double-well", "--steps", "1", "--start", "points"],
-            "fixed steps have no --start; add --method energy, or leave it out",
+            "only energy-preserving steps have a --start; add --method energy, or leave it out",
         ),
         (
             &["run", "double-well", "--steps", "1", "--q", "1,2"],
@@ -539,8 +552,9 @@ fn every_method_is_compared_and_a_run_that_ends_says_why() {
     // A driven double well: its energy-preserving runs end, the others reach the end.
     let (status, output, errors) = lab(&["work-precision", "double-well-duffing", "--quick", "--out", path(&out)]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
-    let methods = ["fixed step", "Suzuki 4", "Kahan–Li 6", "Kahan–Li 8", "energy-preserving", "DOP853"];
-    assert!(methods.iter().all(|method| output.contains(method)), "{output}");
+    let methods =
+        ["fixed step", "Suzuki 4", "Kahan–Li 6", "Kahan–Li 8", "\"Gauss, 8 stages\"", "energy-preserving", "DOP853"];
+    assert!(methods.iter().all(|method| output.contains(method.trim_matches('"'))), "{output}");
     assert!(output.trim_end().ends_with(path(&out.join("index.html"))), "{output}");
     for name in ["work-precision", "evaluations", "order", "energy"] {
         assert!(fs::metadata(out.join(format!("{name}.svg"))).is_ok_and(|file| file.len() > 5000), "{name}");
@@ -589,6 +603,32 @@ fn a_composition_runs_and_has_no_discrete_energy() {
             assert!((energy + 0.5).abs() < error && row[6].is_empty(), "{method}: {row:?}");
         }
     }
+}
+
+#[test]
+fn gauss_steps_run_and_have_both_energies() {
+    let scene = temporary("gauss.toml");
+    fs::write(&scene, "system = \"kepler\"\nmethod = \"gauss\"\nstages = 4\nh = 0.1\nsteps = 300\n").expect("a scene");
+    // Measured: 5.4e-7 and 2.5e-12.
+    for (stages, error) in [("4", 1e-6), ("8", 5e-12)] {
+        let (status, output, errors) = lab(&["run", path(&scene), "--stages", stages]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""));
+        assert!(output.contains(&format!("# method: gauss, {stages} stages, h = 0.1")), "{output}");
+        let rows: Vec<Vec<&str>> =
+            output.lines().filter(|line| !line.starts_with(['#', 't'])).map(|line| line.split(',').collect()).collect();
+        assert_eq!(rows.len(), 301);
+        assert_eq!(rows[0][6], "", "no step has been taken");
+        for row in &rows[1..] {
+            for energy in &row[5..7] {
+                let energy: f64 = energy.parse().expect("an energy");
+                assert!((energy + 0.5).abs() < error, "{stages} stages: {row:?}");
+            }
+        }
+    }
+    // The command line names another method: the stages of the scene are none of its.
+    let (status, _, errors) = lab(&["run", path(&scene), "--method", "fixed"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    fs::remove_file(scene).expect("the file can be removed");
 }
 
 #[test]

@@ -60,6 +60,11 @@ impl Look {
         Self { marker: None, ..self }
     }
 
+    /// The same with a dashed line.
+    pub(crate) const fn dashed_with_markers(self) -> Self {
+        Self { stroke: Stroke::Dashed, ..self }
+    }
+
     /// The line alone, dashed.
     pub(crate) const fn dashed(self) -> Self {
         Self { marker: None, stroke: Stroke::Dashed, ..self }

@@ -24,6 +24,7 @@ use crate::numbers::short;
 use crate::progress::Progress;
 use crate::simulation::{Method, Row, Simulation, Start};
 use clap::Args;
+use core::cell::Cell;
 use extent::Extent;
 use request::{Output, Request};
 use std::path::PathBuf;
@@ -33,14 +34,14 @@ const BLOCK: usize = 1 << 16;
 
 /// What the two columns of energies are, for the files that hold them.
 const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interval that ends there, none before the first \
-                        fixed step and none of a composition";
+                        step of a given length and none of a composition";
 
 /// Arguments of `vi-lab run`.
 #[derive(Clone, Debug, Default, Args)]
 #[command(after_help = "\
 Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the \
 discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
-term of order h². H and E differ by h²D/8 to leading order, D the step density. A run of fixed steps has no interval \
+term of order h², with Gauss steps of S stages by one of order h^2S. H and E of the first two differ by h²D/8 to leading order, D the step density. A run of fixed or Gauss steps has no interval \
 before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
 length of the step that led to the node.
 
@@ -60,6 +61,9 @@ pub(crate) struct Arguments {
     /// First interval of the energy-preserving integrator [default: midpoint]
     #[arg(long)]
     pub(crate) start: Option<Start>,
+    /// Stages of a step of --method gauss: 4 or 8 [default: 8]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
+    pub(crate) stages: Option<u64>,
     /// Step, or first step [default: the system's]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
@@ -108,7 +112,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let request = Request::of(arguments)?;
     resolution::check_times(&request)?;
     let extent = Extent::of(&request)?;
-    let mut simulation = request.system.begin(&request.plan).map_err(|error| Failure::start(error, &request.plan))?;
+    let evaluations = Cell::new(0);
+    let begun = request.system.begin(&request.plan, &evaluations);
+    let mut simulation = begun.map_err(|error| Failure::start(error, &request.plan))?;
     resolution::check_state(&request)?;
     let mut sink = sink(&request)?;
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
@@ -213,7 +219,6 @@ fn describe(row: &Row, steps: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use core::cell::Cell;
     use vi_core::StepError;
 
     /// A run that cannot go on after three steps, at t = 1.5.

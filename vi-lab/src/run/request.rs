@@ -6,7 +6,7 @@ use crate::catalogue;
 use crate::failure::Failure;
 use crate::input::number;
 use crate::numbers::short;
-use crate::simulation::{Method, Plan, Row, Start};
+use crate::simulation::{Method, Plan, Row, STAGES, Start, USUAL_STAGES};
 use crate::system::System;
 use std::collections::BTreeSet;
 use std::fs;
@@ -154,6 +154,7 @@ impl Request {
         let plan = Plan {
             method: arguments.method.or(scene.method).unwrap_or(Method::Fixed),
             start: arguments.start.or(scene.start).unwrap_or(Start::Midpoint),
+            stages: stages(arguments.stages.or(scene.stages))?,
             h: arguments.h.or(scene.h).unwrap_or(entry.h),
             t: arguments.t.or(scene.t).unwrap_or(0.0),
             q: arguments.q.clone().or(scene.q).unwrap_or(entry.q),
@@ -163,7 +164,14 @@ impl Request {
         // A start that belongs to another method of the scene is no mistake.
         let start = arguments.start.or(scene.start.filter(|_| arguments.method.is_none()));
         if start.is_some() && plan.method != Method::Energy {
-            return Err(Failure::Input("fixed steps have no --start; add --method energy, or leave it out".to_owned()));
+            let message = "only energy-preserving steps have a --start; add --method energy, or leave it out";
+            return Err(Failure::Input(message.to_owned()));
+        }
+        let stages = arguments.stages.or(scene.stages.filter(|_| arguments.method.is_none()));
+        if stages.is_some() && plan.method != Method::Gauss {
+            return Err(Failure::Input(
+                "only Gauss steps have --stages; add --method gauss, or leave it out".to_owned(),
+            ));
         }
         let length = match (arguments.steps, arguments.until) {
             (None, None) => length(scene.steps, scene.until, &plan)?,
@@ -181,6 +189,18 @@ impl Request {
     pub(super) fn columns(&self) -> Vec<String> {
         Row::columns(&self.system.coordinates())
     }
+}
+
+/// A number of stages that is built into the command.
+fn stages(wanted: Option<u64>) -> Result<usize, Failure> {
+    let Some(wanted) = wanted else { return Ok(USUAL_STAGES) };
+    let built = STAGES.into_iter().find(|built| *built as u64 == wanted);
+    built.ok_or_else(|| {
+        let [first, second] = STAGES;
+        Failure::Input(format!(
+            "Gauss steps of {wanted} stages are not built into the command; --stages may be {first} or {second}"
+        ))
+    })
 }
 
 fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
@@ -270,7 +290,7 @@ mod tests {
             change(&mut arguments);
             message(&arguments)
         };
-        let cases: [(String, &str); 14] = [
+        let cases: [(String, &str); 16] = [
             (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
             (
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
@@ -279,7 +299,12 @@ mod tests {
             (with(|a| a.every = Some(0)), "every how many nodes one is written (--every) must be at least 1"),
             (
                 with(|a| a.start = Some(Start::Points)),
-                "fixed steps have no --start; add --method energy, or leave it out",
+                "only energy-preserving steps have a --start; add --method energy, or leave it out",
+            ),
+            (with(|a| a.stages = Some(8)), "only Gauss steps have --stages; add --method gauss, or leave it out"),
+            (
+                with(|a| (a.method, a.stages) = (Some(Method::Gauss), Some(5))),
+                "Gauss steps of 5 stages are not built into the command; --stages may be 4 or 8",
             ),
             (with(|a| a.output = Some(".npy".into())), "the output `.npy` must end in .csv or .npy"),
             (with(|a| a.set = vec!["m".into()]), "`--set m` must have the form NAME=VALUE"),

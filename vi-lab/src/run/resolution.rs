@@ -8,6 +8,7 @@ use super::request::Request;
 use crate::failure::Failure;
 use crate::numbers::{about, short};
 use crate::simulation::{Method, Plan};
+use core::cell::Cell;
 
 /// Checks the step by itself and against the times of the run.
 pub(super) fn check_times(Request { plan, length, .. }: &Request) -> Result<(), Failure> {
@@ -50,7 +51,8 @@ fn time(t: f64, h: f64) -> Result<(), Failure> {
 /// is at rest.
 pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), Failure> {
     // A run that does not start, or ends with its first step, says so itself.
-    let Ok(mut trial) = system.begin(plan) else { return Ok(()) };
+    let evaluations = Cell::new(0);
+    let Ok(mut trial) = system.begin(plan, &evaluations) else { return Ok(()) };
     let before = trial.row();
     let is_at_rest = plan.v.iter().all(|v| *v == 0.0);
     if is_at_rest || trial.advance().is_err() {

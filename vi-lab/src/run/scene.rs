@@ -3,7 +3,7 @@
 //! ```toml
 //! system = "damped-oscillator"      # required; everything else has a default or comes from the command line
 //! method = "energy"
-//! start = "midpoint"
+//! start = "midpoint"                # of energy-preserving steps; stages = 8, of Gauss steps
 //! h = 0.01
 //! steps = 1000                      # or until = 10.0
 //! every = 10
@@ -32,6 +32,9 @@ pub(super) struct Scene {
     pub(super) method: Option<Method>,
     /// First interval of the energy-preserving integrator.
     pub(super) start: Option<Start>,
+    /// Stages of a Gauss step.
+    #[serde(default, deserialize_with = "count_of_scene")]
+    pub(super) stages: Option<u64>,
     /// Step.
     pub(super) h: Option<f64>,
     /// Number of steps.
@@ -105,6 +108,8 @@ mod tests {
             ..Scene::of_system("double-well")
         };
         assert_eq!(Scene::parse(text), Ok(expected));
+        let expected = Scene { method: Some(Method::Gauss), stages: Some(4), ..Scene::of_system("kepler") };
+        assert_eq!(Scene::parse("system = \"kepler\"\nmethod = \"gauss\"\nstages = 4\n"), Ok(expected));
     }
 
     #[test]
@@ -123,7 +128,7 @@ mod tests {
             ("h = 1.0\n", "no system is named; add a line such as `system = \"kepler\"`"),
             (
                 "system = \"a\"\nmethod = \"euler\"\n",
-                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `energy`",
+                "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `gauss`, `energy`",
             ),
         ] {
             let message = Scene::parse(text).err().unwrap_or_default();

@@ -9,8 +9,9 @@ use super::quantity::{Quantity, Span};
 use crate::catalogue::{Entry, kebab};
 use crate::chart::{Class, Look, Series, boundary, middles};
 use crate::failure::Failure;
-use crate::simulation::{Method, Plan, Simulation, Start};
+use crate::simulation::{Method, Plan, Simulation, Start, USUAL_STAGES};
 use crate::system::System;
+use core::cell::Cell;
 
 /// Steps of a run.
 const STEPS: u32 = 2500;
@@ -116,7 +117,8 @@ pub(super) fn energy(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, axes:
 /// Coordinate and velocity in the middle of the last step of a run that failed; none where it did not.
 fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f64, f64)> {
     let (system, plan) = varied(entry, axes, place, Method::Energy);
-    let mut run = system.begin(&plan).ok()?;
+    let evaluations = Cell::new(0);
+    let mut run = system.begin(&plan, &evaluations).ok()?;
     let node = |run: &dyn Simulation| Some((run.t(), *run.q().first()?));
     let mut before = node(run.as_ref())?;
     for _ in 0..STEPS {
@@ -136,7 +138,7 @@ fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) ->
     let mut system = entry.system.copy();
     let q = entry.q.clone();
     let v = entry.v.clone();
-    let mut plan = Plan { method, start: Start::Midpoint, h: entry.h, t: 0.0, q, v };
+    let mut plan = Plan { method, start: Start::Midpoint, stages: USUAL_STAGES, h: entry.h, t: 0.0, q, v };
     for (span, value) in axes.iter().zip([place.0, place.1]) {
         match &span.quantity {
             Quantity::Coordinate(index) => plan.q.iter_mut().skip(*index).take(1).for_each(|q| *q = value),
@@ -156,7 +158,8 @@ fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> 
     let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let scale = size(&plan.q).max(size(&plan.v)).max(1.0);
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND * scale };
-    let ending = match system.begin(&plan) {
+    let evaluations = Cell::new(0);
+    let ending = match system.begin(&plan, &evaluations) {
         Ok(mut run) => {
             Course::of(limit, || {
                 run.advance()?;

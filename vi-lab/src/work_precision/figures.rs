@@ -22,7 +22,7 @@ impl Findings {
             "work-precision",
             format!("{system}: error against time"),
             format!("seconds of {} for the whole run", clock::NAME),
-            |point| point.seconds,
+            |point| Some(point.seconds),
             |point| Some(point.median),
         )
     }
@@ -30,7 +30,7 @@ impl Findings {
     /// Error against evaluations.
     pub(super) fn evaluations(&self, system: &str) -> Chart {
         #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-        let count = |point: &Point| point.evaluations as f64;
+        let count = |point: &Point| point.evaluations.map(|count| count as f64);
         self.work(
             "evaluations",
             format!("{system}: error against evaluations"),
@@ -46,13 +46,16 @@ impl Findings {
         name: &'static str,
         title: String,
         label: String,
-        work: impl Fn(&Point) -> f64,
+        work: impl Fn(&Point) -> Option<f64>,
         whisker: impl Fn(&Point) -> Option<f64>,
     ) -> Chart {
         let mut series = Vec::new();
-        for method in Method::ALL {
+        for method in self.methods() {
             let kept: Vec<Point> = self.kept(method).map(|(_, point)| point).collect();
-            let points = kept.iter().map(|point| (point.error, work(point))).collect();
+            let points: Vec<(f64, f64)> = kept.iter().filter_map(|point| Some((point.error, work(point)?))).collect();
+            if points.is_empty() {
+                continue;
+            }
             let line = Series::curve(method.name(), method.look(), points);
             series.push(line.with_whiskers(kept.iter().filter_map(&whisker).collect()));
         }
@@ -91,8 +94,8 @@ impl Findings {
             let (label, look) = match drift.method {
                 Method::Rival if drift.setting > 1e-8 => (rival(drift), line),
                 Method::Rival if drift.setting > 1e-11 => (rival(drift), drift.method.look().dashed()),
-                Method::Rival => (rival(drift), drift.method.look().dotted()),
-                Method::Own(_) => (drift.method.name().to_owned(), line),
+                Method::Rival | Method::Heyoka => (rival(drift), drift.method.look().dotted()),
+                Method::Own(_) | Method::Gauss(_) => (drift.method.name().to_owned(), line),
             };
             Series::curve(label, look, drift.worst.clone())
         });
@@ -112,7 +115,7 @@ impl Findings {
     pub(super) fn prices(&self) -> Table {
         let head = ["method", "error 1e-3", "1e-6", "1e-9", "1e-12"];
         let mut table = Table::new("prices", head);
-        for method in Method::ALL {
+        for method in self.methods() {
             let price = |error: f64| self.price(method, error).map_or_else(|| "—".to_owned(), duration);
             let [a, b, c, d] = PRICED.map(price);
             table.row([method.name().to_owned(), a, b, c, d]);
@@ -131,7 +134,7 @@ impl Findings {
         let mut sentences = Vec::new();
         for error in PRICED {
             let mut prices: Vec<(f64, Method)> =
-                Method::ALL.into_iter().filter_map(|method| Some((self.price(method, error)?, method))).collect();
+                self.methods().filter_map(|method| Some((self.price(method, error)?, method))).collect();
             prices.sort_by(|(one, _), (other, _)| one.total_cmp(other));
             sentences.push(match prices.as_slice() {
                 [] => format!("No run is off by {} or less.", scientific(error)),
@@ -180,7 +183,7 @@ impl Findings {
                     name,
                     setting,
                     format!("{:e}", point.error),
-                    point.evaluations.to_string(),
+                    point.evaluations.map_or_else(String::new, |count| count.to_string()),
                     format!("{:.4e}", point.seconds),
                     format!("{:.4e}", point.median),
                     String::new(),
@@ -197,7 +200,7 @@ impl Findings {
     /// What the figures cannot show, one sentence a method: runs that ended, and runs that lost the motion.
     pub(super) fn missing(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        for method in Method::ALL {
+        for method in self.methods() {
             let of: Vec<_> = self.runs.iter().filter(|run| run.method == method).collect();
             let ended: Vec<_> = of.iter().filter_map(|run| Some((run.setting, run.outcome.err()?))).collect();
             if let (Some((setting, first)), count) = (ended.last(), ended.len()) {
@@ -260,7 +263,7 @@ mod tests {
 
     /// Two runs of the energy-preserving integrator, off by 1e-12 and 1e-14, and one that ended.
     fn findings() -> Findings {
-        let point = |error, seconds| Point { error, evaluations: 100, seconds, median: 2.0 * seconds };
+        let point = |error, seconds| Point { error, evaluations: Some(100), seconds, median: 2.0 * seconds };
         let error = StepError::NoForwardStep { t: 1.0, h: 0.1, excess: 0.0, density: -1.0 };
         let run = |setting, outcome| Run { method: Method::ENERGY, setting, outcome };
         Findings {

@@ -15,8 +15,12 @@ use core::cell::Cell;
 pub(super) enum Method {
     /// An integrator of this project.
     Own(simulation::Method),
+    /// Gauss steps of so many stages.
+    Gauss(usize),
     /// The Runge–Kutta method of order 8 that chooses its steps by a tolerance.
     Rival,
+    /// The Taylor integrator heyoka, whose runs a file tells of: no [`Task`] is one of them.
+    Heyoka,
 }
 
 impl Method {
@@ -27,12 +31,14 @@ impl Method {
     /// The integrator that solves for its own step.
     pub(super) const ENERGY: Self = Self::Own(simulation::Method::Energy);
 
-    /// All of them, in the order of the legends.
-    pub(super) const ALL: [Self; 6] = [
+    /// All that are run here, in the order of the legends.
+    pub(super) const ALL: [Self; 8] = [
         Self::FIXED,
         Self::Own(simulation::Method::Suzuki4),
         Self::Own(simulation::Method::KahanLi6),
         Self::KAHAN_LI_8,
+        Self::Gauss(simulation::STAGES[0]),
+        Self::Gauss(simulation::STAGES[1]),
         Self::ENERGY,
         Self::Rival,
     ];
@@ -43,37 +49,45 @@ impl Method {
             Self::Own(simulation::Method::Fixed) => "fixed step",
             Self::Own(simulation::Method::Energy) => "energy-preserving",
             Self::Own(composed) => composed.scheme().map_or(composed.name(), |scheme| scheme.name),
+            Self::Gauss(4) => "Gauss, 4 stages",
+            Self::Gauss(_) => "Gauss, 8 stages",
             Self::Rival => "DOP853",
+            Self::Heyoka => "heyoka",
         }
     }
 
     /// Its colour and its marker.
     pub(super) fn look(self) -> Look {
-        let [four, six, eight, _] = Look::OTHERS;
+        let [four, six, eight, gauss] = Look::OTHERS;
         match self {
             Self::Own(simulation::Method::Fixed) => Look::FIXED,
             Self::Own(simulation::Method::Suzuki4) => four,
             Self::Own(simulation::Method::KahanLi6) => six,
             Self::Own(simulation::Method::KahanLi8) => eight,
+            Self::Gauss(4) => gauss.dashed_with_markers(),
+            Self::Gauss(_) | Self::Own(simulation::Method::Gauss) => gauss,
             Self::Own(simulation::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
+            Self::Heyoka => Look::RIVAL.dashed_with_markers(),
         }
     }
 
-    /// Parts of one of its steps: equations that are solved one after the other.
+    /// How many fixed steps one of its steps is compared with: the equations of a composition, which are solved one after the other; four a
+    /// stage of Gauss steps, which are worth their price only where they are long.
     pub(super) fn parts(self) -> usize {
         match self {
             Self::Own(method) => method.scheme().map_or(1, |scheme| scheme.weights.len()),
-            Self::Rival => 1,
+            Self::Gauss(stages) => 4 * stages,
+            Self::Rival | Self::Heyoka => 1,
         }
     }
 
     /// Its settings in words.
     pub(super) fn setting(self, setting: f64) -> String {
         match self {
-            Self::Rival => format!("tolerance {setting:.0e}"),
+            Self::Rival | Self::Heyoka => format!("tolerance {setting:.0e}"),
             Self::Own(simulation::Method::Energy) => format!("h₀ = {setting:.4}"),
-            Self::Own(_) => format!("h = {setting:.4}"),
+            Self::Own(_) | Self::Gauss(_) => format!("h = {setting:.4}"),
         }
     }
 }
@@ -110,16 +124,15 @@ impl Task<'_> {
         count.max(1)
     }
 
-    /// The plan of a run of one of this project's integrators.
-    pub(super) fn plan(&self, method: simulation::Method) -> Plan {
-        Plan {
-            method,
-            start: Start::Midpoint,
-            h: self.setting,
-            t: self.start.t,
-            q: self.start.q.clone(),
-            v: self.start.v.clone(),
-        }
+    /// The plan of a run of one of this project's integrators; none for the rival.
+    pub(super) fn plan(&self) -> Option<Plan> {
+        let (method, stages) = match self.method {
+            Method::Own(method) => (method, simulation::USUAL_STAGES),
+            Method::Gauss(stages) => (simulation::Method::Gauss, stages),
+            Method::Rival | Method::Heyoka => return None,
+        };
+        let PhasePoint { t, q, v } = self.start.clone();
+        Some(Plan { method, start: Start::Midpoint, stages, h: self.setting, t, q, v })
     }
 
     /// The state reached, with the number of evaluations added to `evaluations`.
@@ -127,36 +140,35 @@ impl Task<'_> {
     /// # Errors
     /// Why the end was not reached.
     pub(super) fn reached(&self, system: &dyn System, evaluations: &Cell<u64>) -> Result<Reached, Ended> {
-        let reached = match self.method {
-            Method::Own(method) => {
-                let mut run = system.begin_counted(&self.plan(method), evaluations)?;
-                self.follow(method, run.as_mut())?;
-                Reached { t: run.t(), q: run.q(), p: run.p() }
-            }
-            Method::Rival => {
-                let at = system.rival(self.start, self.end, self.setting, evaluations, None)?;
-                Reached { t: at.t, p: system.momentum(&at)?, q: at.q }
-            }
+        let reached = if let Some(plan) = self.plan() {
+            let mut run = system.begin(&plan, evaluations)?;
+            self.follow(run.as_mut())?;
+            Reached { t: run.t(), q: run.q(), p: run.p() }
+        } else {
+            let at = system.rival(self.start, self.end, self.setting, evaluations, None)?;
+            Reached { t: at.t, p: system.momentum(&at)?, q: at.q }
         };
         let is_finite = reached.q.iter().chain(&reached.p).all(|entry| entry.is_finite());
         if is_finite { Ok(reached) } else { Err(Ended::NonFinite) }
     }
 
-    /// The same run for the clock: nothing is counted but the rival's accelerations, and nothing is read from its end.
+    /// The same run for the clock: nothing is read from its end. Evaluations are counted here too, of all methods: an addition beside
+    /// the operations of each.
     ///
     /// # Errors
     /// Why the end was not reached.
     pub(super) fn timed(&self, system: &dyn System) -> Result<(), Ended> {
-        match self.method {
-            Method::Own(method) => self.follow(method, system.begin(&self.plan(method))?.as_mut()),
-            Method::Rival => system.rival(self.start, self.end, self.setting, &Cell::new(0), None).map(drop),
+        let evaluations = Cell::new(0);
+        match self.plan() {
+            Some(plan) => self.follow(system.begin(&plan, &evaluations)?.as_mut()),
+            None => system.rival(self.start, self.end, self.setting, &evaluations, None).map(drop),
         }
     }
 
     /// Steps to the end.
-    fn follow(&self, method: simulation::Method, run: &mut dyn Simulation) -> Result<(), Ended> {
+    fn follow(&self, run: &mut dyn Simulation) -> Result<(), Ended> {
         let steps = self.steps();
-        if method != simulation::Method::Energy {
+        if self.method != Method::ENERGY {
             return Ok(run.advance_by(steps)?);
         }
         run.advance_until(self.end, TOO_MANY * steps)?;

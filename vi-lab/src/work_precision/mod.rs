@@ -2,8 +2,8 @@
 //!
 //! In: a system of the catalogue and a folder. Out: in the folder a page `index.html` with four figures (error against
 //! time, against evaluations, against the step; energy over a long time), each as SVG and CSV, and tables of all runs. The
-//! methods are the fixed step, its compositions of order 4, 6 and 8, the energy-preserving integrator, and DOP853 of
-//! another library in the same run.
+//! methods are the fixed step, its compositions of order 4, 6 and 8, Gauss steps, the energy-preserving integrator, and DOP853 of
+//! another library in the same run; and heyoka, where a file tells of its runs.
 //!
 //! | module | what it makes |
 //! |---|---|
@@ -12,10 +12,12 @@
 //! | [`mod@reference`] | the motion that errors are measured against, and how well it is known |
 //! | [`drift`] | the energy over a long time |
 //! | [`clock`] | seconds |
+//! | [`elsewhere`] | the runs of heyoka, from a file |
 //! | [`figures`] | charts, tables, and what they leave out |
 
 mod clock;
 mod drift;
+mod elsewhere;
 mod figures;
 mod method;
 mod reference;
@@ -24,11 +26,13 @@ mod study;
 use crate::catalogue::{self, Entry};
 use crate::failure::Failure;
 use crate::html::escape;
+use crate::input::number;
 use crate::machine::Machine;
 use crate::numbers::scientific;
 use crate::progress::Progress;
 use crate::report::{Page, Report};
 use clap::Args;
+use method::Method;
 use std::path::PathBuf;
 use study::Findings;
 
@@ -40,6 +44,15 @@ pub(crate) struct Arguments {
     /// Folder for the page, its figures (SVG) and their data (CSV)
     #[arg(long, value_name = "DIR", default_value = "work-precision")]
     out: PathBuf,
+    /// Initial coordinates, separated by commas [default: the system's]
+    #[arg(long, value_name = "Q,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
+    q: Option<Vec<f64>>,
+    /// Initial velocities, separated by commas [default: the system's]
+    #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
+    v: Option<Vec<f64>>,
+    /// Runs of heyoka to show beside the others: SYSTEM.csv, as benches/rivals/heyoka_runs.py writes it
+    #[arg(long, value_name = "FILE")]
+    rival: Option<PathBuf>,
     /// Fewer and shorter runs, each timed once: for a look, not for numbers
     #[arg(long)]
     quick: bool,
@@ -52,14 +65,16 @@ pub(crate) struct Arguments {
 /// cannot be written.
 pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     let machine = Machine::here();
-    let entry = catalogue::find(&arguments.system)?;
+    let entry = entry(arguments)?;
     let name = catalogue::kebab(entry.system.name());
+    let told = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
     let page = Page::new(&format!("What an error costs: {name}"), entry.about);
     let mut report = Report::new(&arguments.out, page)?;
     let mut progress = Progress::new(study::length(&entry, arguments.quick));
-    let found = study::findings(&entry, arguments.quick, &mut progress)
+    let mut found = study::findings(&entry, arguments.quick, &mut progress)
         .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be followed: {ended}")))?;
     drop(progress);
+    found.runs.extend(told.into_iter().flatten());
     introduction(&mut report, &entry, &found);
     work(&mut report, &name, &found)?;
     order(&mut report, &name, &found)?;
@@ -73,6 +88,20 @@ pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     });
     report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, or the tolerance of DOP853.")?;
     Ok(format!("{}\n{}", found.prices().text(), report.finish(&machine)?.display()))
+}
+
+/// The entry of the system, with the start that is asked for.
+fn entry(arguments: &Arguments) -> Result<Entry, Failure> {
+    let entry = catalogue::find(&arguments.system)?;
+    let q = arguments.q.clone().unwrap_or(entry.q);
+    let v = arguments.v.clone().unwrap_or(entry.v);
+    for (what, values) in [("coordinates (--q)", &q), ("velocities (--v)", &v)] {
+        let size = entry.system.coordinates().len();
+        if values.len() != size || !values.iter().all(|value| value.is_finite()) {
+            return Err(Failure::Input(format!("give {size} finite {what}, not {values:?}")));
+        }
+    }
+    Ok(Entry { q, v, ..entry })
 }
 
 fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
@@ -108,6 +137,12 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
 
 fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure> {
     report.section("Error against work");
+    if found.methods().any(|method| method == Method::Heyoka) {
+        report.prose(
+            "The runs of heyoka are those that a file tells of: of the same system, start and time if the file is right, on the clock \
+             on the wall, and on whatever machine it was made.",
+        );
+    }
     report.figure(
         &found.time(name).figure(),
         "Best is the lower left. Each marker is the fastest of the repetitions of a run, its whisker ends at the median. \
@@ -121,7 +156,7 @@ fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure
     report.figure(
         &found.evaluations(name).figure(),
         "The same runs by a measure that repeats exactly. One evaluation is one residual with its Jacobian, one \
-         residual with the gain of the step, or one acceleration: an acceleration is the cheapest of them with few degrees of freedom, and with many has \
+         residual with the gain of the step, the equations at one stage of a sweep of Gauss steps, or one acceleration: an acceleration is the cheapest of them with few degrees of freedom, and with many has \
          a linear system to solve too.",
     )
 }

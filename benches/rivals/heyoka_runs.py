@@ -1,0 +1,148 @@
+"""heyoka, the Taylor integrator of F. Biscani and D. Izzo, on the systems of `vi-lab work-precision`.
+
+In: names of systems. Out: for each a file NAME.csv with the columns of the command's table of runs, to be shown by
+`vi-lab work-precision NAME --rival NAME.csv`. A run is timed REPETITIONS times, in rounds over all tolerances. Its code was
+compiled before. The error is the command's: the largest difference of a coordinate or a momentum from the reference at the end,
+relative to the largest coordinate, or momentum, on the way. The reference is heyoka itself in extended precision.
+"""
+
+import sys
+import time
+from statistics import median
+
+import heyoka as hy
+import numpy as np
+
+REPETITIONS = 15
+TOLERANCES = [10.0**-k for k in range(3, 17)]
+STEPS = 4000  # usual steps of the command, up to the end of a run
+PARTS = 256  # of the time, at whose ends the largest numbers are looked for
+
+
+class Problem:
+    """Equations q'' = a(q, v), a start, the end of the run, and momenta as a function of q and v."""
+
+    def __init__(self, names, acceleration, q, v, step, momenta=None, equations=None, order=None):
+        self.q, self.v = q, v
+        self.end = STEPS * step
+        self.momenta = momenta or (lambda q, v: v)
+        # Where coordinates and velocities stand in the state of heyoka.
+        self.order = order or list(range(2 * len(q)))
+        if equations is None:
+            q_symbols = hy.make_vars(*names)
+            v_symbols = hy.make_vars(*["v_" + name for name in names])
+            q_symbols = [q_symbols] if len(names) == 1 else q_symbols
+            v_symbols = [v_symbols] if len(names) == 1 else v_symbols
+            accelerations = acceleration(q_symbols, v_symbols)
+            equations = list(zip(q_symbols, v_symbols)) + list(zip(v_symbols, accelerations))
+        self.equations = equations
+
+    def integrator(self, tolerance, kind=float):
+        start = np.empty(len(self.order), dtype=kind)
+        start[self.order] = np.array(self.q + self.v, dtype=kind)
+        return hy.taylor_adaptive(self.equations, start, tol=kind(tolerance), fp_type=kind), start
+
+    def split(self, state):
+        ordered = state[self.order]
+        n = len(self.q)
+        return ordered[:n], self.momenta(ordered[:n], ordered[n:])
+
+
+def double_well():
+    return Problem(["q"], lambda q, v: [q[0] - 2.0 * q[0] ** 3], [0.995], [0.0], 0.01)
+
+
+def kepler():
+    def acceleration(q, v):
+        cube = (q[0] ** 2 + q[1] ** 2) ** (-1.5)
+        return [-q[0] * cube, -q[1] * cube]
+
+    return Problem(["x", "y"], acceleration, [0.4, 0.0], [0.0, 2.0], 0.005)
+
+
+def double_pendulum():
+    g = 9.81
+
+    def acceleration(q, v):
+        s, c = hy.sin(q[0] - q[1]), hy.cos(q[0] - q[1])
+        first = -v[1] ** 2 * s - 2.0 * g * hy.sin(q[0])
+        second = v[0] ** 2 * s - g * hy.sin(q[1])
+        upper = (first - c * second) / (2.0 - c**2)
+        return [upper, second - c * upper]
+
+    def momenta(q, v):
+        c = np.cos(q[0] - q[1])
+        return np.array([2 * v[0] + c * v[1], v[1] + c * v[0]])
+
+    return Problem(["a", "b"], acceleration, [1.0, 1.0], [0.0, 0.0], 0.005, momenta)
+
+
+def fpu_chain():
+    n = 16
+    lowest = [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996]
+
+    def acceleration(q, v):
+        stretch = [q[0]] + [q[i] - q[i - 1] for i in range(1, n)] + [-q[n - 1]]
+        pull = [r + 0.25 * r**2 for r in stretch]
+        return [pull[i + 1] - pull[i] for i in range(n)]
+
+    return Problem([f"q{i}" for i in range(n)], acceleration, lowest + lowest[::-1], [0.0] * n, 0.1)
+
+
+def outer_solar_system():
+    masses = [1.00000597682, 0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1 / 1.3e8]
+    q = [0.0, -3.5023653, 9.0755314, 8.3101420, 11.4707666, -15.5387357]
+    q += [0.0, -3.8169847, -3.0458353, -16.2901086, -25.7294829, -25.2225594]
+    q += [0.0, -1.5507963, -1.6483708, -7.2521278, -10.8169456, -3.1902382]
+    v = [0.0, 0.00565429, 0.00168318, 0.00354178, 0.00288930, 0.00276725]
+    v += [0.0, -0.00412490, 0.00483525, 0.00137102, 0.00114527, -0.00170702]
+    v += [0.0, -0.00190589, 0.00192462, 0.00055029, 0.00039677, -0.00136504]
+    equations = hy.model.nbody(6, masses=masses, Gconst=2.95912208286e-4)
+    # heyoka holds x, y, z, v_x, v_y, v_z of one body after the other.
+    order = [6 * body + axis for axis in range(6) for body in range(6)]
+    weights = np.tile(masses, 3)
+    return Problem(None, None, q, v, 10.0, lambda q, v: weights * v, equations, order)
+
+
+PROBLEMS = {
+    "double-well": double_well,
+    "kepler": kepler,
+    "double-pendulum": double_pendulum,
+    "fpu-chain": fpu_chain,
+    "outer-solar-system": outer_solar_system,
+}
+
+
+def run(name):
+    problem = PROBLEMS[name]()
+    reference, _ = problem.integrator(1e-19, np.longdouble)
+    largest_q = largest_p = 0.0
+    for part in range(1, PARTS + 1):
+        reference.propagate_until(np.longdouble(problem.end) * part / PARTS)
+        q, p = problem.split(reference.state)
+        largest_q = max(largest_q, np.abs(q).max())
+        largest_p = max(largest_p, np.abs(p).max())
+    exact_q, exact_p = problem.split(reference.state)
+    runs = [(tolerance, *problem.integrator(tolerance), []) for tolerance in TOLERANCES]
+    for _ in range(REPETITIONS):
+        for _, integrator, start, seconds in runs:
+            # Once unwatched: another run's code was the last one.
+            for seen in (False, True):
+                integrator.time = 0.0
+                integrator.state[:] = start
+                begin = time.perf_counter()
+                integrator.propagate_until(problem.end)
+                if seen:
+                    seconds.append(time.perf_counter() - begin)
+    with open(f"{name}.csv", "w") as out:
+        out.write('method,setting,error,evaluations,"seconds, least","seconds, median",ended\n')
+        for tolerance, integrator, _, seconds in runs:
+            q, p = problem.split(integrator.state)
+            error = float(max(np.abs(q - exact_q).max() / largest_q, np.abs(p - exact_p).max() / largest_p))
+            out.write(f"heyoka,{tolerance:.0e},{error:e},,{min(seconds):.4e},{median(seconds):.4e},\n")
+    print(f"{name}.csv: q = {problem.q}, t = {problem.end}")
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or PROBLEMS:
+        run(name)

@@ -1,0 +1,73 @@
+//! Runs of a program elsewhere, told by a file.
+//!
+//! In: a CSV file with the columns of the table of runs, as `benches/rivals/heyoka_runs.py` writes it. Out: runs of
+//! [`Method::Heyoka`], or [`Failure::Input`] with the line that is no such run. The file has the name of the system. That it is of the
+//! same start and time, and of the same machine, it does not say.
+
+use super::method::Method;
+use super::study::{Point, Run};
+use crate::failure::Failure;
+use std::fs;
+use std::path::Path;
+
+/// Names of the columns, as in the table of runs.
+const HEAD: &str = "method,setting,error,evaluations,\"seconds, least\",\"seconds, median\",ended";
+
+/// The runs of `system` that a file tells of.
+///
+/// # Errors
+/// [`Failure::Input`] where it has another name or form, or cannot be read.
+pub(super) fn runs(path: &Path, system: &str) -> Result<Vec<Run>, Failure> {
+    let shown = path.display();
+    if path.file_stem().is_none_or(|stem| stem != system) {
+        return Err(Failure::Input(format!("the runs of a rival on {system} stand in {system}.csv, not in {shown}")));
+    }
+    let text = fs::read_to_string(path).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
+    parse(&text).map_err(|message| Failure::Input(format!("{shown}: {message}")))
+}
+
+/// The runs of a text, or what is wrong with which line.
+fn parse(text: &str) -> Result<Vec<Run>, String> {
+    let mut lines = text.lines();
+    if lines.next() != Some(HEAD) {
+        return Err(format!("line 1: expected the columns `{HEAD}`"));
+    }
+    let runs: Result<Vec<Run>, String> = lines.enumerate().map(|(index, line)| run(line, index + 2)).collect();
+    runs.and_then(|runs| if runs.is_empty() { Err("it tells of no run".to_owned()) } else { Ok(runs) })
+}
+
+/// The run of a line.
+fn run(line: &str, number: usize) -> Result<Run, String> {
+    let wrong = || format!("line {number}: expected a run such as `heyoka,1e-06,4.1e-07,,1.5e-05,1.6e-05,`");
+    let ["heyoka", setting, error, _, least, median, ""] = line.split(',').collect::<Vec<_>>()[..] else {
+        return Err(wrong());
+    };
+    let value = |field: &str| {
+        let value: Option<f64> = field.parse().ok();
+        value.filter(|value| value.is_finite() && *value >= 0.0).ok_or_else(wrong)
+    };
+    let point = Point { error: value(error)?, evaluations: None, seconds: value(least)?, median: value(median)? };
+    Ok(Run { method: Method::Heyoka, setting: value(setting)?, outcome: Ok(point) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_and_a_wrong_line_is_named() {
+        let found = parse(&format!("{HEAD}\nheyoka,1e-06,4.1e-07,,1.5e-05,1.6e-05,\n")).expect("a run");
+        let point = Point { error: 4.1e-7, evaluations: None, seconds: 1.5e-5, median: 1.6e-5 };
+        assert!(matches!(&found[..], [Run { method: Method::Heyoka, setting, outcome: Ok(told) }]
+            if setting.to_bits() == 1e-6_f64.to_bits() && *told == point));
+        for (text, expected) in [
+            ("a,b\n".to_owned(), "line 1: expected the columns"),
+            (format!("{HEAD}\n"), "it tells of no run"),
+            (format!("{HEAD}\nheyoka,1e-06,NaN,,1.5e-05,1.6e-05,\n"), "line 2: expected a run such as"),
+            (format!("{HEAD}\nDOP853,1e-06,1e-7,,1.5e-05,1.6e-05,\n"), "line 2: expected a run such as"),
+        ] {
+            let message = parse(&text).expect_err("a wrong file");
+            assert!(message.starts_with(expected), "{message}");
+        }
+    }
+}
