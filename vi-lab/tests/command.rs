@@ -609,8 +609,8 @@ fn a_composition_runs_and_has_no_discrete_energy() {
 fn gauss_steps_run_and_have_both_energies() {
     let scene = temporary("gauss.toml");
     fs::write(&scene, "system = \"kepler\"\nmethod = \"gauss\"\nstages = 4\nh = 0.1\nsteps = 300\n").expect("a scene");
-    // Measured: 5.4e-7 and 2.5e-12.
-    for (stages, error) in [("4", 1e-6), ("8", 5e-12)] {
+    // Measured: 3.2e-8 and 6.7e-16.
+    for (stages, error) in [("4", 1e-7), ("8", 2e-15)] {
         let (status, output, errors) = lab(&["run", path(&scene), "--stages", stages]);
         assert_eq!((status, errors.as_str()), (Some(0), ""));
         assert!(output.contains(&format!("# method: gauss, {stages} stages, h = 0.1")), "{output}");
