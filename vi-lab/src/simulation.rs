@@ -2,7 +2,7 @@
 //!
 //! In: a system with its parameters, a [`Plan`]. Out: a [`Simulation`], whose rows are the nodes that the integrator
 //! reaches, the first one the node it starts from. Erased, so that a name on the command line can choose the system;
-//! the numbers are those of the generic integrators, to the last bit, and [`Simulation::advance_by`] is their loop, in
+//! the numbers are those of the generic integrators, to the last bit, and [`Simulation::advance_until`] is their loop, in
 //! which no call is virtual.
 
 use crate::counting::Counting;

@@ -33,8 +33,15 @@ impl Look {
     pub(crate) const ENERGY: Self = Self::of("#D55E00", MarkerShape::Circle);
     /// The fixed-step integrator.
     pub(crate) const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
+    /// Gauss steps of few stages, and of many.
+    pub(crate) const GAUSS: [Self; 2] = [
+        Self { stroke: Stroke::Dashed, ..Self::of("#56B4E9", MarkerShape::Plus) },
+        Self { width: 2.6, ..Self::of("#56B4E9", MarkerShape::Circle) },
+    ];
     /// A method of other makers.
     pub(crate) const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
+    /// A program of other makers.
+    pub(crate) const ELSEWHERE: Self = Self { stroke: Stroke::Dashed, ..Self::of("#000000", MarkerShape::Square) };
     /// The exact solution, or a law.
     pub(crate) const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
     /// Below [`Look::EXACT`] where the ground is coloured.
@@ -58,11 +65,6 @@ impl Look {
     /// The line alone.
     pub(crate) const fn line(self) -> Self {
         Self { marker: None, ..self }
-    }
-
-    /// The same with a dashed line.
-    pub(crate) const fn dashed_with_markers(self) -> Self {
-        Self { stroke: Stroke::Dashed, ..self }
     }
 
     /// The line alone, dashed.

@@ -7,7 +7,7 @@ use super::drift::Drift;
 use super::method::Method;
 use super::study::{Findings, Point, fitted_order};
 use crate::chart::{Axis, Chart, Look, Series};
-use crate::numbers::{extremes, scientific};
+use crate::numbers::{about, extremes, scientific};
 use crate::table::Table;
 
 /// An error above this is no approximation of the motion.
@@ -162,7 +162,7 @@ impl Findings {
             table.row([
                 drift.method.name().to_owned(),
                 drift.method.setting(drift.setting),
-                format!("{:.0}", drift.rate),
+                about(drift.rate),
                 drift.last().map_or_else(|| "—".to_owned(), |(_, error)| format!("{error:.2e}")),
                 drift.growth().map_or_else(|| "—".to_owned(), |power| format!("t^{power:.2}")),
                 drift.ended.map_or_else(String::new, |ended| ended.to_string()),

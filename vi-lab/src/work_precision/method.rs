@@ -58,17 +58,18 @@ impl Method {
 
     /// Its colour and its marker.
     pub(super) fn look(self) -> Look {
-        let [four, six, eight, gauss] = Look::OTHERS;
+        let [four, six, eight, _] = Look::OTHERS;
+        let [few, many] = Look::GAUSS;
         match self {
             Self::Own(simulation::Method::Fixed) => Look::FIXED,
             Self::Own(simulation::Method::Suzuki4) => four,
             Self::Own(simulation::Method::KahanLi6) => six,
             Self::Own(simulation::Method::KahanLi8) => eight,
-            Self::Gauss(4) => gauss.dashed_with_markers(),
-            Self::Gauss(_) | Self::Own(simulation::Method::Gauss) => gauss,
+            Self::Gauss(4) => few,
+            Self::Gauss(_) | Self::Own(simulation::Method::Gauss) => many,
             Self::Own(simulation::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
-            Self::Heyoka => Look::RIVAL.dashed_with_markers(),
+            Self::Heyoka => Look::ELSEWHERE,
         }
     }
 
