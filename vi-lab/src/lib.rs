@@ -14,6 +14,7 @@
 //! | `paper` | `vi-lab paper`: figures, tables and the page |
 //! | `stability` | `vi-lab stability`: where methods fail, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
+//! | `lyapunov` | `vi-lab lyapunov`: how fast neighbouring motions part |
 //! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
 //! | `chart`, `table`, `html`, `report` | figures, tables, and the page that holds them |
 //! | `input`, `numbers` | numbers as users write them, and as pages and messages do |
@@ -28,6 +29,7 @@ mod failure;
 mod html;
 mod input;
 mod interrupt;
+mod lyapunov;
 mod machine;
 mod new;
 mod numbers;
@@ -75,6 +77,8 @@ enum Action {
     Stability(stability::Arguments),
     /// Chart error against time, evaluations and step for every method on one system
     WorkPrecision(work_precision::Arguments),
+    /// Estimate the largest Lyapunov exponents of a system along one run
+    Lyapunov(lyapunov::Arguments),
     /// Show what the systems in a file become, stage by stage
     Expand(expand::Arguments),
     /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
@@ -157,6 +161,7 @@ fn act(action: Action) -> Result<(), Failure> {
         Action::Run(arguments) => run::run(&arguments),
         Action::Stability(arguments) => print(&stability::write(&arguments)?),
         Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments)?),
+        Action::Lyapunov(arguments) => lyapunov::write(&arguments, print),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),
         Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
         Action::New(arguments) => print(&new::write(&arguments)?),

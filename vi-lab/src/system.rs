@@ -4,6 +4,7 @@
 //! code of the command that is generic over systems: its integrators, its accurate motion and the rival are compiled
 //! once for each system, however many charts use them.
 
+use crate::lyapunov::{self, Exponents};
 use crate::rival::{self, Ended};
 use crate::simulation::{self, Plan, Simulation, vector};
 use core::cell::Cell;
@@ -60,6 +61,11 @@ pub(crate) trait System: Send + Sync {
     /// # Errors
     /// What the integrators say of the initial state.
     fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError>;
+    /// Lyapunov exponents, as many as wanted, along the run of Gauss steps from the start of a plan.
+    ///
+    /// # Errors
+    /// As [`System::begin`].
+    fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError>;
     /// The point of the same motion at the time `end`, by the rival with a tolerance. `evaluations` grows by the number of
     /// accelerations, also where the run ends early; `watch`, if any, is given time and H at the start and after every step.
     ///
@@ -137,6 +143,10 @@ where
 
     fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError> {
         simulation::begin(self.0, plan, evaluations)
+    }
+
+    fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError> {
+        lyapunov::begin(self.0, plan, count)
     }
 
     fn rival(

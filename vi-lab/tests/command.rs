@@ -73,6 +73,23 @@ fn path(path: &Path) -> &str {
 }
 
 #[test]
+fn exponents_of_chaos_and_of_a_swing() {
+    let (status, text, errors) = lab(&["lyapunov", "double-well-duffing", "--set", "amplitude=0.5", "--steps", "5000"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let last = rows(&text).pop().expect("a row");
+    // The sum is minus the damping, 0.3, to the digits that are written.
+    assert!(last[1] > 0.05 && (last[1] + last[2] + 0.3).abs() < 2e-6, "{text}");
+    assert!(text.starts_with("t,λ1,λ2\n5,"), "{text}");
+    let (_, text, _) = lab(&["lyapunov", "pendulum", "--count", "1", "--steps", "5000"]);
+    let last = rows(&text).pop().expect("a row");
+    assert!(last[1].abs() < 0.05, "{text}");
+    assert_refused(&[
+        (&["lyapunov", "kepler", "--count", "5"], "kepler has 1 to 4 exponents (--count), not 5"),
+        (&["lyapunov"], "name a system, as `vi-lab list` does, or a scene file"),
+    ]);
+}
+
+#[test]
 fn the_list_names_every_system_with_its_parameters() {
     let (status, list, errors) = lab(&["list"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));

@@ -53,7 +53,8 @@ where
     let jacobian = plain.momentum_equation(&node.map(|number| number.value), h, v).jacobian;
     let h = Dual::fixed(h);
     let residual = system.momentum_residual(&node, h, &v.map(Dual::fixed)).residual;
-    let change = linear::solve(&jacobian, &residual.map(|entry| entry.slope)).ok_or_else(|| singular(node.t.to_f64()))?;
+    let change =
+        linear::solve(&jacobian, &residual.map(|entry| entry.slope)).ok_or_else(|| singular(node.t.to_f64()))?;
     let v = v.zip_map(&change, |value, change| Dual { value, slope: -change });
     let increment = system.momentum_residual(&node, h, &v).increment;
     node.advance(h, &v, &increment);

@@ -22,7 +22,8 @@ use crate::input::{count, number};
 use crate::interrupt::{Interrupt, Signal};
 use crate::numbers::short;
 use crate::progress::Progress;
-use crate::simulation::{Method, Row, Simulation, Start};
+use crate::simulation::{Method, Plan, Row, Simulation, Start};
+use crate::system::System;
 use clap::Args;
 use core::cell::Cell;
 use extent::Extent;
@@ -102,6 +103,15 @@ trait Sink {
     fn write(&mut self, row: &Row) -> Result<(), Failure>;
     /// Writes what has been taken.
     fn finish(&mut self) -> Result<(), Failure>;
+}
+
+/// The system and the start that the arguments ask for.
+///
+/// # Errors
+/// Wrong input.
+pub(crate) fn start(arguments: &Arguments) -> Result<(Box<dyn System>, Plan), Failure> {
+    let request = Request::of(arguments)?;
+    Ok((request.system, request.plan))
 }
 
 /// Simulates what the arguments ask for.

@@ -1,0 +1,146 @@
+//! `vi-lab lyapunov`: how fast neighbouring motions part.
+//!
+//! In: the command line. Out: estimates of the largest Lyapunov exponents along one run of Gauss steps, at times each twice the one before, so that a reader
+//! sees whether they have settled; as CSV on standard output. The directions are those of the tangent map of the steps themselves (`vi_core::derivatives`).
+
+use crate::catalogue::kebab;
+use crate::failure::Failure;
+use crate::input::{count, number};
+use crate::numbers::short;
+use crate::run;
+use crate::simulation::{Method, Plan, vector};
+use clap::Args;
+use vi_core::collocation::Collocation;
+use vi_core::derivatives::Lyapunov;
+use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::{Gauss, Integrator as _, State, StepError};
+
+/// The command line of `vi-lab lyapunov`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Columns: t, and the exponents λ1, λ2, … as their means up to t, in units of one over time. A chaotic motion has λ1 > 0; without force and time they come in pairs λ and −λ, \
+and one pair is zero. An estimate differs from its limit by a term of order 1/t, and by the fluctuations of the motion.")]
+pub(crate) struct Arguments {
+    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
+    #[arg(value_name = "SYSTEM|SCENE.toml")]
+    target: Option<String>,
+    /// How many exponents, the largest first, at most twice the coordinates
+    #[arg(long, value_name = "K", default_value_t = 2)]
+    count: usize,
+    /// Step [default: five times the system's]
+    #[arg(long, value_name = "H", value_parser = number)]
+    h: Option<f64>,
+    /// Number of steps, such as 1e6
+    #[arg(long, value_name = "N", default_value = "1e5", value_parser = count)]
+    steps: u64,
+    /// Sets a parameter; may be given once for each
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Initial coordinates, separated by commas [default: the system's]
+    #[arg(long, value_name = "Q,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
+    q: Option<Vec<f64>>,
+    /// Initial velocities, separated by commas [default: the system's]
+    #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
+    v: Option<Vec<f64>>,
+}
+
+/// Steps before the first estimate that is written.
+const FIRST: u64 = 100;
+/// How many times a step is longer than that of order 2 which the system has by default.
+const LONGER: f64 = 5.0;
+/// Stages of the Gauss steps, which the command has anyway.
+const STAGES: usize = 8;
+
+/// Lyapunov exponents along a run.
+pub(crate) trait Exponents {
+    /// Takes so many steps.
+    ///
+    /// # Errors
+    /// That of the step that fails.
+    fn advance(&mut self, steps: u64) -> Result<(), StepError>;
+    /// Time of the node reached last.
+    fn t(&self) -> f64;
+    /// The estimates.
+    fn exponents(&self) -> Vec<f64>;
+}
+
+impl<S, const N: usize> Exponents for Lyapunov<Gauss<S, N, STAGES>, N>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    fn advance(&mut self, steps: u64) -> Result<(), StepError> {
+        self.advance(steps)
+    }
+
+    fn t(&self) -> f64 {
+        self.run().t()
+    }
+
+    fn exponents(&self) -> Vec<f64> {
+        self.exponents()
+    }
+}
+
+/// The exponents of a system along the run of a plan.
+///
+/// # Errors
+/// What the integrator says of the initial state.
+pub(crate) fn begin<'a, S, const N: usize>(
+    system: S,
+    plan: &Plan,
+    count: usize,
+) -> Result<Box<dyn Exponents + 'a>, StepError>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N> + 'a,
+{
+    let q = vector(&plan.q, "number of coordinates")?;
+    let v = vector(&plan.v, "number of velocities")?;
+    let run = Gauss::<S, N, STAGES>::new(system, State::at(&system, plan.t, q, v), plan.h)?;
+    Ok(Box::new(Lyapunov::new(run, count)))
+}
+
+/// Writes the estimates.
+///
+/// # Errors
+/// Wrong input; a step that fails, after the estimates up to there.
+pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Failure>) -> Result<(), Failure> {
+    let Arguments { target, count, h, steps, set, q, v } = arguments;
+    let wanted = run::Arguments {
+        target: target.clone(),
+        method: Some(Method::Gauss),
+        h: *h,
+        set: set.clone(),
+        q: q.clone(),
+        v: v.clone(),
+        steps: Some(*steps),
+        ..run::Arguments::default()
+    };
+    let (system, mut plan) = run::start(&wanted)?;
+    if h.is_none() {
+        // Gauss steps are longer than those of order 2.
+        plan.h *= LONGER;
+    }
+    let most = 2 * system.coordinates().len();
+    if *count == 0 || *count > most {
+        let name = kebab(system.name());
+        return Err(Failure::Input(format!("{name} has 1 to {most} exponents (--count), not {count}")));
+    }
+    let mut exponents = system.lyapunov(&plan, *count).map_err(|error| Failure::start(error, &plan))?;
+    let names: Vec<String> = (1..=*count).map(|index| format!("λ{index}")).collect();
+    print(&format!("t,{}", names.join(",")))?;
+    let mut taken = 0;
+    let mut next = FIRST;
+    while taken < *steps {
+        let part = next.min(*steps) - taken;
+        exponents.advance(part).map_err(|error| Failure::Step {
+            error,
+            before: format!("t = {}, after {taken} steps or more", short(exponents.t())),
+            method: Some(Method::Gauss),
+        })?;
+        taken += part;
+        next *= 2;
+        let values: Vec<String> = exponents.exponents().iter().map(|value| format!("{value:.6}")).collect();
+        print(&format!("{},{}", short(exponents.t()), values.join(",")))?;
+    }
+    Ok(())
+}
