@@ -208,15 +208,14 @@ impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.reason().fmt(f)?;
         match self {
-            Self::NoForwardStep { .. } | Self::DegenerateStep { .. } => {
-                f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on")
-            }
+            Self::NoForwardStep { .. } | Self::DegenerateStep { .. } | Self::StepRatio { .. } => f.write_str(
+                "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on, and so does `EnergyPreservingGauss` with a shift",
+            ),
             Self::NoForwardGaussStep { h, largest, .. } => write!(
                 f,
                 "; `with_shift({:.3e})`, beyond the largest |D| so far, makes steps that exist here, other numbers of stages have other densities, and `with_fallback(Fallback::FixedSteps)` or `Gauss` with h = {h:.3e} goes on",
                 2.0 * largest
             ),
-            Self::StepRatio { .. } => f.write_str("; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
             Self::StepBounds { found, .. } => write!(
                 f,
                 "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"

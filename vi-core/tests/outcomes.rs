@@ -122,10 +122,24 @@ fn an_error_ends_in_what_to_do() {
     let degenerate = StepError::DegenerateStep { t: 1.0, h: 0.5, density: 0.0 };
     let ratio = StepError::StepRatio { t: 1.0, previous: 0.5, found: 2.0 };
     let bounds = StepError::StepBounds { t: 1.0, found: 0.25, h_min: 0.5, h_max: 1.0 };
+    let goes_on = "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on, and so does `EnergyPreservingGauss` with a shift";
+    let gauss = StepError::NoForwardGaussStep {
+        t: 1.0,
+        h: 0.5,
+        stages: 2,
+        excess: 2.0,
+        density: -3.0,
+        shift: 0.0,
+        largest: 4.0,
+    };
     let all = [
-        (no_step, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
-        (degenerate, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
-        (ratio, "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on"),
+        (no_step, goes_on),
+        (degenerate, goes_on),
+        (ratio, goes_on),
+        (
+            gauss,
+            "; `with_shift(8.000e0)`, beyond the largest |D| so far, makes steps that exist here, other numbers of stages have other densities, and `with_fallback(Fallback::FixedSteps)` or `Gauss` with h = 5.000e-1 goes on",
+        ),
         (
             bounds,
             "; allow 2.500e-1 by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`",
