@@ -4,8 +4,9 @@
 //! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
 
 use crate::chart::Class;
-use vi_core::stepping::{EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError};
+use vi_core::collocation::Collocation;
+use vi_core::stepping::{Convertible, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, EnergyPreservingGauss, FixedStep, SVector, State, StepError};
 
 /// When a run is over.
 #[derive(Clone, Copy, Debug)]
@@ -62,10 +63,10 @@ impl Ending {
             Self::Lasting => LASTING,
             Self::Unbounded => UNBOUNDED,
             Self::Failing(error) => match error {
-                StepError::NoForwardStep { .. } => NO_FORWARD_STEP,
+                StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => NO_FORWARD_STEP,
                 StepError::DegenerateStep { .. } => DEGENERATE_STEP,
                 StepError::StepRatio { .. } => STEP_RATIO,
-                StepError::NotConverged { .. } => NOT_CONVERGED,
+                StepError::NotConverged { .. } | StepError::StagesUnsettled { .. } => NOT_CONVERGED,
                 StepError::Singular { .. } => SINGULAR,
                 StepError::NonFinite { .. } => NON_FINITE,
                 _ => OTHER,
@@ -130,6 +131,19 @@ impl Course {
     ) -> Self {
         match EnergyPreserving::from_midpoint(system, 0.0, q, v, h) {
             Ok(mut run) => Self::of(limit, || run.step().map(|step| (step.t, step.q.amax()))),
+            Err(error) => Self::none(error),
+        }
+    }
+    /// Follows a run of energy-preserving Gauss steps.
+    pub(super) fn gauss<S, const N: usize, const STAGES: usize>(
+        run: Result<EnergyPreservingGauss<S, N, STAGES>, StepError>,
+        limit: Limit,
+    ) -> Self
+    where
+        S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    {
+        match run {
+            Ok(mut run) => Self::of(limit, || run.step().map(|state| (state.t, state.q.amax()))),
             Err(error) => Self::none(error),
         }
     }

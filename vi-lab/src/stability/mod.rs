@@ -20,6 +20,7 @@ mod damping;
 mod ending;
 mod kepler;
 mod linear;
+mod orders;
 mod quantity;
 mod resonance;
 mod roots;
@@ -39,7 +40,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Maps on the whole page.
-const MAPS: u32 = 23;
+const MAPS: u32 = 27;
 
 /// `vi-lab stability [SYSTEM]`.
 #[derive(Debug, Args)]
@@ -106,6 +107,7 @@ fn whole(arguments: &Arguments) -> Result<Report, Failure> {
     composed::section(&mut atlas)?;
     kepler::section(&mut atlas)?;
     separatrix::section(&mut atlas)?;
+    orders::section(&mut atlas)?;
     chain::section(&mut atlas)?;
     tradeoff::section(&mut atlas)?;
     Ok(atlas.into_report())
@@ -128,8 +130,8 @@ mod tests {
             .filter_map(|rest| rest.split('"').next())
             .filter(|name| !name.starts_with('#'))
             .collect();
-        // 23 maps and 4 charts, in two forms each, and a table.
-        assert_eq!(files.len(), 2 * 27 + 1);
+        // 27 maps and 4 charts, in two forms each, and a table.
+        assert_eq!(files.len(), 2 * 31 + 1);
         for name in files {
             let text = fs::read_to_string(out.join(name)).unwrap_or_default();
             assert!(text.len() > 100 && !text.contains("NaN"), "{name}");

@@ -33,11 +33,9 @@ where
 
     /// The next step; none where secants do not lead to one.
     pub(super) fn root(&mut self) -> Option<Trial<N, STAGES>> {
-        let h = self.course.predicted_length();
-        let stages = self.stages_for(h);
-        let mut best = self.trial(h, stages).ok()?;
+        let mut h = self.course.predicted_length();
+        let mut best = self.trial(h, self.stages_for(h)).ok()?;
         let mut last = best.residual;
-        let mut h = h;
         let mut slope = self.course.slope;
         let mut sweeps = best.after.convergence.sweeps;
         let mut has_stalled = false;
@@ -58,6 +56,10 @@ where
             let next = self.trial(h, best.stages_for(h)).ok()?;
             if (next.residual - last).abs() > TOLD * f64::EPSILON * next.size {
                 let measured = ((-next.residual / self.course.excess).ln_1p() - y) / factor.ln();
+                // Beyond the smallest root energies fall again.
+                if measured.is_nan() || measured <= 0.0 {
+                    return None;
+                }
                 slope = measured.clamp(0.5 * Self::SLOPE, 2.0 * Self::SLOPE);
             }
             sweeps += next.after.convergence.sweeps;
