@@ -167,35 +167,37 @@ fn a_grid_leaves_the_run_as_it_is() {
     is_undisturbed(&energy);
 }
 
+/// The largest error of a path over the first step of a run, with that of its derivative.
+fn path_error<I: Integrator<2>>(mut run: I, exact: &Gauss<Kepler, 2, 10>) -> f64 {
+    let before = run.state();
+    let after = run.step().expect("solvable");
+    let path = run.path(&before).expect("regular");
+    let at_start = distance(&path.state(before.t), &before);
+    // 8.3e-17.
+    let at_end = distance(&path.state(after.t), &after);
+    assert!(at_start == 0.0 && at_end < 1e-15, "{at_start} {at_end}");
+    let parts = [0.2, 0.37, 0.5, 0.81];
+    let errors = parts.map(|part| {
+        let t = before.t + part * (after.t - before.t);
+        let truth = exact.clone().propagate_until(t).expect("solvable");
+        let v = truth.velocity(&Kepler::default()).expect("regular");
+        // The derivative is one order lower.
+        let of_velocity = (path.velocity(t) - v).norm() * (after.t - before.t);
+        distance(&path.state(t), &truth) + of_velocity
+    });
+    errors.into_iter().fold(0.0, f64::max)
+}
+
 #[test]
 fn paths_have_their_order_and_end_at_the_nodes() {
     let kepler = Kepler::default();
     let start = planet(0.4);
-    fn worst<I: Integrator<2>>(mut run: I, exact: &Gauss<Kepler, 2, 10>) -> f64 {
-        let before = run.state();
-        let after = run.step().expect("solvable");
-        let path = run.path(&before).expect("regular");
-        let at_start = distance(&path.state(before.t), &before);
-        // 8.3e-17.
-        let at_end = distance(&path.state(after.t), &after);
-        assert!(at_start == 0.0 && at_end < 1e-15, "{at_start} {at_end}");
-        let parts = [0.2, 0.37, 0.5, 0.81];
-        let errors = parts.map(|part| {
-            let t = before.t + part * (after.t - before.t);
-            let truth = exact.clone().propagate_until(t).expect("solvable");
-            let v = truth.velocity(&Kepler::default()).expect("regular");
-            // The derivative is one order lower.
-            let of_velocity = (path.velocity(t) - v).norm() * (after.t - before.t);
-            distance(&path.state(t), &truth) + of_velocity
-        });
-        errors.into_iter().fold(0.0, f64::max)
-    }
     let exact = Gauss::<_, 2, 10>::new(kepler, start, 0.05).expect("valid");
     let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
     // Of S stages: of order S + 1 over one step, its velocity too; of cubics that of the step, 3. Measured: 3.988, 4.976, 3.016.
-    let three = slope(&|h| worst(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid"), &exact));
-    let four = slope(&|h| worst(Gauss::<_, 2, 4>::new(kepler, start, h).expect("valid"), &exact));
-    let cubic = slope(&|h| worst(FixedStep::new(kepler, start, h).expect("valid"), &exact));
+    let three = slope(&|h| path_error(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid"), &exact));
+    let four = slope(&|h| path_error(Gauss::<_, 2, 4>::new(kepler, start, h).expect("valid"), &exact));
+    let cubic = slope(&|h| path_error(FixedStep::new(kepler, start, h).expect("valid"), &exact));
     assert!((three - 4.0).abs() < 0.2, "{three}");
     assert!((four - 5.0).abs() < 0.2, "{four}");
     assert!((cubic - 3.0).abs() < 0.2, "{cubic}");
@@ -360,16 +362,18 @@ fn a_section_of_henon_and_heiles() {
     }
 }
 
+/// Goes on to the next impact, turns the momentum round, and returns the time.
+fn bounce<I: Integrator<1>>(run: &mut I, hits: &[Event<'_, 1>]) -> f64 {
+    let hit = run.next_event(hits, 100.0).expect("solvable").expect("it falls");
+    run.set_state(State { p: -hit.state.p, ..hit.state }).expect("valid");
+    hit.state.t
+}
+
 #[test]
 fn a_ball_bounces() {
     let ball = Ball::default();
     let floor = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
     let hits = [Event::new(&floor, Direction::Falling)];
-    fn bounce<I: Integrator<1>>(run: &mut I, hits: &[Event<'_, 1>]) -> f64 {
-        let hit = run.next_event(hits, 100.0).expect("solvable").expect("it falls");
-        run.set_state(State { p: -hit.state.p, ..hit.state }).expect("valid");
-        hit.state.t
-    }
     let mut run = FixedStep::new(ball, State::at(&ball, 0.0, [1.3], [0.0]), 0.037).expect("valid");
     let fall = (2.0_f64 * 1.3 / 9.81).sqrt();
     for count in 0..20 {
@@ -380,33 +384,35 @@ fn a_ball_bounces() {
     }
 }
 
+/// The largest difference between a step after changed parameters and the first step of a new run from there.
+fn difference<I: Integrator<1, System = Pushed>>(mut run: I, anew: impl Fn(Pushed, State<1>) -> I) -> f64 {
+    let mut worst = 0.0_f64;
+    for step in 0..200 {
+        let u = (0.7 * f64::from(step)).sin() + if step % 50 < 25 { 1.0 } else { -1.0 };
+        run.set_parameters(|system| {
+            system.u = u;
+            system.k = 2.3 + 0.5 * u;
+        })
+        .expect("regular");
+        let fresh = anew(*run.system(), run.state()).step().expect("solvable");
+        let state = run.step().expect("solvable");
+        worst = worst.max(distance(&fresh, &state));
+    }
+    worst
+}
+
 #[test]
 fn changed_parameters_are_those_of_a_new_run() {
     let system = Pushed::default();
     let start = State::at(&system, 0.0, [0.4], [0.2]);
-    fn differ<I: Integrator<1, System = Pushed>>(mut run: I, anew: impl Fn(Pushed, State<1>) -> I) -> f64 {
-        let mut worst = 0.0_f64;
-        for step in 0..200 {
-            let u = (0.7 * f64::from(step)).sin() + if step % 50 < 25 { 1.0 } else { -1.0 };
-            run.set_parameters(|system| {
-                system.u = u;
-                system.k = 2.3 + 0.5 * u;
-            })
-            .expect("regular");
-            let fresh = anew(*run.system(), run.state()).step().expect("solvable");
-            let state = run.step().expect("solvable");
-            worst = worst.max(distance(&fresh, &state));
-        }
-        worst
-    }
     let fixed = |system, state| FixedStep::new(system, state, 0.1).expect("valid");
     let composed = |system, state| Composition::new(system, Scheme::SUZUKI_4, state, 0.1).expect("valid");
     let gauss = |system, state| Gauss::<_, 1, 4>::new(system, state, 0.1).expect("valid");
     // 1.0e-15, 1.0e-15, 9.5e-16: the residuals of two guesses, and what sums carry below an ulp.
     let errors = [
-        differ(fixed(system, start), fixed),
-        differ(composed(system, start), composed),
-        differ(gauss(system, start), gauss),
+        difference(fixed(system, start), fixed),
+        difference(composed(system, start), composed),
+        difference(gauss(system, start), gauss),
     ];
     assert!(errors.into_iter().all(|error| error < 3e-15), "{errors:?}");
 }
@@ -438,46 +444,50 @@ fn the_energy_that_a_change_brings_is_accounted_for() {
     assert!(difference.abs() < 1e-4, "{difference}");
 }
 
+/// Asserts that a run refuses parameters and states with which nothing moves, and goes on.
+fn refuses<I: Integrator<1, System = Pushed>>(mut run: I) {
+    run.step().expect("solvable");
+    let state = run.state();
+    for m in [0.0, f64::NAN] {
+        let refused = run.set_parameters(|system| system.m = m);
+        assert!(matches!(refused, Err(StepError::Singular { .. } | StepError::NonFinite { .. })), "{refused:?}");
+    }
+    assert_eq!((run.state(), run.system().m.to_bits()), (state, 1.7_f64.to_bits()));
+    run.step().expect("the run goes on");
+    let lost = State { q: SVector::from([f64::NAN]), ..state };
+    assert!(matches!(run.set_state(lost), Err(StepError::NonFinite { .. })));
+    run.step().expect("the run goes on");
+}
+
 #[test]
 fn parameters_with_which_nothing_moves_are_refused() {
     let system = Pushed::default();
     let start = State::at(&system, 0.0, [0.4], [0.2]);
-    fn refuses<I: Integrator<1, System = Pushed>>(mut run: I) {
-        run.step().expect("solvable");
-        let state = run.state();
-        for m in [0.0, f64::NAN] {
-            let refused = run.set_parameters(|system| system.m = m);
-            assert!(matches!(refused, Err(StepError::Singular { .. } | StepError::NonFinite { .. })), "{refused:?}");
-        }
-        assert_eq!((run.state(), run.system().m.to_bits()), (state, 1.7_f64.to_bits()));
-        run.step().expect("the run goes on");
-        let lost = State { q: SVector::from([f64::NAN]), ..state };
-        assert!(matches!(run.set_state(lost), Err(StepError::NonFinite { .. })));
-        run.step().expect("the run goes on");
-    }
     refuses(FixedStep::new(system, start, 0.1).expect("valid"));
     refuses(Composition::new(system, Scheme::SUZUKI_4, start, 0.1).expect("valid"));
     refuses(Gauss::<_, 1, 4>::new(system, start, 0.1).expect("valid"));
     refuses(EnergyPreserving::from_midpoint(system, 0.0, [0.4], [0.2], 0.05).expect("valid"));
 }
 
+/// The largest error of the energy at the nodes up to t = 7.
+fn largest_error_of_energy<I: Integrator<2>>(mut run: I) -> f64 {
+    let first = run.energy().expect("regular");
+    let mut worst = 0.0_f64;
+    while run.t() < 7.0 {
+        run.step().expect("solvable");
+        worst = worst.max((run.energy().expect("regular") - first).abs());
+    }
+    worst
+}
+
 #[test]
 fn energies_at_nodes_are_of_order_2_and_2s() {
     let kepler = Kepler::default();
     let start = planet(0.3);
-    fn worst<I: Integrator<2>>(mut run: I) -> f64 {
-        let first = run.energy().expect("regular");
-        let mut worst = 0.0_f64;
-        while run.t() < 7.0 {
-            run.step().expect("solvable");
-            worst = worst.max((run.energy().expect("regular") - first).abs());
-        }
-        worst
-    }
     let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
-    let two = slope(&|h| worst(FixedStep::new(kepler, start, h).expect("valid")));
-    let four = slope(&|h| worst(Gauss::<_, 2, 2>::new(kepler, start, h).expect("valid")));
-    let six = slope(&|h| worst(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid")));
+    let two = slope(&|h| largest_error_of_energy(FixedStep::new(kepler, start, h).expect("valid")));
+    let four = slope(&|h| largest_error_of_energy(Gauss::<_, 2, 2>::new(kepler, start, h).expect("valid")));
+    let six = slope(&|h| largest_error_of_energy(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid")));
     // 2.000, 3.995, 6.003.
     assert!((two - 2.0).abs() < 0.2 && (four - 4.0).abs() < 0.2 && (six - 6.0).abs() < 0.3, "{two} {four} {six}");
 }
