@@ -21,12 +21,14 @@ pub(crate) use assignments;
 
 pub(crate) mod dual;
 mod lane;
+mod lanes;
 mod rounded;
 mod series;
 pub mod sine;
 
 pub use dual::Dual;
 pub use lane::Lane;
+pub use lanes::Lanes;
 pub use rounded::Rounded;
 pub use series::Series;
 

@@ -10,19 +10,19 @@
 //! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
-use super::stages::{Stages, change, constant_mass, product, scaled, set, stage, time, weights};
+use super::stages::{AtStages, Stages, change, constant_mass, gathered, product, scaled, scatter, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::{Lane, Real};
+use crate::real::Lane;
 use nalgebra::{SMatrix, SVector};
 
 /// The equations of a step; see the [module](self).
 pub(super) struct General<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
 where
-    T: Real,
+    T: AtStages<S>,
 {
     system: &'a Y,
     node: &'a Node<N>,
@@ -38,7 +38,7 @@ where
 
 impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> General<'a, T, Y, N, S, FUSED>
 where
-    T: Real,
+    T: AtStages<S>,
     Y: Collocation<N, T>,
 {
     /// The equations of the step of length h from `node`, with a guess of the velocities at its stages.
@@ -53,9 +53,9 @@ where
         let zeros = [[0.0; S]; N];
         let mut equations = Self { force, ..Self::new(system, node, h, zeros) };
         let momentum = equations.missing(&zeros);
-        for i in 0..S {
+        for i in 0..T::EVALUATIONS {
             if let Some(mass) = &equations.mass {
-                set(&mut equations.velocity, i, &mass.solve_unchecked(&stage::<N, S, T>(&momentum, i)));
+                scatter(&mut equations.velocity, i, &mass.solve_unchecked(&gathered::<N, S, T>(&momentum, i)));
             }
         }
         equations
@@ -112,10 +112,10 @@ where
         force: &mut Stages<N, S>,
         momentum: &mut Stages<N, S>,
     ) -> Y::Mass {
-        let t = time::<N, S, FUSED, T>(self.node, self.h, i);
-        let point = self.system.point(t, &stage(x, i), &stage(velocity, i));
-        set(force, i, &point.force);
-        set(momentum, i, &point.momentum);
+        let t = T::of(&times::<N, S, FUSED>(self.node, self.h), i);
+        let point = self.system.point(t, &gathered(x, i), &gathered(velocity, i));
+        scatter(force, i, &point.force);
+        scatter(momentum, i, &point.momentum);
         point.mass
     }
 
@@ -127,7 +127,7 @@ where
         let x = *x;
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
-        for i in 0..S {
+        for i in 0..T::EVALUATIONS {
             self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
         }
         self.evaluated = velocity;
@@ -143,12 +143,12 @@ where
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
         let mut inverse = [[[0.0; S]; N]; N];
-        for i in 0..S {
+        for i in 0..T::EVALUATIONS {
             let mass = self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
             let columns = mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
             for k in 0..N {
                 for l in 0..N {
-                    inverse[k][l][i] = columns[(k, l)].to_f64();
+                    columns[(k, l)].put(&mut inverse[k][l], i);
                 }
             }
         }
@@ -172,9 +172,9 @@ where
     fn sweep_constant(&mut self, mass: Y::Mass, x: &Stages<N, S>) {
         let missing = self.evaluate(x);
         let mut correction = [[0.0; S]; N];
-        for i in 0..S {
-            let solved = mass.solve_unchecked(&stage::<N, S, T>(&missing, i));
-            set(&mut correction, i, &solved);
+        for i in 0..T::EVALUATIONS {
+            let solved = mass.solve_unchecked(&gathered::<N, S, T>(&missing, i));
+            scatter(&mut correction, i, &solved);
         }
         self.correct(&correction);
     }
@@ -196,7 +196,7 @@ where
 
 impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for General<'_, T, Y, N, S, FUSED>
 where
-    T: Real,
+    T: AtStages<S>,
     Y: Collocation<N, T>,
 {
     const PATIENCE: u32 = 5;

@@ -53,7 +53,7 @@ use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
 use crate::node::Node;
-use crate::real::{Lane, Real, Rounded};
+use crate::real::{Lane, Lanes, Rounded};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
 use energies::energies;
@@ -64,7 +64,7 @@ use newton::{Newton, Stiff};
 pub use polynomial::Polynomial;
 use separable::Separable;
 pub use slots::Slots;
-use stages::{Stages, extrapolated, stage};
+use stages::{AtStages, Stages, extrapolated, stage};
 use sweep::{Convergence, Equations, Increment, Sweeps};
 use vi_dispatch::{Instructions, Loop};
 
@@ -317,6 +317,9 @@ impl<const N: usize, const S: usize> Run<N, S> {
     }
 }
 
+/// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
+const LOOPED: usize = 3;
+
 /// Steps by Newton's iteration after which sweeps are tried again, at most.
 const MOST: u32 = 64;
 
@@ -359,6 +362,10 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N,
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Solved<N, S> {
+        if N > LOOPED {
+            let system = self.system.convert::<Lanes<S, FUSED>>();
+            return solved::<Lanes<S, FUSED>, _, N, S, FUSED>(&system, self.run);
+        }
         let system = self.system.convert::<Lane<FUSED>>();
         solved::<Lane<FUSED>, _, N, S, FUSED>(&system, self.run)
     }
@@ -368,7 +375,7 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N,
 #[inline(always)]
 fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(system: &Y, run: &Run<N, S>) -> Solved<N, S>
 where
-    T: Real,
+    T: AtStages<S>,
     Y: Collocation<N, T>,
 {
     let guess = run.guess::<FUSED>();

@@ -9,19 +9,19 @@
 //!
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
-use super::stages::{Stages, constant_mass, product, scaled, set, stage, time, weights};
+use super::stages::{AtStages, Stages, constant_mass, gathered, product, scaled, scatter, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::{Lane, Real};
+use crate::real::Lane;
 use nalgebra::SVector;
 
 /// The equations of a step; see the [module](self).
 pub(super) struct Separable<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
 where
-    T: Real,
+    T: AtStages<S>,
 {
     system: &'a Y,
     node: &'a Node<N>,
@@ -34,7 +34,7 @@ where
 
 impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> Separable<'a, T, Y, N, S, FUSED>
 where
-    T: Real,
+    T: AtStages<S>,
     Y: Collocation<N, T>,
 {
     /// The equations of the step of length h from `node`, with a guess of the forces at its stages.
@@ -60,10 +60,12 @@ where
             momenta[k] = product::<S, FUSED>(second, &scaled(&weights, &self.force[k]), &self.drift[k]);
         }
         let mut x = [[0.0; S]; N];
-        for i in 0..S {
-            let velocity = self.mass.solve_unchecked(&stage::<N, S, T>(&momenta, i));
-            for k in 0..N {
-                let displacement = Lane::<FUSED>::multiply_add(self.h, velocity[k].to_f64(), self.node.q_low[k]);
+        for i in 0..T::EVALUATIONS {
+            scatter(&mut x, i, &self.mass.solve_unchecked(&gathered::<N, S, T>(&momenta, i)));
+        }
+        for k in 0..N {
+            for i in 0..S {
+                let displacement = Lane::<FUSED>::multiply_add(self.h, x[k][i], self.node.q_low[k]);
                 x[k][i] = self.node.q[k] + displacement;
             }
         }
@@ -73,7 +75,7 @@ where
 
 impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Separable<'_, T, Y, N, S, FUSED>
 where
-    T: Real,
+    T: AtStages<S>,
     Y: Collocation<N, T>,
 {
     const PATIENCE: u32 = 5;
@@ -86,10 +88,10 @@ where
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
         let rest = SVector::zeros();
-        for i in 0..S {
-            let t = time::<N, S, FUSED, T>(self.node, self.h, i);
-            let point = self.system.point(t, &stage(x, i), &rest);
-            set(&mut self.force, i, &point.force);
+        let times = times::<N, S, FUSED>(self.node, self.h);
+        for i in 0..T::EVALUATIONS {
+            let point = self.system.point(T::of(&times, i), &gathered(x, i), &rest);
+            scatter(&mut self.force, i, &point.force);
         }
         self.positions()
     }

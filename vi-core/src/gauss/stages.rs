@@ -6,11 +6,82 @@
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::node::Node;
-use crate::real::{Lane, Real};
+use crate::real::{Lane, Lanes, Real};
 use nalgebra::SVector;
 
 /// N vectors of S stages.
 pub(super) type Stages<const N: usize, const S: usize> = [[f64; S]; N];
+
+/// A number by which stages are evaluated: one at a time, or all at once.
+pub(super) trait AtStages<const S: usize>: Real {
+    /// Evaluations of all stages.
+    const EVALUATIONS: usize;
+    /// The number of an evaluation.
+    fn of(row: &[f64; S], evaluation: usize) -> Self;
+    /// Sets the number of an evaluation.
+    fn put(self, row: &mut [f64; S], evaluation: usize);
+}
+
+macro_rules! one_at_a_time {
+    ($([$($parameter:tt)*] $number:ty),*) => {$(
+        impl<const S: usize $($parameter)*> AtStages<S> for $number {
+            const EVALUATIONS: usize = S;
+            #[inline(always)]
+            fn of(row: &[f64; S], evaluation: usize) -> Self { Self::real(row[evaluation]) }
+            #[inline(always)]
+            fn put(self, row: &mut [f64; S], evaluation: usize) { row[evaluation] = self.to_f64(); }
+        }
+    )*};
+}
+
+one_at_a_time!([] f64, [, const FUSED: bool] Lane<FUSED>);
+
+impl<const S: usize, const FUSED: bool> AtStages<S> for Lanes<S, FUSED> {
+    const EVALUATIONS: usize = 1;
+    #[inline(always)]
+    fn of(row: &[f64; S], _evaluation: usize) -> Self {
+        Self(*row)
+    }
+    #[inline(always)]
+    fn put(self, row: &mut [f64; S], _evaluation: usize) {
+        *row = self.0;
+    }
+}
+
+/// The vector of an evaluation.
+#[inline(always)]
+pub(super) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
+    of: &Stages<N, S>,
+    evaluation: usize,
+) -> SVector<T, N> {
+    let mut vector = [T::zero(); N];
+    for k in 0..N {
+        vector[k] = T::of(&of[k], evaluation);
+    }
+    vector.into()
+}
+
+/// Sets the vector of an evaluation.
+#[inline(always)]
+pub(super) fn scatter<const N: usize, const S: usize, T: AtStages<S>>(
+    stages: &mut Stages<N, S>,
+    evaluation: usize,
+    vector: &SVector<T, N>,
+) {
+    for k in 0..N {
+        vector[k].put(&mut stages[k], evaluation);
+    }
+}
+
+/// The times of all stages of the step of length h from `node`.
+#[inline(always)]
+pub(super) fn times<const N: usize, const S: usize, const FUSED: bool>(node: &Node<N>, h: f64) -> [f64; S] {
+    let mut times = [0.0; S];
+    for (i, t) in times.iter_mut().enumerate() {
+        *t = time::<N, S, FUSED, f64>(node, h, i);
+    }
+    times
+}
 
 /// The vector of one stage.
 #[inline(always)]
