@@ -327,7 +327,7 @@ impl<I: Integrator<2, System = Everything>> Objective<I, 2> for Course {
 
     fn slope(&self, step: u64, state: &State<2>) -> Covector<2> {
         let weight = if step.is_multiple_of(3) { 1.0 } else { 0.5 };
-        Covector { q: state.q * (2.0 * weight), p: state.p * weight, energy: 0.0 }
+        Covector { q: state.q * (2.0 * weight), p: state.p * weight, ..Covector::zero() }
     }
 }
 
@@ -448,4 +448,86 @@ fn exponents_of_chaotic_motion() {
         assert!((pairs[0] + pairs[3]).abs() + (pairs[1] + pairs[2]).abs() < 1e-2, "{pairs:?}");
         assert!(pairs.iter().sum::<f64>().abs() < 1e-10, "{pairs:?}");
     }
+}
+
+/// The coordinate after some steps, whose parameter a is an input of each step.
+struct Driven {
+    inputs: [f64; 12],
+}
+
+impl<I: Integrator<2, System = Everything>> Objective<I, 2> for Driven {
+    fn prepare(&self, step: u64, run: &mut I) -> Result<(), StepError> {
+        let input = self.inputs[usize::try_from(step).unwrap_or(usize::MAX)];
+        run.set_parameters(|system| system.a = input)
+    }
+
+    fn parameters(&self) -> &[&str] {
+        &["a"]
+    }
+
+    fn slope(&self, step: u64, _: &State<2>) -> Covector<2> {
+        let last = if step == 12 { 1.0 } else { 0.0 };
+        Covector { q: SVector::from([last, 0.5 * last]), ..Covector::zero() }
+    }
+}
+
+impl Driven {
+    fn value<I: Integrator<2, System = Everything>>(&self, run: &I) -> f64 {
+        let mut run = run.clone();
+        for step in 0..12 {
+            self.prepare(step, &mut run).expect("regular");
+            run.step().expect("solvable");
+        }
+        run.state().q[0] + 0.5 * run.state().q[1]
+    }
+}
+
+#[test]
+fn gradients_of_inputs_that_bring_energy() {
+    fn worst<I: Differentiable<2, System = Everything>>(run: &I) -> f64 {
+        let inputs: [f64; 12] = core::array::from_fn(|k| 1.4 + 0.01 * (k as f64).sin());
+        let found = gradient(run, 12, 3, &Driven { inputs }).expect("solvable");
+        let mut worst = 0.0_f64;
+        for step in 0..12 {
+            let value = |change: f64| {
+                let mut inputs = inputs;
+                inputs[step] += change;
+                Driven { inputs }.value(run)
+            };
+            const NEAR: f64 = 1e-4;
+            let difference = (value(NEAR) - value(-NEAR)) / (2.0 * NEAR);
+            assert!(difference.abs() > 1e-6, "step {step} changes nothing");
+            worst = worst.max((found.parameters[step][0] - difference).abs() / difference.abs());
+        }
+        // The start: another state brings the energy H, whatever is kept.
+        let start = run.state();
+        let value = |dp: f64| {
+            let mut run = run.clone();
+            run.set_state(State { p: start.p + SVector::from([dp, 0.0]), ..start }).expect("valid");
+            Driven { inputs }.value(&run)
+        };
+        let v = run.velocity().expect("regular");
+        let difference = (value(1e-5) - value(-1e-5)) / 2e-5;
+        worst.max((found.start.p[0] + found.start.energy * v[0] - difference).abs() / difference.abs())
+    }
+    let system = Everything::default();
+    let start = State::at(&system, 0.1, [0.6, -0.4], [0.3, 0.5]);
+    let kept = EnergyPreserving::from_midpoint(system, 0.1, [0.6, -0.4], [0.3, 0.5], 0.05).expect("valid");
+    let errors = [worst(&FixedStep::new(system, start, 0.1).expect("valid")), worst(&kept)];
+    // 5.2e-9 and 1.8e-8: what the differences lack.
+    assert!(errors.into_iter().all(|error| error < 1e-7), "{errors:?}");
+}
+
+#[test]
+fn exponents_of_steps_that_find_their_length_are_those_of_the_tangent_map() {
+    // Where time and force act, a direction is that of the time and of the energy too.
+    let run =
+        EnergyPreserving::from_midpoint(Everything::default(), 0.1, [0.6, -0.4], [0.3, 0.5], 0.02).expect("valid");
+    let mut lyapunov = Lyapunov::new(run.clone(), 4);
+    lyapunov.advance(20).expect("solvable");
+    let (end, map) = tangent_map(run.clone(), 20);
+    let found = lyapunov.exponents().iter().sum::<f64>() * (end.t() - run.t());
+    let volume = map.determinant().abs().ln();
+    // 3.5, to 5.1e-12.
+    assert!(volume.abs() > 1e-3 && (found - volume).abs() < 5e-11, "{found} {volume}");
 }

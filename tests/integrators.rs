@@ -524,3 +524,121 @@ fn the_motion_goes_on_after_a_step_that_failed() {
     assert!(run.step().is_ok());
     assert_eq!(<Kepler as Lagrangian<2>>::NAME, "Kepler");
 }
+
+/// Times of the events of a function, met one by one and in one search; largest |g| there.
+fn met<I: Integrator<1>>(run: &I, wanted: &[Event<'_, 1>], until: f64) -> ([usize; 2], f64) {
+    let mut one_by_one = run.clone();
+    let mut times = Vec::new();
+    while let Some(crossing) = one_by_one.next_event(wanted, until).expect("the run goes on") {
+        times.push(crossing.state.t);
+        assert!(times.len() < 100, "the same event again: {times:?}");
+    }
+    let together: Vec<f64> =
+        run.clone().events(wanted, until).map(|crossing| crossing.expect("the run goes on").state.t).collect();
+    let apart = times.iter().zip(&together).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    ([times.len(), together.len()], apart)
+}
+
+#[test]
+fn functions_that_are_flat_steep_or_jump_are_met_once() {
+    let functions: [&dyn Fn(f64) -> f64; 7] = [
+        &|x| x,
+        &|x| x.powi(3),
+        &|x| x.powi(5),
+        &|x| x.abs().sqrt().copysign(x),
+        &|x| (1e6 * x).atan(),
+        &|x| 1.0_f64.copysign(x),
+        &|x| 1e-320 * x,
+    ];
+    let oscillator = HarmonicOscillator::default();
+    let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
+    let omega = (oscillator.energy(0.0, &start.q, &SVector::zeros()) * 2.0).sqrt();
+    let until = 10.0 / omega;
+    for g in functions {
+        let of_position = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| g(q[0]);
+        let of_velocity = |_: f64, _: &SVector<f64, 1>, v: &SVector<f64, 1>| g(v[0]);
+        for wanted in [Event::new(&of_position, Direction::Both), Event::new(&of_velocity, Direction::Both)] {
+            let found = [
+                met(&FixedStep::new(oscillator, start, 0.1 / omega).expect("valid"), &[wanted], until),
+                met(&Gauss::<_, 1, 4>::new(oscillator, start, 0.3 / omega).expect("valid"), &[wanted], until),
+            ];
+            assert_eq!(found[1].0, [3, 3]);
+            assert_eq!(found[0].0, [3, 3]);
+            // Steps of order 8: 5e-9.
+            assert!(found[1].1 < 1e-7, "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn an_event_at_the_end_of_a_search_is_met_once() {
+    let body = Pushed { k: 0.0, ..Pushed::default() };
+    let mut seen = 0;
+    for n in [7.0, 10.0, 13.0, 16.0, 32.0, 33.0, 100.0] {
+        for h in [1.0 / n, 1.01 / n, 0.77 / n] {
+            let of_time = |t: f64, _: &SVector<f64, 1>, _: &SVector<f64, 1>| t - 1.0;
+            let wanted = [Event::new(&of_time, Direction::Both)];
+            let mut run = Gauss::<_, 1, 3>::new(body, State::at(&body, 0.0, [0.3], [0.2]), h).expect("valid");
+            let mut count = 0;
+            for until in [1.0, 2.0] {
+                for crossing in run.events(&wanted, until) {
+                    assert!((crossing.expect("the run goes on").state.t - 1.0).abs() < 1e-15);
+                    count += 1;
+                }
+                assert_eq!(run.t(), until);
+            }
+            assert_eq!(count, 1, "steps of {h}");
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 21);
+}
+
+#[test]
+fn far_from_zero_a_rounding_of_the_time_is_many_steps() {
+    // At 1e15 times lie 0.125 apart.
+    let oscillator = HarmonicOscillator::default();
+    let h = 1e-3;
+    let near = State::at(&oscillator, 0.0, [1.0], [0.0]);
+    let far = State { t: 1e15, ..near };
+    let position = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
+    let wanted = [Event::new(&position, Direction::Both)];
+    fn both<I: Integrator<1>>(mut run: I, wanted: &[Event<'_, 1>]) -> [f64; 3] {
+        let start = run.state();
+        let state = run.clone().propagate_until(start.t + 0.125).expect("the run goes on");
+        let crossing = run.next_event(wanted, start.t + 10.0).expect("the run goes on").expect("one");
+        let mut run = run.clone();
+        let before = run.state();
+        run.step().expect("the run goes on");
+        let velocity = run.path(&before).expect("regular").velocity(before.t);
+        [state.q[0], crossing.length, velocity[0]]
+    }
+    let fixed = [near, far].map(|state| both(FixedStep::new(oscillator, state, h).expect("valid"), &wanted));
+    let gauss = [near, far].map(|state| both(Gauss::<_, 1, 4>::new(oscillator, state, h).expect("valid"), &wanted));
+    for [near, far] in [fixed, gauss] {
+        let difference = near.iter().zip(far).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // 2e-14.
+        assert!(difference < 1e-12, "{near:?} {far:?}");
+    }
+}
+
+#[test]
+fn a_bound_of_the_step_leads_beyond_no_time() {
+    let oscillator = HarmonicOscillator::default();
+    let run = EnergyPreserving::from_midpoint(oscillator, 0.0, [1.0], [0.0], 0.001).expect("valid");
+    let mut run = run.with_fallback(vi_core::Fallback::FixedSteps).with_step_bounds(0.1, 1.0).expect("valid");
+    for t in [0.05, 0.5] {
+        assert_eq!(run.propagate_until(t).map(|state| state.t), Ok(t));
+    }
+}
+
+#[test]
+fn a_time_nearer_than_the_smallest_step_is_here() {
+    let oscillator = HarmonicOscillator::default();
+    let mut run = FixedStep::new(oscillator, State::at(&oscillator, 0.0, [1.0], [0.0]), 0.1).expect("valid");
+    assert_eq!(run.propagate_until(1e-310).map(|state| state.t), Ok(1e-310));
+    assert_eq!(
+        run.propagate_grid(&[2e-310, 0.1]).map(|state| state.map(|state| state.t)).collect::<Vec<_>>(),
+        [Ok(2e-310), Ok(0.1)]
+    );
+}

@@ -270,7 +270,7 @@ where
     }
 
     fn path(&self, before: &State<N>) -> Result<Hermite<N>, StepError> {
-        Hermite::between(&self.system, before, &self.state())
+        Hermite::between(&self.system, before, &self.state(), self.h())
     }
 
     fn checkpoint(&self) -> Checkpoint<N> {

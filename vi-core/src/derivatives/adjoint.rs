@@ -6,18 +6,27 @@
 //! λ_K = ∂g_K/∂z        λ_k = (∂z_{k+1}/∂z_k)ᵀ λ_{k+1} + ∂g_k/∂z        ∂J/∂θ_k = (∂z_{k+1}/∂θ)ᵀ λ_{k+1}
 //! ```
 //!
+//! z the time, coordinates and momenta, and the energy E that an energy-preserving run keeps. Parameters change as by
+//! [`crate::Integrator::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
+//!
 //! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, or more where the caller allows it, and one more
-//! run of work (Griewank and Walther, *Evaluating Derivatives*, chapter 12). The derivative of a step costs 2N directions, and one for each parameter that is asked for.
+//! run of work (Griewank and Walther, *Evaluating Derivatives*, chapter 12). The derivative of a step costs 2N + 1 directions, and one for each parameter that is asked for.
 
 use super::steps::Differentiable;
 use super::variation::Variation;
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::node::Node;
+use crate::real::Dual;
 use crate::state::State;
+use crate::stepping::Convertible;
 use nalgebra::SVector;
 
 /// How fast a number changes with a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Covector<const N: usize> {
+    /// By the time.
+    pub t: f64,
     /// By the coordinates.
     pub q: SVector<f64, N>,
     /// By the momenta.
@@ -30,13 +39,14 @@ impl<const N: usize> Covector<N> {
     /// That of what does not depend on the node.
     #[must_use]
     pub fn zero() -> Self {
-        Self { q: SVector::zeros(), p: SVector::zeros(), energy: 0.0 }
+        Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0 }
     }
 
     /// What a variation changes the number by.
     #[must_use]
     pub fn of(&self, variation: &Variation<N>) -> f64 {
-        self.q.dot(&variation.q) + self.p.dot(&variation.p) + self.energy * variation.energy
+        let of_energy = self.energy * variation.energy;
+        self.q.dot(&variation.q) + self.p.dot(&variation.p) + of_energy + self.t * variation.t
     }
 }
 
@@ -63,7 +73,7 @@ pub struct Gradient<const N: usize> {
     /// By the node at the start.
     pub start: Covector<N>,
     /// By the parameters of each step, a row a step, in the order of [`Objective::parameters`]. Their sum is the gradient by parameters that do
-    /// not change on the way.
+    /// not change on the way, where the energy that a run keeps gains what H gains by them at the start.
     pub parameters: Vec<Vec<f64>>,
 }
 
@@ -80,6 +90,7 @@ pub fn gradient<I, const N: usize>(
 ) -> Result<Gradient<N>, StepError>
 where
     I: Differentiable<N>,
+    I::System: Convertible<N>,
 {
     let stride = stride(steps, kept);
     let mut stations = vec![run.clone()];
@@ -93,12 +104,14 @@ where
     }
     let mut slope = objective.slope(steps, &ahead.state());
     let mut directions = Variation::of_state();
+    directions.push(Variation { t: 1.0, ..Variation::zero() });
     if I::KEEPS_ENERGY {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
     }
     directions.extend(objective.parameters().iter().filter_map(|name| Variation::of_parameter::<I::System>(name)));
     let mut variations = directions.clone();
     let mut parameters = Vec::new();
+    let mut inherited = vec![0.0; directions.len()];
     let mut last = steps;
     while let Some(station) = stations.pop() {
         let first = last.saturating_sub(1) / stride * stride;
@@ -109,9 +122,24 @@ where
             let [before, after] = [&runs[pair], &runs[pair + 1]];
             variations.clone_from_slice(&directions);
             after.vary(before.node(), &mut variations)?;
-            let (back, of_parameters) = pulled_back::<I, N>(&variations, &slope);
+            let mut changes: Vec<f64> = variations.iter().map(|variation| slope.of(variation)).collect();
+            if I::KEEPS_ENERGY {
+                let state = before.state();
+                let gained = changes_of_energy(after.system(), &state, &directions)?;
+                let lost = changes_of_energy(before.system(), &state, &directions)?;
+                // The parameters that the step found are those of the step before.
+                let of_energy = changes[2 * N + 1];
+                for (index, change) in changes.iter_mut().enumerate() {
+                    let is_of_state = index < 2 * N + 2;
+                    let own = of_energy * lost[index];
+                    let lost = if is_of_state { own } else { core::mem::replace(&mut inherited[index], own) };
+                    *change += of_energy * gained[index] - lost;
+                }
+            }
+            let (back, of_parameters) = sorted::<I, N>(&changes);
             let own = objective.slope(step, &before.state());
-            slope = Covector { q: back.q + own.q, p: back.p + own.p, energy: back.energy + own.energy };
+            slope =
+                Covector { t: back.t + own.t, q: back.q + own.q, p: back.p + own.p, energy: back.energy + own.energy };
             parameters.push(of_parameters);
         }
         last = first;
@@ -142,15 +170,32 @@ fn between<I: Differentiable<N>, const N: usize>(
     Ok(runs)
 }
 
-/// The covector at the start of a step, of one at its end, and what the parameters of the step change the number by; from the variations of all directions.
-fn pulled_back<I: Differentiable<N>, const N: usize>(
-    variations: &[Variation<N>],
-    slope: &Covector<N>,
-) -> (Covector<N>, Vec<f64>) {
-    let mut changes = variations.iter().map(|variation| slope.of(variation));
+/// What H at a state changes by in each direction: `v·δp − δL`, v fixed.
+fn changes_of_energy<S, const N: usize>(
+    system: &S,
+    state: &State<N>,
+    directions: &[Variation<N>],
+) -> Result<Vec<f64>, StepError>
+where
+    S: Lagrangian<N> + Convertible<N>,
+{
+    let v = state.velocity(system)?;
+    let node = Node::new(*state, 0.0);
+    let change = |direction: &Variation<N>| {
+        let node = direction.node(&node);
+        let varied = direction.system(system).lagrangian(node.t, &node.q, &v.map(Dual::fixed));
+        v.dot(&direction.p) - varied.slope
+    };
+    Ok(directions.iter().map(change).collect())
+}
+
+/// What a number changes by in all directions, sorted: the covector at the start of a step, and the changes by the parameters of the step.
+fn sorted<I: Differentiable<N>, const N: usize>(changes: &[f64]) -> (Covector<N>, Vec<f64>) {
+    let mut changes = changes.iter().copied();
     let mut next = || changes.next().unwrap_or(0.0);
     let q = SVector::from_fn(|_, _| next());
     let p = SVector::from_fn(|_, _| next());
+    let t = next();
     let energy = if I::KEEPS_ENERGY { next() } else { 0.0 };
-    (Covector { q, p, energy }, changes.collect())
+    (Covector { t, q, p, energy }, changes.collect())
 }

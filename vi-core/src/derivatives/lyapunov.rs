@@ -83,10 +83,15 @@ fn orthogonalize<const N: usize>(variations: &mut [Variation<N>], growth: &mut [
             let along = other.q.dot(&own.q) + other.p.dot(&own.p);
             own.q -= other.q * along;
             own.p -= other.p * along;
+            own.t -= other.t * along;
+            own.energy -= other.energy * along;
         }
         let length = own.q.norm().hypot(own.p.norm());
         own.q /= length;
         own.p /= length;
+        // Of steps that find their length the time varies too, and by a force the energy that is kept.
+        own.t /= length;
+        own.energy /= length;
         compensated::add(sum, low, length.ln());
     }
 }

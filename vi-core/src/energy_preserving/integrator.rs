@@ -73,11 +73,16 @@ where
     }
 
     fn path(&self, before: &State<N>) -> Result<Hermite<N>, StepError> {
-        Hermite::between(&self.system, before, &self.state())
+        Hermite::between(&self.system, before, &self.state(), self.h())
     }
 
     fn checkpoint(&self) -> Checkpoint<N> {
         self.checkpoint()
+    }
+
+    fn longest(&self) -> f64 {
+        let shortest = self.run.bounds.map_or(0.0, |bounds| bounds.h_min);
+        shortest.max(RATIO * self.h())
     }
 
     fn set_time(&mut self, t: f64) {

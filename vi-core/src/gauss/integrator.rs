@@ -20,6 +20,13 @@ pub enum Motion<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Path<N> for Motion<N, S> {
+    fn from_start(self) -> Self {
+        match self {
+            Self::Collocation(polynomial) => Self::Collocation(polynomial.from_start()),
+            Self::Hermite(cubics) => Self::Hermite(cubics.from_start()),
+        }
+    }
+
     fn state(&self, t: f64) -> State<N> {
         match self {
             Self::Collocation(polynomial) => polynomial.state(t),
@@ -88,7 +95,7 @@ where
         if self.run.convergence.has_begun() {
             Ok(Motion::Collocation(Polynomial::of(&self.system, &self.run, *before)))
         } else {
-            Hermite::between(&self.system, before, &self.state()).map(Motion::Hermite)
+            Hermite::between(&self.system, before, &self.state(), self.h()).map(Motion::Hermite)
         }
     }
 

@@ -51,6 +51,10 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
 }
 
 impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
+    fn from_start(self) -> Self {
+        Self { start: State { t: 0.0, ..self.start }, ..self }
+    }
+
     fn state(&self, t: f64) -> State<N> {
         let integrals = integrals::<S>(self.part(t));
         let q = self.start.q + sum(&self.velocity, &integrals) * self.h;

@@ -6,10 +6,12 @@
 //! search     signs of g at SAMPLES + 1 times of the path over a step; where g has an extremum between samples that is nearer to zero, there too
 //! bracket    the root of g along the path, between two samples of different sign
 //! polish     the step from the node before whose end has g = 0, by Newton's iteration with the slope along the path
+//! enclose    lengths a rounding apart between which g changes its sign, by wider and wider brackets about that one, and bisection
 //! ```
 //!
 //! Zero counts as positive: g is RISING where it comes from below zero, FALLING where it goes there. What only touches zero is no event; nor is a zero at
-//! the very start, so that a run that was stopped at an event goes on from it: there g has the sign that it takes next. Two events of one step are found where a sample
+//! the very start, so that a run that was stopped at an event goes on from it: there g has the sign that it takes next. So a search looks from a billionth of a
+//! step after its start to as much after its end, where what it finds is an event at the end: of two searches that follow each other one finds it. Two events of one step are found where a sample
 //! or an extremum lies between them; of faster ones, less than an eighth of a step apart, a pair may be missed.
 //! AFTER AN EVENT |g| is not larger than at neighbouring lengths of the step, to rounding.
 
@@ -25,7 +27,7 @@ const SAMPLES: u32 = 8;
 const ITERATIONS: u32 = 60;
 /// Part of the interval around a root over which the slope is measured.
 const SLOPE: f64 = 1e-3;
-/// Part of a step after its start in which an event is the one that the search began at.
+/// Part of a step after its start in which an event is the one that the search began at; as much after its end is searched too.
 const START: f64 = 1e-9;
 
 /// In which direction a function passes zero.
@@ -141,24 +143,39 @@ impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
     fn search(&mut self, ahead: &I) -> Result<(), StepError> {
         let run = &*self.run;
         let start = run.state();
-        let path = ahead.path(&start)?;
-        let h = run.time_to(ahead.t());
+        let path = ahead.path(&start)?.from_start();
+        let h = run.time_to(ahead.t()) + ahead.node().t_low;
         let left = run.time_to(self.until);
+        let is_last = ahead.time_to(self.until) * h.signum() <= 0.0;
         for (index, event) in self.wanted.iter().enumerate() {
             let along = |part: f64| {
-                let t = start.t + part * h;
-                event.value(&path.state(t), &path.velocity(t))
+                let passed = part * h;
+                let state = path.state(passed);
+                event.value(&State { t: start.t + passed, ..state }, &path.velocity(passed))
             };
-            let is_first = self.signs[index].is_none();
-            for change in changes(&along, &mut self.signs[index])? {
-                if !event.admits(change.is_rising) {
+            let by_steps = |part: f64| -> Result<Sample, StepError> {
+                let value = reached(run, event, part * h, f64::INFINITY.copysign(h))?.value;
+                Ok(Sample { part, value })
+            };
+            let sign = &mut self.signs[index];
+            // Where a search begins and ends, signs are those of steps: velocities of a path are off there, and the search before or after has another path.
+            if sign.is_none() {
+                let first = by_steps(START)?;
+                *sign = (first.value != 0.0).then_some(first.is_positive());
+            }
+            let last = if is_last { Some(by_steps(left / h + START)?) } else { None };
+            for change in changes(&along, last, sign)? {
+                let Some(part) = located(&by_steps, &along, &change)? else {
+                    // It is in the next step.
+                    *sign = Some(!change.is_rising);
                     continue;
-                }
-                let crossing = located(run, index, event, &change, (h, &along))?;
-                let is_within = crossing.length.abs() <= left.abs();
-                let is_start = is_first && crossing.length.abs() <= START * h.abs();
-                if is_within && !is_start {
-                    self.found.push(crossing);
+                };
+                *sign = Some(change.is_rising);
+                let length = part * h;
+                if event.admits(change.is_rising) && (length - left) * h.signum() <= START * h.abs() {
+                    let reached = reached(run, event, length, self.until)?;
+                    let (state, v, length) = (reached.state, reached.v, reached.length);
+                    self.found.push(Crossing { event: index, is_rising: change.is_rising, state, v, length });
                 }
             }
         }
@@ -211,15 +228,22 @@ impl Sample {
 }
 
 /// Where a function changes its sign along a step, in order. `sign` is that before the step, where it is known, and after it.
-fn changes(along: &impl Fn(f64) -> Result<f64, StepError>, sign: &mut Option<bool>) -> Result<Vec<Change>, StepError> {
-    let samples = samples(along)?;
+/// `last` is the function where the search ends, by a step.
+fn changes(
+    along: &impl Fn(f64) -> Result<f64, StepError>,
+    last: Option<Sample>,
+    sign: &mut Option<bool>,
+) -> Result<Vec<Change>, StepError> {
+    let mut samples = samples(along)?;
+    samples.retain(|sample| last.is_none_or(|last| sample.part < last.part));
+    samples.extend(last);
     let first = samples.iter().find(|sample| sample.value != 0.0).is_none_or(Sample::is_positive);
     let mut is_positive = sign.unwrap_or(first);
     let mut changes = Vec::new();
     let mut from = samples[0];
     for to in samples {
         // At the start the sign is the one that was found there: that of the path may differ by rounding.
-        if to.part > 0.0 && to.is_positive() != is_positive {
+        if to.part > START && to.is_positive() != is_positive {
             is_positive = !is_positive;
             changes.push(Change { is_rising: is_positive, from, to });
         }
@@ -231,7 +255,7 @@ fn changes(along: &impl Fn(f64) -> Result<f64, StepError>, sign: &mut Option<boo
 
 /// The function at the parts of a step, and at its extrema that are nearer to zero.
 fn samples(along: &impl Fn(f64) -> Result<f64, StepError>) -> Result<Vec<Sample>, StepError> {
-    let part = |index: u32| f64::from(index) / f64::from(SAMPLES);
+    let part = |index: u32| START + f64::from(index) / f64::from(SAMPLES);
     let even: Vec<Sample> = (0..=SAMPLES).map(|index| Sample::of(along, part(index))).collect::<Result<_, _>>()?;
     let mut samples = even.clone();
     for near in even.windows(3) {
@@ -307,43 +331,98 @@ fn root(along: &impl Fn(f64) -> Result<f64, StepError>, change: &Change) -> Resu
     Ok(0.5 * (from.part + to.part))
 }
 
-/// The event of a change of sign: by steps from the node before, the length of which Newton's iteration finds with the slope along the path.
-fn located<I: Integrator<N>, const N: usize>(
+/// The end of a step from the node before an event.
+struct Reached<const N: usize> {
+    length: f64,
+    state: State<N>,
+    v: SVector<f64, N>,
+    value: f64,
+}
+
+/// The end of the step of a length, or of the one that ends at `until` if that is shorter.
+fn reached<I: Integrator<N>, const N: usize>(
     run: &I,
-    index: usize,
     event: &Event<'_, N>,
-    change: &Change,
-    (h, along): (f64, &impl Fn(f64) -> Result<f64, StepError>),
-) -> Result<Crossing<N>, StepError> {
-    let part = root(along, change)?;
-    let width = SLOPE * (change.to.part - change.from.part);
-    let slope = (along(part + width)? - along(part - width)?) / (2.0 * width * h);
-    let mut length = part * h;
-    let mut best: Option<(f64, Crossing<N>)> = None;
-    for _ in 0..ITERATIONS {
-        let mut aside = run.clone();
+    length: f64,
+    until: f64,
+) -> Result<Reached<N>, StepError> {
+    let mut aside = run.clone();
+    let left = run.time_to(until);
+    let length = if length.abs() < left.abs() { length } else { left };
+    if length.to_bits() == left.to_bits() {
+        aside.end_at(until)?;
+    } else if length.is_normal() {
         // A length below the smallest of a step is none.
-        if length.is_normal() {
-            aside.step_of(length)?;
-        }
-        let state = aside.state();
-        let v = aside.velocity()?;
-        let value = event.value(&state, &v)?;
-        if best.as_ref().is_some_and(|(least, _)| value.abs() >= *least) {
-            break;
-        }
-        best = Some((value.abs(), Crossing { event: index, is_rising: change.is_rising, state, v, length }));
-        let next = length - value / slope;
-        let part = next / h;
-        let moves = (next - length).abs() > 0.0;
-        if !moves || !(0.0..=1.0).contains(&part) {
-            break;
-        }
-        length = next;
+        aside.step_of(length)?;
     }
-    best.map(|(_, crossing)| crossing).ok_or(StepError::NonFinite {
-        t: run.t(),
-        quantity: "function of an event",
-        expression: None,
-    })
+    let state = aside.state();
+    let v = aside.velocity()?;
+    let value = event.value(&state, &v)?;
+    Ok(Reached { length, state, v, value })
+}
+
+/// The part of a step that the step from the node before to the event of a change of sign is: by Newton's iteration with the slope along the path, and then
+/// enclosed. None where steps have no such change.
+fn located(
+    by_steps: &impl Fn(f64) -> Result<Sample, StepError>,
+    along: &impl Fn(f64) -> Result<f64, StepError>,
+    change: &Change,
+) -> Result<Option<f64>, StepError> {
+    let width = SLOPE * (change.to.part - change.from.part);
+    let mut best = by_steps(root(along, change)?)?;
+    let slope = (along(best.part + width)? - along(best.part - width)?) / (2.0 * width);
+    for _ in 0..ITERATIONS {
+        let part = best.part - best.value / slope;
+        let moves = (part - best.part).abs() > 0.0;
+        if !moves || !(0.0..=1.0 + START).contains(&part) {
+            break;
+        }
+        let next = by_steps(part)?;
+        if next.value.abs() >= best.value.abs() {
+            break;
+        }
+        best = next;
+    }
+    if best.value == 0.0 {
+        return Ok(Some(best.part));
+    }
+    // What changed between two paths is at the node where neither is right about it.
+    let is_at_node = change.from.is_positive() == change.to.is_positive();
+    let enclosed = enclosed(by_steps, best, change.is_rising)?;
+    Ok(enclosed.map(|sample| sample.part).or(is_at_node.then_some(0.0)))
+}
+
+/// The sample nearest to zero of two that are a rounding apart and between which g changes its sign, by brackets about `near` that grow to the side where
+/// the event is, and then by bisection; none where g does not change its sign by steps up to the end of this step on that side.
+fn enclosed(
+    by_steps: &impl Fn(f64) -> Result<Sample, StepError>,
+    near: Sample,
+    is_rising: bool,
+) -> Result<Option<Sample>, StepError> {
+    let is_before = |sample: &Sample| sample.is_positive() != is_rising;
+    let side = if is_before(&near) { 1.0 } else { -1.0 };
+    let mut from = near;
+    let mut width = 2.0 * f64::EPSILON;
+    let mut to = loop {
+        let part = (from.part + side * width).clamp(0.0, 1.0 + START);
+        let next = by_steps(part)?;
+        if is_before(&next) != is_before(&near) {
+            break next;
+        }
+        if !(part > 0.0 && part < 1.0 + START) {
+            return Ok(None);
+        }
+        from = next;
+        width *= 2.0;
+    };
+    while (to.part - from.part).abs() > 2.0 * f64::EPSILON {
+        let middle = by_steps(0.5 * (from.part + to.part))?;
+        if is_before(&middle) == is_before(&near) {
+            from = middle;
+        } else {
+            to = middle;
+        }
+    }
+    let nearest = |one: Sample, other: Sample| if other.value.abs() < one.value.abs() { other } else { one };
+    Ok(Some(nearest(nearest(to, from), near)))
 }

@@ -27,6 +27,9 @@ use crate::node::Node;
 use crate::state::State;
 use nalgebra::SVector;
 
+/// Part of a step by which the last one may be longer.
+const LONGER: f64 = 1e-6;
+
 /// What all integrators share; see the [module](self). Time has the unit that the system gives it, and so have steps.
 pub trait Integrator<const N: usize>: Clone {
     /// The system that moves.
@@ -148,16 +151,19 @@ pub trait Integrator<const N: usize>: Clone {
         Grid::new(self, times)
     }
 
-    /// Goes on to the first event, or to the time `until` where there is none before. The run ends there: its state is the one returned.
+    /// Goes on to the first event, or to the time `until` where there is none before. The run ends there: its state is the one returned. Of functions that
+    /// vanish together the first one is told; [`Integrator::events`] tells all.
     ///
     /// # Errors
     /// As [`Integrator::propagate_until`].
     fn next_event(&mut self, events: &[Event<'_, N>], until: f64) -> Result<Option<Crossing<N>>, StepError> {
         let first = self.events(events, until).next().transpose()?;
-        if let Some(crossing) = &first
-            && crossing.length.is_normal()
-        {
-            self.step_of(crossing.length)?;
+        if let Some(Crossing { length, .. }) = first {
+            if length.to_bits() == self.time_to(until).to_bits() {
+                self.end_at(until)?;
+            } else if length.is_normal() {
+                self.step_of(length)?;
+            }
         }
         Ok(first)
     }
@@ -190,8 +196,10 @@ pub trait Integrator<const N: usize>: Clone {
             return Ok(true);
         }
         let direction = self.h().signum();
-        // Up to a rounding of t the last step may be longer than h, so that none of the length of a rounding follows.
-        let beyond = (Self::LONGEST * self.h() - left) * direction + f64::EPSILON * t.abs();
+        // Up to a rounding of t the last step may be longer than h, so that none of the length of a rounding follows: but by a part of it only,
+        // since far from zero a rounding is many steps.
+        let rounding = (f64::EPSILON * t.abs()).min(LONGER * self.h().abs());
+        let beyond = (self.longest() - left) * direction + rounding;
         if beyond < 0.0 {
             return self.step().map(|_| false);
         }
@@ -205,10 +213,21 @@ pub trait Integrator<const N: usize>: Clone {
         self.end_at(t).map(|()| true)
     }
 
+    /// The next step is no longer than this, which has the sign of [`Integrator::h`].
+    #[doc(hidden)]
+    fn longest(&self) -> f64 {
+        Self::LONGEST * self.h()
+    }
+
     /// Takes one step that ends at the time `t`.
     #[doc(hidden)]
     fn end_at(&mut self, t: f64) -> Result<(), StepError> {
         let left = self.time_to(t);
+        // A length below the smallest of a step is none.
+        if !left.is_normal() {
+            self.set_time(t);
+            return Ok(());
+        }
         // Where the next step ends there, it is that one.
         let is_next = Self::LONGEST <= 1.0 && left.to_bits() == self.h().to_bits();
         let outcome = if is_next { self.step() } else { self.step_of(left) };

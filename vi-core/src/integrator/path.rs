@@ -21,6 +21,10 @@ pub trait Path<const N: usize> {
     fn state(&self, t: f64) -> State<N>;
     /// The derivative of the coordinates by time at the time `t`.
     fn velocity(&self, t: f64) -> SVector<f64, N>;
+    /// The same motion by the time since the start of the step: far from zero the time itself is too coarse.
+    #[doc(hidden)]
+    #[must_use]
+    fn from_start(self) -> Self;
 }
 
 /// Cubics through the ends of a step.
@@ -43,7 +47,8 @@ struct Cubic<const N: usize> {
 }
 
 impl<const N: usize> Hermite<N> {
-    /// The path from one state of a motion of `system` to another.
+    /// The path from one state of a motion of `system` to another. The step between them has the length `h` if the times can be told to differ by it, else
+    /// that by which they differ.
     ///
     /// # Errors
     /// Those of [`State::velocity`] at both.
@@ -51,8 +56,11 @@ impl<const N: usize> Hermite<N> {
         system: &S,
         before: &State<N>,
         after: &State<N>,
+        h: f64,
     ) -> Result<Self, StepError> {
-        let h = after.t - before.t;
+        let told = after.t - before.t;
+        let rounding = f64::EPSILON * before.t.abs().max(after.t.abs());
+        let h = if (told - h).abs() <= rounding { h } else { told };
         let start = before.flow(system)?;
         let end = after.flow(system)?;
         let q = Cubic::new([before.q, after.q], [start.v, end.v], h);
@@ -62,6 +70,10 @@ impl<const N: usize> Hermite<N> {
 }
 
 impl<const N: usize> Path<N> for Hermite<N> {
+    fn from_start(self) -> Self {
+        Self { t: 0.0, ..self }
+    }
+
     fn state(&self, t: f64) -> State<N> {
         let part = (t - self.t) / self.h;
         State { t, q: self.q.at(part), p: self.p.at(part) }

@@ -111,6 +111,11 @@ where
         self.checkpoint()
     }
 
+    fn longest(&self) -> f64 {
+        let shortest = self.course.bounds.map_or(0.0, |bounds| bounds.h_min);
+        shortest.max(RATIO * self.h())
+    }
+
     fn set_time(&mut self, t: f64) {
         self.gauss.set_time(t);
     }
