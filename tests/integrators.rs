@@ -450,7 +450,12 @@ fn refuses<I: Integrator<1, System = Pushed>>(mut run: I) {
     let state = run.state();
     for m in [0.0, f64::NAN] {
         let refused = run.set_parameters(|system| system.m = m);
-        assert!(matches!(refused, Err(StepError::Singular { .. } | StepError::NonFinite { .. })), "{refused:?}");
+        let is_told = match refused {
+            Err(StepError::Singular { .. }) => m == 0.0,
+            Err(StepError::InvalidInput { input: "a parameter", .. }) => m.is_nan(),
+            _ => false,
+        };
+        assert!(is_told, "{refused:?}");
     }
     assert_eq!((run.state(), run.system().m.to_bits()), (state, 1.7_f64.to_bits()));
     run.step().expect("the run goes on");

@@ -21,7 +21,7 @@ use crate::called::Called;
 use crate::checkpoint;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
-use crate::integrator::{Hermite, Integrator};
+use crate::integrator::{Hermite, Integrator, changed};
 use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -334,8 +334,7 @@ where
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
-        let mut system = self.system;
-        change(&mut system);
+        let system = changed(&self.system, change)?;
         self.state().velocity(&system)?;
         *self = Self::prepared(system, self.scheme, self.run());
         Ok(())

@@ -18,7 +18,7 @@
 use crate::called::Called;
 use crate::checkpoint;
 use crate::error::StepError;
-use crate::integrator::{Hermite, Integrator};
+use crate::integrator::{Hermite, Integrator, changed};
 use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -257,8 +257,7 @@ where
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
-        let mut system = self.system;
-        change(&mut system);
+        let system = changed(&self.system, change)?;
         self.state().velocity(&system)?;
         *self = Self::prepared(system, self.run);
         Ok(())

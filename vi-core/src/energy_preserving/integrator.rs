@@ -8,7 +8,7 @@ use super::interval::{Last, RATIO};
 use super::run::Run;
 use super::stepper::EnergyPreserving;
 use crate::error::StepError;
-use crate::integrator::{Hermite, Integrator};
+use crate::integrator::{Hermite, Integrator, changed};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::EnergyStepping;
@@ -49,8 +49,7 @@ where
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
-        let mut system = self.system;
-        change(&mut system);
+        let system = changed(&self.system, change)?;
         let state = self.state();
         let brought = state.energy(&system)? - state.energy(&self.system)?;
         self.system = system;

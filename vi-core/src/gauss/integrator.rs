@@ -4,7 +4,7 @@ use super::polynomial::Polynomial;
 use super::{Checkpoint, Gauss, Run};
 use crate::collocation::Collocation;
 use crate::error::StepError;
-use crate::integrator::{Hermite, Integrator, Path};
+use crate::integrator::{Hermite, Integrator, Path, changed};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
@@ -20,10 +20,10 @@ pub enum Motion<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Path<N> for Motion<N, S> {
-    fn from_start(self) -> Self {
+    fn since_start(self) -> Self {
         match self {
-            Self::Collocation(polynomial) => Self::Collocation(polynomial.from_start()),
-            Self::Hermite(cubics) => Self::Hermite(cubics.from_start()),
+            Self::Collocation(polynomial) => Self::Collocation(polynomial.since_start()),
+            Self::Hermite(cubics) => Self::Hermite(cubics.since_start()),
         }
     }
 
@@ -77,8 +77,7 @@ where
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
-        let mut system = self.system;
-        change(&mut system);
+        let system = changed(&self.system, change)?;
         self.state().velocity(&system)?;
         self.system = system;
         self.failure = None;

@@ -51,7 +51,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
 }
 
 impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
-    fn from_start(self) -> Self {
+    fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }
 

@@ -143,7 +143,7 @@ impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
     fn search(&mut self, ahead: &I) -> Result<(), StepError> {
         let run = &*self.run;
         let start = run.state();
-        let path = ahead.path(&start)?.from_start();
+        let path = ahead.path(&start)?.since_start();
         let h = run.time_to(ahead.t()) + ahead.node().t_low;
         let left = run.time_to(self.until);
         let is_last = ahead.time_to(self.until) * h.signum() <= 0.0;

@@ -74,9 +74,11 @@ pub trait Integrator<const N: usize>: Clone {
     ///
     /// An energy-preserving run goes on with what the change brought: `E` gains `H_new − H_old` at the node.
     ///
+    /// What is said of the last step, as its discrete energy, is by the new parameters from then on.
+    ///
     /// # Errors
-    /// [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] where the system with these parameters has no velocity or no
-    /// energy at the node: the parameters are then what they were.
+    /// [`StepError::InvalidInput`] for a parameter that is not finite; [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] where the
+    /// system with these parameters has no velocity or no energy at the node: the parameters are then what they were.
     fn set_parameters(&mut self, change: impl FnOnce(&mut Self::System)) -> Result<(), StepError>;
 
     /// Goes on from another state: after an impact, or in another frame. An error of the last step is forgotten.
@@ -244,4 +246,21 @@ pub trait Integrator<const N: usize>: Clone {
     /// Sets the time of the node reached last, to which it is equal but for rounding.
     #[doc(hidden)]
     fn set_time(&mut self, t: f64);
+}
+
+/// A system with changed parameters.
+///
+/// # Errors
+/// [`StepError::InvalidInput`] for a parameter that is not finite.
+pub(crate) fn changed<S: Lagrangian<N> + Copy, const N: usize>(
+    system: &S,
+    change: impl FnOnce(&mut S),
+) -> Result<S, StepError> {
+    let mut system = *system;
+    change(&mut system);
+    let values = (0..S::PARAMETERS.len()).map(|index| system.parameter(index));
+    match values.into_iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(StepError::InvalidInput { input: "a parameter", allowed: "finite", value }),
+        None => Ok(system),
+    }
 }

@@ -24,7 +24,7 @@ pub trait Path<const N: usize> {
     /// The same motion by the time since the start of the step: far from zero the time itself is too coarse.
     #[doc(hidden)]
     #[must_use]
-    fn from_start(self) -> Self;
+    fn since_start(self) -> Self;
 }
 
 /// Cubics through the ends of a step.
@@ -70,7 +70,7 @@ impl<const N: usize> Hermite<N> {
 }
 
 impl<const N: usize> Path<N> for Hermite<N> {
-    fn from_start(self) -> Self {
+    fn since_start(self) -> Self {
         Self { t: 0.0, ..self }
     }
 

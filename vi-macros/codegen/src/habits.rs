@@ -117,6 +117,9 @@ impl Habit {
             Self::MissingSemicolon { .. } => {
                 "every clause ends with `;`; entries of one list are separated by `,`".to_owned()
             }
+            Self::MissingValue { name } if matches!(name.as_str(), "dissipation" | "time_scale") => {
+                format!("write `{name} = …;`, one function for all coordinates")
+            }
             Self::MissingValue { name } => {
                 format!("write `{name} = 1.0`: a `param` has a default, which its field may replace")
             }

@@ -162,6 +162,10 @@ fn constants() {
     case(&by_rule("«h» - h"), "division by zero");
     case(&by_rule("«t1» - t0 - h"), "division by zero");
     assert_eq!(errors(&format!("struct System {{ {} }}", by_rule("t1 - t0"))), []);
+    case(
+        "coord x; L = dot(x)^2; «dissipation» x = dot(x)^2; discretize midpoint;",
+        "`dissipation` has no value\nhelp: write `dissipation = …;`, one function for all coordinates",
+    );
     case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "this expression has no value");
     case("const a = «t»; coord x; L = dot(x)^2; discretize midpoint;", "`a` is not a constant");
     case("coord x; L = dot(x)^2 * «2x»; discretize midpoint;", "the number `2` runs into `x`\nhelp: write `2 * x`");

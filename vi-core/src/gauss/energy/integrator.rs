@@ -10,7 +10,7 @@ use crate::energy_preserving::fallback::check_step;
 use crate::energy_preserving::interval::RATIO;
 use crate::error::StepError;
 use crate::gauss::{Motion, Run};
-use crate::integrator::Integrator;
+use crate::integrator::{Integrator, changed};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
@@ -82,8 +82,7 @@ where
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
-        let mut system = self.gauss.system;
-        change(&mut system);
+        let system = changed(&self.gauss.system, change)?;
         let state = self.state();
         let brought = state.energy(&system)? - state.energy(&self.gauss.system)?;
         self.gauss.system = system;

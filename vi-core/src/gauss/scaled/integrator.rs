@@ -8,7 +8,7 @@ use super::{Checkpoint, Run, ScaledGauss, check_time_scale};
 use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
 use crate::fixed_step::check_step;
-use crate::integrator::Integrator;
+use crate::integrator::{Integrator, changed};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
@@ -114,8 +114,7 @@ where
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
-        let mut system = self.system;
-        change(&mut system);
+        let system = changed(&self.system, change)?;
         let state = self.state();
         let brought = state.energy(&system)? - state.energy(&self.system)?;
         self.run = self.run.resumed(&system, self.run.node, brought)?;
