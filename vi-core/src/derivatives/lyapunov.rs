@@ -16,7 +16,7 @@ use super::variation::Variation;
 use crate::compensated;
 use crate::error::StepError;
 
-/// Estimates of the largest Lyapunov exponents along a run; see the [module](self).
+/// Estimates of the largest Lyapunov exponents along a run: mean rates at which its directions grow.
 #[derive(Clone, Debug)]
 pub struct Lyapunov<I, const N: usize> {
     tangent: Tangent<I, N>,

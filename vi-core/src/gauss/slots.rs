@@ -24,7 +24,7 @@ use super::{Run, general};
 use crate::collocation::Collocation;
 use nalgebra::SVector;
 
-/// The slots of one step, in the names of [`DiscreteLagrangian`](crate::DiscreteLagrangian); see the [module](self).
+/// The slots of one step, in the names of [`DiscreteLagrangian`](crate::DiscreteLagrangian).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slots<const N: usize> {
     /// `L_d`.

@@ -17,7 +17,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 /// Terms of a series, the constant one among them: derivatives up to order six, which steps of three stages need.
 const TERMS: usize = 7;
 
-/// A truncated power series; see the [module](self).
+/// A truncated power series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Series {
     terms: [f64; TERMS],

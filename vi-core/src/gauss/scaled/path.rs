@@ -19,7 +19,7 @@ use crate::node::Node;
 use crate::state::State;
 use nalgebra::SVector;
 
-/// The motion over a step of S stages; see the [module](self).
+/// The motion over a step of S stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polynomial<const N: usize, const S: usize> {
     /// Where the step began.
