@@ -21,7 +21,7 @@ use crate::called::Called;
 use crate::checkpoint;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
-use crate::integrator::{Hermite, Integrator, changed};
+use crate::integrator::{Hermite, Integrator, changed, own};
 use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -309,25 +309,7 @@ where
 
     const LONGEST: f64 = 1.0;
 
-    fn step(&mut self) -> Result<State<N>, StepError> {
-        self.step()
-    }
-
-    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
-        self.step_of(h)
-    }
-
-    fn node(&self) -> &Node<N> {
-        self.node()
-    }
-
-    fn system(&self) -> &S {
-        self.system()
-    }
-
-    fn h(&self) -> f64 {
-        self.h()
-    }
+    own!(step, step_of, node, system, h, checkpoint);
 
     fn discrete_energy(&self) -> Option<f64> {
         None
@@ -347,10 +329,6 @@ where
 
     fn path(&self, before: &State<N>) -> Result<Hermite<N>, StepError> {
         Hermite::between(&self.system, before, &self.state(), self.h())
-    }
-
-    fn checkpoint(&self) -> Checkpoint<N> {
-        self.checkpoint()
     }
 
     fn set_time(&mut self, t: f64) {

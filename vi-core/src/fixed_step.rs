@@ -18,7 +18,7 @@
 use crate::called::Called;
 use crate::checkpoint;
 use crate::error::StepError;
-use crate::integrator::{Hermite, Integrator, changed};
+use crate::integrator::{Hermite, Integrator, changed, own};
 use crate::momentum::steps::{Corrector, Steps};
 use crate::node::Node;
 use crate::real::{Real, Scalar};
@@ -231,30 +231,7 @@ where
 
     const LONGEST: f64 = 1.0;
 
-    #[inline(always)]
-    fn step(&mut self) -> Result<State<N>, StepError> {
-        self.step()
-    }
-
-    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
-        self.step_of(h)
-    }
-
-    fn node(&self) -> &Node<N> {
-        self.node()
-    }
-
-    fn system(&self) -> &S {
-        self.system()
-    }
-
-    fn h(&self) -> f64 {
-        self.h()
-    }
-
-    fn discrete_energy(&self) -> Option<f64> {
-        self.discrete_energy()
-    }
+    own!(step, step_of, node, system, h, discrete_energy, checkpoint);
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
         let system = changed(&self.system, change)?;
@@ -270,10 +247,6 @@ where
 
     fn path(&self, before: &State<N>) -> Result<Hermite<N>, StepError> {
         Hermite::between(&self.system, before, &self.state(), self.h())
-    }
-
-    fn checkpoint(&self) -> Checkpoint<N> {
-        self.checkpoint()
     }
 
     fn set_time(&mut self, t: f64) {

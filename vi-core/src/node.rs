@@ -96,6 +96,11 @@ impl<const N: usize, T: Real> Node<N, T> {
         compensated::add_vector(&mut self.p, &mut self.p_low, increment);
     }
 
+    /// The node at another state, with the energy of this one.
+    pub(crate) fn with_state(&self, state: State<N, T>) -> Self {
+        Self { energy_low: self.energy_low, ..Self::new(state, self.energy) }
+    }
+
     /// Sets the time, without a low part.
     pub(crate) fn set_time(&mut self, t: T) {
         self.t = t;

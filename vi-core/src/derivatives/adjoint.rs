@@ -90,7 +90,6 @@ pub fn gradient<I, const N: usize>(
 ) -> Result<Gradient<N>, StepError>
 where
     I: Differentiable<N>,
-    I::System: Convertible<N>,
 {
     let stride = stride(steps, kept);
     let mut stations = vec![run.clone()];

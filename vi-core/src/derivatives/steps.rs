@@ -1,15 +1,13 @@
-//! Variations of one step, for each integrator.
+//! Variations of one step, for each integrator; those of a Gauss step stand with its stages (`gauss/variation.rs`).
 //!
 //! In: an integrator after a step, the node at which the step began, variations of that node. Out: those of the node reached. The unknowns of the step are at
 //! hand, so each direction costs one evaluation of the equations in dual numbers and one solution of the linearized ones.
 
 use super::variation::Variation;
-use crate::collocation::Collocation;
 use crate::composition::Composition;
 use crate::energy_preserving::{EnergyPreserving, Fallback};
 use crate::error::StepError;
 use crate::fixed_step::FixedStep;
-use crate::gauss::Gauss;
 use crate::integrator::Integrator;
 use crate::linear;
 use crate::node::Node;
@@ -18,7 +16,7 @@ use crate::stepping::{Convertible, EnergyStepping, ExtendedSystem, FixedStepping
 use nalgebra::SVector;
 
 /// An integrator whose steps have derivatives.
-pub trait Differentiable<const N: usize>: Integrator<N> {
+pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> {
     /// Whether the energy that the run keeps is a variable beside coordinates and momenta.
     const KEEPS_ENERGY: bool = false;
 
@@ -182,15 +180,5 @@ where
             variation.take(&node);
         }
         Ok(())
-    }
-}
-
-impl<S, const N: usize, const STAGES: usize> Differentiable<N> for Gauss<S, N, STAGES>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-{
-    /// Allocates: the linearized equations of all stages are one matrix.
-    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        self.varied(before, variations)
     }
 }

@@ -18,6 +18,7 @@
 //! about half a step before the zero, so that h_f is not the length of a last leap.
 //! AFTER A SWITCH q, p and t go on without a jump.
 
+use super::interval::RATIO;
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::Scalar;
@@ -54,6 +55,15 @@ pub struct Switches<T = f64> {
     pub energy_change: T,
     /// Sum of their absolute values.
     pub energy_cost: T,
+}
+
+impl<T: Scalar> Switches<T> {
+    /// Counts the energy that was seeded anew, by so much more.
+    pub(crate) fn reseed(&mut self, gap: T) {
+        self.reseeds += 1;
+        self.energy_change += gap;
+        self.energy_cost += gap.abs();
+    }
 }
 
 impl<T: Scalar> Default for Switches<T> {
@@ -106,6 +116,12 @@ impl<T: Scalar> StepBounds<T> {
     }
 }
 
+/// The longest that the step after one of the length `last` can be, by the factor that is allowed or as a fixed step of the bound.
+pub(crate) fn longest<T: Scalar>(bounds: Option<&StepBounds<T>>, last: T) -> T {
+    let shortest = bounds.map_or(T::zero(), |bounds| bounds.h_min);
+    shortest.max(last * T::real(RATIO))
+}
+
 /// Fixed steps under way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -125,6 +141,30 @@ pub(crate) struct Phase<T> {
 }
 
 impl<T: Scalar> Phase<T> {
+    /// The fixed steps that begin instead of a step that failed, where the user allows them: after one of the length `h`, in an interval of the density
+    /// `density`.
+    ///
+    /// # Errors
+    /// The failure, where they are not allowed, or would fail too.
+    pub(crate) fn instead_of(
+        failure: StepError,
+        fallback: Fallback,
+        bounds: Option<&StepBounds<T>>,
+        h: T,
+        density: T,
+    ) -> Result<Self, StepError> {
+        let bounded = |h: T| bounds.map_or(h, |bounds| bounds.clamp(h));
+        let (length, shorter) = match (fallback, failure) {
+            (Fallback::Stop, _) => return Err(failure),
+            (_, StepError::StepBounds { found, h_min, .. }) => (bounded(T::real(found)), found < h_min),
+            (_, StepError::Singular { .. } | StepError::NonFinite { .. } | StepError::InvalidInput { .. }) => {
+                return Err(failure);
+            }
+            _ => (bounded(h), false),
+        };
+        Ok(Self { h: length, shorter, law_h: h, law_density: density, density_next: density, gap: T::zero() })
+    }
+
     pub(crate) fn check(&self) -> Result<(), StepError> {
         check_step("the fixed step h", self.h)?;
         check_step("the last energy-preserving step h", self.law_h)?;

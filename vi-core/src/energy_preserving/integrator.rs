@@ -4,12 +4,12 @@
 //! goes on with `E + ΔH`: so `H − E`, from which the length of the next step follows, is what it was.
 
 use super::checkpoint::Checkpoint;
+use super::fallback::longest;
 use super::interval::{Last, RATIO};
 use super::run::Run;
 use super::stepper::EnergyPreserving;
 use crate::error::StepError;
-use crate::integrator::{Hermite, Integrator, changed};
-use crate::node::Node;
+use crate::integrator::{Hermite, Integrator, changed, own};
 use crate::state::State;
 use crate::stepping::EnergyStepping;
 
@@ -23,6 +23,8 @@ where
 
     const LONGEST: f64 = RATIO;
 
+    own!(node, system, h, checkpoint);
+
     #[inline(always)]
     fn step(&mut self) -> Result<State<N>, StepError> {
         self.step().map(|_| self.run.node.state())
@@ -30,18 +32,6 @@ where
 
     fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
         self.step_of(h).map(|_| self.run.node.state())
-    }
-
-    fn node(&self) -> &Node<N> {
-        self.node()
-    }
-
-    fn system(&self) -> &S {
-        self.system()
-    }
-
-    fn h(&self) -> f64 {
-        self.h()
     }
 
     fn discrete_energy(&self) -> Option<f64> {
@@ -61,8 +51,7 @@ where
     fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
         let brought = state.energy(&self.system)? - self.state().energy(&self.system)?;
         let v = state.velocity(&self.system)?;
-        let Node { energy, energy_low, .. } = self.run.node;
-        let mut node = Node { energy_low, ..Node::new(state, energy) };
+        let mut node = self.run.node.with_state(state);
         node.add_energy(brought);
         self.run = Run { node, last: Last { v, ..self.run.last }, ..self.run };
         let last = self.run.last;
@@ -75,13 +64,8 @@ where
         Hermite::between(&self.system, before, &self.state(), self.h())
     }
 
-    fn checkpoint(&self) -> Checkpoint<N> {
-        self.checkpoint()
-    }
-
     fn longest(&self) -> f64 {
-        let shortest = self.run.bounds.map_or(0.0, |bounds| bounds.h_min);
-        shortest.max(RATIO * self.h())
+        longest(self.run.bounds.as_ref(), self.h())
     }
 
     fn set_time(&mut self, t: f64) {

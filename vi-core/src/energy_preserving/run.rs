@@ -208,16 +208,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
     #[cold]
     fn fall_back<S: EnergyStepping<N, T>>(&mut self, system: &S, failure: StepError) -> Result<Step<N, T>, StepError> {
         let Last { h, density, .. } = self.last;
-        let bounded = |h: T| self.bounds.as_ref().map_or(h, |bounds| bounds.clamp(h));
-        let (length, shorter) = match (self.fallback, failure) {
-            (Fallback::Stop, _) => return Err(failure),
-            (_, StepError::StepBounds { found, h_min, .. }) => (bounded(T::real(found)), found < h_min),
-            (_, StepError::Singular { .. } | StepError::NonFinite { .. } | StepError::InvalidInput { .. }) => {
-                return Err(failure);
-            }
-            _ => (bounded(h), false),
-        };
-        let phase = Phase { h: length, shorter, law_h: h, law_density: density, density_next: density, gap: T::zero() };
+        let phase = Phase::instead_of(failure, self.fallback, self.bounds.as_ref(), h, density)?;
         let step = self.fixed_step(system, phase)?;
         self.switches.count += 1;
         Ok(step)
@@ -269,11 +260,8 @@ impl<const N: usize, T: Scalar> Run<N, T> {
         seeded.add_energy(phase.gap);
         if let Ok(found) = self.next_step(system, &seeded) {
             let step = self.take(system, seeded, found, Method::Reseeded { energy_change: phase.gap })?;
-            let switches = &mut self.switches;
-            switches.returns += 1;
-            switches.reseeds += 1;
-            switches.energy_change += phase.gap;
-            switches.energy_cost += phase.gap.abs();
+            self.switches.returns += 1;
+            self.switches.reseed(phase.gap);
             self.phase = None;
             return Ok(step);
         }

@@ -44,9 +44,7 @@ pub(super) fn energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N>,
 {
-    let equations = general(system, node, h, stages);
-    let interval = Interval { node, h, positions: equations.start(), velocities: equations.guess() };
-    interval.energies(system, base, |number| number)
+    Interval::new(system, node, h, stages).energies(system, base, |number| number)
 }
 
 /// The same in numbers that carry a bound of their rounding, each number of the stages the nearest to the one that is meant.
@@ -60,9 +58,7 @@ pub(super) fn bounded_energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    let equations = general(system, node, h, stages);
-    let interval = Interval { node, h, positions: equations.start(), velocities: equations.guess() };
-    interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest)
+    Interval::new(system, node, h, stages).energies(&system.convert::<Rounded>(), base, Rounded::nearest)
 }
 
 /// A step with the positions and the velocities at its stages.
@@ -73,7 +69,13 @@ struct Interval<'a, const N: usize, const S: usize> {
     velocities: Stages<N, S>,
 }
 
-impl<const N: usize, const S: usize> Interval<'_, N, S> {
+impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
+    #[inline(always)]
+    fn new<Y: Collocation<N>>(system: &Y, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
+        let equations = general(system, node, h, stages);
+        Self { node, h, positions: equations.start(), velocities: equations.guess() }
+    }
+
     #[inline(always)]
     fn energies<T: Real, Y: Collocation<N, T>>(
         &self,

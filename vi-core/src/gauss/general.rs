@@ -10,6 +10,7 @@
 //! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
+use super::newton::Correctable;
 use super::stages::{AtStages, Stages, change, constant_mass, gathered, product, scaled, scatter, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
@@ -59,11 +60,6 @@ where
             }
         }
         equations
-    }
-
-    /// The forces of the last evaluation.
-    pub(super) fn forces(&self) -> Stages<N, S> {
-        self.force
     }
 
     /// `low + Σ_j first_ij h b_j X_j` at the stages i.
@@ -121,7 +117,7 @@ where
 
     /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
     #[inline(always)]
-    pub(super) fn evaluate(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+    fn evaluate(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
         // Arrays of this function do not overlap, so far as the compiler knows: it makes vectors of their loops.
         let velocity = self.velocity;
         let x = *x;
@@ -159,7 +155,7 @@ where
 
     /// Adds corrections to the velocities.
     #[inline(always)]
-    pub(super) fn correct(&mut self, correction: &Stages<N, S>) {
+    fn correct(&mut self, correction: &Stages<N, S>) {
         for k in 0..N {
             for i in 0..S {
                 self.velocity[k][i] += correction[k][i];
@@ -243,5 +239,20 @@ where
     #[inline(always)]
     fn change_of_velocities(&self) -> f64 {
         change(&self.evaluated, &self.velocity, &SVector::zeros())
+    }
+}
+
+impl<Y: Collocation<N>, const N: usize, const S: usize> Correctable<N, S> for General<'_, f64, Y, N, S, false> {
+    fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        self.evaluate(x)
+    }
+
+    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
+        self.correct(correction);
+        self.positions()
+    }
+
+    fn corrected(&self) -> Stages<N, S> {
+        if Y::SEPARABLE { self.force } else { self.velocity }
     }
 }

@@ -4,7 +4,7 @@ use super::polynomial::Polynomial;
 use super::{Checkpoint, Gauss, Run};
 use crate::collocation::Collocation;
 use crate::error::StepError;
-use crate::integrator::{Hermite, Integrator, Path, changed};
+use crate::integrator::{Hermite, Integrator, Path, changed, own};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
@@ -52,28 +52,10 @@ where
 
     const LONGEST: f64 = 1.0;
 
-    fn step(&mut self) -> Result<State<N>, StepError> {
-        self.step()
-    }
-
-    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
-        self.step_of(h)
-    }
+    own!(step, step_of, system, h, discrete_energy, checkpoint);
 
     fn node(&self) -> &Node<N> {
         &self.run.node
-    }
-
-    fn system(&self) -> &S {
-        self.system()
-    }
-
-    fn h(&self) -> f64 {
-        self.h()
-    }
-
-    fn discrete_energy(&self) -> Option<f64> {
-        self.discrete_energy()
     }
 
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
@@ -96,10 +78,6 @@ where
         } else {
             Hermite::between(&self.system, before, &self.state(), self.h()).map(Motion::Hermite)
         }
-    }
-
-    fn checkpoint(&self) -> Checkpoint<N, STAGES> {
-        self.checkpoint()
     }
 
     fn set_time(&mut self, t: f64) {

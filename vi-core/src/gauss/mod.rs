@@ -211,13 +211,8 @@ where
         if let StepError::NonFinite { expression: Some(_), .. } = explained {
             return Err(explained);
         }
-        let Convergence { sweeps, change, contraction } = solved.sweeps.convergence;
-        // What is not a number was beyond all.
-        let [change, contraction] =
-            [change, contraction].map(|ratio| if ratio.is_nan() { f64::INFINITY } else { ratio });
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
-        let (t, h) = (self.run.node.t, self.run.h);
-        Err(StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness })
+        Err(solved.sweeps.convergence.unsettled(self.run.node.t, self.run.h, stiffness))
     }
 
     /// The step by simplified Newton iterations about its middle.

@@ -16,7 +16,6 @@
 //!
 //! where D_k⁻¹ exists for whatever oscillates or is damped, however stiff. It allocates once, when a run meets its first stiff step.
 
-use super::general::General;
 use super::stages::Stages;
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
@@ -73,19 +72,14 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         v: &SVector<f64, N>,
     ) {
         let system = system.convert::<Dual<f64>>();
-        let time = Dual::fixed(t);
         for column in 0..2 * N {
-            let mut q = q.map(Dual::fixed);
-            let mut v = v.map(Dual::fixed);
-            let moved = if column < N { &mut q[column] } else { &mut v[column - N] };
-            moved.slope = 1.0;
-            let point = system.point(time, &q, &v);
+            let [momentum, force] = slopes(&system, t, q, v, column);
             for row in 0..N {
                 let unit = if row == column { 1.0 } else { 0.0 };
                 self.left[(row, column)] = unit;
                 self.right[(row, column)] = if row + N == column { 1.0 } else { 0.0 };
-                self.left[(row + N, column)] = point.momentum[row].slope;
-                self.right[(row + N, column)] = point.force[row].slope;
+                self.left[(row + N, column)] = momentum[row];
+                self.right[(row + N, column)] = force[row];
             }
         }
         for k in 0..S {
@@ -169,6 +163,22 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 }
 
+/// How `L_v` and `L_q + f` change at a point with one of its coordinates, or, from the index N on, with one of its velocities.
+pub(super) fn slopes<Y: Collocation<N, Dual<f64>>, const N: usize>(
+    system: &Y,
+    t: f64,
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+    index: usize,
+) -> [SVector<f64, N>; 2] {
+    let mut q = q.map(Dual::fixed);
+    let mut v = v.map(Dual::fixed);
+    let moved = if index < N { &mut q[index] } else { &mut v[index - N] };
+    moved.slope = 1.0;
+    let point = system.point(Dual::fixed(t), &q, &v);
+    [point.momentum, point.force].map(|side| side.map(|entry| entry.slope))
+}
+
 /// Multiplications that estimate the stiffness.
 const POWERS: u32 = 16;
 
@@ -191,20 +201,32 @@ fn basis<const S: usize>() -> [[f64; S]; S] {
     basis
 }
 
+/// Equations of the stages whose velocities can be corrected.
+pub(super) trait Correctable<const N: usize, const S: usize>: Equations<N, S> {
+    /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
+    fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S>;
+    /// Adds corrections to the velocities, and returns the positions that follow.
+    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S>;
+    /// What is extrapolated to the next step, where the velocities were corrected.
+    fn corrected(&self) -> Stages<N, S> {
+        self.guess()
+    }
+}
+
 /// The equations of the stages, corrected by simplified Newton iterations.
-pub(super) struct Stiff<'a, Y: Collocation<N>, const N: usize, const S: usize> {
-    equations: General<'a, f64, Y, N, S, false>,
+pub(super) struct Stiff<'a, E, const N: usize, const S: usize> {
+    pub(super) equations: E,
     newton: &'a mut Newton<N, S>,
 }
 
-impl<'a, Y: Collocation<N>, const N: usize, const S: usize> Stiff<'a, Y, N, S> {
+impl<'a, E, const N: usize, const S: usize> Stiff<'a, E, N, S> {
     /// Equations with their linearization.
-    pub(super) fn new(equations: General<'a, f64, Y, N, S, false>, newton: &'a mut Newton<N, S>) -> Self {
+    pub(super) fn new(equations: E, newton: &'a mut Newton<N, S>) -> Self {
         Self { equations, newton }
     }
 }
 
-impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stiff<'_, Y, N, S> {
+impl<E: Correctable<N, S>, const N: usize, const S: usize> Equations<N, S> for Stiff<'_, E, N, S> {
     // There is no other way left.
     const PATIENCE: u32 = u32::MAX;
 
@@ -213,10 +235,9 @@ impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stif
     }
 
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        let missing = self.equations.evaluate(x);
+        let missing = self.equations.missing(x);
         let correction = self.newton.correction(&missing);
-        self.equations.correct(&correction);
-        self.equations.start()
+        self.equations.follow(&correction)
     }
 
     fn increment(&self) -> Increment<N> {
@@ -224,7 +245,7 @@ impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stif
     }
 
     fn guess(&self) -> Stages<N, S> {
-        if Y::SEPARABLE { self.equations.forces() } else { self.equations.guess() }
+        self.equations.corrected()
     }
 
     fn velocities(&self) -> Option<Stages<N, S>> {

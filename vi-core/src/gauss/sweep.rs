@@ -13,6 +13,7 @@
 //! left after every step has a sign, and the energy would drift by it.
 
 use super::stages::{Stages, change};
+use crate::error::StepError;
 use crate::newton::FLOOR;
 use nalgebra::SVector;
 
@@ -75,6 +76,15 @@ impl Convergence {
     /// Whether there was a step.
     pub(super) fn has_begun(&self) -> bool {
         self.sweeps > 0
+    }
+
+    /// The error of stages that did not come to rest, in the step of length h from the time t.
+    pub(super) fn unsettled(&self, t: f64, h: f64, stiffness: f64) -> StepError {
+        let Self { sweeps, change, contraction } = *self;
+        // What is not a number was beyond all.
+        let [change, contraction] =
+            [change, contraction].map(|ratio| if ratio.is_nan() { f64::INFINITY } else { ratio });
+        StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness }
     }
 
     /// Whether the stages are at the rounding of their positions.

@@ -9,12 +9,13 @@
 //!
 //! one matrix of S N rows, factored once for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
+use super::newton::slopes;
 use super::stages::{stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use super::{Gauss, general};
 use crate::collocation::Collocation;
-use crate::derivatives::Variation;
+use crate::derivatives::{Differentiable, Variation};
 use crate::error::StepError;
 use crate::linear::Pivoted;
 use crate::node::Node;
@@ -42,29 +43,23 @@ impl<const N: usize> Linearized<N> {
         let mut stage =
             Self { t, q, v, momentum_by_q: zeros, momentum_by_v: zeros, force_by_q: zeros, force_by_v: zeros };
         for column in 0..N {
-            let still = v.map(Dual::fixed);
-            let mut moved = q.map(Dual::fixed);
-            moved[column].slope = 1.0;
-            let point = system.point(Dual::fixed(t), &moved, &still);
-            stage.momentum_by_q.set_column(column, &point.momentum.map(|entry| entry.slope));
-            stage.force_by_q.set_column(column, &point.force.map(|entry| entry.slope));
-            let still = q.map(Dual::fixed);
-            let mut moved = v.map(Dual::fixed);
-            moved[column].slope = 1.0;
-            let point = system.point(Dual::fixed(t), &still, &moved);
-            stage.momentum_by_v.set_column(column, &point.momentum.map(|entry| entry.slope));
-            stage.force_by_v.set_column(column, &point.force.map(|entry| entry.slope));
+            let [momentum, force] = slopes(system, t, &q, &v, column);
+            stage.momentum_by_q.set_column(column, &momentum);
+            stage.force_by_q.set_column(column, &force);
+            let [momentum, force] = slopes(system, t, &q, &v, column + N);
+            stage.momentum_by_v.set_column(column, &momentum);
+            stage.force_by_v.set_column(column, &force);
         }
         stage
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> Gauss<S, N, STAGES>
+impl<S, const N: usize, const STAGES: usize> Differentiable<N> for Gauss<S, N, STAGES>
 where
     S: Collocation<N> + Convertible<N> + FixedStepping<N>,
 {
-    /// Turns variations of the node at which the last step began into those of the next.
-    pub(crate) fn varied(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+    /// Allocates: the linearized equations of all stages are one matrix.
+    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Tableau { b, first, .. } = const { &Tableau::<STAGES>::VALUES };
         let Self { system, run, .. } = self;
         let h = run.h;

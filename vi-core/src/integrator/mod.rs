@@ -8,6 +8,7 @@
 //! | `path` | the motion between the two nodes of a step, as polynomials |
 //! | `grid` | states at given times |
 //! | `events` | states at which functions of the motion vanish |
+//! | `sign_changes` | where a function changes its sign over a step |
 //!
 //! A STATE AT A TIME t is reached by a last step that is exactly as long as is left: it is as accurate as a node, of the full order of the
 //! method. Steps to times of a grid and to events that are recorded are taken aside, so that the run itself goes on as if nothing had been asked:
@@ -16,6 +17,7 @@
 mod events;
 mod grid;
 mod path;
+mod sign_changes;
 
 pub use events::{Crossing, Direction, Event, Events, Function};
 pub use grid::Grid;
@@ -26,6 +28,50 @@ use crate::lagrangian::Lagrangian;
 use crate::node::Node;
 use crate::state::State;
 use nalgebra::SVector;
+
+/// Methods of [`Integrator`] that a type has by the same name already.
+macro_rules! own {
+    ($($method:ident),*) => {
+        $($crate::integrator::own!(@$method);)*
+    };
+    (@step) => {
+        #[inline(always)]
+        fn step(&mut self) -> Result<$crate::State<N>, $crate::StepError> {
+            self.step()
+        }
+    };
+    (@step_of) => {
+        fn step_of(&mut self, h: f64) -> Result<$crate::State<N>, $crate::StepError> {
+            self.step_of(h)
+        }
+    };
+    (@node) => {
+        fn node(&self) -> &$crate::node::Node<N> {
+            self.node()
+        }
+    };
+    (@system) => {
+        fn system(&self) -> &Self::System {
+            self.system()
+        }
+    };
+    (@h) => {
+        fn h(&self) -> f64 {
+            self.h()
+        }
+    };
+    (@discrete_energy) => {
+        fn discrete_energy(&self) -> Option<f64> {
+            self.discrete_energy()
+        }
+    };
+    (@checkpoint) => {
+        fn checkpoint(&self) -> Self::Checkpoint {
+            self.checkpoint()
+        }
+    };
+}
+pub(crate) use own;
 
 /// Part of a step by which the last one may be longer.
 const LONGER: f64 = 1e-6;

@@ -12,6 +12,7 @@
 //! discrete energy of the last fixed step from there on.
 
 use super::EnergyPreservingGauss;
+use super::run::Course;
 use crate::collocation::Collocation;
 use crate::energy_preserving::fallback::{Fallback, GROWTH, Phase};
 use crate::error::StepError;
@@ -46,27 +47,8 @@ where
     /// The first fixed step, where the user allows it; else the failure.
     #[cold]
     fn fall_back(&mut self, failure: StepError) -> Result<(), StepError> {
-        let h = self.course.h();
-        let bounds = self.course.bounds;
-        let bounded = |h: f64| bounds.map_or(h, |bounds| bounds.clamp(h));
-        let length;
-        let shorter;
-        match (self.course.fallback, failure) {
-            (Fallback::Stop, _) => return Err(failure),
-            (_, StepError::StepBounds { found, h_min, .. }) => {
-                length = bounded(found);
-                shorter = found < h_min;
-            }
-            (_, StepError::Singular { .. } | StepError::NonFinite { .. } | StepError::InvalidInput { .. }) => {
-                return Err(failure);
-            }
-            _ => {
-                length = bounded(h);
-                shorter = false;
-            }
-        }
-        let density = self.told_density();
-        let phase = Phase { h: length, shorter, law_h: h, law_density: density, density_next: density, gap: 0.0 };
+        let Course { fallback, bounds, .. } = self.course;
+        let phase = Phase::instead_of(failure, fallback, bounds.as_ref(), self.course.h(), self.told_density())?;
         self.fixed_step(phase)?;
         self.course.switches.count += 1;
         Ok(())
@@ -91,11 +73,8 @@ where
             && let Ok(step) = self.found()
         {
             self.take(&step, Method::Reseeded { energy_change: phase.gap })?;
-            let switches = &mut self.course.switches;
-            switches.returns += 1;
-            switches.reseeds += 1;
-            switches.energy_change += phase.gap;
-            switches.energy_cost += phase.gap.abs();
+            self.course.switches.returns += 1;
+            self.course.switches.reseed(phase.gap);
             self.course.phase = None;
             return Ok(());
         }

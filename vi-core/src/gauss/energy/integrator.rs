@@ -6,11 +6,11 @@
 use super::run::Checkpoint;
 use super::{EnergyPreservingGauss, Phase};
 use crate::collocation::Collocation;
-use crate::energy_preserving::fallback::check_step;
+use crate::energy_preserving::fallback::{check_step, longest};
 use crate::energy_preserving::interval::RATIO;
 use crate::error::StepError;
 use crate::gauss::{Motion, Run};
-use crate::integrator::{Integrator, changed};
+use crate::integrator::{Integrator, changed, own};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
@@ -57,24 +57,10 @@ where
 
     const LONGEST: f64 = RATIO;
 
-    fn step(&mut self) -> Result<State<N>, StepError> {
-        self.step()
-    }
-
-    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
-        self.step_of(h)
-    }
+    own!(step, step_of, system, h, checkpoint);
 
     fn node(&self) -> &Node<N> {
         self.gauss.node()
-    }
-
-    fn system(&self) -> &S {
-        self.system()
-    }
-
-    fn h(&self) -> f64 {
-        self.h()
     }
 
     fn discrete_energy(&self) -> Option<f64> {
@@ -94,8 +80,7 @@ where
     fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
         let system = &self.gauss.system;
         let brought = state.energy(system)? - self.state().energy(system)?;
-        let Node { energy, energy_low, .. } = self.gauss.run.node;
-        let mut node = Node { energy_low, ..Node::new(state, energy) };
+        let mut node = self.gauss.run.node.with_state(state);
         node.add_energy(brought);
         self.go_on_from(node)?;
         self.failure = None;
@@ -106,13 +91,8 @@ where
         self.gauss.path(before)
     }
 
-    fn checkpoint(&self) -> Checkpoint<N, STAGES> {
-        self.checkpoint()
-    }
-
     fn longest(&self) -> f64 {
-        let shortest = self.course.bounds.map_or(0.0, |bounds| bounds.h_min);
-        shortest.max(RATIO * self.h())
+        longest(self.course.bounds.as_ref(), self.h())
     }
 
     fn set_time(&mut self, t: f64) {

@@ -12,7 +12,7 @@
 //! A sweep evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from P', and moves T, Q and E
 //! by the new g, V and E'.
 
-use super::super::newton::Newton;
+use super::super::newton::{Correctable, Stiff};
 use super::super::stages::{Stages, change, constant_mass, product, scaled, set, stage, weights};
 use super::super::sweep::{Equations, Increment};
 use super::super::tableau::Tableau;
@@ -158,7 +158,7 @@ where
 
     /// Adds corrections to the velocities, and follows the rates.
     #[inline(always)]
-    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
+    fn moved(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
         for k in 0..N {
             for i in 0..S {
                 self.rates.velocity[k][i] += correction[k][i];
@@ -240,7 +240,7 @@ where
             Some(mass) if Y::CONSTANT_MASS => self.by_constant_mass(mass, x),
             _ => self.by_varying_mass(x),
         };
-        self.follow(&correction)
+        self.moved(&correction)
     }
 
     #[inline(always)]
@@ -277,48 +277,15 @@ where
 /// Roundings of a velocity that count as one of a position.
 const LIKE_A_POSITION: f64 = 16.0;
 
-/// The equations of the stages, corrected by simplified Newton iterations on the motion by `h = g Δτ`, g that of the middle: what g
-/// changes by is left to the iteration, since it is no faster than the motion that it follows.
-pub(super) struct Stiff<'a, Y: Collocation<N>, const N: usize, const S: usize> {
-    equations: Scaled<'a, f64, Y, N, S, false>,
-    newton: &'a mut Newton<N, S>,
-}
-
-impl<'a, Y: Collocation<N>, const N: usize, const S: usize> Stiff<'a, Y, N, S> {
-    /// Equations with their linearization.
-    pub(super) fn new(equations: Scaled<'a, f64, Y, N, S, false>, newton: &'a mut Newton<N, S>) -> Self {
-        Self { equations, newton }
-    }
-}
-
-impl<Y: Collocation<N>, const N: usize, const S: usize> Equations<N, S> for Stiff<'_, Y, N, S> {
-    // There is no other way left.
-    const PATIENCE: u32 = u32::MAX;
-
-    fn start(&self) -> Stages<N, S> {
-        self.equations.start()
+/// Corrected by simplified Newton iterations on the motion by `h = g Δτ`, g that of the middle: what g changes by is left to the iteration,
+/// since it is no faster than the motion that it follows.
+impl<Y: Collocation<N>, const N: usize, const S: usize> Correctable<N, S> for Scaled<'_, f64, Y, N, S, false> {
+    fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+        self.evaluate(x, |_, _| {})
     }
 
-    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        let missing = self.equations.evaluate(x, |_, _| {});
-        let correction = self.newton.correction(&missing);
-        self.equations.follow(&correction)
-    }
-
-    fn increment(&self) -> Increment<N> {
-        self.equations.increment()
-    }
-
-    fn guess(&self) -> Stages<N, S> {
-        self.equations.guess()
-    }
-
-    fn velocities(&self) -> Option<Stages<N, S>> {
-        self.equations.velocities()
-    }
-
-    fn change_of_velocities(&self) -> f64 {
-        self.equations.change_of_velocities()
+    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
+        self.moved(correction)
     }
 }
 
@@ -360,7 +327,7 @@ where
     }
 }
 
-impl<Y: Collocation<N>, const N: usize, const S: usize> Clocked<N, S> for Stiff<'_, Y, N, S> {
+impl<E: Clocked<N, S> + Correctable<N, S>, const N: usize, const S: usize> Clocked<N, S> for Stiff<'_, E, N, S> {
     fn gains(&self) -> [f64; 2] {
         self.equations.gains()
     }

@@ -8,7 +8,7 @@ use super::{Checkpoint, Run, ScaledGauss, check_time_scale};
 use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
 use crate::fixed_step::check_step;
-use crate::integrator::{Integrator, changed};
+use crate::integrator::{Integrator, changed, own};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
@@ -89,24 +89,10 @@ where
     // Nothing bounds how g changes from one step to the next.
     const LONGEST: f64 = f64::INFINITY;
 
-    fn step(&mut self) -> Result<State<N>, StepError> {
-        self.step()
-    }
-
-    fn step_of(&mut self, h: f64) -> Result<State<N>, StepError> {
-        self.step_of(h)
-    }
+    own!(step, step_of, system, h, checkpoint);
 
     fn node(&self) -> &Node<N> {
         &self.run.node
-    }
-
-    fn system(&self) -> &S {
-        self.system()
-    }
-
-    fn h(&self) -> f64 {
-        self.h()
     }
 
     fn discrete_energy(&self) -> Option<f64> {
@@ -125,19 +111,13 @@ where
 
     fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
         let brought = state.energy(&self.system)? - self.state().energy(&self.system)?;
-        let Node { energy, energy_low, .. } = self.run.node;
-        let node = Node { energy_low, ..Node::new(state, energy) };
-        self.run = self.run.resumed(&self.system, node, brought)?;
+        self.run = self.run.resumed(&self.system, self.run.node.with_state(state), brought)?;
         self.failure = None;
         Ok(())
     }
 
     fn path(&self, before: &State<N>) -> Result<Polynomial<N, STAGES>, StepError> {
         Ok(Polynomial::of(&self.system, &self.run, *before))
-    }
-
-    fn checkpoint(&self) -> Checkpoint<N, STAGES> {
-        self.checkpoint()
     }
 
     fn set_time(&mut self, t: f64) {

@@ -17,6 +17,7 @@
 //! | file | part of a step |
 //! |---|---|
 //! | `equations` | the equations of the stages, solved by sweeps, else by simplified Newton iterations |
+//! | `run` | what a run carries from step to step |
 //! | `path` | the motion between the nodes of a step |
 //! | `integrator` | what it shares with the other integrators; steps of a given length in time |
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
@@ -28,23 +29,22 @@ mod equations;
 mod integrator;
 mod path;
 mod rounding;
+mod run;
 
-use super::newton::Newton;
-use super::polynomial::{coefficients, polynomials, sum};
-use super::stages::{Stages, extrapolated, set, stage};
-use super::sweep::{self, Convergence, Increment, Sweeps};
-use super::tableau::{DEGREE, Tableau};
+use super::newton::{Newton, Stiff};
+use super::stages::{Stages, stage};
+use super::sweep::{self, Increment, Sweeps};
 use crate::checkpoint;
-use crate::collocation::{Collocation, ScaledPoint, TimeScale};
-use crate::compensated;
+use crate::collocation::{Collocation, TimeScale};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
-use equations::{Clock, Clocked, Rates, Scaled, Stiff};
-use nalgebra::{ArrayStorage, SMatrix, SVector};
+use equations::{Clock, Clocked, Rates, Scaled};
+use nalgebra::SVector;
 pub use path::Polynomial;
+pub use run::Run;
 use vi_dispatch::{Instructions, Loop};
 
 /// Steps of order 2 STAGES in scaled time; see the [module](self).
@@ -60,22 +60,6 @@ pub struct ScaledGauss<S, const N: usize, const STAGES: usize> {
 
 /// Everything that a run of [`ScaledGauss`] carries, to be stored and resumed bit for bit.
 pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Run<N, STAGES>>;
-
-/// What a run carries from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Run<const N: usize, const S: usize> {
-    node: Node<N>,
-    dtau: f64,
-    /// Length of the last step in scaled time, and in time; before the first one Δτ and `g Δτ`.
-    taken: f64,
-    h: f64,
-    /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
-    velocities: SMatrix<f64, S, N>,
-    /// The same of g and of dE/dτ, a column each.
-    clock: SMatrix<f64, S, 2>,
-    convergence: Convergence,
-}
 
 impl<S, const N: usize, const STAGES: usize> ScaledGauss<S, N, STAGES>
 where
@@ -194,13 +178,9 @@ where
         if let StepError::NonFinite { expression: Some(_), .. } = explained {
             return explained;
         }
-        let Convergence { sweeps, change, contraction } = solved.sweeps.convergence;
-        // What is not a number was beyond all.
-        let [change, contraction] =
-            [change, contraction].map(|ratio| if ratio.is_nan() { f64::INFINITY } else { ratio });
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
         let h = self.system.scaled_point(node.t, &node.q, &v).g * dtau;
-        StepError::StagesUnsettled { t: node.t, h, iterations: sweeps, change, contraction, stiffness }
+        solved.sweeps.convergence.unsettled(node.t, h, stiffness)
     }
 
     /// The step by simplified Newton iterations about its middle.
@@ -265,87 +245,6 @@ where
         self.run.convergence.sweeps
     }
 }
-
-impl<const N: usize, const S: usize> Run<N, S> {
-    /// A run that begins at a node, the rates of its first step guessed constant.
-    fn new<Y: TimeScale<N>>(system: &Y, node: Node<N>, dtau: f64) -> Result<Self, StepError> {
-        node.check_finite(node.t)?;
-        let State { t, q, .. } = node.state();
-        let v = node.state().velocity(system)?;
-        let ScaledPoint { energy, power, g, g_dt, .. } = system.scaled_point(t, &q, &v);
-        check_time_scale(t, g)?;
-        let gain = g * power + (energy - node.energy) * g_dt;
-        let velocities = SMatrix::from_fn(|_, k| v[k]);
-        let clock = SMatrix::from_fn(|_, column| if column == 0 { g } else { gain });
-        Ok(Self { node, dtau, taken: dtau, h: g * dtau, velocities, clock, convergence: Convergence::NONE })
-    }
-
-    /// Rates at the stages of the last step.
-    #[inline(always)]
-    fn rates(&self) -> Rates<N, S> {
-        let [g, energy] = self.clock.data.0;
-        Rates { velocity: self.velocities.data.0, g, energy }
-    }
-
-    /// Rates at the stages of the next step: the polynomials of the last one, further on.
-    #[inline(always)]
-    fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
-        if !self.convergence.has_begun() {
-            return self.rates();
-        }
-        if self.taken.to_bits() != self.dtau.to_bits() {
-            return self.guess_of_another_length();
-        }
-        let Rates { velocity, g, energy } = self.rates();
-        let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
-        Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy }
-    }
-
-    /// The same where the next step is of another length: by so much further on, but not far; else the rates of the last stage.
-    #[cold]
-    fn guess_of_another_length(&self) -> Rates<N, S> {
-        let c = const { &Tableau::<S>::VALUES.c };
-        let ratio = self.dtau / self.taken;
-        if !(ratio > 0.0 && ratio <= FARTHEST) {
-            let last = |row: [f64; S]| [row[S - 1]; S];
-            let Rates { velocity, g, energy } = self.rates();
-            return Rates { velocity: velocity.map(last), g: last(g), energy: last(energy) };
-        }
-        let velocity = coefficients(&self.velocities.data.0);
-        let clock = coefficients(&self.clock.data.0);
-        let mut rates = self.rates();
-        for i in 0..S {
-            let mut basis = polynomials::<S>(1.0 + ratio * c[i]);
-            basis.iter_mut().skip(DEGREE + 1).for_each(|value| *value = 0.0);
-            set(&mut rates.velocity, i, &sum(&velocity, &basis));
-            [rates.g[i], rates.energy[i]] = sum(&clock, &basis).into();
-        }
-        rates
-    }
-
-    /// The run after a step.
-    #[inline(always)]
-    fn after(&self, solved: &Solved<N, S>) -> Self {
-        let Solved { increment, gains: [h, energy], rates, sweeps, .. } = solved;
-        let mut node = self.node;
-        compensated::add_rounded(&mut node.t, &mut node.t_low, *h);
-        compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * self.dtau));
-        compensated::add_vector(&mut node.p, &mut node.p_low, &increment.momentum);
-        node.add_energy(*energy);
-        let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
-        let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
-        Self { node, dtau: self.dtau, taken: self.dtau, h: *h, velocities, clock, convergence: sweeps.convergence }
-    }
-
-    /// Whether it is finite, and g positive at all stages.
-    #[inline(always)]
-    fn is_sound(&self) -> bool {
-        self.node.is_finite() && self.clock.column(0).iter().all(|g| *g > 0.0)
-    }
-}
-
-/// Lengths of the last step by which its polynomials guess ahead at most.
-const FARTHEST: f64 = 2.0;
 
 /// A solved step.
 struct Solved<const N: usize, const S: usize> {

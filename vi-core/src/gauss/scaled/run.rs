@@ -1,0 +1,113 @@
+//! What a run in scaled time carries from step to step.
+//!
+//! In: a run, a solved step. Out: the run after it, and the rates from which the next step starts: the polynomials of the last one, further on.
+
+use super::equations::Rates;
+use super::{Solved, check_time_scale};
+use crate::collocation::{ScaledPoint, TimeScale};
+use crate::compensated;
+use crate::error::StepError;
+use crate::gauss::polynomial::{coefficients, polynomials, sum};
+use crate::gauss::stages::{extrapolated, set};
+use crate::gauss::sweep::Convergence;
+use crate::gauss::tableau::{DEGREE, Tableau};
+use crate::node::Node;
+use crate::state::State;
+use nalgebra::{ArrayStorage, SMatrix};
+
+/// What a run carries from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Run<const N: usize, const S: usize> {
+    pub(super) node: Node<N>,
+    pub(super) dtau: f64,
+    /// Length of the last step in scaled time, and in time; before the first one Δτ and `g Δτ`.
+    pub(super) taken: f64,
+    pub(super) h: f64,
+    /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
+    pub(super) velocities: SMatrix<f64, S, N>,
+    /// The same of g and of dE/dτ, a column each.
+    pub(super) clock: SMatrix<f64, S, 2>,
+    pub(super) convergence: Convergence,
+}
+
+impl<const N: usize, const S: usize> Run<N, S> {
+    /// A run that begins at a node, the rates of its first step guessed constant.
+    pub(super) fn new<Y: TimeScale<N>>(system: &Y, node: Node<N>, dtau: f64) -> Result<Self, StepError> {
+        node.check_finite(node.t)?;
+        let State { t, q, .. } = node.state();
+        let v = node.state().velocity(system)?;
+        let ScaledPoint { energy, power, g, g_dt, .. } = system.scaled_point(t, &q, &v);
+        check_time_scale(t, g)?;
+        let gain = g * power + (energy - node.energy) * g_dt;
+        let velocities = SMatrix::from_fn(|_, k| v[k]);
+        let clock = SMatrix::from_fn(|_, column| if column == 0 { g } else { gain });
+        Ok(Self { node, dtau, taken: dtau, h: g * dtau, velocities, clock, convergence: Convergence::NONE })
+    }
+
+    /// Rates at the stages of the last step.
+    #[inline(always)]
+    pub(super) fn rates(&self) -> Rates<N, S> {
+        let [g, energy] = self.clock.data.0;
+        Rates { velocity: self.velocities.data.0, g, energy }
+    }
+
+    /// Rates at the stages of the next step: the polynomials of the last one, further on.
+    #[inline(always)]
+    pub(super) fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
+        if !self.convergence.has_begun() {
+            return self.rates();
+        }
+        if self.taken.to_bits() != self.dtau.to_bits() {
+            return self.guess_of_another_length();
+        }
+        let Rates { velocity, g, energy } = self.rates();
+        let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
+        Rates { velocity: extrapolated::<N, S, FUSED>(&velocity), g, energy }
+    }
+
+    /// The same where the next step is of another length: by so much further on, but not far; else the rates of the last stage.
+    #[cold]
+    fn guess_of_another_length(&self) -> Rates<N, S> {
+        let c = const { &Tableau::<S>::VALUES.c };
+        let ratio = self.dtau / self.taken;
+        if !(ratio > 0.0 && ratio <= FARTHEST) {
+            let last = |row: [f64; S]| [row[S - 1]; S];
+            let Rates { velocity, g, energy } = self.rates();
+            return Rates { velocity: velocity.map(last), g: last(g), energy: last(energy) };
+        }
+        let velocity = coefficients(&self.velocities.data.0);
+        let clock = coefficients(&self.clock.data.0);
+        let mut rates = self.rates();
+        for i in 0..S {
+            let mut basis = polynomials::<S>(1.0 + ratio * c[i]);
+            basis.iter_mut().skip(DEGREE + 1).for_each(|value| *value = 0.0);
+            set(&mut rates.velocity, i, &sum(&velocity, &basis));
+            [rates.g[i], rates.energy[i]] = sum(&clock, &basis).into();
+        }
+        rates
+    }
+
+    /// The run after a step.
+    #[inline(always)]
+    pub(super) fn after(&self, solved: &Solved<N, S>) -> Self {
+        let Solved { increment, gains: [h, energy], rates, sweeps, .. } = solved;
+        let mut node = self.node;
+        compensated::add_rounded(&mut node.t, &mut node.t_low, *h);
+        compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * self.dtau));
+        compensated::add_vector(&mut node.p, &mut node.p_low, &increment.momentum);
+        node.add_energy(*energy);
+        let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
+        let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
+        Self { node, dtau: self.dtau, taken: self.dtau, h: *h, velocities, clock, convergence: sweeps.convergence }
+    }
+
+    /// Whether it is finite, and g positive at all stages.
+    #[inline(always)]
+    pub(super) fn is_sound(&self) -> bool {
+        self.node.is_finite() && self.clock.column(0).iter().all(|g| *g > 0.0)
+    }
+}
+
+/// Lengths of the last step by which its polynomials guess ahead at most.
+const FARTHEST: f64 = 2.0;
