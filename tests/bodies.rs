@@ -5,21 +5,6 @@ use serde_json::Value;
 use vi_core::{Gauss, SVector, State};
 use vi_systems::{OuterSolarSystem, ThreeBody};
 
-/// Sun and planets on 5 September 1994: x of all of them, then y, then z (AU).
-#[rustfmt::skip]
-const PLANETS: [f64; 18] = [
-    0.0, -3.502_365_3, 9.075_531_4, 8.310_142_0, 11.470_766_6, -15.538_735_7,
-    0.0, -3.816_984_7, -3.045_835_3, -16.290_108_6, -25.729_482_9, -25.222_559_4,
-    0.0, -1.550_796_3, -1.648_370_8, -7.252_127_8, -10.816_945_6, -3.190_238_2,
-];
-/// Their velocities (AU a day).
-#[rustfmt::skip]
-const VELOCITIES: [f64; 18] = [
-    0.0, 0.005_654_29, 0.001_683_18, 0.003_541_78, 0.002_889_30, 0.002_767_25,
-    0.0, -0.004_124_90, 0.004_835_25, 0.001_371_02, 0.001_145_27, -0.001_707_02,
-    0.0, -0.001_905_89, 0.001_924_62, 0.000_550_29, 0.000_396_77, -0.001_365_04,
-];
-
 /// Momentum and angular momentum of the six bodies along one axis.
 fn sums(state: &State<18>, axis: usize) -> [f64; 2] {
     let State { q, p, .. } = state;
@@ -44,7 +29,7 @@ fn off(run: &Gauss<OuterSolarSystem, 18, 8>, expected: &Value) -> [f64; 2] {
 fn the_outer_solar_system_is_where_other_programs_have_it() {
     let reference = file("outer_solar_system.json");
     let system = OuterSolarSystem::default();
-    let start = State::at(&system, 0.0, PLANETS, VELOCITIES);
+    let start = State::at(&system, 0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES);
     let mut run = Gauss::<_, 18, 8>::new(system, start, 100.0).expect("a valid start");
     assert!(run.by_ref().take(200).all(|step| step.is_ok()));
     let [q, v] = off(&run, &reference["taylor"]);
@@ -61,7 +46,7 @@ fn the_outer_solar_system_is_where_other_programs_have_it() {
 #[test]
 fn the_outer_solar_system_keeps_energy_momentum_and_angular_momentum() {
     let system = OuterSolarSystem::default();
-    let start = State::at(&system, 0.0, PLANETS, VELOCITIES);
+    let start = State::at(&system, 0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES);
     let energy = |state: &State<18>| state.energy(&system).expect("a mass matrix");
     let mut changes = [0.0_f64; 3];
     let mut swing = 0.0_f64;

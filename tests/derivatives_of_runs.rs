@@ -1,5 +1,6 @@
 //! Variations of steps and runs: against dual numbers of a step that is solved in them, differences, symplecticity, and published exponents.
 
+use crate::gauss::Everything;
 use nalgebra::{DMatrix, DVector};
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::linear::Matrix;
@@ -7,25 +8,12 @@ use vi_core::node::Node;
 use vi_core::real::Dual;
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{
-    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, SVector, Scheme, State, StepError, lagrangian,
-    nalgebra,
+    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, SVector, Scheme, State, StepError, nalgebra,
 };
 use vi_systems::{
     ChargedParticle, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HenonHeiles, Kepler, NPendulum,
     ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };
-
-lagrangian! {
-    /// Force, time, varying mass and damping at once.
-    struct Everything {
-        param a = 1.4, c = 0.15, w = 1.3;
-        coord x, y;
-        L = (1 + x^2 / 3) * dot(x)^2 / 2 + a * dot(y)^2 / 2 + x * dot(x) * dot(y) / 5 - cos(w * t) * x * y / 4 - x^2 - y^4 / 4;
-        force x = -c * dot(x) + sin(w * t) / 5;
-        force y = -c * dot(x) * dot(y);
-        discretize midpoint;
-    }
-}
 
 /// The columns of the tangent map over `steps` steps.
 fn tangent_map<I: Differentiable<N>, const N: usize>(run: I, steps: usize) -> (I, DMatrix<f64>) {

@@ -1,26 +1,13 @@
 //! The slots of a Gauss step: what they say of its ends, and that they are the derivatives of its discrete Lagrangian.
 
-use vi_core::collocation::Collocation;
+use crate::gauss::{Everything, System};
 use vi_core::gauss::Slots;
 use vi_core::nalgebra::SMatrix;
-use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{Gauss, SVector, State, lagrangian};
 use vi_systems::{DampedOscillator, DoublePendulum, Kepler};
 
 lagrangian! {
-    /// Force, time, varying mass and damping at once.
-    struct Everything {
-        param a = 1.4, c = 0.15, w = 1.3;
-        coord x, y;
-        L = (1 + x^2 / 3) * dot(x)^2 / 2 + a * dot(y)^2 / 2 + x * dot(x) * dot(y) / 5 - cos(w * t) * x * y / 4 - x^2 - y^4 / 4;
-        force x = -c * dot(x) + sin(t) / 5;
-        force y = -c * dot(x) * dot(y);
-        discretize midpoint;
-    }
-}
-
-lagrangian! {
-    /// The same without a force.
+    /// `Everything` without a force.
     struct Unforced {
         param a = 1.4, w = 1.3;
         coord x, y;
@@ -28,10 +15,6 @@ lagrangian! {
         discretize midpoint;
     }
 }
-
-/// What a Gauss step asks of a system.
-trait System<const N: usize>: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy {}
-impl<const N: usize, S: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy> System<N> for S {}
 
 /// What the slots say of the ends of each step, against the nodes, and the sum of the slots of time against the power along the step.
 fn end_at_the_nodes<const N: usize, const S: usize>(name: &str, system: impl System<N>, q: [f64; N], v: [f64; N]) {

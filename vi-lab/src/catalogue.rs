@@ -85,21 +85,6 @@ const EIGHT_V: [f64; 6] = [
     -0.864_731_460_921_02,
 ];
 
-/// The outer solar system on 5 September 1994 at midnight: x of all bodies, then y and z, about the Sun.
-#[rustfmt::skip]
-const PLANETS: [f64; 18] = [
-    0.0, -3.502_365_3, 9.075_531_4, 8.310_142_0, 11.470_766_6, -15.538_735_7,
-    0.0, -3.816_984_7, -3.045_835_3, -16.290_108_6, -25.729_482_9, -25.222_559_4,
-    0.0, -1.550_796_3, -1.648_370_8, -7.252_127_8, -10.816_945_6, -3.190_238_2,
-];
-/// Their velocities.
-#[rustfmt::skip]
-const PLANETS_V: [f64; 18] = [
-    0.0, 0.005_654_29, 0.001_683_18, 0.003_541_78, 0.002_889_30, 0.002_767_25,
-    0.0, -0.004_124_90, 0.004_835_25, 0.001_371_02, 0.001_145_27, -0.001_707_02,
-    0.0, -0.001_905_89, 0.001_924_62, 0.000_550_29, 0.000_396_77, -0.001_365_04,
-];
-
 /// The text of the files that declare the systems.
 pub(crate) fn sources() -> impl Iterator<Item = &'static str> {
     let own = OWN.get().map_or(&[][..], |own| own.sources);
@@ -136,7 +121,12 @@ fn ready() -> Vec<Entry> {
         entry::<ParametricPendulum, 1>("pendulum with a modulated gravity", [0.5], rest, 0.01),
         entry::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
         entry::<ThreeBody, 6>("three bodies on a figure of eight, period 6.3259", EIGHT, EIGHT_V, 0.005),
-        entry::<OuterSolarSystem, 18>("the Sun and five planets; AU, days, solar masses", PLANETS, PLANETS_V, 10.0),
+        entry::<OuterSolarSystem, 18>(
+            "the Sun and five planets; AU, days, solar masses",
+            OuterSolarSystem::POSITIONS,
+            OuterSolarSystem::VELOCITIES,
+            10.0,
+        ),
         entry::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
         entry::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
         entry::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),

@@ -7,7 +7,7 @@
 //! | module | what it makes |
 //! |---|---|
 //! | `system`, `simulation` | any system and one run of it, their types erased: all that is compiled once for each system |
-//! | `counting`, `rival`, `start` | what stands below them: evaluations, DOP853, an accurate start |
+//! | `counting`, `rival`, `start`, `exponents` | what stands below them: evaluations, DOP853, an accurate start, Lyapunov exponents |
 //! | `catalogue` | the systems by name, each with a place to start from |
 //! | `new` | `vi-lab new`: a crate of one's own with all of this command |
 //! | `run` | `vi-lab run`: rows as CSV or NPY |
@@ -25,6 +25,7 @@ mod chart;
 mod counting;
 mod expand;
 mod explain;
+mod exponents;
 mod failure;
 mod html;
 mod input;

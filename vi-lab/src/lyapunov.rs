@@ -8,12 +8,8 @@ use crate::failure::Failure;
 use crate::input::{count, number};
 use crate::numbers::short;
 use crate::run;
-use crate::simulation::{Method, Plan, vector};
+use crate::simulation::Method;
 use clap::Args;
-use vi_core::collocation::Collocation;
-use vi_core::derivatives::Lyapunov;
-use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{Gauss, Integrator as _, State, StepError};
 
 /// The command line of `vi-lab lyapunov`.
 #[derive(Debug, Args)]
@@ -48,56 +44,6 @@ pub(crate) struct Arguments {
 const FIRST: u64 = 100;
 /// How many times a step is longer than that of order 2 which the system has by default.
 const LONGER: f64 = 5.0;
-/// Stages of the Gauss steps, which the command has anyway.
-const STAGES: usize = 8;
-
-/// Lyapunov exponents along a run.
-pub(crate) trait Exponents {
-    /// Takes so many steps.
-    ///
-    /// # Errors
-    /// That of the step that fails.
-    fn advance(&mut self, steps: u64) -> Result<(), StepError>;
-    /// Time of the node reached last.
-    fn t(&self) -> f64;
-    /// The estimates.
-    fn exponents(&self) -> Vec<f64>;
-}
-
-impl<S, const N: usize> Exponents for Lyapunov<Gauss<S, N, STAGES>, N>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-{
-    fn advance(&mut self, steps: u64) -> Result<(), StepError> {
-        self.advance(steps)
-    }
-
-    fn t(&self) -> f64 {
-        self.run().t()
-    }
-
-    fn exponents(&self) -> Vec<f64> {
-        self.exponents()
-    }
-}
-
-/// The exponents of a system along the run of a plan.
-///
-/// # Errors
-/// What the integrator says of the initial state.
-pub(crate) fn begin<'a, S, const N: usize>(
-    system: S,
-    plan: &Plan,
-    count: usize,
-) -> Result<Box<dyn Exponents + 'a>, StepError>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N> + 'a,
-{
-    let q = vector(&plan.q, "number of coordinates")?;
-    let v = vector(&plan.v, "number of velocities")?;
-    let run = Gauss::<S, N, STAGES>::new(system, State::at(&system, plan.t, q, v), plan.h)?;
-    Ok(Box::new(Lyapunov::new(run, count)))
-}
 
 /// Writes the estimates.
 ///

@@ -4,7 +4,7 @@
 //! code of the command that is generic over systems: its integrators, its accurate motion and the rival are compiled
 //! once for each system, however many charts use them.
 
-use crate::lyapunov::{self, Exponents};
+use crate::exponents::{self, Exponents};
 use crate::rival::{self, Ended};
 use crate::simulation::{self, Plan, Simulation, vector};
 use core::cell::Cell;
@@ -146,7 +146,7 @@ where
     }
 
     fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError> {
-        lyapunov::begin(self.0, plan, count)
+        exponents::begin(self.0, plan, count)
     }
 
     fn rival(

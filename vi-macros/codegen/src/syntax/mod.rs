@@ -10,6 +10,10 @@ mod unfitting;
 pub use expression::{Expression, Kind, Operator, Range};
 use proc_macro2::{Ident, Span};
 
+/// The words that open a clause.
+const CLAUSES: [&str; 10] =
+    ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
+
 /// A `lagrangian!` as written.
 pub struct System {
     /// Attributes and doc comments of the struct.

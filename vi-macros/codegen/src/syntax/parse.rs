@@ -6,7 +6,8 @@
 use super::expression::DEPTH;
 use super::unfitting;
 use super::{
-    Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Kind, Parameter, Rule, System,
+    CLAUSES, Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Kind, Parameter, Rule,
+    System,
 };
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, error, nearest};
@@ -18,10 +19,6 @@ use syn::parse::{ParseStream, Parser};
 use syn::punctuated::Punctuated;
 use syn::{Attribute, Path, Result, Token, Visibility};
 use vi_expr::Rational;
-
-/// The words that open a clause.
-pub(super) const CLAUSES: [&str; 10] =
-    ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
 
 /// Names of types that the emitted code uses without a path.
 const TYPES: [&str; 6] = ["T", "W", "bool", "f64", "str", "usize"];

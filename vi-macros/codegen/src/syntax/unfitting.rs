@@ -3,7 +3,7 @@
 //! In: the input at the token, and where the clause began. Out: the error, at the token that is wrong: habits of Rust, of other languages
 //! and of paper say what to write here; all others say what the grammar expects.
 
-use super::parse::CLAUSES;
+use super::CLAUSES;
 use crate::habits::Habit;
 use crate::messages::{Message, error};
 use proc_macro2::{Delimiter, Span, TokenTree};
