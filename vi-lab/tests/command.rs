@@ -149,8 +149,46 @@ fn a_failing_step_leaves_the_output_so_far() {
 }
 
 #[test]
+fn a_plot_shows_the_rows_however_the_run_ends() {
+    let plot = temporary("plot.svg");
+    let csv = temporary("plot.csv");
+    let texts = |svg: &str| -> Vec<String> {
+        svg.split("<text ")
+            .skip(1)
+            .filter_map(|rest| Some(rest.split('>').nth(1)?.split('<').next()?.to_owned()))
+            .collect()
+    };
+    let drawn = |arguments: &[&str], status: i32| {
+        let (ended, output, errors) = lab(&[arguments, &["--plot", path(&plot)]].concat());
+        assert_eq!((ended, output.as_str()), (Some(status), ""), "{arguments:?}: {errors}");
+        let svg = fs::read_to_string(&plot).expect("the plot");
+        assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{arguments:?}");
+        fs::remove_file(&plot).expect("the file can be removed");
+        (texts(&svg), svg, errors)
+    };
+    // Two coordinates: the energies, the plane, and of each coordinate its course and its portrait.
+    let (words, svg, _) = drawn(&["run", "kepler", "--steps", "2000", "-o", path(&csv)], 0);
+    assert_eq!(words[..2], ["kepler, fixed, h = 0.005", "mu = 1"]);
+    for axis in ["energy − H₀", "H at the start: H₀ = -0.5", "x", "y", "p_x", "p_y", "t"] {
+        assert!(words.iter().any(|word| word == axis), "{axis}: {words:?}");
+    }
+    assert_eq!((svg.matches("<svg ").count(), rows(&fs::read_to_string(&csv).expect("rows")).len()), (7, 2001));
+    fs::remove_file(&csv).expect("the file can be removed");
+    // A run that fails shows what it has: one that ends on its way, and one that has its first row alone.
+    let (_, svg, errors) = drawn(&["run", "double-well", "--q", "1.05", "--method", "energy"], 1);
+    assert!(errors.starts_with("error: no energy-preserving step") && svg.contains("<path "), "{errors}");
+    let (_, svg, _) = drawn(&["run", "double-well", "--steps", "0"], 0);
+    assert!(svg.contains("<circle ") || svg.contains("<rect x="), "one row is a dot");
+    // Ten times as many rows make no larger file; forty coordinates would be 24.
+    let long = |steps: &str| drawn(&["run", "pendulum", "--steps", steps], 0).1.len();
+    let sizes = (long("2e4"), long("2e5"));
+    // Measured 222 kB and 230 kB.
+    assert!(sizes.0 < 300_000 && sizes.1 < 300_000, "{sizes:?} bytes");
+}
+
+#[test]
 fn wrong_input_is_one_line_and_status_2() {
-    let cases: [(&[&str], &str); 27] = [
+    let cases: [(&[&str], &str); 29] = [
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
         (&["run"], "name a system, as `vi-lab list` does, or a scene file"),
         (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
@@ -207,6 +245,11 @@ fn wrong_input_is_one_line_and_status_2() {
             "double-well has the coordinates q: give as many coordinates (--q), not 2",
         ),
         (&["run", "double-well", "--steps", "1", "-o", "x.txt"], "the output `x.txt` must end in .csv or .npy"),
+        (&["run", "double-well", "--steps", "1", "--plot", "x.png"], "the plot `x.png` must end in .svg"),
+        (
+            &["run", "double-well", "--steps", "1", "--plot", "no-such-folder/x.svg"],
+            "there is no folder `no-such-folder` for the plot `no-such-folder/x.svg`; make it first",
+        ),
         (
             &["run", "double-well", "--steps", "1", "-o", "no-such-folder/x.csv"],
             "there is no folder `no-such-folder` for the output `no-such-folder/x.csv`; make it first",

@@ -77,15 +77,37 @@ impl Axis {
                 coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
             widen(low, high, self.scale)
         });
-        let step = match self.scale {
-            Scale::Linear => round_step((range.1 - range.0) / 6.0),
-            Scale::Log10 => round_step((range.1 - range.0) / 8.0).ceil(),
-        };
-        Ruler { range, step, scale: self.scale }
+        Ruler::over(range, self.scale)
     }
 }
 
 impl Ruler {
+    /// The ruler over a range of coordinates.
+    fn over(range: (f64, f64), scale: Scale) -> Self {
+        let step = match scale {
+            Scale::Linear => round_step((range.1 - range.0) / 6.0),
+            Scale::Log10 => round_step((range.1 - range.0) / 8.0).ceil(),
+        };
+        Self { range, step, scale }
+    }
+
+    /// The unit in which coordinates are handed to the library, which draws no range that is shorter than 2e-16 or longer than 1e18.
+    pub(super) fn unit(&self) -> f64 {
+        let length = self.length();
+        if (1e-9..1e9).contains(&length) { 1.0 } else { 2_f64.powi(whole(length.log2())) }
+    }
+
+    /// Length of the range.
+    pub(super) fn length(&self) -> f64 {
+        self.range.1 - self.range.0
+    }
+
+    /// The ruler of so long a range around the same middle.
+    pub(super) fn widened_to(&self, length: f64) -> Self {
+        let more = (length - self.length()) / 2.0;
+        Self::over((self.range.0 - more, self.range.1 + more), self.scale)
+    }
+
     /// Label of the tick at `coordinate`.
     pub(super) fn tick_label(&self, coordinate: f64) -> String {
         match self.scale {

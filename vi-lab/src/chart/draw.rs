@@ -18,11 +18,12 @@ pub(super) const MARGINS: Margins = Margins { left: 88.0, right: 216.0, top: 44.
 const AREA: Area = Area { width: 596.0, height: 330.0 };
 
 /// Space around the plot area in pixels; the legend stands on the right.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Margins {
     pub(super) left: f64,
-    right: f64,
+    pub(super) right: f64,
     pub(super) top: f64,
-    bottom: f64,
+    pub(super) bottom: f64,
 }
 
 /// Size of the plot area in pixels.
@@ -30,6 +31,14 @@ pub(super) struct Margins {
 pub(super) struct Area {
     pub(super) width: f64,
     pub(super) height: f64,
+}
+
+/// Where a chart is drawn: its axes, its plot area, the space around it.
+struct Place {
+    x: Ruler,
+    y: Ruler,
+    area: Area,
+    margins: Margins,
 }
 
 /// A series as it is drawn: coordinates for the figure, values for the table.
@@ -57,7 +66,24 @@ impl Chart {
         let y = self.y.ruler(placed.iter().flat_map(ordinates));
         let area = self.area(&x, &y);
         let drawn: Vec<Drawn<'_>> = placed.into_iter().map(|drawn| thinned(&drawn, &x, &y, area)).collect();
-        Figure { name: self.name, svg: self.svg(&drawn, &x, &y, area, map), csv: self.csv(&drawn) }
+        let place = Place { x, y, area, margins: MARGINS };
+        Figure { name: self.name, svg: self.svg(&drawn, &place, map), csv: self.csv(&drawn) }
+    }
+
+    /// The chart as an SVG figure with a plot area and margins of one's own. Where a unit has the same length on both axes, the shorter
+    /// range is widened.
+    pub(super) fn svg_in(&self, area: Area, margins: Margins) -> String {
+        let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
+        let points = || placed.iter().flat_map(|drawn| &drawn.coordinates);
+        let mut x = self.x.ruler(points().map(|point| point.0));
+        let mut y = self.y.ruler(points().map(|point| point.1));
+        if self.equal_aspect {
+            let unit = (x.length() / area.width).max(y.length() / area.height);
+            x = x.widened_to(unit * area.width);
+            y = y.widened_to(unit * area.height);
+        }
+        let drawn: Vec<Drawn<'_>> = placed.iter().map(|drawn| thinned(drawn, &x, &y, area)).collect();
+        self.svg(&drawn, &Place { x, y, area, margins }, None)
     }
 
     /// The points that have a place on the axes.
@@ -91,25 +117,29 @@ impl Chart {
         Area { width: scale * width, height: scale * height }
     }
 
-    fn svg(&self, drawn: &[Drawn<'_>], x: &Ruler, y: &Ruler, area: Area, map: Option<Vec<LegendEntry>>) -> String {
+    fn svg(&self, drawn: &[Drawn<'_>], place: &Place, map: Option<Vec<LegendEntry>>) -> String {
+        let Place { x, y, area, margins } = place;
         let grid = map.is_none();
         let series = drawn.iter().filter_map(|drawn| legend_entry(drawn.series));
         let legend = map.into_iter().flatten().chain(series).collect();
         let label_x = x.clone();
         let label_y = y.clone();
-        let layout = Layout::new(x.range, y.range)
-            .with_width(area.width + MARGINS.left + MARGINS.right)
-            .with_height(area.height + MARGINS.top + MARGINS.bottom)
-            .with_force_margins(MARGINS.left, MARGINS.right)
-            .with_force_margins_y(MARGINS.top, MARGINS.bottom)
-            .with_x_axis_min(x.range.0)
-            .with_x_axis_max(x.range.1)
-            .with_y_axis_min(y.range.0)
-            .with_y_axis_max(y.range.1)
-            .with_x_tick_step(x.step)
-            .with_y_tick_step(y.step)
-            .with_x_tick_format(TickFormat::Custom(Arc::new(move |value| label_x.tick_label(value))))
-            .with_y_tick_format(TickFormat::Custom(Arc::new(move |value| label_y.tick_label(value))))
+        let units = (x.unit(), y.unit());
+        let in_units = |ruler: &Ruler, unit: f64| (ruler.range.0 / unit, ruler.range.1 / unit);
+        let [x_range, y_range] = [in_units(x, units.0), in_units(y, units.1)];
+        let layout = Layout::new(x_range, y_range)
+            .with_width(area.width + margins.left + margins.right)
+            .with_height(area.height + margins.top + margins.bottom)
+            .with_force_margins(margins.left, margins.right)
+            .with_force_margins_y(margins.top, margins.bottom)
+            .with_x_axis_min(x_range.0)
+            .with_x_axis_max(x_range.1)
+            .with_y_axis_min(y_range.0)
+            .with_y_axis_max(y_range.1)
+            .with_x_tick_step(x.step / units.0)
+            .with_y_tick_step(y.step / units.1)
+            .with_x_tick_format(TickFormat::Custom(Arc::new(move |value| label_x.tick_label(value * units.0))))
+            .with_y_tick_format(TickFormat::Custom(Arc::new(move |value| label_y.tick_label(value * units.1))))
             .with_title(self.title.as_str())
             .with_x_label(self.x.label.as_str())
             .with_y_label(self.y.label.as_str())
@@ -121,10 +151,10 @@ impl Chart {
             .with_legend_entries(legend)
             .with_show_grid(grid)
             .with_legend_box(false);
-        let mut plots: Vec<Plot> = drawn.iter().flat_map(plots).collect();
+        let mut plots: Vec<Plot> = drawn.iter().flat_map(|drawn| plots(drawn, units)).collect();
         if plots.is_empty() {
             // The library draws no axes around nothing.
-            let ends = [(x.range.0, y.range.0), (x.range.1, y.range.1)];
+            let ends = [(x_range.0, y_range.0), (x_range.1, y_range.1)];
             plots.push(Plot::Line(LinePlot::new().with_data(ends).with_color("none").with_stroke_width(0.0)));
         }
         let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
@@ -193,10 +223,10 @@ fn thinned<'a>(drawn: &Drawn<'a>, x: &Ruler, y: &Ruler, area: Area) -> Drawn<'a>
     }
 }
 
-/// The library's plots for one series: a line, markers, or both.
-fn plots(drawn: &Drawn<'_>) -> Vec<Plot> {
+/// The library's plots for one series, in units of the axes: a line, markers, or both.
+fn plots(drawn: &Drawn<'_>, units: (f64, f64)) -> Vec<Plot> {
     let Look { colour, width, stroke, marker } = drawn.series.look;
-    let points = || drawn.coordinates.iter().copied();
+    let points = || drawn.coordinates.iter().map(|(x, y)| (x / units.0, y / units.1));
     let mut plots = Vec::new();
     if width > 0.0 {
         let line = LinePlot::new().with_data(points()).with_color(colour).with_stroke_width(width);
@@ -206,7 +236,8 @@ fn plots(drawn: &Drawn<'_>) -> Vec<Plot> {
         let scatter = ScatterPlot::new().with_data(points()).with_color(colour).with_size(radius);
         // A whisker is the distance to its end, downwards or upwards.
         let ends = drawn.coordinates.iter().zip(&drawn.whiskers);
-        let arms = ends.map(|(point, end)| ((point.1 - end.0).max(0.0), (end.0 - point.1).max(0.0)));
+        let arms =
+            ends.map(|(point, end)| ((point.1 - end.0).max(0.0) / units.1, (end.0 - point.1).max(0.0) / units.1));
         plots.push(Plot::Scatter(scatter.with_marker(shape).with_y_err_asymmetric(arms)));
     }
     plots
@@ -240,6 +271,26 @@ mod tests {
         let c = heights[2];
         // Two decades of sixteen on an axis of 330 pixels are 41.25 pixels, ten are 206.25; the file rounds to 0.01.
         assert!((a - b - 41.25).abs() < 0.02 && (b - c - 206.25).abs() < 0.02, "{heights:?}");
+    }
+
+    #[test]
+    fn ranges_far_from_one_are_drawn_as_those_near_it() {
+        let heights = |unit: f64| {
+            let points = [0.0, 1.0, 4.0].map(|value| (value, value * unit)).to_vec();
+            let series = Series::scatter("points", Look::ENERGY.dots(3.0), points);
+            let figure = chart(Axis::linear("y"), vec![series]).figure();
+            (circles(&figure.svg), figure.svg)
+        };
+        let (near, _) = heights(1.0);
+        for (unit, tick) in [(1e-20, "4·10⁻²⁰"), (1e25, "4·10²⁵")] {
+            let (far, svg) = heights(unit);
+            // The file rounds to 0.01.
+            assert!(
+                near.iter().zip(&far).all(|(one, other)| (one - other).abs() < 0.02),
+                "{far:?} instead of {near:?}"
+            );
+            assert!(svg.contains(tick), "{svg}");
+        }
     }
 
     #[test]

@@ -9,12 +9,16 @@ mod axis;
 mod draw;
 mod map;
 mod palette;
+mod sheet;
 mod thin;
+mod trace;
 
 pub(crate) use axis::Axis;
 pub(crate) use map::{Class, Map, boundary, middles};
 pub(crate) use palette::Look;
+pub(crate) use sheet::{Panel, Sheet};
 use thin::Thinning;
+pub(crate) use trace::{Sample, Trace};
 
 /// One figure: axes and what is drawn between them.
 #[derive(Clone, Debug)]

@@ -46,6 +46,10 @@ impl Csv {
 
     /// Writes the block.
     fn flush(&mut self) -> Result<(), Failure> {
+        if self.block.is_empty() {
+            // Of a failure too: what the block held is lost, and told.
+            return Ok(());
+        }
         let block = core::mem::take(&mut self.block);
         self.target.put(block.as_bytes())?;
         self.block = block;

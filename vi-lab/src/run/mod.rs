@@ -1,18 +1,19 @@
-//! `vi-lab run`: one system simulated, its nodes written as CSV or NPY.
+//! `vi-lab run`: one system simulated, its nodes written as CSV or NPY, or drawn.
 //!
 //! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`, where
 //! H is the energy at the node and E the discrete energy of the interval that ends there. AFTER A RUN THAT ENDS EARLY, by
-//! a step that fails or a signal, the output holds every row up to there, and the last node whatever `--every` says.
+//! a step that fails or a signal, the output and the plot hold every row up to there, and the last node whatever `--every` says.
 //!
 //! | module | part of a run |
 //! |---|---|
 //! | [`request`], [`scene`] | what is to be done: command line and scene, checked |
 //! | [`resolution`], [`extent`] | what is refused: steps that rounding swallows, outputs of gigabytes |
-//! | [`csv`], [`npy`] | where rows go |
+//! | [`csv`], [`npy`], [`plot`] | where rows go |
 
 mod csv;
 mod extent;
 mod npy;
+mod plot;
 mod request;
 mod resolution;
 mod scene;
@@ -46,12 +47,15 @@ term of order h², with Gauss steps of S stages by one of order h^2S. H and E of
 before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
 length of the step that led to the node.
 
+--plot draws the rows that --every leaves: energies less H at the start, every coordinate over time and with its momentum, up to 24 of them, and \
+the path of two in their plane. A long run takes no more memory than a short one: stretches of it keep their extremes, a phase portrait becomes dots.
+
 Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial \
 state is the middle of the first interval, and that node lies half a step later. The node reached last is always written.
 
 Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
 (SIGINT, SIGTERM); 141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there \
-are whole; only a second signal ends the command at once.")]
+are whole, and drawn by --plot; only a second signal ends the command at once.")]
 pub(crate) struct Arguments {
     /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
     #[arg(value_name = "SYSTEM|SCENE.toml")]
@@ -89,9 +93,12 @@ pub(crate) struct Arguments {
     /// Writes every Nth node, and the last [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: Option<u64>,
-    /// File to write, .csv or .npy, an existing one anew; without it CSV goes to standard output
+    /// File to write, .csv or .npy, an existing one anew; without it and without --plot CSV goes to standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Draws energies, coordinates and phase portraits of the rows into an SVG file, an existing one anew
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
     /// Allows an output of more than a gigabyte
     #[arg(long)]
     pub(crate) large_output: bool,
@@ -101,7 +108,7 @@ pub(crate) struct Arguments {
 trait Sink {
     /// Takes a row; rows are written in blocks.
     fn write(&mut self, row: &Row) -> Result<(), Failure>;
-    /// Writes what has been taken.
+    /// Writes what has been taken; after a failure, what can still be written.
     fn finish(&mut self) -> Result<(), Failure>;
 }
 
@@ -126,35 +133,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begun = request.system.begin(&request.plan, &evaluations);
     let mut simulation = begun.map_err(|error| Failure::start(error, &request.plan))?;
     resolution::check_state(&request)?;
-    let mut sink = sink(&request)?;
+    let mut sinks = sinks(&request)?;
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
-    let mut course = Course { request: &request, extent, sink: sink.as_mut(), steps: 0, rows: 0, written: 0 };
+    let mut course = Course { request: &request, extent, sinks: &mut sinks, steps: 0, rows: 0, written: 0 };
     let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
-    match outcome {
-        // What was written before is whole, and nothing more can be written.
-        Err(failure @ (Failure::File { .. } | Failure::Unread)) => Err(failure),
-        Err(failure) => Err(match sink.finish() {
-            Ok(()) => failure,
-            Err(second) => Failure::both(failure, second),
-        }),
-        Ok(()) => sink.finish(),
-    }
+    // Whatever ended the run, and where one of the outputs failed too, each gets what can still be written.
+    sinks.iter_mut().fold(outcome, |outcome, sink| match (outcome, sink.finish()) {
+        (Err(first), Err(second)) => Err(Failure::both(first, second)),
+        (outcome, finished) => outcome.and(finished),
+    })
 }
 
-/// The sink that the request names.
-fn sink(request: &Request) -> Result<Box<dyn Sink>, Failure> {
-    Ok(match &request.output {
-        Output::Standard => Box::new(csv::Csv::standard_output(request)),
-        Output::Csv(path) => Box::new(csv::Csv::create(path, request)?),
-        Output::Npy(path) => Box::new(npy::Npy::create(path, request)?),
-    })
+/// The sinks that the request names.
+fn sinks(request: &Request) -> Result<Vec<Box<dyn Sink>>, Failure> {
+    let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
+    match &request.output {
+        Output::Standard => sinks.push(Box::new(csv::Csv::standard_output(request))),
+        Output::Csv(path) => sinks.push(Box::new(csv::Csv::create(path, request)?)),
+        Output::Npy(path) => sinks.push(Box::new(npy::Npy::create(path, request)?)),
+        Output::None => {}
+    }
+    if let Some(path) = &request.plot {
+        sinks.push(Box::new(plot::Plot::create(path, request)?));
+    }
+    Ok(sinks)
 }
 
 /// A run under way: what was asked for, and how far it came.
 struct Course<'a> {
     request: &'a Request,
     extent: Extent,
-    sink: &'a mut dyn Sink,
+    /// Where rows go.
+    sinks: &'a mut [Box<dyn Sink>],
     steps: u64,
     rows: u64,
     /// The number of steps that led to the row written last.
@@ -212,7 +222,8 @@ impl Course<'_> {
     fn write(&mut self, simulation: &dyn Simulation) -> Result<(), Failure> {
         self.rows += 1;
         self.written = self.steps;
-        self.sink.write(&simulation.row())
+        let row = simulation.row();
+        self.sinks.iter_mut().try_for_each(|sink| sink.write(&row))
     }
 }
 
@@ -229,6 +240,8 @@ fn describe(row: &Row, steps: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::cell::RefCell;
+    use std::rc::Rc;
     use vi_core::StepError;
 
     /// A run that cannot go on after three steps, at t = 1.5.
@@ -273,12 +286,12 @@ mod tests {
     }
 
     /// Keeps the rows.
-    #[derive(Default)]
-    struct Kept(Vec<Row>);
+    #[derive(Clone, Default)]
+    struct Kept(Rc<RefCell<Vec<Row>>>);
 
     impl Sink for Kept {
         fn write(&mut self, row: &Row) -> Result<(), Failure> {
-            self.0.push(row.clone());
+            self.0.borrow_mut().push(row.clone());
             Ok(())
         }
 
@@ -293,10 +306,11 @@ mod tests {
         let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
         let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
-        let mut sink = Kept::default();
-        let mut course = Course { request: &request, extent, sink: &mut sink, steps: 0, rows: 0, written: 0 };
+        let kept = Kept::default();
+        let mut sinks: [Box<dyn Sink>; 1] = [Box::new(kept.clone())];
+        let mut course = Course { request: &request, extent, sinks: &mut sinks, steps: 0, rows: 0, written: 0 };
         let failure = course.follow(&mut Ending { t: 0.0, fourth }, signal).expect_err("the run ends early");
-        (failure, sink.0.iter().map(|row| row.t).collect())
+        (failure, kept.0.borrow().iter().map(|row| row.t).collect())
     }
 
     #[test]

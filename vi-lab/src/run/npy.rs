@@ -49,6 +49,7 @@ impl Npy {
         if let Err(error) = written.and_then(|()| put(&mut self.file, 0, &head(rows, self.columns))) {
             // The head counts the rows up to here; half a row after them is cut off, or does no harm.
             let _ = self.file.set_len(end);
+            self.block.clear();
             return Err(Failure::file(&self.path, error));
         }
         self.rows = rows;

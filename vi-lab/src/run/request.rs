@@ -27,6 +27,8 @@ pub(super) struct Request {
     pub(super) every: u64,
     /// Where to.
     pub(super) output: Output,
+    /// The picture of it, an SVG file.
+    pub(super) plot: Option<PathBuf>,
     /// Whether the output may have more than a gigabyte.
     pub(super) large_output: bool,
 }
@@ -86,6 +88,8 @@ pub(super) enum Output {
     Csv(PathBuf),
     /// To an NPY file.
     Npy(PathBuf),
+    /// Nowhere but into a plot.
+    None,
 }
 
 impl Output {
@@ -98,17 +102,8 @@ impl Output {
             Some("npy") => Self::Npy(path.to_owned()),
             _ => return Err(Failure::Input(format!("the output `{shown}` must end in .csv or .npy"))),
         };
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-            let folder = folder.display();
-            return Err(Failure::Input(format!(
-                "there is no folder `{folder}` for the output `{shown}`; make it first"
-            )));
-        }
+        check_file("output", path)?;
         match fs::metadata(path) {
-            Ok(found) if found.is_dir() => {
-                Err(Failure::Input(format!("the output `{shown}` is a folder; name a file")))
-            }
             Ok(found) if !found.is_file() && matches!(output, Self::Npy(_)) => Err(Failure::Input(format!(
                 "the output `{shown}` is a pipe or a device, and the head of an NPY file is written last; write CSV there"
             ))),
@@ -121,8 +116,31 @@ impl Output {
         match self {
             Self::Standard | Self::Csv(_) => 19.0,
             Self::Npy(_) => 8.0,
+            Self::None => 0.0,
         }
     }
+}
+
+/// A file that can be written, were it not for its permissions.
+fn check_file(what: &str, path: &Path) -> Result<(), Failure> {
+    let shown = path.display();
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let folder = folder.display();
+        return Err(Failure::Input(format!("there is no folder `{folder}` for the {what} `{shown}`; make it first")));
+    }
+    if path.is_dir() {
+        return Err(Failure::Input(format!("the {what} `{shown}` is a folder; name a file")));
+    }
+    Ok(())
+}
+
+/// The file that --plot names.
+fn check_plot(path: &Path) -> Result<(), Failure> {
+    if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg")) {
+        return Err(Failure::Input(format!("the plot `{}` must end in .svg", path.display())));
+    }
+    check_file("plot", path)
 }
 
 impl Request {
@@ -181,8 +199,14 @@ impl Request {
         if every == 0 {
             return Err(Failure::Input("every how many nodes one is written (--every) must be at least 1".to_owned()));
         }
-        let output = arguments.output.as_deref().map_or(Ok(Output::Standard), Output::at)?;
-        Ok(Self { system, plan, length, every, output, large_output: arguments.large_output })
+        let output = match &arguments.output {
+            Some(path) => Output::at(path)?,
+            None if arguments.plot.is_some() => Output::None,
+            None => Output::Standard,
+        };
+        let plot = arguments.plot.clone();
+        plot.as_deref().map_or(Ok(()), check_plot)?;
+        Ok(Self { system, plan, length, every, output, plot, large_output: arguments.large_output })
     }
 
     /// Names of the columns of a row.
