@@ -2,6 +2,8 @@
 //!
 //! In: how it was written. Out: a message, what is wrong and what to write; of a word alone the help, or nothing.
 
+use crate::rules;
+
 /// Something that is written otherwise in this language. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +18,16 @@ pub enum Habit {
     Prime,
     /// `xdot`, for the velocity of a coordinate.
     VelocityByName { name: String, coordinate: String },
+    /// `v`, in a system with this coordinate.
+    Velocity { coordinate: String },
+    /// `sinx`, with a declared `x`.
+    FunctionInName { name: String, function: String, argument: String },
+    /// `mg`, with a declared `m` and `g`.
+    ProductInName { name: String, product: String },
+    /// `discretize gauss(4)`, `discretize order = 4`.
+    RuleWithArguments,
+    /// `discretize = midpoint`.
+    RuleWithSign,
     /// `2 x`, `m g`.
     MissingOperator { left: String, right: String, is_number: bool },
     /// `sin x`.
@@ -59,7 +71,12 @@ impl Habit {
             Self::PowerOverNumber { exponent } => format!("`a^{exponent}/b` is `(a^{exponent}) / b`"),
             Self::Bars => "bars are no absolute value".to_owned(),
             Self::Prime => "a prime is no derivative".to_owned(),
-            Self::VelocityByName { name, .. } => format!("unknown name `{name}`"),
+            Self::Velocity { .. } => "unknown name `v`".to_owned(),
+            Self::VelocityByName { name, .. }
+            | Self::FunctionInName { name, .. }
+            | Self::ProductInName { name, .. } => format!("unknown name `{name}`"),
+            Self::RuleWithArguments => "a rule is a name alone".to_owned(),
+            Self::RuleWithSign => "`discretize` is followed by the names of rules".to_owned(),
             Self::MissingOperator { left, right, .. } => {
                 format!("an operator is missing between `{left}` and `{right}`")
             }
@@ -92,6 +109,13 @@ impl Habit {
             Self::Bars => "write `abs(x)`".to_owned(),
             Self::Prime => "write `dot(x)` for the velocity of `x`; another name is `x_1`, say".to_owned(),
             Self::VelocityByName { coordinate, .. } => format!("write `dot({coordinate})`, the velocity of `{coordinate}`"),
+            Self::Velocity { coordinate } => {
+                format!("write `dot({coordinate})` for the velocity of `{coordinate}`, or name it: `let v = dot({coordinate});`")
+            }
+            Self::FunctionInName { function, argument, .. } => format!("write `{function}({argument})`"),
+            Self::ProductInName { product, .. } => format!("write `{product}` for a product"),
+            Self::RuleWithArguments => format!("write `discretize {};`; {GAUSS}", rules::RULES[0].name),
+            Self::RuleWithSign => format!("write `discretize {};`", rules::RULES[0].name),
             Self::MissingOperator { left, right, is_number: true } => {
                 format!("write `{left} * {right}` for a product; units are not written")
             }
@@ -148,7 +172,7 @@ const TYPES: [&str; 14] =
     ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
 /// Clauses.
-const CLAUSES: [(&[&str], &str); 8] = [
+const CLAUSES: [(&[&str], &str); 11] = [
     (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
     (&["coordinate", "coordinates", "var", "dof"], "write `coord x, y;`"),
     (&["constant", "constants", "static"], "write `const g = 9.81;`"),
@@ -160,6 +184,9 @@ const CLAUSES: [(&[&str], &str); 8] = [
         "write `force q[i in 0..8] = …;` or `let e[i in 0..8] = …;` for each entry, and `sum(i in 0..8, …)`",
     ),
     (&["if", "match"], CONDITION),
+    (&["order", "stages", "gauss", "method", "integrator", "rule", "scheme"], GAUSS),
+    (&["h", "dt", "step", "steps", "until"], RUN),
+    (&["initial", "start", "init", "ic"], RUN),
 ];
 
 /// Functions.
@@ -187,15 +214,84 @@ const FUNCTIONS: [(&[&str], &str); 20] = [
 ];
 
 /// Derivatives by time, which are one function here.
-const DERIVATIVES: [&str; 5] = ["diff", "der", "ddt", "d", "D"];
+const DERIVATIVES: [&str; 7] = ["diff", "der", "ddt", "d", "D", "derivative", "prime"];
 
 /// Names.
-const NAMES: [(&[&str], &str); 4] = [
+const NAMES: [(&[&str], &str); 5] = [
     (&["π", "PI", "Pi", "M_PI"], "write `pi`"),
     (&["e"], "write `exp(x)` for e^x, `exp(1)` for the number"),
     (&["time"], "write `t`"),
+    (&["dt", "ddt"], "write `dot(x)` for the derivative of `x` by time"),
     (&["lambda", "λ", "multiplier"], CONSTRAINT),
 ];
+
+/// Rules.
+const OF_RULES: [(&[&str], &str); 2] = [
+    (&["gauss", "Gauss", "gauss_legendre", "legendre", "collocation", "galerkin", "order", "stages"], GAUSS),
+    (
+        &["verlet", "Verlet", "leapfrog", "stoermer_verlet", "stormer_verlet", "velocity_verlet"],
+        "write `trapezoidal`, which is Störmer–Verlet where `L` is `v·Mv/2 - V(t, q)`",
+    ),
+];
+
+/// Where the order is chosen.
+pub(crate) const GAUSS: &str = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of \
+    order 2 S";
+
+/// Where a step and a start are given.
+const RUN: &str = "a step and a start belong to a run: `FixedStep::new(system, State::at(&system, t, q, v), h)`; those of checks stand in \
+    `check { x = 1; h = 0.01; }`";
+
+/// Greek letters by their words.
+const GREEK: [(&str, &str); 24] = [
+    ("alpha", "α"),
+    ("beta", "β"),
+    ("gamma", "γ"),
+    ("delta", "δ"),
+    ("epsilon", "ε"),
+    ("zeta", "ζ"),
+    ("eta", "η"),
+    ("theta", "θ"),
+    ("iota", "ι"),
+    ("kappa", "κ"),
+    ("lambda", "λ"),
+    ("mu", "μ"),
+    ("nu", "ν"),
+    ("xi", "ξ"),
+    ("omicron", "ο"),
+    ("rho", "ρ"),
+    ("sigma", "σ"),
+    ("tau", "τ"),
+    ("upsilon", "υ"),
+    ("phi", "φ"),
+    ("chi", "χ"),
+    ("psi", "ψ"),
+    ("omega", "ω"),
+    ("varphi", "ϕ"),
+];
+
+/// Letters with one and with two dots above that are letters of their own.
+const DOTTED: [(&str, &str); 2] = [("ȧċėġẋẏżṙṡṗṁṅȯ", "acegxyzrspmno"), ("äëïöüẍÿ", "aeiouxy")];
+
+/// The marks that put one and two dots above the letter before.
+const DOTS: [char; 2] = ['\u{307}', '\u{308}'];
+
+/// The name without its so many dots above the last letter; nothing where it has others.
+pub(crate) fn without_dots(name: &str, dots: usize) -> Option<String> {
+    let (mark, (dotted, plain)) = DOTS.into_iter().zip(DOTTED).nth(dots.checked_sub(1)?)?;
+    if let Some(stem) = name.strip_suffix(mark) {
+        return Some(stem.to_owned());
+    }
+    let last = name.chars().next_back()?;
+    let letter = dotted.chars().zip(plain.chars()).find_map(|(dotted, letter)| (dotted == last).then_some(letter))?;
+    Some(name.chars().rev().skip(1).collect::<Vec<_>>().into_iter().rev().chain([letter]).collect())
+}
+
+/// A Greek letter for its word, or the word for the letter, with what stands behind it.
+pub(crate) fn other_alphabet(name: &str) -> Option<String> {
+    let pairs = GREEK.into_iter().flat_map(|(word, letter)| [(word, letter), (letter, word)]);
+    pairs.into_iter().find_map(|(one, other)| name.strip_prefix(one).map(|rest| format!("{other}{rest}")))
+}
 
 /// What to do about a constraint.
 pub(crate) const CONSTRAINT: &str = "the language has no constraints: choose coordinates that satisfy them, as the angle of a rod, or hold \
@@ -215,6 +311,11 @@ pub(crate) fn function(name: &str) -> Option<String> {
         return Some("write `dot(a)` for a derivative by time; derivatives of `L` are taken for you".to_owned());
     }
     find(&FUNCTIONS, name)
+}
+
+/// What a rule by another name is called, or where its order is chosen.
+pub(crate) fn rule(name: &str) -> Option<String> {
+    find(&OF_RULES, name)
 }
 
 /// What something by another name is called.

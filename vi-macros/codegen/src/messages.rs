@@ -8,6 +8,41 @@ use crate::rules::{self, RULES};
 use proc_macro2::Span;
 use vi_expr::TooLarge;
 
+/// Why an expression does not see a name that the system declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absence {
+    /// It stands further below, or is being declared.
+    Below,
+    /// It is a parameter, and the expression a constant.
+    Parameter,
+    /// It is a coordinate, and the expression a constant.
+    Coordinate,
+    /// It is a `let`, and the expression a constant.
+    Let,
+}
+
+impl Absence {
+    fn what(self, name: &str) -> String {
+        match self {
+            Self::Below => format!("`{name}` is not declared before this line"),
+            Self::Parameter => format!("`{name}` is a parameter, which has no value until the system runs"),
+            Self::Coordinate => format!("`{name}` is a coordinate, which has no value until the system runs"),
+            Self::Let => format!("`{name}` is a `let`, which constants do not see"),
+        }
+    }
+
+    fn help(self) -> String {
+        match self {
+            Self::Below => "move its declaration up: a `let` sees those above it, and a `const` too",
+            Self::Parameter | Self::Coordinate | Self::Let => {
+                "defaults, `const`s and lengths are made of numbers and `const`s; what depends on parameters or coordinates is named by \
+                 `let`, as in `let w = sqrt(k / m);`"
+            }
+        }
+        .to_owned()
+    }
+}
+
 /// A mistake in the input. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,6 +59,8 @@ pub enum Message {
     AttributeOfClause,
     /// A name that is not declared (or not yet).
     Unknown { name: String, near: Option<String> },
+    /// A name that is declared, but not for this expression.
+    Absent { name: String, absence: Absence },
     /// A function that the language does not have.
     UnknownFunction { name: String, near: Option<String> },
     /// A call with the wrong number of arguments.
@@ -170,6 +207,21 @@ fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
 
+/// What to write in place of a rule that does not exist.
+fn rule_for(name: &str, near: Option<&String>) -> String {
+    let rules = || format!("the rules are {}; {}", rules::list(), habits::GAUSS);
+    habits::rule(name).unwrap_or_else(|| did_you_mean(near, &rules()))
+}
+
+/// A call with so many arguments.
+fn with_arguments(name: &str, takes: usize) -> String {
+    match takes {
+        1 => format!("write `{name}(a)`"),
+        2 => format!("write `{name}(a, b)`"),
+        _ => format!("write `{name}(t0, q0, (q1 - q0)/h)`: a time, coordinates, velocities"),
+    }
+}
+
 /// What to do about a direction without kinetic energy; a coordinate that is missing in it may multiply a constraint.
 fn move_with_energy(missing: Option<&str>, multiplies: bool) -> String {
     match missing {
@@ -189,6 +241,7 @@ impl Message {
             Self::SecondDerive { name } => format!("every system implements `{name}`"),
             Self::AttributeOfClause => "this attribute has no meaning here".to_owned(),
             Self::Unknown { name, .. } => format!("unknown name `{name}`"),
+            Self::Absent { name, absence } => absence.what(name),
             Self::UnknownFunction { name, .. } => format!("unknown function `{name}`"),
             Self::Arity { name, takes, given } => format!("`{name}` takes {takes} argument(s), not {given}"),
             Self::FunctionWithoutArguments { name } => format!("`{name}` is a function"),
@@ -273,11 +326,12 @@ impl Message {
                 let declare = "declare it with `param`, `const` or `coord`, or above with `let`";
                 did_you_mean(near.as_ref(), &habits::name(name).unwrap_or_else(|| declare.to_owned()))
             }
+            Self::Absent { absence, .. } => absence.help(),
             Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
                 near.as_ref(),
                 "the functions are sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign hypot pow sum, in a rule L f, elsewhere dot",
             )),
-            Self::Arity { name, takes, .. } => format!("write `{name}({})`", ["a", "a, b"][usize::from(*takes > 1)]),
+            Self::Arity { name, takes, .. } => with_arguments(name, *takes),
             Self::FunctionWithoutArguments { name } => {
                 format!("write its argument: `{name}(…)`; a power stands behind it, `{name}(…)^2`")
             }
@@ -330,7 +384,7 @@ impl Message {
             Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
             Self::SingularMass { missing, multiplies } => move_with_energy(missing.as_deref(), *multiplies),
-            Self::UnknownRule { near, .. } => did_you_mean(near.as_ref(), &format!("the rules are {}", rules::list())),
+            Self::UnknownRule { name, near } => rule_for(name, near.as_ref()),
             Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
             Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
             Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),

@@ -46,7 +46,10 @@ fn names() {
         "unknown name `mas`\nhelp: did you mean `mass`?",
     );
     case("coord x; L = «g» * dot(x)^2; discretize midpoint;", "unknown name `g`\nhelp: declare it");
-    case("coord x; let a = «b»; let b = 1; L = a * dot(x)^2; discretize midpoint;", "unknown name `b`");
+    let below = "`b` is not declared before this line\nhelp: move its declaration up: a `let` sees those above it";
+    case("coord x; let a = «b»; let b = 1; L = a * dot(x)^2; discretize midpoint;", below);
+    case("coord x; let b = «b»; L = b * dot(x)^2; discretize midpoint;", below);
+    case("coord x; const a = «b», b = 1; L = a * b * dot(x)^2; discretize midpoint;", below);
     case("coord x; L = dot(x)^2 * «sin»; discretize midpoint;", "`sin` is a function\nhelp: write its argument");
     case("coord x; L = dot(x)^2 * «cosine»(x); discretize midpoint;", "unknown function `cosine`");
     case(
@@ -139,8 +142,17 @@ fn velocities() {
 
 #[test]
 fn constants() {
-    case("coord x; const a = «x»; L = dot(x)^2; discretize midpoint;", "unknown name `x`");
-    case("param a = 1; const b = «a»; coord x; L = dot(x)^2; discretize midpoint;", "unknown name `a`");
+    case(
+        "param k = 1, m = 1, w = sqrt(«k»/2); coord x; L = m * dot(x)^2 - k * w * x^2; discretize midpoint;",
+        "`k` is a parameter, which has no value until the system runs\nhelp: defaults, `const`s and lengths are made of \
+         numbers and `const`s; what depends on parameters or coordinates is named by `let`, as in `let w = sqrt(k / m);`",
+    );
+    case("coord x; const a = «x»; L = dot(x)^2; discretize midpoint;", "`x` is a coordinate, which has no value until");
+    case("param a = 1; const b = «a»; coord x; L = dot(x)^2; discretize midpoint;", "`a` is a parameter, which has no");
+    case(
+        "coord q[«n»]; let n = 3; L = 1; discretize midpoint;",
+        "`n` is a `let`, which constants do not see\nhelp: defaults, `const`s and lengths are made of",
+    );
     case("const a = «ln»(0); coord x; L = dot(x)^2; discretize midpoint;", "this expression has no value");
     case("const a = «exp»(1000); coord x; L = dot(x)^2; discretize midpoint;", "the value of `a` is not finite");
     case(
@@ -201,6 +213,37 @@ fn clauses() {
     );
     case("coord x; L = dot(x)^2; discretize midpoint, «,»;", "expected a name");
     case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected `,` or `;`");
+    let gauss = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of order 2 S";
+    for rule in ["gauss", "gauss_legendre", "collocation"] {
+        case(&format!("coord x; L = dot(x)^2; discretize «{rule}»;"), &format!("unknown rule `{rule}`\nhelp: {gauss}"));
+    }
+    case(
+        "coord x; L = dot(x)^2; discretize «simpson»;",
+        &format!("unknown rule `simpson`\nhelp: the rules are midpoint, trapezoidal; {gauss}"),
+    );
+    case("coord x; L = dot(x)^2; discretize «verlet»;", "unknown rule `verlet`\nhelp: write `trapezoidal`, which is");
+    for arguments in ["gauss«(»4)", "order «=» 4", "gauss «4»", "Gauss«<»4>", "midpoint«(»h)"] {
+        case(
+            &format!("coord x; L = dot(x)^2; discretize {arguments};"),
+            &format!("a rule is a name alone\nhelp: write `discretize midpoint;`; {gauss}"),
+        );
+    }
+    for sign in ["=", ":"] {
+        case(
+            &format!("coord x; L = dot(x)^2; discretize «{sign}» midpoint;"),
+            "`discretize` is followed by the names of rules\nhelp: write `discretize midpoint;`",
+        );
+    }
+    for clause in ["order", "stages", "method"] {
+        case(&format!("{REST} «{clause}» = 4;"), &format!("unknown clause `{clause}`\nhelp: {gauss}"));
+    }
+    for clause in ["h = 0.01", "initial x = 1", "steps = 100"] {
+        let word = clause.split(' ').next().unwrap_or_default();
+        case(
+            &format!("{REST} {};", clause.replacen(word, &format!("«{word}»"), 1)),
+            &format!("unknown clause `{word}`\nhelp: a step and a start belong to a run: `FixedStep::new(system, "),
+        );
+    }
     case("coord x; L = dot(x)^2; force «y» = 1; discretize midpoint;", "a force on `y`, which is not a coordinate");
     case("coord x; L = dot(x)^2; force x = 1; force «x» = 2; discretize midpoint;", "a second force on `x`");
     case(&format!("«parm» a = 1; {REST}"), "unknown clause `parm`\nhelp: did you mean `param`?");
@@ -212,6 +255,40 @@ fn clauses() {
     case("coord x; L = dot(x)^2 * «;» discretize midpoint;", "expected a number, a name or `(`");
     case("coord x; L = dot(x)^2 * (x«,» x); discretize midpoint;", "expected an operator or `)`");
     case("coord x; L = dot(x)^2 * hypot(x «;» x); discretize midpoint;", "expected an operator, `,` or `)`");
+}
+
+/// Names that hold more than a name.
+#[test]
+fn velocities_functions_and_products_in_a_name() {
+    let lagrangian =
+        |summand: &str| format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;");
+    let says = |summand: &str, message: &str| case(&lagrangian(summand), message);
+    says("«v»", "unknown name `v`\nhelp: write `dot(x)` for the velocity of `x`, or name it: `let v = dot(x);`");
+    says("«dx»/2", "unknown name `dx`\nhelp: write `dot(x)`");
+    says("x/«dt»", "unknown name `dt`\nhelp: write `dot(x)` for the derivative of `x` by time");
+    for function in ["d", "diff", "derivative"] {
+        says(
+            &format!("«{function}»(x)"),
+            &format!(
+                "unknown function `{function}`\nhelp: write `dot(a)` for a derivative by time; derivatives of `L`"
+            ),
+        );
+    }
+    says("«sinx»", "unknown name `sinx`\nhelp: write `sin(x)`");
+    says("«sqrtg» * x", "unknown name `sqrtg`\nhelp: write `sqrt(g)`");
+    says("«mg» * x", "unknown name `mg`\nhelp: write `m * g` for a product");
+    says("«mgx»", "unknown name `mgx`\nhelp: write `m * g * x` for a product");
+    let pendulum = |summand: &str| format!("coord θ; L = dot(θ)^2 - {summand}; discretize midpoint;");
+    case(&pendulum("«cosθ»"), "unknown name `cosθ`\nhelp: write `cos(θ)`");
+    case(&pendulum("«theta_dot»"), "unknown name `theta_dot`\nhelp: write `dot(θ)`, the velocity of `θ`");
+    case(&pendulum("«θ_dot»"), "unknown name `θ_dot`\nhelp: write `dot(θ)`");
+    case(&pendulum("«θ\u{307}»"), "unknown name `θ\u{307}`\nhelp: write `dot(θ)`");
+    case(&pendulum("«theta»"), "unknown name `theta`\nhelp: did you mean `θ`?");
+    case(
+        "coord theta; L = dot(theta)^2 - «θ_dot»; discretize midpoint;",
+        "unknown name `θ_dot`\nhelp: write `dot(theta)`, the velocity of `theta`",
+    );
+    says("«ẍ»", "an expression cannot depend on the acceleration `ẍ`");
 }
 
 /// Of Rust, of other languages and of paper.
@@ -256,7 +333,7 @@ fn habits() {
     says("x^«1»/2", "`a^1/b` is `(a^1) / b`\nhelp: write `a^(1/b)` for a root");
     says("x^«-»1/2", "`a^-1/b` is `(a^-1) / b`\nhelp: write `a^(-1/b)` for a root");
     says("«xdot»", "unknown name `xdot`\nhelp: write `dot(x)`, the velocity of `x`");
-    for name in ["x_dot", "dotx", "dot_x", "vx", "v_x"] {
+    for name in ["x_dot", "dotx", "dot_x", "vx", "v_x", "dx", "d_x", "ẋ", "x\u{307}"] {
         says(&format!("«{name}»"), &format!("unknown name `{name}`\nhelp: write `dot(x)`"));
     }
     says("«xddot»", "an expression cannot depend on the acceleration `xddot`");
@@ -309,6 +386,80 @@ fn habits() {
         "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1); discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint; the language has no constr",
     );
+}
+
+/// What people tried, each with what they are told to write: one message, which alone leads on.
+#[test]
+fn each_mistake_is_told_with_what_to_write() {
+    let told = |text: &str, wanted: &str| {
+        let found = errors(&format!("struct System {{ {text} }}"));
+        let messages: Vec<&str> = found.iter().map(|(_, message)| message.as_str()).collect();
+        let [message] = messages[..] else { panic!("{text}: {messages:#?}") };
+        let help = message.split_once("\nhelp: ").map_or("", |(_, help)| help);
+        assert!(help.contains(wanted), "{text}\n{message}\nnot: {wanted}");
+    };
+    for (written, wanted) in [
+        ("x.sin()", "`sin(…)`"),
+        ("x.powi(2)", "`a^b`"),
+        ("x**2", "`x^2`"),
+        ("|x|", "`abs(x)`"),
+        ("e^x", "`exp(x)`"),
+        ("2 x", "`2 * x`"),
+        ("2x", "`2 * x`"),
+        ("m g", "`m * g`"),
+        ("mg", "`m * g`"),
+        ("m(x + 1)", "`m * (…)`"),
+        ("x^1/2", "`a^(1/b)`"),
+        ("xdot", "`dot(x)`"),
+        ("x_dot", "`dot(x)`"),
+        ("vx", "`dot(x)`"),
+        ("v", "`dot(x)`"),
+        ("dx", "`dot(x)`"),
+        ("ẋ", "`dot(x)`"),
+        ("d(x)", "`dot(a)`"),
+        ("ddot(x)", "use positions, velocities, time and parameters"),
+        ("sinx", "`sin(x)`"),
+        ("sin x", "`sin(x)`"),
+        ("log(x)", "`ln(a)`"),
+        ("arctan(x)", "`atan(a)`"),
+        ("max(x, 0)", "`(a + b + abs(a - b)) / 2`"),
+        ("cot(x)", "`1 / tan(a)`"),
+        ("asinh(x)", "`ln(a + sqrt(a^2 + 1))`"),
+        ("π", "`pi`"),
+        ("f64::consts::PI", "`pi`"),
+        ("1.0f64 * x", "`1.0`"),
+        ("1.e-3 * x", "`1.0e-3`"),
+        ("x as f64", "leave `as` out"),
+        ("if x > 0 { x } else { 0 }", "`(1 + sign(a)) / 2`"),
+        ("sum(i in 0..=3, i * x)", "`0..N + 1`"),
+        ("lambda * x", "the language has no constraints"),
+        ("mm * x", "`m * m`"),
+        ("gravity * x", "declare it with `param`, `const` or `coord`, or above with `let`"),
+    ] {
+        told(
+            &format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 / 2 - g * x - {written}; discretize midpoint;"),
+            wanted,
+        );
+    }
+    for (written, wanted) in [
+        ("param m: f64 = 1.0;", "`param m = 1.0;`"),
+        ("param m;", "`m = 1.0`"),
+        ("param m[2];", "`m = 1.0`"),
+        ("param k = 4, w = sqrt(k);", "`let w = sqrt(k / m);`"),
+        ("param g = 9.81 m/s^2;", "units are not written"),
+        ("coord y = 1;", "`coord x;`"),
+        ("force = -x;", "`force x = …;`"),
+        ("constraint x^2 = 1;", "choose coordinates that satisfy them"),
+        ("T = dot(x)^2 / 2;", "`let T = …;`"),
+        ("let a = 1", "every clause ends with `;`"),
+        ("order = 4;", "`Gauss::<_, N, S>::new`"),
+        ("h = 0.01;", "`FixedStep::new(system, State::at(&system, t, q, v), h)`"),
+    ] {
+        told(&format!("{written} {REST}"), wanted);
+    }
+    for rule in ["gauss", "gauss(4)", "order = 4", "rk4"] {
+        told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`Gauss::<_, N, S>::new`");
+    }
 }
 
 #[test]
@@ -425,11 +576,11 @@ fn arrays_of_parameters() {
     case(&system("param m[«0»] = 1"), "an array of 0 parameters\nhelp: an array of parameters has 1 to 256 entries");
     case(&system("param m[«257»] = 1"), "an array of 257 parameters");
     case(&system("param m[«1.5»] = 1"), "this has to be a constant integer");
-    case(&system("param m[«x»] = 1"), "unknown name `x`");
+    case(&system("param m[«x»] = 1"), "`x` is a coordinate, which has no value");
     case(&system("param m[«i» in 0..2] = 1"), "expected a length, as in `q[8]`");
     case(&system("param m[2«,» 2] = 1"), "expected an operator or `]`");
     case(&system("param m[2] = [1 «2»]"), "an operator is missing between `1` and `2`");
-    case(&system("param m[2] = [1, «x»]"), "unknown name `x`");
+    case(&system("param m[2] = [1, «x»]"), "`x` is a coordinate, which has no value");
     case(&system("param m[2] = [1, «exp»(1000)]"), "the value of `m` is not finite");
     case(&system("param «m»[2]"), "`m` has no value\nhelp: write `m = 1.0`");
     case(&system("param m[2] = 1, «m» = 2"), "the name `m` is declared twice");
@@ -438,7 +589,7 @@ fn arrays_of_parameters() {
     case(&system("param m[2] = 1; let a = m[«2»]"), "`m[2]` is out of range 0..2\nhelp: the indices are 0 to 1");
     case(&system("param m[2] = 1; let a = «m»"), "`m` is an array\nhelp: write one entry, `m[0]`, or a sum over it");
     case(&system("param m[2] = 1; let a = dot(«m»[0])"), "`dot(m)`: `m` does not change with time");
-    case(&system("param m[2] = 1; const a = «m»[0]"), "unknown name `m`");
+    case(&system("param m[2] = 1; const a = «m»[0]"), "`m` is a parameter, which has no value");
     case(&system("param m[2] = 1; force «m»[0] = 1"), "a force on `m`, which is not a coordinate");
     // A wrong array is reported once, whatever is made of it.
     case(&system("param m[«3»] = [1, 2]; let a = sum(i in 0..9, m[i])"), "`m` has the length 3");
@@ -474,7 +625,10 @@ fn rules() {
         &system(&format!("{ld} {forces} gd_plus = «L»(t0, q0, h * f(t0, q0, q1));")),
         "`L` or `f` in an argument of `L` or `f`",
     );
-    case(&system(&format!("{ld} {forces} gd_plus = «L»(t0, q0);")), "`L` takes 3 argument(s), not 2");
+    case(
+        &system(&format!("{ld} {forces} gd_plus = «L»(t0, q0);")),
+        "`L` takes 3 argument(s), not 2\nhelp: write `L(t0, q0, (q1 - q0)/h)`",
+    );
     case(&system(&format!("{ld} {forces} gd_plus = L(«q0», q0, q1);")), "a number is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = L(t0, «t0», q1);")), "a vector is needed here");
     case(&system(&format!("{ld} {forces} gd_plus = h / «q0»;")), "a number is needed here");
@@ -557,10 +711,10 @@ fn several_mistakes_are_reported_at_once() {
 #[test]
 fn every_unknown_name_of_an_expression_is_told() {
     let text = "struct System { param mass = 1; coord x; L = mas * dot(y)^2 - k * hypot(x, l[m]) / mas + sum(i in 0..n, i * z); \
-        force x = a + sin(b)^c - dot(d * x); discretize { Ld = h * L(e, q0, (q1 - u)/h); } check { x = v + w; h = 1; } }";
+        force x = a + sin(b)^c - dot(d * x); discretize { Ld = h * L(e, q0, (q1 - u)/h); } check { x = y2 + w; h = 1; } }";
     let found = errors(text);
     let tokens: Vec<&str> = found.iter().map(|(token, _)| token.as_str()).collect();
-    assert_eq!(tokens, ["mas", "y", "k", "l", "m", "n", "a", "b", "c", "d", "e", "u", "v", "w"]);
+    assert_eq!(tokens, ["mas", "y", "k", "l", "m", "n", "a", "b", "c", "d", "e", "u", "y2", "w"]);
     for (token, message) in &found {
         let help = if token == "mas" { "did you mean `mass`?" } else { "declare it with" };
         assert!(message.starts_with(&format!("unknown name `{token}`\nhelp: ")), "{message}");

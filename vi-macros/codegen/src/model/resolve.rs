@@ -312,12 +312,14 @@ impl Scope {
         if name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
         }
-        let acceleration = ["ddot", "_ddot", "_tt"].iter().find_map(|ending| name.strip_suffix(ending));
-        if acceleration.is_some_and(|stem| self.is_coordinate(stem.trim_end_matches('_'))) {
+        if let Some(absence) = self.absence(&name) {
+            return Message::Absent { name, absence };
+        }
+        if self.coordinate_of_acceleration(&name).is_some() {
             return Message::Acceleration { name };
         }
-        if let Some(coordinate) = self.coordinate_of_velocity(&name) {
-            return Message::Habit(Habit::VelocityByName { name, coordinate });
+        if let Some(habit) = self.habit(&name) {
+            return Message::Habit(habit);
         }
         let near = self.near(pool, &name);
         Message::Unknown { name, near }
@@ -343,6 +345,10 @@ impl Scope {
         let Some(takes) = known.map(Function::arity).or_else(|| (name == "sqrt").then_some(1)) else {
             if name == "ddot" {
                 return Err(error(function.span(), &Message::Acceleration { name: "ddot(…)".to_owned() }));
+            }
+            if self.is_declared(&name) {
+                let product = Habit::MissingOperator { left: name, right: "(…)".to_owned(), is_number: false };
+                return Err(error(function.span(), &Message::Habit(product)));
             }
             let near = nearest(&name, self.functions());
             return Err(error(function.span(), &Message::UnknownFunction { name, near }));

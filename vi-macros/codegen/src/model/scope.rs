@@ -4,7 +4,8 @@
 //! A name means one thing, and nothing where it is not declared yet.
 
 use super::point::Point;
-use crate::messages::{Message, error, nearest};
+use crate::habits::{self, Habit};
+use crate::messages::{Absence, Message, error, nearest};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Ident;
 use std::collections::BTreeMap;
@@ -20,6 +21,8 @@ const COMPARISON: usize = 16;
 /// The names that an expression may use.
 pub(super) struct Scope {
     names: BTreeMap<String, Meaning>,
+    /// Names that the system declares and that mean nothing yet.
+    absent: BTreeMap<String, Absence>,
     /// Where the expressions of a rule evaluate L and f.
     points: Vec<Point>,
 }
@@ -78,7 +81,7 @@ impl Scope {
 
     fn of<const N: usize>(names: [(&str, Meaning); N]) -> Self {
         let names = names.into_iter().map(|(name, meaning)| (name.to_owned(), meaning)).collect();
-        Self { names, points: Vec::new() }
+        Self { names, absent: BTreeMap::new(), points: Vec::new() }
     }
 
     /// The same with what a system declares, but for the names that stand for something already: numbers of constants and parameters
@@ -108,7 +111,7 @@ impl Scope {
             _ => meaning.clone(),
         };
         let names = self.names.iter().map(|(name, known)| (name.clone(), meaning(known))).collect();
-        Self { names, points: Vec::new() }
+        Self { names, absent: BTreeMap::new(), points: Vec::new() }
     }
 
     /// The number of a point where L or f is evaluated; the same for equal points.
@@ -122,6 +125,16 @@ impl Scope {
     /// The points where L or f was evaluated.
     pub(super) fn into_points(self) -> Vec<Point> {
         self.points
+    }
+
+    /// Names that the system declares, and why expressions do not see them yet.
+    pub(super) fn expect<'a>(&mut self, names: impl Iterator<Item = &'a Ident>, absence: Absence) {
+        self.absent.extend(names.map(|name| (name.to_string(), absence)));
+    }
+
+    /// Why a name that the system declares means nothing here.
+    pub(super) fn absence(&self, name: &str) -> Option<Absence> {
+        self.absent.get(name).copied()
     }
 
     /// Adds a name.
@@ -162,21 +175,73 @@ impl Scope {
         matches!(self.meaning(name), Some(Meaning::Coordinate(_) | Meaning::Coordinates { .. }))
     }
 
-    /// The coordinate whose velocity a name says: `x` of `xdot`, `x_dot`, `dot_x`, `v_x` and `vx`; `q[…]` of an array.
+    /// The coordinate whose velocity a name says: `x` of `xdot`, `x_dot`, `dot_x`, `v_x`, `vx`, `dx` and `ẋ`; `q[…]` of an array.
     pub(super) fn coordinate_of_velocity(&self, name: &str) -> Option<String> {
+        let undotted = habits::without_dots(name, 1);
         let behind = ["_dot", "dot"].into_iter().filter_map(|ending| name.strip_suffix(ending));
-        let before = ["dot_", "dot", "v_", "v"].into_iter().filter_map(|beginning| name.strip_prefix(beginning));
-        let mut stems = behind.chain(before);
-        stems.find_map(|stem| match self.meaning(stem) {
-            Some(Meaning::Coordinate(_)) => Some(stem.to_owned()),
-            Some(Meaning::Coordinates { .. }) => Some(format!("{stem}[…]")),
+        let before = ["dot_", "dot", "v_", "v", "d_", "d"];
+        let before = before.into_iter().filter_map(|beginning| name.strip_prefix(beginning));
+        behind.chain(before).chain(undotted.as_deref()).find_map(|stem| self.coordinate(stem))
+    }
+
+    /// The coordinate whose acceleration a name says: `x` of `xddot`, `x_ddot`, `x_tt` and `ẍ`.
+    pub(super) fn coordinate_of_acceleration(&self, name: &str) -> Option<String> {
+        let undotted = habits::without_dots(name, 2);
+        let behind = ["_ddot", "ddot", "_tt"].into_iter().filter_map(|ending| name.strip_suffix(ending));
+        behind.chain(undotted.as_deref()).find_map(|stem| self.coordinate(stem))
+    }
+
+    /// The coordinate of this name, Greek letters written as such or as words; `q[…]` of an array.
+    fn coordinate(&self, name: &str) -> Option<String> {
+        let other = habits::other_alphabet(name);
+        [Some(name), other.as_deref()].into_iter().flatten().find_map(|name| match self.meaning(name) {
+            Some(Meaning::Coordinate(_)) => Some(name.to_owned()),
+            Some(Meaning::Coordinates { .. }) => Some(format!("{name}[…]")),
             _ => None,
         })
     }
 
+    /// What a name says that stands for nothing, and is written otherwise here: a velocity, a function or a product without its signs.
+    pub(super) fn habit(&self, name: &str) -> Option<Habit> {
+        let text = name.to_owned();
+        if let Some(coordinate) = self.coordinate_of_velocity(name) {
+            return Some(Habit::VelocityByName { name: text, coordinate });
+        }
+        if name == "v" {
+            return self.first_coordinate().map(|coordinate| Habit::Velocity { coordinate });
+        }
+        let functions = Function::ALL.into_iter().map(Function::name).chain(["sqrt"]);
+        let arguments = functions.filter_map(|function| Some((function, name.strip_prefix(function)?)));
+        let mut glued = arguments.filter(|(_, argument)| self.is_declared(argument));
+        if let Some((function, argument)) = glued.next() {
+            let function = function.to_owned();
+            return Some(Habit::FunctionInName { name: text, function, argument: argument.to_owned() });
+        }
+        self.factors(name).map(|factors| Habit::ProductInName { name: text, product: factors.join(" * ") })
+    }
+
+    /// The coordinate that is first in the alphabet, for an example.
+    fn first_coordinate(&self) -> Option<String> {
+        self.names.keys().find_map(|name| self.coordinate(name))
+    }
+
+    /// Whether a name was declared; those of the language are not.
+    pub(super) fn is_declared(&self, name: &str) -> bool {
+        !RESERVED.contains(&name) && self.names.contains_key(name)
+    }
+
+    /// The declared names that a name consists of, two or more of one letter each.
+    fn factors(&self, name: &str) -> Option<Vec<String>> {
+        let letters: Vec<String> = name.chars().map(String::from).collect();
+        (letters.len() > 1 && letters.iter().all(|letter| self.is_declared(letter))).then_some(letters)
+    }
+
     /// The declared name nearest to a misspelt one.
     pub(super) fn near(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
-        self.near_of(pool, name, |known| !matches!(self.meaning(known), Some(Meaning::OfState | Meaning::Moving)))
+        let is_no_value = |meaning: &Meaning| matches!(meaning, Meaning::OfState | Meaning::Moving | Meaning::Dot);
+        let is_meant = |known: &str| !self.meaning(known).is_some_and(is_no_value);
+        let other = habits::other_alphabet(name).filter(|other| self.names.contains_key(other) && is_meant(other));
+        other.or_else(|| self.near_of(pool, name, is_meant))
     }
 
     /// The coordinate nearest to a misspelt name.

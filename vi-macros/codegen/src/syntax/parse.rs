@@ -274,6 +274,9 @@ fn rule_name(input: ParseStream) -> Result<Ident> {
     if input.peek(syn::token::Brace) {
         return Err(error(input.span(), &Message::WrittenInList));
     }
+    if input.peek(Token![=]) || input.peek(Token![:]) {
+        return Err(error(input.span(), &Message::Habit(Habit::RuleWithSign)));
+    }
     name(input)
 }
 

@@ -75,9 +75,12 @@ pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'stati
 /// Where a clause of names that began at `start` does not end with `;`.
 pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
     let is_coordinates = start.ident().is_some_and(|(word, _)| word == "coord");
+    let is_argument =
+        input.peek(syn::token::Paren) || input.peek(Token![=]) || input.peek(Token![<]) || input.peek(syn::Lit);
     match previous(input, start) {
         Some(last) if ends(input) => no_semicolon(&last),
         _ if is_coordinates && input.peek(Token![=]) => told(input.span(), Some(Habit::ValueOfCoordinate), ""),
+        _ if !is_coordinates && is_argument => told(input.span(), Some(Habit::RuleWithArguments), ""),
         _ if input.peek(Token![:]) => told(input.span(), Some(Habit::Type), ""),
         _ => told(input.span(), None, "`,` or `;`"),
     }
