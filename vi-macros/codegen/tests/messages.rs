@@ -433,7 +433,7 @@ fn each_mistake_is_told_with_what_to_write() {
         ("if x > 0 { x } else { 0 }", "`(1 + sign(a)) / 2`"),
         ("sum(i in 0..=3, i * x)", "`0..N + 1`"),
         ("lambda * x", "the language has no constraints"),
-        ("mm * x", "`m * m`"),
+        ("mm * x", "declare it with `param`, `const` or `coord`, or above with `let`"),
         ("gravity * x", "declare it with `param`, `const` or `coord`, or above with `let`"),
     ] {
         told(

@@ -230,10 +230,12 @@ impl Scope {
         !RESERVED.contains(&name) && self.names.contains_key(name)
     }
 
-    /// The declared names that a name consists of, two or more of one letter each.
+    /// The declared names that a name consists of, two or more of one letter each, and none twice, which is a slip of the finger.
     fn factors(&self, name: &str) -> Option<Vec<String>> {
         let letters: Vec<String> = name.chars().map(String::from).collect();
-        (letters.len() > 1 && letters.iter().all(|letter| self.is_declared(letter))).then_some(letters)
+        let is_once = |(before, letter): (usize, &String)| !letters[..before].contains(letter);
+        let fits = letters.iter().all(|letter| self.is_declared(letter)) && letters.iter().enumerate().all(is_once);
+        (letters.len() > 1 && fits).then_some(letters)
     }
 
     /// The declared name nearest to a misspelt one.
