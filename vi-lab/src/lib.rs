@@ -14,10 +14,12 @@
 //! | `paper` | `vi-lab paper`: figures, tables and the page |
 //! | `stability` | `vi-lab stability`: where methods fail, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
+//! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: how fast neighbouring motions part |
 //! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
 //! | `chart`, `table`, `html`, `report` | figures, tables, and the page that holds them |
-//! | `input`, `numbers` | numbers as users write them, and as pages and messages do |
+//! | `input`, `numbers`, `quantity` | numbers as users write them, and as pages and messages do; what differs from run to run |
+//! | `npy`, `place` | the head of an array file; where a file can be written |
 //! | `progress`, `machine`, `failure`, `interrupt` | bars, versions, errors, signals |
 
 mod catalogue;
@@ -33,15 +35,19 @@ mod interrupt;
 mod lyapunov;
 mod machine;
 mod new;
+mod npy;
 mod numbers;
 mod paper;
+mod place;
 mod progress;
+mod quantity;
 mod report;
 mod rival;
 mod run;
 mod simulation;
 mod stability;
 mod start;
+mod sweep;
 mod system;
 mod table;
 mod work_precision;
@@ -80,6 +86,10 @@ enum Action {
     WorkPrecision(work_precision::Arguments),
     /// Estimate the largest Lyapunov exponents of a system along one run
     Lyapunov(lyapunov::Arguments),
+    /// Take many runs of one scene, over parameters, initial values and steps: on all cores, or one part of many
+    Sweep(sweep::Arguments),
+    /// Put the parts of a sweep together
+    Merge(sweep::merge::Arguments),
     /// Show what the systems in a file become, stage by stage
     Expand(expand::Arguments),
     /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
@@ -163,6 +173,8 @@ fn act(action: Action) -> Result<(), Failure> {
         Action::Stability(arguments) => print(&stability::write(&arguments)?),
         Action::WorkPrecision(arguments) => print(&work_precision::write(&arguments)?),
         Action::Lyapunov(arguments) => lyapunov::write(&arguments, print),
+        Action::Sweep(arguments) => print(&sweep::sweep(&arguments)?),
+        Action::Merge(arguments) => print(&sweep::merge::merge(&arguments)?),
         Action::Expand(arguments) => print(&expand::expand(&arguments)?),
         Action::Explain(arguments) => print(explain::explain(&arguments)?.trim_end()),
         Action::New(arguments) => print(&new::write(&arguments)?),

@@ -11,6 +11,7 @@ use clap::ValueEnum;
 use core::cell::Cell;
 use serde::Deserialize;
 use vi_core::collocation::Collocation;
+use vi_core::integrator::{Crossing, Direction, Event};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     Composition, EnergyPreserving, FixedStep, Gauss, Integrator, Lagrangian, SVector, Scheme, State, StepError,
@@ -145,14 +146,58 @@ impl Row {
     }
 }
 
+/// A surface that a motion crosses again and again: a Poincaré section.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Section {
+    /// A coordinate has this value, and passes it in this direction.
+    Coordinate {
+        /// Which coordinate.
+        index: usize,
+        /// Its value.
+        at: f64,
+        /// Rising, falling, or both.
+        direction: Direction,
+    },
+    /// The time is `start` and a whole number of periods.
+    Period {
+        /// Time of the first one.
+        start: f64,
+        /// From one to the next.
+        period: f64,
+    },
+}
+
+impl Section {
+    /// A function of time and coordinates that changes its sign at the section.
+    fn value(&self, t: f64, q: &[f64]) -> f64 {
+        match self {
+            Self::Coordinate { index, at, .. } => q[*index] - at,
+            Self::Period { start, period } => {
+                let passed = (t - start) / period;
+                // Within half a period of zero, so that late crossings are as sharp as early ones.
+                let is_odd = if passed.round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
+                is_odd * (core::f64::consts::PI * (passed - passed.round())).sin()
+            }
+        }
+    }
+
+    /// In which direction the function passes zero.
+    fn direction(&self) -> Direction {
+        match self {
+            Self::Coordinate { direction, .. } => *direction,
+            Self::Period { .. } => Direction::Both,
+        }
+    }
+}
+
 /// A run that has been started.
 pub(crate) trait Simulation {
     /// Time of the node reached last.
     fn t(&self) -> f64;
     /// Coordinates of the node reached last.
-    fn q(&self) -> Vec<f64>;
+    fn q(&self) -> &[f64];
     /// Momenta of the node reached last.
-    fn p(&self) -> Vec<f64>;
+    fn p(&self) -> &[f64];
     /// Length of the last step; before the first one the length asked for.
     fn h(&self) -> f64;
     /// H, the energy at the node reached last, of its coordinates and momenta.
@@ -167,6 +212,13 @@ pub(crate) trait Simulation {
     /// # Errors
     /// That of the integrator.
     fn advance(&mut self) -> Result<(), StepError>;
+
+    /// Goes on to the time `end`, and gives `take` the point of each crossing of a section on the way, in their order: located by
+    /// steps of the exact length, which h tells. Their discrete energy is none.
+    ///
+    /// # Errors
+    /// That of the step that fails.
+    fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError>;
 
     /// Time and H where the method keeps H best: at the node; with energy-preserving steps in the middle of the last one,
     /// since H swings by h²D/8 at their nodes.
@@ -202,8 +254,8 @@ pub(crate) trait Simulation {
     fn row(&self) -> Row {
         Row {
             t: self.t(),
-            q: self.q(),
-            p: self.p(),
+            q: self.q().to_vec(),
+            p: self.p().to_vec(),
             energy: self.energy().ok(),
             discrete_energy: self.discrete_energy(),
             h: self.h(),
@@ -322,12 +374,12 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
         self.integrator.t()
     }
 
-    fn q(&self) -> Vec<f64> {
-        self.integrator.node().q.as_slice().to_vec()
+    fn q(&self) -> &[f64] {
+        self.integrator.node().q.as_slice()
     }
 
-    fn p(&self) -> Vec<f64> {
-        self.integrator.node().p.as_slice().to_vec()
+    fn p(&self) -> &[f64] {
+        self.integrator.node().p.as_slice()
     }
 
     fn h(&self) -> f64 {
@@ -349,6 +401,24 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     fn advance(&mut self) -> Result<(), StepError> {
         self.integrator.step()?;
         self.count(&self.integrator);
+        Ok(())
+    }
+
+    fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
+        let system = *self.integrator.system();
+        let value = |t: f64, q: &SVector<f64, N>, _: &SVector<f64, N>| section.value(t, q.as_slice());
+        let wanted = [Event::new(&value, section.direction())];
+        for crossing in self.integrator.events(&wanted, end) {
+            let Crossing { state, length, .. } = crossing?;
+            take(Row {
+                t: state.t,
+                q: state.q.as_slice().to_vec(),
+                p: state.p.as_slice().to_vec(),
+                energy: state.energy(&system).ok(),
+                discrete_energy: None,
+                h: length,
+            });
+        }
         Ok(())
     }
 

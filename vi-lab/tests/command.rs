@@ -1,5 +1,8 @@
 //! The command `vi-lab` as a user meets it: output, exit status, messages, files.
 
+#[path = "command/sweep.rs"]
+mod sweep;
+
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
@@ -565,7 +568,9 @@ fn every_scene_runs() {
     for entry in fs::read_dir(folder).expect("the scenes") {
         let file = entry.expect("an entry").path();
         if file.extension().is_some_and(|extension| extension == "toml") {
-            let (status, _, errors) = lab(&["run", path(&file), "--steps", "5"]);
+            let is_sweep = fs::read_to_string(&file).expect("a scene").contains("[sweep]");
+            let item: &[&str] = if is_sweep { &["--item", "7"] } else { &[] };
+            let (status, _, errors) = lab(&[&["run", path(&file), "--steps", "5"], item].concat());
             assert_eq!((status, errors.as_str()), (Some(0), ""), "{}", file.display());
             scenes += 1;
         }

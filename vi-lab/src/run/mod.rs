@@ -28,7 +28,8 @@ use crate::system::System;
 use clap::Args;
 use core::cell::Cell;
 use extent::Extent;
-use request::{Output, Request};
+use request::Output;
+pub(crate) use request::{Length, Request};
 use std::path::PathBuf;
 
 /// Bytes of whole rows that are written at once.
@@ -60,6 +61,9 @@ pub(crate) struct Arguments {
     /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
     #[arg(value_name = "SYSTEM|SCENE.toml")]
     pub(crate) target: Option<String>,
+    /// One run of a scene with [sweep], by its number
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
+    pub(crate) item: Option<u64>,
     /// Integrator [default: fixed]
     #[arg(long)]
     pub(crate) method: Option<Method>,
@@ -121,13 +125,22 @@ pub(crate) fn start(arguments: &Arguments) -> Result<(Box<dyn System>, Plan), Fa
     Ok((request.system, request.plan))
 }
 
+/// Whether a run can be: its initial state, and steps that lead to its end and are not lost in rounding.
+///
+/// # Errors
+/// [`Failure::Input`] for the first input that is wrong.
+pub(crate) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<(), Failure> {
+    request::check(system, plan, length)?;
+    resolution::check_times(plan, length)
+}
+
 /// Simulates what the arguments ask for.
 ///
 /// # Errors
 /// Wrong input, a failed step, a file that cannot be written, a signal.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let request = Request::of(arguments)?;
-    resolution::check_times(&request)?;
+    resolution::check_times(&request.plan, request.length)?;
     let extent = Extent::of(&request)?;
     let evaluations = Cell::new(0);
     let begun = request.system.begin(&request.plan, &evaluations);
@@ -240,6 +253,7 @@ fn describe(row: &Row, steps: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulation::Section;
     use core::cell::RefCell;
     use std::rc::Rc;
     use vi_core::StepError;
@@ -256,16 +270,16 @@ mod tests {
             self.t
         }
 
-        fn q(&self) -> Vec<f64> {
-            vec![self.t]
+        fn q(&self) -> &[f64] {
+            core::slice::from_ref(&self.t)
         }
 
         fn h(&self) -> f64 {
             0.5
         }
 
-        fn p(&self) -> Vec<f64> {
-            vec![0.0]
+        fn p(&self) -> &[f64] {
+            &[0.0]
         }
 
         fn energy(&self) -> Result<f64, StepError> {
@@ -282,6 +296,10 @@ mod tests {
                 return Ok(());
             }
             self.fourth
+        }
+
+        fn cross(&mut self, _: &Section, _: f64, _: &mut dyn FnMut(Row)) -> Result<(), StepError> {
+            Ok(())
         }
     }
 

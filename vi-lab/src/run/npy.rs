@@ -1,20 +1,18 @@
 //! Rows as NPY, the array format of `NumPy`: float64, one row per node, row by row; beside it `FILE.npy.json`, which
 //! says what made the file and what the columns are. An entry that has no value is NaN.
 //!
-//! Source: the format's version 1.0. AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
+//! AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
 //! the file, whatever ends the run.
 
 use super::{BLOCK, ENERGIES, Request, Sink};
 use crate::failure::Failure;
 use crate::machine::{VERSION, command_line};
+use crate::npy::{ROOM, head};
 use crate::simulation::Row;
 use serde_json::json;
 use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-
-/// Bytes before the numbers: magic, version, length of the head, head; a multiple of 64.
-const ROOM: usize = 128;
 
 /// An NPY file.
 pub(super) struct Npy {
@@ -89,33 +87,5 @@ impl Sink for Npy {
 
     fn finish(&mut self) -> Result<(), Failure> {
         self.flush()
-    }
-}
-
-/// Magic, version 1.0, length of the description, description padded with blanks to the fixed room.
-fn head(rows: u64, columns: usize) -> Vec<u8> {
-    let description = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
-    // Ten bytes come before the description, and a line end closes it: its length is 118, which two bytes hold.
-    let mut head = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
-    head.extend(description.as_bytes());
-    head.resize(ROOM - 1, b' ');
-    head.push(b'\n');
-    head
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_head_fills_its_room_for_any_number_of_rows() {
-        for rows in [0, 1000, u64::MAX] {
-            let head = head(rows, 1024);
-            assert_eq!(head.len(), ROOM);
-            assert_eq!(usize::from(head[8]) + 256 * usize::from(head[9]) + 10, ROOM);
-            assert_eq!(head.last(), Some(&b'\n'));
-            let text = String::from_utf8_lossy(&head[10..]);
-            assert!(text.contains(&format!("'shape': ({rows}, 1024), }}")), "{text}");
-        }
     }
 }

@@ -6,7 +6,10 @@ use crate::catalogue;
 use crate::failure::Failure;
 use crate::input::number;
 use crate::numbers::short;
+use crate::place;
 use crate::simulation::{Method, Plan, Row, STAGES, Start, USUAL_STAGES};
+use crate::sweep::items::Items;
+use crate::sweep::scene::Sweep;
 use crate::system::System;
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,15 +19,15 @@ use std::path::{Path, PathBuf};
 const USUAL_STEPS: u64 = 1000;
 
 /// A run, ready to begin.
-pub(super) struct Request {
+pub(crate) struct Request {
     /// The system, with its parameters set.
-    pub(super) system: Box<dyn System>,
+    pub(crate) system: Box<dyn System>,
     /// Integrator, step and initial state.
-    pub(super) plan: Plan,
+    pub(crate) plan: Plan,
     /// How long.
-    pub(super) length: Length,
+    pub(crate) length: Length,
     /// Every so many nodes one is written.
-    pub(super) every: u64,
+    pub(crate) every: u64,
     /// Where to.
     pub(super) output: Output,
     /// The picture of it, an SVG file.
@@ -35,7 +38,7 @@ pub(super) struct Request {
 
 /// When a run ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Length {
+pub(crate) enum Length {
     /// After this many steps.
     Steps(u64),
     /// At the first node at or after this time.
@@ -44,7 +47,7 @@ pub(super) enum Length {
 
 impl Length {
     /// Whether a run is at its end.
-    pub(super) fn is_reached(self, t: f64, h: f64, steps: u64) -> bool {
+    pub(crate) fn is_reached(self, t: f64, h: f64, steps: u64) -> bool {
         match self {
             Self::Steps(wanted) => steps >= wanted,
             // A billionth of a step forgives the rounding of a sum of fixed steps.
@@ -54,7 +57,7 @@ impl Length {
 
     /// The part of a run that is done, between 0 and 1.
     #[allow(clippy::cast_precision_loss)] // an estimate
-    pub(super) fn part(self, plan: &Plan, t: f64, steps: u64) -> f64 {
+    pub(crate) fn part(self, plan: &Plan, t: f64, steps: u64) -> f64 {
         match self {
             Self::Steps(wanted) => steps as f64 / wanted as f64,
             Self::Until(end) => ((t - plan.t) / (end - plan.t)).clamp(0.0, 1.0),
@@ -63,7 +66,7 @@ impl Length {
 
     /// Number of steps, were all as long as the first.
     #[allow(clippy::cast_precision_loss)] // an estimate
-    pub(super) fn steps(self, plan: &Plan) -> f64 {
+    pub(crate) fn steps(self, plan: &Plan) -> f64 {
         match self {
             Self::Steps(wanted) => wanted as f64,
             Self::Until(end) => ((end - plan.t) / plan.h).ceil(),
@@ -71,7 +74,7 @@ impl Length {
     }
 
     /// The time at which the run ends, were all steps as long as the first.
-    pub(super) fn end(self, plan: &Plan) -> f64 {
+    pub(crate) fn end(self, plan: &Plan) -> f64 {
         match self {
             Self::Steps(_) => plan.t + self.steps(plan) * plan.h,
             Self::Until(end) => end,
@@ -102,7 +105,7 @@ impl Output {
             Some("npy") => Self::Npy(path.to_owned()),
             _ => return Err(Failure::Input(format!("the output `{shown}` must end in .csv or .npy"))),
         };
-        check_file("output", path)?;
+        place::check("output", path)?;
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && matches!(output, Self::Npy(_)) => Err(Failure::Input(format!(
                 "the output `{shown}` is a pipe or a device, and the head of an NPY file is written last; write CSV there"
@@ -121,26 +124,12 @@ impl Output {
     }
 }
 
-/// A file that can be written, were it not for its permissions.
-fn check_file(what: &str, path: &Path) -> Result<(), Failure> {
-    let shown = path.display();
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        let folder = folder.display();
-        return Err(Failure::Input(format!("there is no folder `{folder}` for the {what} `{shown}`; make it first")));
-    }
-    if path.is_dir() {
-        return Err(Failure::Input(format!("the {what} `{shown}` is a folder; name a file")));
-    }
-    Ok(())
-}
-
 /// The file that --plot names.
 fn check_plot(path: &Path) -> Result<(), Failure> {
     if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg")) {
         return Err(Failure::Input(format!("the plot `{}` must end in .svg", path.display())));
     }
-    check_file("plot", path)
+    place::check("plot", path)
 }
 
 impl Request {
@@ -149,6 +138,28 @@ impl Request {
     /// # Errors
     /// [`Failure::Input`] for the first input that is wrong.
     pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
+        match (Self::read(arguments)?, arguments.item) {
+            ((request, None), None) | ((request, Some(_)), Some(_)) => Ok(request),
+            ((_, None), Some(_)) => Err(Failure::Input("only a scene with [sweep] has an --item".to_owned())),
+            ((_, Some(_)), None) => Err(Failure::Input(
+                "the scene has a [sweep]: `vi-lab sweep` takes all its runs, and --item K one of them".to_owned(),
+            )),
+        }
+    }
+
+    /// The run that all runs of a sweep are like, and the sweep.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for the first input that is wrong, and where the scene has no sweep.
+    pub(crate) fn with_sweep(scene: &str) -> Result<(Self, Sweep), Failure> {
+        let arguments = Arguments { target: Some(scene.to_owned()), ..Arguments::default() };
+        let (request, sweep) = Self::read(&arguments)?;
+        let none = || Failure::Input(format!("{scene} is no scene file with a table [sweep]; docs/cluster.md has one"));
+        Ok((request, sweep.ok_or_else(none)?))
+    }
+
+    /// The run that the arguments ask for, and the sweep of the scene.
+    fn read(arguments: &Arguments) -> Result<(Self, Option<Sweep>), Failure> {
         let target = match &arguments.target {
             Some(target) => target.clone(),
             None => catalogue::first_own()?,
@@ -169,7 +180,7 @@ impl Request {
             }
             set(system.as_mut(), name, value)?;
         }
-        let plan = Plan {
+        let mut plan = Plan {
             method: arguments.method.or(scene.method).unwrap_or(Method::Fixed),
             start: arguments.start.or(scene.start).unwrap_or(Start::Midpoint),
             stages: stages(arguments.stages.or(scene.stages))?,
@@ -178,6 +189,9 @@ impl Request {
             q: arguments.q.clone().or(scene.q).unwrap_or(entry.q),
             v: arguments.v.clone().or(scene.v).unwrap_or(entry.v),
         };
+        if let (Some(sweep), Some(item)) = (&scene.sweep, arguments.item) {
+            set_item(sweep, item, system.as_mut(), &mut plan)?;
+        }
         check_initial(system.as_ref(), &plan)?;
         // A start that belongs to another method of the scene is no mistake.
         let start = arguments.start.or(scene.start.filter(|_| arguments.method.is_none()));
@@ -206,11 +220,11 @@ impl Request {
         };
         let plot = arguments.plot.clone();
         plot.as_deref().map_or(Ok(()), check_plot)?;
-        Ok(Self { system, plan, length, every, output, plot, large_output: arguments.large_output })
+        Ok((Self { system, plan, length, every, output, plot, large_output: arguments.large_output }, scene.sweep))
     }
 
     /// Names of the columns of a row.
-    pub(super) fn columns(&self) -> Vec<String> {
+    pub(crate) fn columns(&self) -> Vec<String> {
         Row::columns(&self.system.coordinates())
     }
 }
@@ -249,6 +263,29 @@ fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
     Ok((name, number(value).map_err(wrong)?))
 }
 
+/// Makes a system and a plan those of one run of a sweep.
+fn set_item(sweep: &Sweep, item: u64, system: &mut dyn System, plan: &mut Plan) -> Result<(), Failure> {
+    let items = Items::of(sweep, system)?;
+    if item >= items.count() {
+        let last = items.count() - 1;
+        return Err(Failure::Input(format!("there is no --item {item}: the runs are numbered from 0 to {last}")));
+    }
+    items.set(item, system, plan);
+    Ok(())
+}
+
+/// Sizes and finiteness of the initial state, and whether its step leads to the end.
+///
+/// # Errors
+/// [`Failure::Input`] for the first input that is wrong.
+pub(super) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<(), Failure> {
+    check_initial(system, plan)?;
+    match length {
+        Length::Until(end) => check_direction(plan, end),
+        Length::Steps(_) => Ok(()),
+    }
+}
+
 /// Sizes and finiteness of the initial state.
 fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
     let coordinates = system.coordinates();
@@ -276,6 +313,19 @@ fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Whether steps lead to an end.
+fn check_direction(plan: &Plan, until: f64) -> Result<(), Failure> {
+    if (until - plan.t) * plan.h >= 0.0 {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "steps of {} from t = {} do not lead to --until {}",
+        short(plan.h),
+        short(plan.t),
+        short(until)
+    )))
+}
+
 /// Exactly one of the two, and an end that the step leads to.
 fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length, Failure> {
     match (steps, until) {
@@ -283,13 +333,7 @@ fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length,
         (None, Some(until)) if !until.is_finite() => {
             Err(Failure::Input(format!("the end (--until) must be finite, not {until}")))
         }
-        (None, Some(until)) if (until - plan.t) * plan.h < 0.0 => Err(Failure::Input(format!(
-            "steps of {} from t = {} do not lead to --until {}",
-            short(plan.h),
-            short(plan.t),
-            short(until)
-        ))),
-        (None, Some(until)) => Ok(Length::Until(until)),
+        (None, Some(until)) => check_direction(plan, until).map(|()| Length::Until(until)),
         (Some(_), Some(_)) => Err(Failure::Input("give either --steps or --until, not both".to_owned())),
         (None, None) => Ok(Length::Steps(USUAL_STEPS)),
     }

@@ -4,14 +4,14 @@
 //! step changes t at the start, and for fixed steps at the end too, and the first step changes the state, or the system
 //! is at rest.
 
-use super::request::Request;
+use super::request::{Length, Request};
 use crate::failure::Failure;
 use crate::numbers::{about, short};
 use crate::simulation::{Method, Plan};
 use core::cell::Cell;
 
 /// Checks the step by itself and against the times of the run.
-pub(super) fn check_times(Request { plan, length, .. }: &Request) -> Result<(), Failure> {
+pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {
     square(plan.h)?;
     time(plan.t, plan.h)?;
     if plan.method == Method::Energy { Ok(()) } else { time(length.end(plan), plan.h) }

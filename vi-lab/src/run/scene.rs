@@ -13,10 +13,13 @@
 //! [parameters]
 //! c = 0.04
 //! ```
+//!
+//! With a table `[sweep]` it is many runs: see `sweep/scene.rs`.
 
 use crate::failure::Failure;
 use crate::input::count_of_scene;
 use crate::simulation::{Method, Start};
+use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -54,6 +57,8 @@ pub(super) struct Scene {
     /// Parameters by name.
     #[serde(default)]
     pub(super) parameters: BTreeMap<String, f64>,
+    /// What differs from run to run, and what is kept of each.
+    pub(super) sweep: Option<Sweep>,
 }
 
 impl Scene {

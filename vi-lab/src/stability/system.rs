@@ -5,10 +5,11 @@
 
 use super::atlas::{Atlas, Axes, Grid, Labels};
 use super::ending::{Course, Ending, Limit};
-use super::quantity::{Quantity, Span};
+use super::span::Span;
 use crate::catalogue::{Entry, kebab};
 use crate::chart::{Class, Look, Series, boundary, middles};
 use crate::failure::Failure;
+use crate::quantity::Quantity;
 use crate::simulation::{Method, Plan, Simulation, Start, USUAL_STAGES};
 use crate::system::System;
 use core::cell::Cell;
@@ -140,14 +141,7 @@ fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) ->
     let v = entry.v.clone();
     let mut plan = Plan { method, start: Start::Midpoint, stages: USUAL_STAGES, h: entry.h, t: 0.0, q, v };
     for (span, value) in axes.iter().zip([place.0, place.1]) {
-        match &span.quantity {
-            Quantity::Coordinate(index) => plan.q.iter_mut().skip(*index).take(1).for_each(|q| *q = value),
-            Quantity::Velocity(index) => plan.v.iter_mut().skip(*index).take(1).for_each(|v| *v = value),
-            Quantity::Parameter(name) => {
-                system.set(name, value);
-            }
-            Quantity::Step => plan.h = value,
-        }
+        span.quantity.set(value, system.as_mut(), &mut plan);
     }
     (system, plan)
 }
@@ -163,7 +157,7 @@ fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> 
         Ok(mut run) => {
             Course::of(limit, || {
                 run.advance()?;
-                Ok((run.t(), size(&run.q())))
+                Ok((run.t(), size(run.q())))
             })
             .ending
         }

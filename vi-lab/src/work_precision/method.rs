@@ -144,7 +144,7 @@ impl Task<'_> {
         let reached = if let Some(plan) = self.plan() {
             let mut run = system.begin(&plan, evaluations)?;
             self.follow(run.as_mut())?;
-            Reached { t: run.t(), q: run.q(), p: run.p() }
+            Reached { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }
         } else {
             let at = system.rival(self.start, self.end, self.setting, evaluations, None)?;
             Reached { t: at.t, p: system.momentum(&at)?, q: at.q }

@@ -1,23 +1,11 @@
-//! What an axis of a system's map can vary: a coordinate, a velocity, a parameter, or the step.
+//! A quantity that an axis of a system's map varies, and its range.
 //!
 //! In: `NAME=LOW:HIGH`. Out: a [`Span`].
 
 use crate::catalogue::Entry;
 use crate::chart::Axis;
 use crate::failure::Failure;
-
-/// One quantity that a map varies.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
-    /// Initial coordinate.
-    Coordinate(usize),
-    /// Initial velocity.
-    Velocity(usize),
-    /// Parameter of the system.
-    Parameter(String),
-    /// First step.
-    Step,
-}
+use crate::quantity::Quantity;
 
 /// A quantity with its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +32,7 @@ impl Span {
         if range.0 >= range.1 {
             return Err(wrong());
         }
-        let quantity = Quantity::named(entry, name.trim())?;
+        let quantity = Quantity::named(entry.system.as_ref(), name.trim())?;
         if quantity == Quantity::Step && range.0 <= 0.0 {
             return Err(Failure::Input(format!("the step h must be positive, not `{text}`")));
         }
@@ -64,31 +52,6 @@ impl Span {
             Quantity::Parameter(_) => Axis::linear(self.name.clone()),
         };
         axis.over(self.range.0, self.range.1)
-    }
-}
-
-impl Quantity {
-    /// The quantity of this name.
-    fn named(entry: &Entry, name: &str) -> Result<Self, Failure> {
-        let coordinates = entry.system.coordinates();
-        let place = |name: &str| coordinates.iter().position(|coordinate| *coordinate == name);
-        if let Some(index) = place(name) {
-            return Ok(Self::Coordinate(index));
-        }
-        if let Some(index) = name.strip_prefix("v_").and_then(place) {
-            return Ok(Self::Velocity(index));
-        }
-        let parameters: Vec<&str> = entry.system.parameters().iter().map(|(parameter, _)| *parameter).collect();
-        match name {
-            _ if parameters.contains(&name) => Ok(Self::Parameter(name.to_owned())),
-            "h" => Ok(Self::Step),
-            _ => {
-                let velocities: Vec<String> = coordinates.iter().map(|coordinate| format!("v_{coordinate}")).collect();
-                let names = [coordinates.join(", "), velocities.join(", "), parameters.join(", "), "h".to_owned()];
-                let names: Vec<&str> = names.iter().map(String::as_str).filter(|names| !names.is_empty()).collect();
-                Err(Failure::Input(format!("there is no quantity `{name}` to vary; there are {}", names.join(", "))))
-            }
-        }
     }
 }
 

@@ -1,0 +1,260 @@
+//! One quantity over which a sweep goes, and the values that it takes.
+//!
+//! In: an [`Over`] of the scene. Out: an [`Axis`]: with values of its own it is a direction of the grid, and has
+//! [`Axis::point`]s; a random one has none, and takes an [`Axis::draw`] in each run. AFTER THIS every value is finite.
+
+use super::random::{normal, uniform};
+use super::scene::{Over, Spacing};
+use crate::failure::Failure;
+use crate::numbers::short;
+use crate::quantity::Quantity;
+use crate::system::System;
+use core::fmt;
+
+/// A quantity with its values.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Axis {
+    /// Its name, in the scene and as a column.
+    pub(super) name: String,
+    /// What it is.
+    pub(super) quantity: Quantity,
+    /// Its place among the axes, by which its random numbers are its own.
+    place: u64,
+    choice: Choice,
+}
+
+/// Which values a quantity takes.
+#[derive(Clone, Debug, PartialEq)]
+enum Choice {
+    /// These.
+    Values(Vec<f64>),
+    /// So many from one to another.
+    Range { from: f64, to: f64, count: u64, spacing: Spacing },
+    /// Between two.
+    Uniform { low: f64, high: f64 },
+    /// Between two, by its logarithm.
+    LogUniform { low: f64, high: f64 },
+    /// About one.
+    Normal { mean: f64, deviation: f64 },
+}
+
+impl Axis {
+    /// The axis that a scene describes.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where the system has no such quantity, or its values are none.
+    pub(super) fn of(over: &Over, place: u64, system: &dyn System) -> Result<Self, Failure> {
+        let quantity = Quantity::named(system, &over.name)?;
+        let wrong = |what: String| Failure::Input(format!("the sweep over `{}` {what}", over.name));
+        let choice = Choice::of(over).map_err(wrong)?;
+        Ok(Self { name: over.name.clone(), quantity, place, choice })
+    }
+
+    /// The number of its points on the grid; none of a random one.
+    pub(super) fn points(&self) -> Option<u64> {
+        match &self.choice {
+            Choice::Values(values) => u64::try_from(values.len()).ok(),
+            Choice::Range { count, .. } => Some(*count),
+            Choice::Uniform { .. } | Choice::LogUniform { .. } | Choice::Normal { .. } => None,
+        }
+    }
+
+    /// The value at a point of the grid.
+    #[allow(clippy::cast_precision_loss)] // counts that a study can have
+    pub(super) fn point(&self, index: u64) -> f64 {
+        match &self.choice {
+            Choice::Values(values) => {
+                usize::try_from(index).ok().and_then(|index| values.get(index)).copied().unwrap_or(f64::NAN)
+            }
+            Choice::Range { from, .. } if index == 0 => *from,
+            Choice::Range { to, count, .. } if index + 1 == *count => *to,
+            Choice::Range { from, to, count, spacing } => {
+                let part = index as f64 / (count - 1) as f64;
+                match spacing {
+                    Spacing::Linear => from + (to - from) * part,
+                    Spacing::Log => from * (to / from).powf(part),
+                }
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// The value in the run whose random numbers begin with `seed`.
+    pub(super) fn draw(&self, seed: u64) -> f64 {
+        let places = [2 * self.place, 2 * self.place + 1];
+        match &self.choice {
+            Choice::Uniform { low, high } => low + (high - low) * uniform(seed, places[0]),
+            Choice::LogUniform { low, high } => low * (high / low).powf(uniform(seed, places[0])),
+            Choice::Normal { mean, deviation } => mean + deviation * normal(seed, places),
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl Choice {
+    /// The one choice that is written.
+    fn of(over: &Over) -> Result<Self, String> {
+        let Over { values, from, to, count, spacing, uniform, log_uniform, normal, .. } = over;
+        let is_range = from.is_some() || to.is_some() || count.is_some() || spacing.is_some();
+        let choices = [values.is_some(), is_range, uniform.is_some(), log_uniform.is_some(), normal.is_some()];
+        let known = "values = […], from, to and count, uniform = […], log_uniform = […], normal = […]";
+        if choices.into_iter().filter(|is_written| *is_written).count() != 1 {
+            return Err(format!("needs one of these: {known}"));
+        }
+        let choice = match (values, uniform, log_uniform, normal) {
+            (Some(values), ..) => Self::Values(values.clone()),
+            (_, Some([low, high]), ..) => Self::Uniform { low: *low, high: *high },
+            (_, _, Some([low, high]), _) => Self::LogUniform { low: *low, high: *high },
+            (.., Some([mean, deviation])) => Self::Normal { mean: *mean, deviation: *deviation },
+            _ => {
+                let (Some(from), Some(to), Some(count)) = (*from, *to, *count) else {
+                    return Err("needs all of `from`, `to` and `count`".to_owned());
+                };
+                Self::Range { from, to, count, spacing: spacing.unwrap_or(Spacing::Linear) }
+            }
+        };
+        choice.check().map(|()| choice)
+    }
+
+    /// Whether every value is a finite number.
+    fn check(&self) -> Result<(), String> {
+        let (numbers, is_logarithmic) = match self {
+            Self::Values(values) => (values.clone(), false),
+            Self::Range { from, to, spacing, .. } => (vec![*from, *to], *spacing == Spacing::Log),
+            Self::Uniform { low, high } => (vec![*low, *high], false),
+            Self::LogUniform { low, high } => (vec![*low, *high], true),
+            Self::Normal { mean, deviation } => (vec![*mean, *deviation], false),
+        };
+        if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(format!("must have finite numbers, not {number}"));
+        }
+        if is_logarithmic && !numbers.windows(2).all(|pair| (pair[1] / pair[0]).is_normal() && pair[1] / pair[0] > 0.0)
+        {
+            return Err("goes by the logarithm: give two numbers of one sign, neither of them zero".to_owned());
+        }
+        match self {
+            Self::Values(values) if values.is_empty() => Err("has no values".to_owned()),
+            Self::Range { count: 0, .. } => Err("has no values: `count` must be at least 1".to_owned()),
+            Self::Range { from, to, count: 1, .. } if from.to_bits() != to.to_bits() => {
+                Err("goes from one value to another: `count` must be at least 2".to_owned())
+            }
+            Self::Uniform { low, high } | Self::LogUniform { low, high } if low >= high => {
+                Err("must give the lower number first".to_owned())
+            }
+            Self::Uniform { low, high } | Self::Range { from: low, to: high, .. } if !(high - low).is_finite() => {
+                Err("goes over more than a number can hold".to_owned())
+            }
+            Self::Normal { deviation, .. } if *deviation <= 0.0 => {
+                Err("must have a positive deviation, the second number of `normal`".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, choice, .. } = self;
+        match choice {
+            Choice::Values(values) => {
+                write!(f, "{name} = {}", values.iter().map(|value| short(*value)).collect::<Vec<_>>().join(", "))
+            }
+            Choice::Range { from, to, count, spacing } => {
+                let spacing = if *spacing == Spacing::Log { ", in equal ratios" } else { "" };
+                write!(f, "{name} from {} to {}, {count} values{spacing}", short(*from), short(*to))
+            }
+            Choice::Uniform { low, high } => write!(f, "{name} random from {} to {}", short(*low), short(*high)),
+            Choice::LogUniform { low, high } => {
+                write!(f, "{name} random from {} to {} by its logarithm", short(*low), short(*high))
+            }
+            Choice::Normal { mean, deviation } => {
+                write!(f, "{name} random about {}, deviation {}", short(*mean), short(*deviation))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue;
+
+    fn axis(over: Over) -> Result<Axis, String> {
+        let entry = catalogue::find("kepler").unwrap_or_else(|failure| panic!("{failure}"));
+        let over = Over { name: "x".to_owned(), ..over };
+        Axis::of(&over, 2, entry.system.as_ref()).map_err(|failure| failure.to_string())
+    }
+
+    fn range(from: f64, to: f64, count: u64, spacing: Option<Spacing>) -> Over {
+        Over { from: Some(from), to: Some(to), count: Some(count), spacing, ..Over::default() }
+    }
+
+    #[test]
+    fn values_and_ranges_have_their_points() {
+        let points = |over: Over| {
+            let axis = axis(over).unwrap_or_else(|message| panic!("{message}"));
+            (0..axis.points().unwrap_or_default()).map(|index| axis.point(index)).collect::<Vec<_>>()
+        };
+        assert_eq!(points(Over { values: Some(vec![3.0, -1.0]), ..Over::default() }), [3.0, -1.0]);
+        assert_eq!(points(range(1.0, 2.0, 5, None)), [1.0, 1.25, 1.5, 1.75, 2.0]);
+        assert_eq!(points(range(2.0, 2.0, 1, None)), [2.0]);
+        let powers = points(range(-1e-3, -10.0, 5, Some(Spacing::Log)));
+        for (point, expected) in powers.iter().zip([-1e-3, -1e-2, -1e-1, -1.0, -10.0]) {
+            // Measured 2.3e-16.
+            assert!((point / expected - 1.0).abs() < 3e-16, "{point}");
+        }
+        assert_eq!(powers.last(), Some(&-10.0), "the last one is that of the scene");
+    }
+
+    #[test]
+    fn draws_lie_where_they_should() {
+        let draws = |over: Over| {
+            let axis = axis(over).unwrap_or_else(|message| panic!("{message}"));
+            assert_eq!(axis.points(), None);
+            let mut draws: Vec<f64> = (0..1001).map(|seed| axis.draw(seed)).collect();
+            draws.sort_by(f64::total_cmp);
+            (draws[0], draws[500], draws[1000])
+        };
+        let (low, middle, high) = draws(Over { uniform: Some([2.0, 4.0]), ..Over::default() });
+        assert!(
+            low > 2.0 && low < 2.02 && (middle - 3.0).abs() < 0.13 && high < 4.0 && high > 3.98,
+            "{low} {middle} {high}"
+        );
+        let (low, middle, high) = draws(Over { log_uniform: Some([1e-4, 1.0]), ..Over::default() });
+        assert!(low > 1e-4 && (middle.log10() + 2.0).abs() < 0.26 && high < 1.0, "{low} {middle} {high}");
+        let (low, middle, high) = draws(Over { normal: Some([5.0, 0.1]), ..Over::default() });
+        assert!(low > 4.5 && (middle - 5.0).abs() < 0.016 && high < 5.5, "{low} {middle} {high}");
+    }
+
+    #[test]
+    fn what_gives_no_values_is_named() {
+        let both = Over { values: Some(vec![1.0]), uniform: Some([0.0, 1.0]), ..Over::default() };
+        for (over, message) in [
+            (
+                Over::default(),
+                "needs one of these: values = […], from, to and count, uniform = […], log_uniform = […], normal = […]",
+            ),
+            (
+                both,
+                "needs one of these: values = […], from, to and count, uniform = […], log_uniform = […], normal = […]",
+            ),
+            (Over { from: Some(1.0), ..Over::default() }, "needs all of `from`, `to` and `count`"),
+            (Over { values: Some(Vec::new()), ..Over::default() }, "has no values"),
+            (Over { values: Some(vec![f64::NAN]), ..Over::default() }, "must have finite numbers, not NaN"),
+            (range(0.0, 1.0, 0, None), "has no values: `count` must be at least 1"),
+            (range(0.0, 1.0, 1, None), "goes from one value to another: `count` must be at least 2"),
+            (range(-f64::MAX, f64::MAX, 3, None), "goes over more than a number can hold"),
+            (
+                range(0.0, 1.0, 3, Some(Spacing::Log)),
+                "goes by the logarithm: give two numbers of one sign, neither of them zero",
+            ),
+            (Over { uniform: Some([1.0, 1.0]), ..Over::default() }, "must give the lower number first"),
+            (
+                Over { normal: Some([1.0, 0.0]), ..Over::default() },
+                "must have a positive deviation, the second number of `normal`",
+            ),
+        ] {
+            assert_eq!(axis(over), Err(format!("the sweep over `x` {message}")));
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! How a run of a sweep ends.
+
+use vi_core::StepError;
+
+/// How a run ended: a place in [`Ending::WORDS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Ending(u8);
+
+impl Ending {
+    /// What a table says of it.
+    pub(super) const WORDS: [&str; 14] = [
+        "reached its end",
+        "no forward step",
+        "degenerate step",
+        "step ratio",
+        "step bounds",
+        "not converged",
+        "stages unsettled",
+        "time scale",
+        "singular matrix",
+        "not finite",
+        "wrong input",
+        "steps became too short",
+        "section not found",
+        "another failure",
+    ];
+    /// All steps were taken.
+    pub(super) const REACHED: Self = Self(0);
+    /// The values of the run are none that a run can have.
+    pub(super) const WRONG_INPUT: Self = Self(10);
+    /// The steps became so short that the end is out of reach.
+    pub(super) const TOO_SHORT: Self = Self(11);
+    /// The run reached its end, and its crossings of the section could not all be located.
+    pub(super) const NO_SECTION: Self = Self(12);
+
+    /// That of a step that fails.
+    pub(super) fn of(error: StepError) -> Self {
+        Self(match error {
+            StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => 1,
+            StepError::DegenerateStep { .. } => 2,
+            StepError::StepRatio { .. } => 3,
+            StepError::StepBounds { .. } => 4,
+            StepError::NotConverged { .. } => 5,
+            StepError::StagesUnsettled { .. } => 6,
+            StepError::TimeScale { .. } => 7,
+            StepError::Singular { .. } => 8,
+            StepError::NonFinite { .. } => 9,
+            StepError::InvalidInput { .. } => 10,
+            _ => 13,
+        })
+    }
+
+    /// Its place among the words.
+    pub(super) fn number(self) -> f64 {
+        f64::from(self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_places_of_words() {
+        let word = |ending: Ending| Ending::WORDS[usize::from(ending.0)];
+        let singular = StepError::Singular { t: 0.0, matrix: "mass matrix" };
+        let other = StepError::OtherSystem { system: "", parameter: None, stored: 0.0, given: 0.0 };
+        let endings = [Ending::REACHED, Ending::WRONG_INPUT, Ending::TOO_SHORT, Ending::NO_SECTION];
+        let words = ["reached its end", "wrong input", "steps became too short", "section not found"];
+        assert_eq!(endings.map(word), words);
+        assert_eq!([word(Ending::of(singular)), word(Ending::of(other))], ["singular matrix", "another failure"]);
+    }
+}

@@ -1,0 +1,117 @@
+//! What is kept of each run, and in which columns.
+//!
+//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Shape`]s of its tables.
+
+use super::ending::Ending;
+use super::scene::{Cut, Keep, Passing, Sweep};
+use super::shape::{Column, Shape};
+use crate::failure::Failure;
+use crate::numbers::short;
+use crate::simulation::{Plan, Row, Section};
+use vi_core::integrator::Direction;
+
+/// Steps of a period at least, so that none is passed over.
+pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
+
+/// What is kept.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Kept {
+    kinds: Vec<Keep>,
+    /// The section whose crossings are kept.
+    pub(super) section: Option<Section>,
+}
+
+impl Kept {
+    /// What the scene asks for.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where nothing is kept, something twice, or the section is none.
+    pub(super) fn of(sweep: &Sweep, coordinates: &[&str], plan: &Plan) -> Result<Self, Failure> {
+        let section = sweep.section.as_ref().map(|cut| section(cut, coordinates, plan)).transpose();
+        let section = section.map_err(|message| Failure::Input(format!("the section {message}")))?;
+        if sweep.keep.is_empty() && section.is_none() {
+            return Err(Failure::Input("`keep` names nothing; leave it out to keep how each run ends".to_owned()));
+        }
+        Ok(Self { kinds: sweep.keep.clone(), section })
+    }
+
+    /// Whether this is kept.
+    pub(super) fn has(&self, keep: Keep) -> bool {
+        self.kinds.contains(&keep)
+    }
+
+    /// The tables: one with a row for each run, then those that are asked for.
+    pub(super) fn shapes<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Shape> {
+        let item = || Column::count("item");
+        let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();
+        if self.has(Keep::Ending) {
+            runs.extend([Column::words("ending", &Ending::WORDS), Column::count("steps")]);
+        }
+        let rows = Row::columns(coordinates);
+        if self.has(Keep::End) {
+            runs.extend(rows.iter().map(|name| Column::number(format!("end_{name}"))));
+        }
+        if self.has(Keep::Extremes) {
+            let ranged = coordinates.iter().copied().chain(["H"]);
+            runs.extend(ranged.flat_map(|name| ["min", "max"].map(|which| Column::number(format!("{which}_{name}")))));
+        }
+        if self.has(Keep::Energy) {
+            runs.extend(["error_H", "error_E"].map(Column::number));
+        }
+        let mut shapes = vec![Shape { suffix: String::new(), columns: runs }];
+        let nodes: Vec<Column> = core::iter::once(item()).chain(rows.into_iter().map(Column::number)).collect();
+        if self.section.is_some() {
+            // A crossing is no node: it has no E and no h.
+            let columns = nodes[..nodes.len() - 2].to_vec();
+            shapes.push(Shape { suffix: "section".to_owned(), columns });
+        }
+        if self.has(Keep::Series) {
+            shapes.push(Shape { suffix: "series".to_owned(), columns: nodes });
+        }
+        shapes
+    }
+
+    /// In words.
+    pub(super) fn words(&self, coordinates: &[&str]) -> String {
+        let kinds = self.kinds.iter().map(|keep| format!("{keep:?}").to_lowercase());
+        let section = self.section.iter().map(|section| match section {
+            Section::Coordinate { index, at, direction } => {
+                let way = format!("{direction:?}").to_lowercase();
+                format!("section {} = {}, {way}", coordinates.get(*index).copied().unwrap_or_default(), short(*at))
+            }
+            Section::Period { period, .. } => format!("section every {} of time", short(*period)),
+        });
+        kinds.chain(section).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The section that a scene describes.
+fn section(cut: &Cut, coordinates: &[&str], plan: &Plan) -> Result<Section, String> {
+    let Cut { coordinate, at, direction, period } = cut;
+    match (coordinate, period) {
+        (Some(name), None) => {
+            let place = coordinates.iter().position(|coordinate| coordinate == name);
+            let index = place.ok_or_else(|| {
+                format!("is of a coordinate that there is not, `{name}`; there are {}", coordinates.join(", "))
+            })?;
+            let at = at.unwrap_or(0.0);
+            if !at.is_finite() {
+                return Err(format!("must be `at` a finite number, not {at}"));
+            }
+            let direction = match direction.unwrap_or(Passing::Rising) {
+                Passing::Rising => Direction::Rising,
+                Passing::Falling => Direction::Falling,
+                Passing::Both => Direction::Both,
+            };
+            Ok(Section::Coordinate { index, at, direction })
+        }
+        (None, Some(period)) if at.is_none() && direction.is_none() => {
+            if period.is_finite() && *period >= STEPS_OF_A_PERIOD * plan.h.abs() {
+                Ok(Section::Period { start: plan.t, period: *period })
+            } else {
+                Err(format!("has the period {period}; it must be at least four steps long"))
+            }
+        }
+        _ => Err("is { coordinate = \"x\", at = 0.0, direction = \"rising\" } or { period = 1.0 }".to_owned()),
+    }
+}

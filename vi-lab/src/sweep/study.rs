@@ -1,0 +1,169 @@
+//! A sweep, ready to be run: the run that all its runs are like, what differs, and what is kept.
+//!
+//! In: a scene with `[sweep]`. Out: a [`Study`], its description, and rows for each run.
+
+use super::course::{Course, Member};
+use super::ending::Ending;
+use super::items::Items;
+use super::keep::Kept;
+use super::part::{Chunk, Description, Heading};
+use super::scene::Keep;
+use super::shard::Shard;
+use crate::catalogue;
+use crate::failure::Failure;
+use crate::machine::VERSION;
+use crate::numbers::{about, short};
+use crate::run::{Length, Request};
+
+/// Steps in a chunk: some hundredths of a second of fixed steps.
+const STEPS: f64 = 5e4;
+/// Runs in a chunk, however short.
+const MOST_ITEMS: u64 = 1024;
+/// Chunks of a shard at least, where it has as many runs, so that all cores have work.
+const FEWEST_CHUNKS: u64 = 64;
+/// Bytes of rows of one run that are held at once.
+const MOST_BYTES: f64 = 1.6e7;
+
+/// A sweep.
+pub(super) struct Study {
+    request: Request,
+    items: Items,
+    kept: Kept,
+}
+
+impl Study {
+    /// The sweep of a scene.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for the first entry that is wrong.
+    pub(super) fn read(scene: &str) -> Result<Self, Failure> {
+        let (request, sweep) = Request::with_sweep(scene)?;
+        let items = Items::of(&sweep, request.system.as_ref())?;
+        let coordinates = request.system.coordinates();
+        let kept = Kept::of(&sweep, &coordinates, &request.plan)?;
+        let study = Self { request, items, kept };
+        study.check_series()?;
+        Ok(study)
+    }
+
+    /// Whether the rows of one run are few enough to be held.
+    #[allow(clippy::cast_precision_loss)] // an estimate
+    fn check_series(&self) -> Result<(), Failure> {
+        let columns = self.request.columns().len() + 1;
+        let rows = self.request.length.steps(&self.request.plan) / self.request.every as f64;
+        let bytes = 8.0 * rows * columns as f64;
+        if !self.kept.has(Keep::Series) || bytes <= MOST_BYTES {
+            return Ok(());
+        }
+        let every = (self.request.every as f64 * bytes / MOST_BYTES).ceil();
+        Err(Failure::Input(format!(
+            "the series of each run would have about {} rows, {} MB; keep fewer with every = {} in the scene",
+            about(rows),
+            about(bytes / 1e6),
+            short(every)
+        )))
+    }
+
+    /// What a part of it begins with.
+    pub(super) fn heading(&self, shard: Shard) -> Heading {
+        let Request { plan, length, .. } = &self.request;
+        let items = shard.items(self.items.count());
+        let balanced = (items.end - items.start).div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
+        let short = (STEPS / length.steps(plan).max(1.0)).max(1.0) as u64;
+        Heading { study: self.description(), shard, chunk: balanced.min(short) }
+    }
+
+    /// All on which its tables depend.
+    fn description(&self) -> Description {
+        let Request { system, plan, length, every, .. } = &self.request;
+        let parameters: Vec<String> =
+            system.parameters().iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
+        let length = match length {
+            Length::Steps(steps) => format!("{steps} steps"),
+            Length::Until(end) => format!("until t = {}", short(*end)),
+        };
+        let sources = catalogue::sources().fold(0, |sum, text| {
+            let mut hasher = crc32fast::Hasher::new_with_initial(sum);
+            hasher.update(text.as_bytes());
+            hasher.finalize()
+        });
+        let facts = [
+            ("vi-lab", VERSION.to_owned()),
+            ("system", system.name().to_owned()),
+            ("sources", format!("{sources:08x}")),
+            ("parameters", parameters.join(", ")),
+            ("method", plan.method_name()),
+            ("step", format!("h = {}", short(plan.h))),
+            ("start", format!("t = {}, q = {:?}, v = {:?}", short(plan.t), plan.q, plan.v)),
+            ("length", format!("{length}, series of one node in {every}, and the last")),
+            ("sweep", self.items.words().join("; ")),
+            ("keep", self.kept.words(&system.coordinates())),
+        ];
+        let facts = facts.map(|(name, fact)| (name.to_owned(), fact)).to_vec();
+        let shapes = self.kept.shapes(self.items.names(), &system.coordinates());
+        Description { facts, items: self.items.count(), shapes }
+    }
+
+    /// The runs of a chunk.
+    pub(super) fn chunk(&self, heading: &Heading, number: u64) -> Chunk {
+        let mut chunk = Chunk { number, failed: 0, tables: vec![Vec::new(); heading.study.shapes.len()] };
+        for item in heading.items(number) {
+            let ending = self.follow(item, &mut chunk.tables);
+            chunk.failed += u64::from(ending != Ending::REACHED);
+        }
+        chunk
+    }
+
+    /// Adds the rows of a run to the tables.
+    #[allow(clippy::cast_precision_loss)] // items are fewer than 2^53, and so are steps
+    fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> Ending {
+        let number = item as f64;
+        let mut tables = tables.iter_mut();
+        let Some(runs) = tables.next() else { return Ending::REACHED };
+        let section = self.kept.section.as_ref().and_then(|section| Some((section, tables.next()?)));
+        let mut series = if self.kept.has(Keep::Series) { tables.next() } else { None };
+
+        let member = self.member(item);
+        let mut course = Course::of(&member, &mut |simulation| {
+            if let Some(series) = &mut series {
+                series.push(number);
+                series.extend(simulation.row().entries().map(|entry| entry.unwrap_or(f64::NAN)));
+            }
+        });
+        if let Some((section, crossings)) = section {
+            let crossed = course.cross(&member, section, &mut |row| {
+                crossings.extend([number, row.t].into_iter().chain(row.q).chain(row.p));
+                crossings.push(row.energy.unwrap_or(f64::NAN));
+            });
+            if course.ending == Ending::REACHED && crossed.is_err() {
+                course.ending = Ending::NO_SECTION;
+            }
+        }
+        runs.push(number);
+        runs.extend(self.items.values(item));
+        if self.kept.has(Keep::Ending) {
+            runs.extend([course.ending.number(), course.steps as f64]);
+        }
+        if self.kept.has(Keep::End) {
+            runs.extend(course.end(member.plan.q.len()));
+        }
+        if self.kept.has(Keep::Extremes) {
+            runs.extend(course.extremes());
+        }
+        if self.kept.has(Keep::Energy) {
+            runs.extend(course.errors());
+        }
+        course.ending
+    }
+
+    /// The run of an item.
+    fn member(&self, item: u64) -> Member {
+        let Request { system, plan, length, every, .. } = &self.request;
+        let mut system = system.copy();
+        let mut plan = plan.clone();
+        self.items.set(item, system.as_mut(), &mut plan);
+        let is_watched = self.kept.has(Keep::Extremes) || self.kept.has(Keep::Energy);
+        Member { system, plan, length: *length, every: *every, is_watched }
+    }
+}

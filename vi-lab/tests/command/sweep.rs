@@ -1,0 +1,497 @@
+//! Sweeps: parts against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
+
+use super::{array, bits, lab, path, rows, send, start, temporary};
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// A folder for one test, with a scene in it; it goes with the value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str, scene: &str) -> Self {
+        let folder = Self(temporary(name));
+        fs::create_dir_all(&folder.0).expect("a folder");
+        fs::write(folder.0.join("scene.toml"), scene).expect("a scene");
+        folder
+    }
+
+    /// A file in it.
+    fn at(&self, name: &str) -> String {
+        path(&self.0.join(name)).to_owned()
+    }
+
+    fn scene(&self) -> String {
+        self.at("scene.toml")
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.0.join(name)).expect("the file")
+    }
+
+    fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).expect("text")
+    }
+
+    /// A sweep of its scene, or of a shard of it, that succeeds.
+    fn sweep(&self, output: &str, shard: &[&str]) -> String {
+        let (scene, output) = (self.scene(), self.at(output));
+        let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
+        assert_eq!((status, errors.as_str()), (Some(0), ""));
+        said
+    }
+
+    /// A merge of parts; status and what was said on standard error.
+    fn merge(&self, parts: &[&str], output: &str) -> (Option<i32>, String) {
+        let parts: Vec<String> = parts.iter().map(|part| self.at(part)).collect();
+        let output = self.at(output);
+        let mut arguments = vec!["merge", "-o", &output];
+        arguments.extend(parts.iter().map(String::as_str));
+        let (status, _, errors) = lab(&arguments);
+        (status, errors.replace(&self.at(""), ""))
+    }
+
+    /// What a sweep says that is refused.
+    fn refused(&self, entries: &str, arguments: &[&str]) -> String {
+        fs::write(self.scene(), format!("system = \"kepler\"\n{entries}")).expect("a scene");
+        let (scene, output) = (self.scene(), self.at("refused.csv"));
+        let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), arguments].concat());
+        assert_eq!((status, said.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
+        errors.trim_end().replace(&self.at(""), "").replace("error: ", "")
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Runs that reach their end and runs that do not, with all tables: 48 of them.
+const MIXED: &str = "
+system = \"double-well\"
+method = \"energy\"
+h = 0.05
+steps = 100
+every = 30
+[sweep]
+over = [
+    { name = \"m\", values = [0.5, 1.0] },
+    { name = \"q\", from = 0.7, to = 1.05, count = 8 },
+    { name = \"v_q\", normal = [0.0, 0.05] },
+]
+samples = 3
+seed = 5
+keep = [\"ending\", \"end\", \"extremes\", \"energy\", \"series\"]
+section = { coordinate = \"q\", at = 0.75, direction = \"both\" }
+";
+
+/// Runs of 20000 steps, two in a chunk.
+const LONG: &str = "
+system = \"double-well\"
+method = \"energy\"
+steps = 20000
+[sweep]
+over = [{ name = \"q\", from = 0.71, to = 0.75, count = 80 }]
+";
+
+/// The names of the parts of a sweep in so many shards.
+fn parts(count: usize) -> Vec<String> {
+    (0..count).map(|index| format!("{count}.csv.{index}-of-{count}.part")).collect()
+}
+
+#[test]
+fn shards_are_the_whole_byte_for_byte() {
+    let folder = Folder::new("shards", MIXED);
+    let said = folder.sweep("whole.csv", &[]);
+    assert!(said.contains("whole.csv: 48 runs, 12 did not reach their end"), "{said}");
+    folder.sweep("whole.npy", &[]);
+    assert!(!folder.0.join("whole.csv.0-of-1.part").exists(), "its rows stand in tables");
+    for count in [1, 2, 7] {
+        for index in 0..count {
+            folder.sweep(&format!("{count}.csv"), &["--shard", &format!("{index}/{count}")]);
+        }
+        let parts = parts(count);
+        let mut parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+        parts.reverse();
+        for output in ["merged.csv", "merged.npy"] {
+            assert_eq!(folder.merge(&parts, output), (Some(0), String::new()));
+        }
+        for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
+            let (merged, whole) = (folder.read(&format!("merged.{file}")), folder.read(&format!("whole.{file}")));
+            assert!(merged == whole, "{file} of {count} shards");
+        }
+    }
+    let description: serde_json::Value = serde_json::from_slice(&folder.read("whole.npy.json")).expect("JSON");
+    let words = description["words"]["ending"].as_array().expect("words");
+    for table in ["", ".section", ".series"] {
+        let csv = folder.text(&format!("whole{table}.csv"));
+        let columns = csv.lines().find(|line| !line.starts_with('#')).expect("columns").split(',').count();
+        let numbers = array(&folder.read(&format!("whole{table}.npy")), columns);
+        let mut places = csv;
+        for (place, word) in words.iter().enumerate() {
+            places = places.replace(word.as_str().expect("a word"), &place.to_string());
+        }
+        assert_eq!(bits(&numbers), bits(&rows(&places)), "{table}");
+    }
+}
+
+#[test]
+fn an_item_is_the_run_alone_and_a_failure_is_recorded() {
+    let folder = Folder::new("item", MIXED);
+    folder.sweep("whole.csv", &[]);
+    let whole = folder.text("whole.csv");
+    let series = rows(&folder.text("whole.series.csv"));
+    let mut failed = 0;
+    for item in [0, 11, 23, 47] {
+        let line = whole.lines().filter(|line| !line.starts_with('#')).nth(1 + item).expect("a row");
+        let (status, csv, errors) = lab(&["run", &folder.scene(), "--item", &item.to_string()]);
+        let alone = rows(&csv);
+        let kept: Vec<f64> = line.split(',').skip(6).take(6).map(|entry| entry.parse().expect("a number")).collect();
+        assert_eq!(bits(&[kept]), bits(&alone[alone.len() - 1..]), "{line}");
+        // Every 30th node and the last; the same rows as those of the series.
+        let number = f64::from(u8::try_from(item).expect("a few")).to_bits();
+        let thinned: Vec<Vec<f64>> =
+            series.iter().filter(|row| row[0].to_bits() == number).map(|row| row[1..].to_vec()).collect();
+        assert_eq!(bits(&thinned), bits(&alone));
+        let is_failed = line.contains("no forward step");
+        failed += usize::from(is_failed);
+        assert_eq!(
+            (status, errors.contains("no energy-preserving step leads forward")),
+            (Some(i32::from(is_failed)), is_failed)
+        );
+        if is_failed {
+            assert!(errors.contains(&format!("after {} steps", line.split(',').nth(5).expect("steps"))), "{errors}");
+        }
+    }
+    assert_eq!(failed, 2);
+}
+
+#[test]
+fn what_is_kept_of_a_run_is_what_its_rows_say() {
+    let folder = Folder::new(
+        "kept",
+        "system = \"kepler\"\nsteps = 200\n[sweep]\nover = [{ name = \"v_y\", values = [1.9, 2.1] }]\nkeep = [\"energy\", \"extremes\"]\n",
+    );
+    folder.sweep("kept.csv", &[]);
+    let text = folder.text("kept.csv");
+    assert!(text.contains("\nitem,v_y,min_x,max_x,min_y,max_y,min_H,max_H,error_H,error_E\n"), "{text}");
+    for (item, kept) in rows(&text).iter().enumerate() {
+        let (_, csv, _) = lab(&["run", &folder.scene(), "--item", &item.to_string()]);
+        let nodes = rows(&csv);
+        let column = |index: usize| nodes.iter().map(move |row| row[index]).filter(|value| !value.is_nan());
+        let range = |index: usize| {
+            [column(index).fold(f64::INFINITY, f64::min), column(index).fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let drift = |index: usize| {
+            let first = column(index).next().expect("an energy");
+            column(index).map(|energy| (energy - first).abs()).fold(0.0, f64::max)
+        };
+        let expected = [range(1), range(2), range(5), [drift(5), drift(6)]].concat();
+        assert_eq!(bits(&[kept[2..].to_vec()]), bits(&[expected]));
+    }
+}
+
+#[test]
+fn crossings_are_where_the_motion_is_known() {
+    let scene = |section: &str| {
+        format!(
+            "system = \"harmonic-oscillator\"\nmethod = \"gauss\"\nh = 0.1\nuntil = 20.0\n[parameters]\nm = 1\n[sweep]\n\
+             over = [{{ name = \"k\", values = [1.0, 4.0] }}]\nsection = {section}\n"
+        )
+    };
+    let folder = Folder::new("section", &scene("{ coordinate = \"x\", at = 0.5, direction = \"falling\" }"));
+    folder.sweep("a.csv", &[]);
+    let crossings = rows(&folder.text("a.section.csv"));
+    // cos(ω t) falls to 1/2 at ω t = π/3 + 2π n: with ω = 1 at four times up to 20, with ω = 2 at seven.
+    let third = core::f64::consts::FRAC_PI_3;
+    let mut expected: Vec<(f64, f64)> = Vec::new();
+    for (item, omega, count) in [(0.0_f64, 1.0, 4), (1.0, 2.0, 7)] {
+        expected.extend((0..count).map(|turn| (item, (third + core::f64::consts::TAU * f64::from(turn)) / omega)));
+    }
+    assert_eq!(crossings.len(), expected.len());
+    for (row, (item, t)) in crossings.iter().zip(&expected) {
+        // Measured 3.6e-15 and 0.
+        assert!(
+            row[0].to_bits() == item.to_bits() && (row[1] - t).abs() < 4e-15 && (row[2] - 0.5).abs() < 2e-16,
+            "{row:?} {t}"
+        );
+    }
+    fs::write(folder.scene(), scene("{ period = 3.0 }")).expect("a scene");
+    folder.sweep("b.csv", &[]);
+    let crossings = rows(&folder.text("b.section.csv"));
+    assert_eq!(crossings.len(), 12);
+    for (index, row) in crossings.iter().enumerate() {
+        let turn = 3.0 * f64::from(u8::try_from(index % 6).expect("a few") + 1);
+        let omega = row[0] + 1.0;
+        // Measured 0 and 1.0e-15.
+        assert!((row[1] - turn).abs() < 4e-15 && (row[2] - (omega * turn).cos()).abs() < 2e-15, "{row:?} {turn}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
+    let folder = Folder::new("killed", LONG);
+    folder.sweep("whole.csv", &["--shard", "0/1"]);
+    let whole = folder.read("whole.csv.0-of-1.part");
+    let (scene, output) = (folder.scene(), folder.at("killed.csv"));
+    let part = folder.at("killed.csv.0-of-1.part");
+    let length = || fs::metadata(&part).map_or(0, |part| part.len());
+    // A frame, a head, and two rows of ten numbers.
+    let chunk = 12 + 24 + 2 * 10 * 8;
+    let heading = whole.len() - 40 * chunk;
+    let whole_chunks = |part: &[u8]| part[..part.len() - (part.len() - heading) % chunk].to_vec();
+    let mut before: Vec<u8> = Vec::new();
+    for (signal, status) in [("-KILL", None), ("-INT", Some(130)), ("-KILL", None), ("-TERM", Some(143))] {
+        let child = start(&["sweep", &scene, "-o", &output, "--shard", "0/1"]);
+        let wanted = before.len() as u64 + whole.len() as u64 / 10;
+        while length() < wanted {
+            sleep(Duration::from_millis(1));
+        }
+        send(signal, &child);
+        let Output { status: ended, stderr, .. } = child.wait_with_output().expect("the command ends");
+        let errors = String::from_utf8(stderr).expect("text");
+        assert_eq!(ended.code(), status, "{errors}");
+        if status.is_some() {
+            assert!(
+                errors.contains(" of 40 chunks, from which the same command goes on; the output up to there is whole"),
+                "{errors}"
+            );
+        }
+        let after = whole_chunks(&fs::read(&part).expect("the part"));
+        assert!(after.starts_with(&before) && after.len() > before.len() && after.len() < whole.len(), "{signal}");
+        before = after;
+    }
+    folder.sweep("killed.csv", &["--shard", "0/1"]);
+    let after = fs::read(&part).expect("the part");
+    assert!(after.starts_with(&before) && after.len() == whole.len(), "every chunk is there once");
+    for name in ["whole", "killed"] {
+        assert_eq!(
+            folder.merge(&[&format!("{name}.csv.0-of-1.part")], &format!("{name}.csv")),
+            (Some(0), String::new())
+        );
+    }
+    assert_eq!(folder.text("killed.csv"), folder.text("whole.csv"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_is_full_keeps_the_chunks_before() {
+    let folder = Folder::new("full-sweep", MIXED);
+    folder.sweep("whole.csv", &[]);
+    // The part has more than one block of 512 bytes for each of 48 chunks; a table has more than forty.
+    let limited = "trap '' XFSZ; ulimit -f 20; exec \"$0\" \"$@\"";
+    let run = |arguments: &[&str]| {
+        let all = [["-c", limited, env!("CARGO_BIN_EXE_vi-lab")].as_slice(), arguments].concat();
+        let Output { status, stderr, .. } = Command::new("sh").args(all).output().expect("the shell runs");
+        (status.code(), String::from_utf8(stderr).expect("text"))
+    };
+    let (scene, output) = (folder.scene(), folder.at("full.csv"));
+    let part = folder.at("full.csv.0-of-1.part");
+    let (status, errors) = run(&["sweep", &scene, "-o", &output]);
+    assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
+    assert!(errors.starts_with(&format!("error: {part}: ")), "{errors}");
+    folder.sweep("full.csv", &["--shard", "0/1"]);
+    let (status, errors) = run(&["merge", &part, "-o", &output]);
+    assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
+    assert!(errors.starts_with(&format!("error: {output}")) && !folder.0.join("full.csv.tmp").exists(), "{errors}");
+    folder.sweep("full.csv", &[]);
+    for table in ["", ".section", ".series"] {
+        assert_eq!(folder.text(&format!("full{table}.csv")), folder.text(&format!("whole{table}.csv")));
+    }
+}
+
+#[test]
+fn parts_that_do_not_belong_together_are_refused() {
+    let folder = Folder::new("merge", LONG);
+    let short = LONG.replace("20000", "50").replace("80", "10");
+    fs::write(folder.scene(), &short).expect("a scene");
+    for shard in ["0/2", "1/2", "0/3"] {
+        folder.sweep("a.csv", &["--shard", shard]);
+    }
+    fs::write(folder.scene(), short.replace("0.75", "0.76")).expect("a scene");
+    folder.sweep("b.csv", &["--shard", "1/2"]);
+    let [first, second, third] = ["a.csv.0-of-2.part", "a.csv.1-of-2.part", "a.csv.0-of-3.part"];
+    let half = folder.read(second);
+    fs::write(folder.at("half.part"), &half[..half.len() - 1]).expect("a part");
+    fs::write(folder.at("other.part"), "item,v_y\n").expect("a file");
+    let sweep = |to: &str| format!("q from 0.71 to {to}, 10 values");
+    for (parts, message) in [
+        (vec![first], "not all shards are there: 1/2 missing".to_owned()),
+        (vec![first, first], format!("{first} and {first} are both shard 0/2")),
+        (
+            vec![third, first],
+            format!("{third} is shard 0/3 and {first} is shard 0/2: the parts of a sweep are one of as many"),
+        ),
+        (
+            vec![first, "b.csv.1-of-2.part"],
+            format!(
+                "{first} and b.csv.1-of-2.part are of different sweeps, by their sweep: {} there, {} here",
+                sweep("0.75"),
+                sweep("0.76")
+            ),
+        ),
+        (
+            vec![first, "half.part"],
+            "not all runs are there: half.part has 4 of 5 chunks; `vi-lab sweep` goes on with them".to_owned(),
+        ),
+        (vec!["other.part"], "other.part is no part of a sweep".to_owned()),
+    ] {
+        assert_eq!(folder.merge(&parts, "merged.csv"), (Some(2), format!("error: {message}\n")));
+    }
+    let (status, errors) = folder.merge(&["none.part"], "merged.csv");
+    assert!(status == Some(1) && errors.starts_with("error: none.part: "), "{errors}");
+    assert_eq!(
+        folder.merge(&[first, second], "merged.xls"),
+        (Some(2), "error: the output `merged.xls` must end in .csv, .npy or .parquet\n".to_owned())
+    );
+    assert!(!folder.0.join("merged.csv").exists());
+    // A part that is there already is gone on with, if it is of the same sweep.
+    assert!(folder.sweep("b.csv", &["--shard", "1/2"]).contains("b.csv.1-of-2.part: 5 runs, all reached their end"));
+    fs::rename(folder.at("b.csv.1-of-2.part"), folder.at("refused.csv.1-of-2.part")).expect("a part");
+    let message = "refused.csv.1-of-2.part is of another sweep, by its system: DoubleWell there, Kepler here; remove it, or name \
+                   another output";
+    let over = "[sweep]\nover = [{ name = \"v_y\", values = [1.0] }]\n";
+    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message);
+}
+
+#[test]
+fn wrong_sweeps_are_one_line_and_status_2() {
+    let folder = Folder::new("wrong", "");
+    let over = "[sweep]\nover = [{ name = \"x\", values = [1.0] }]\n";
+    for (entries, message) in [
+        ("", "scene.toml is no scene file with a table [sweep]; docs/cluster.md has one"),
+        ("[sweep]\n", "scene.toml: line 2: missing field `over`"),
+        (
+            "[sweep]\nover = []\nkep = []\n",
+            "scene.toml: line 4: unknown field `kep`, expected one of `over`, `samples`, `seed`, `keep`, `section`",
+        ),
+        (
+            "[sweep]\nover = [{ name = \"z\", values = [1.0] }]\n",
+            "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h",
+        ),
+        (&format!("{over}keep = []\n"), "`keep` names nothing; leave it out to keep how each run ends"),
+        (
+            &format!("{over}section = {{ coordinate = \"z\" }}\n"),
+            "the section is of a coordinate that there is not, `z`; there are x, y",
+        ),
+        (
+            &format!("{over}section = {{ coordinate = \"x\", period = 1.0 }}\n"),
+            "the section is { coordinate = \"x\", at = 0.0, direction = \"rising\" } or { period = 1.0 }",
+        ),
+        (
+            &format!("{over}section = {{ period = 0.001 }}\n"),
+            "the section has the period 0.001; it must be at least four steps long",
+        ),
+        (
+            &format!("steps = 1e7\n{over}keep = [\"series\"]\n"),
+            "the series of each run would have about 10000000 rows, 720 MB; keep fewer with every = 45 in the scene",
+        ),
+    ] {
+        assert_eq!(folder.refused(entries, &[]), message);
+    }
+    assert_eq!(folder.refused(over, &["--shard", "7/7"]), "there is no shard 7/7: they are numbered from 0/7 to 6/7");
+    fs::write(folder.scene(), format!("system = \"kepler\"\n{over}")).expect("a scene");
+    let scene = folder.scene();
+    for (arguments, message) in [
+        (vec!["run", &scene], "the scene has a [sweep]: `vi-lab sweep` takes all its runs, and --item K one of them"),
+        (vec!["run", &scene, "--item", "1"], "there is no --item 1: the runs are numbered from 0 to 0"),
+        (vec!["run", "kepler", "--item", "1"], "only a scene with [sweep] has an --item"),
+        (
+            vec!["sweep", "kepler", "-o", "x.csv"],
+            "kepler is no scene file with a table [sweep]; docs/cluster.md has one",
+        ),
+        (vec!["sweep", &scene, "-o", "no/x.csv"], "there is no folder `no` for the output `no/x.csv`; make it first"),
+    ] {
+        assert_eq!(lab(&arguments), (Some(2), String::new(), format!("error: {message}\n")));
+    }
+}
+
+#[test]
+fn values_that_no_run_can_have_are_recorded() {
+    let scene = "system = \"kepler\"\nuntil = 1.0\n[sweep]\nover = [\n    { name = \"h\", values = [0.01, 0.0, -0.01, 1e-300] },\n    { name = \"x\", values = [0.4, 0.0] },\n]\n";
+    let folder = Folder::new("values", scene);
+    let said = folder.sweep("values.csv", &[]);
+    assert!(said.contains("8 runs, 7 did not reach their end"), "{said}");
+    let text = folder.text("values.csv");
+    let endings: Vec<&str> =
+        text.lines().filter(|line| !line.starts_with('#')).skip(1).filter_map(|line| line.split(',').nth(3)).collect();
+    let wrong = "wrong input";
+    assert_eq!((endings[0], &endings[2..]), ("reached its end", [wrong; 6].as_slice()), "{text}");
+    assert!(text.contains("\n7,1e-300,0.0,wrong input,0,,,,,,,,\n"), "{text}");
+}
+
+/// Submits the shards of a sweep to a server and a worker of HyperQueue, and waits for them.
+const HYPERQUEUE: &str = "
+import os, sys
+from hyperqueue import Job, LocalCluster
+from hyperqueue.cluster import WorkerConfig
+lab, scene, output, folder, count = sys.argv[1:]
+with LocalCluster() as cluster:
+    cluster.start_worker(WorkerConfig(cores=2))
+    client = cluster.client()
+    job = Job(default_workdir=folder, default_env={'RAYON_NUM_THREADS': '1'})
+    for _ in range(int(count)):
+        job.program([lab, 'sweep', scene, '-o', output, '--shard', count])
+    client.wait_for_jobs([client.submit(job)])
+";
+
+#[cfg(unix)]
+#[test]
+fn hyperqueue_makes_the_same_bytes() {
+    let python = |arguments: &[&str]| Command::new("python3").args(arguments).stdin(Stdio::null()).output();
+    let is_installed = python(&["-c", "import hyperqueue"]).is_ok_and(|output| output.status.success());
+    if !is_installed {
+        println!(
+            "NOT TESTED: there is no HyperQueue here; `pip install hyperqueue`, and python3 in the path has to find it"
+        );
+        return;
+    }
+    let folder = Folder::new("hyperqueue", MIXED);
+    folder.sweep("whole.csv", &[]);
+    let (scene, output, inside) = (folder.scene(), folder.at("7.csv"), folder.at(""));
+    let run =
+        python(&["-c", HYPERQUEUE, env!("CARGO_BIN_EXE_vi-lab"), &scene, &output, &inside, "7"]).expect("python runs");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let parts = parts(7);
+    let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+    assert_eq!(folder.merge(&parts, "merged.csv"), (Some(0), String::new()));
+    assert!(folder.read("merged.csv") == folder.read("whole.csv"));
+    println!("tested with HyperQueue: seven tasks");
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn parquet_holds_the_rows_of_csv() {
+    use parquet::file::reader::{FileReader as _, SerializedFileReader};
+    use parquet::record::Field;
+    let folder = Folder::new("parquet", MIXED);
+    folder.sweep("a.csv", &[]);
+    folder.sweep("a.parquet", &[]);
+    for table in ["", ".section", ".series"] {
+        let file = fs::File::open(folder.at(&format!("a{table}.parquet"))).expect("the file");
+        let reader = SerializedFileReader::new(file).expect("Parquet");
+        let facts = reader.metadata().file_metadata().key_value_metadata().expect("facts");
+        assert!(facts.iter().any(|fact| fact.key == "system" && fact.value.as_deref() == Some("DoubleWell")));
+        let entry = |field: &Field| match field {
+            Field::Double(number) if number.is_nan() => String::new(),
+            Field::Double(number) => format!("{number:?}"),
+            Field::Long(count) => count.to_string(),
+            Field::Str(word) => word.clone(),
+            other => panic!("{other}"),
+        };
+        let mut lines = Vec::new();
+        for row in reader.get_row_iter(None).expect("rows") {
+            let row = row.expect("a row");
+            if lines.is_empty() {
+                lines.push(row.get_column_iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(","));
+            }
+            lines.push(row.get_column_iter().map(|(_, field)| entry(field)).collect::<Vec<_>>().join(","));
+        }
+        let csv = folder.text(&format!("a{table}.csv"));
+        assert_eq!(lines, csv.lines().filter(|line| !line.starts_with('#')).collect::<Vec<_>>(), "{table}");
+    }
+}
