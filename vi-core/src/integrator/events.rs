@@ -134,12 +134,13 @@ impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
         let left = run.time_to(self.until);
         let is_last = ahead.time_to(self.until) * h.signum() <= 0.0;
         for (index, event) in self.wanted.iter().enumerate() {
-            let along = |part: f64| {
+            // Erased: what looks for changes of sign is compiled once, and not for each integrator of each system.
+            let along: &dyn Fn(f64) -> Result<f64, StepError> = &|part| {
                 let passed = part * h;
                 let state = path.state(passed);
                 event.value(&State { t: start.t + passed, ..state }, &path.velocity(passed))
             };
-            let by_steps = |part: f64| -> Result<Sample, StepError> {
+            let by_steps: &dyn Fn(f64) -> Result<Sample, StepError> = &|part| {
                 let value = reached(run, event, part * h, f64::INFINITY.copysign(h))?.value;
                 Ok(Sample { part, value })
             };
@@ -150,8 +151,8 @@ impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
                 *sign = (first.value != 0.0).then_some(first.is_positive());
             }
             let last = if is_last { Some(by_steps(left / h + START)?) } else { None };
-            for change in changes(&along, last, sign)? {
-                let Some(part) = located(&by_steps, &along, &change)? else {
+            for change in changes(along, last, sign)? {
+                let Some(part) = located(by_steps, along, &change)? else {
                     // It is in the next step.
                     *sign = Some(!change.is_rising);
                     continue;

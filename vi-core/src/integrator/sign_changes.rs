@@ -38,7 +38,7 @@ pub(super) struct Sample {
 }
 
 impl Sample {
-    fn of(along: &impl Fn(f64) -> Result<f64, StepError>, part: f64) -> Result<Self, StepError> {
+    fn of(along: &dyn Fn(f64) -> Result<f64, StepError>, part: f64) -> Result<Self, StepError> {
         along(part).map(|value| Self { part, value })
     }
 
@@ -50,7 +50,7 @@ impl Sample {
 /// Where a function changes its sign along a step, in order. `sign` is that before the step, where it is known, and after it.
 /// `last` is the function where the search ends, by a step.
 pub(super) fn changes(
-    along: &impl Fn(f64) -> Result<f64, StepError>,
+    along: &dyn Fn(f64) -> Result<f64, StepError>,
     last: Option<Sample>,
     sign: &mut Option<bool>,
 ) -> Result<Vec<Change>, StepError> {
@@ -74,7 +74,7 @@ pub(super) fn changes(
 }
 
 /// The function at the parts of a step, and at its extrema that are nearer to zero.
-fn samples(along: &impl Fn(f64) -> Result<f64, StepError>) -> Result<Vec<Sample>, StepError> {
+fn samples(along: &dyn Fn(f64) -> Result<f64, StepError>) -> Result<Vec<Sample>, StepError> {
     let part = |index: u32| START + f64::from(index) / f64::from(SAMPLES);
     let even: Vec<Sample> = (0..=SAMPLES).map(|index| Sample::of(along, part(index))).collect::<Result<_, _>>()?;
     let mut samples = even.clone();
@@ -102,7 +102,7 @@ fn has_near_extremum(near: &[Sample]) -> bool {
 }
 
 /// The extremum between three neighbours, or a point of the other sign: by golden sections.
-fn extremum(along: &impl Fn(f64) -> Result<f64, StepError>, near: &[Sample]) -> Result<Sample, StepError> {
+fn extremum(along: &dyn Fn(f64) -> Result<f64, StepError>, near: &[Sample]) -> Result<Sample, StepError> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let sign = if near[0].is_positive() { 1.0 } else { -1.0 };
     let mut from = near[0].part;
@@ -125,7 +125,7 @@ fn extremum(along: &impl Fn(f64) -> Result<f64, StepError>, near: &[Sample]) -> 
 }
 
 /// The part of the step at which the function vanishes along the path: by false position, each second one of which halves the value at the end that stays (Illinois).
-fn root(along: &impl Fn(f64) -> Result<f64, StepError>, change: &Change) -> Result<f64, StepError> {
+fn root(along: &dyn Fn(f64) -> Result<f64, StepError>, change: &Change) -> Result<f64, StepError> {
     let Change { mut from, mut to, .. } = *change;
     if from.is_positive() == to.is_positive() {
         // It changed its sign between the path of the step before and this one.
@@ -154,8 +154,8 @@ fn root(along: &impl Fn(f64) -> Result<f64, StepError>, change: &Change) -> Resu
 /// The part of a step that the step from the node before to the event of a change of sign is: by Newton's iteration with the slope along the path, and then
 /// enclosed. None where steps have no such change.
 pub(super) fn located(
-    by_steps: &impl Fn(f64) -> Result<Sample, StepError>,
-    along: &impl Fn(f64) -> Result<f64, StepError>,
+    by_steps: &dyn Fn(f64) -> Result<Sample, StepError>,
+    along: &dyn Fn(f64) -> Result<f64, StepError>,
     change: &Change,
 ) -> Result<Option<f64>, StepError> {
     let width = SLOPE * (change.to.part - change.from.part);
@@ -185,7 +185,7 @@ pub(super) fn located(
 /// The sample nearest to zero of two that are a rounding apart and between which g changes its sign, by brackets about `near` that grow to the side where
 /// the event is, and then by bisection; none where g does not change its sign by steps up to the end of this step on that side.
 fn enclosed(
-    by_steps: &impl Fn(f64) -> Result<Sample, StepError>,
+    by_steps: &dyn Fn(f64) -> Result<Sample, StepError>,
     near: Sample,
     is_rising: bool,
 ) -> Result<Option<Sample>, StepError> {
