@@ -4,6 +4,7 @@
 //! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
 
 use crate::failure::Failure;
+use crate::machine::program;
 use crate::system::{self, System};
 use crate::table::Table;
 use std::sync::OnceLock;
@@ -103,7 +104,7 @@ pub(crate) fn entries() -> Vec<Entry> {
 /// The name of the first system of one's own.
 pub(crate) fn first_own() -> Result<String, Failure> {
     let first = OWN.get().and_then(|own| (own.entries)().into_iter().next());
-    let none = || Failure::Input("name a system, as `vi-lab list` does, or a scene file".to_owned());
+    let none = || Failure::Input(format!("name a system, as `{} list` does, or a scene file", program()));
     first.map(|entry| entry.system.name().to_owned()).ok_or_else(none)
 }
 
@@ -152,7 +153,7 @@ pub(crate) fn find(name: &str) -> Result<Entry, Failure> {
     let hint = match near {
         Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
         None if name.contains(['/', '\\', '.']) => "the name of a scene file ends in .toml".to_owned(),
-        None => "`vi-lab list` names them all".to_owned(),
+        None => format!("`{} list` names them all", program()),
     };
     Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
 }
@@ -223,7 +224,8 @@ mod tests {
             message("folder/xyz.yml").as_deref(),
             Some("there is no system `folder/xyz.yml`; the name of a scene file ends in .toml")
         );
-        assert_eq!(message("xyz").as_deref(), Some("there is no system `xyz`; `vi-lab list` names them all"));
+        let listed = format!("there is no system `xyz`; `{} list` names them all", program());
+        assert_eq!(message("xyz"), Some(listed));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Why the command did not do what was asked, in one line, and the exit status that goes with it.
 
 use crate::interrupt::Signal;
+use crate::machine::program;
 use crate::numbers::short;
 use crate::simulation::{Method, Plan};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -124,15 +125,17 @@ fn suggestion(error: &clap::Error) -> Option<String> {
         };
         return Some(format!("did you mean `{near}`?"));
     }
-    let of_a_run = usage.is_some_and(|usage| usage.to_string().contains("vi-lab run"));
+    let of_a_run = usage.is_some_and(|usage| usage.to_string().contains(&format!("{} run", program())));
     let advice = match error.kind() {
         ErrorKind::UnknownArgument if of_a_run => {
-            "--set NAME=VALUE sets a parameter, `vi-lab run --help` lists the options"
+            format!("--set NAME=VALUE sets a parameter, `{} run --help` lists the options", program())
         }
-        ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand => "`vi-lab help` shows what there is",
+        ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand => {
+            format!("`{} help` shows what there is", program())
+        }
         _ => return None,
     };
-    Some(advice.to_owned())
+    Some(advice)
 }
 
 /// What the command line can do about a step that failed.

@@ -2,6 +2,7 @@
 
 use std::env;
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Version of the project.
@@ -44,10 +45,17 @@ impl Machine {
     }
 }
 
+/// The name of the program that runs: `vi-lab`, or one of a user's own.
+pub(crate) fn program() -> String {
+    let path = env::args_os().next().map(PathBuf::from);
+    let name = path.as_deref().and_then(Path::file_stem).map(|name| name.to_string_lossy().into_owned());
+    name.unwrap_or_else(|| "vi-lab".to_owned())
+}
+
 /// The command line on one line, the program by its name alone; an argument with blanks stands in quotes.
 pub(crate) fn command_line() -> String {
     let arguments = env::args_os().skip(1).map(|argument| quoted(&argument.to_string_lossy()));
-    core::iter::once("vi-lab".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+    core::iter::once(quoted(&program())).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// An argument as one word of one line.

@@ -1,7 +1,7 @@
 //! `vi-lab new`: a crate with a system of one's own, and all of this command for it.
 //!
 //! In: a name. Out: a folder with a crate that builds and runs as it is: the manifest, with profiles in which debug builds step fast and
-//! release builds are short; a program with one system; a README of five lines.
+//! release builds are short; a library with one system; the program with all of this command for it; a README of five lines.
 
 use crate::failure::Failure;
 use clap::Args;
@@ -17,6 +17,7 @@ pub(crate) struct Arguments {
 }
 
 const MANIFEST: &str = include_str!("new/manifest.toml");
+const SYSTEMS: &str = include_str!("new/lib.rs");
 const PROGRAM: &str = include_str!("new/main.rs");
 const README: &str = include_str!("new/README.md");
 const IGNORED: &str = "/target\n";
@@ -37,10 +38,17 @@ pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Fa
     let source = folder.join("src");
     fs::create_dir_all(&source).map_err(|error| Failure::File { name: source.display().to_string(), error })?;
     file(folder.join("Cargo.toml"), &MANIFEST.replace("NAME", name).replace("LIBRARIES", &libraries()))?;
-    file(folder.join("README.md"), &README.replace("NAME", name))?;
+    file(
+        folder.join("README.md"),
+        &README.replace("NAME", name).replace("mine::", &format!("{}::", name.replace('-', "_"))),
+    )?;
     file(folder.join(".gitignore"), IGNORED)?;
-    file(source.join("main.rs"), PROGRAM)?;
-    Ok(format!("{}: a crate with one system\n\n    cd {0} && cargo run --release -- run", folder.display()))
+    file(source.join("lib.rs"), SYSTEMS)?;
+    file(source.join("main.rs"), &PROGRAM.replace("mine::", &format!("{}::", name.replace('-', "_"))))?;
+    Ok(format!(
+        "{}: a crate with one system\n\n    cd {0} && cargo run --release -- run --plot motion.svg",
+        folder.display()
+    ))
 }
 
 /// Whether Cargo takes a name for a crate.

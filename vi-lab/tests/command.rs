@@ -331,7 +331,12 @@ fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
 fn a_mistake_in_a_scene_is_one_line_and_status_2() {
     let file = temporary("mistaken.toml");
     for (text, message) in [
-        ("system = \"kepler\"\nq = [0.4 0.0]\n", "entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`"),
+        ("system = \"kepler\"\nq = [0.4 0.0]\n", "entries are such as `method = \"energy\"`, `h = 0.01`"),
+        ("", "no system is named; add a line such as `system = \"kepler\"`"),
+        (
+            "system = \"kepler\"\nmethod = 3\n",
+            "line 2: wanted string or table; entries are such as `method = \"energy\"`",
+        ),
         ("system = \"kepler\"\ncolour = 1\n", "line 2: unknown field `colour`, expected one of `system`, `method`"),
         ("steps = 1\n", "no system is named; add a line such as `system = \"kepler\"`"),
     ] {
@@ -339,6 +344,25 @@ fn a_mistake_in_a_scene_is_one_line_and_status_2() {
         let (status, output, errors) = lab(&["run", path(&file)]);
         assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
         assert!(errors.starts_with(&format!("error: {}: ", path(&file))) && errors.contains(message), "{errors}");
+    }
+    // What is wrong of its values is told as of the command line, which may have replaced them.
+    for (text, message) in [
+        ("system = \"keple\"\n", "there is no system `keple`; did you mean `kepler`?"),
+        (
+            "system = \"kepler\"\nmethod = \"gauss\"\nstages = 5\n",
+            "Gauss steps of 5 stages are not built into the command",
+        ),
+        ("system = \"kepler\"\nq = [0.4]\n", "kepler has the coordinates x, y: give as many coordinates (--q), not 1"),
+        ("system = \"kepler\"\nq = [nan, 0]\n", "the coordinates (--q) must be finite, not NaN"),
+        ("system = \"kepler\"\nh = 0.0\n", "the step (--h) must not be zero"),
+        ("system = \"kepler\"\nuntil = -1.0\n", "steps of 0.005 from t = 0 do not lead to --until -1"),
+        ("system = \"kepler\"\n[parameters]\nm = 1\n", "kepler has no parameter `m`; it has `mu`"),
+        ("system = \"kepler\"\n[parameters]\nmu = inf\n", "the parameter `mu` must be finite, not inf"),
+    ] {
+        fs::write(&file, text).expect("the scene");
+        let (status, output, errors) = lab(&["run", path(&file)]);
+        assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
+        assert!(errors.starts_with(&format!("error: {message}")), "{errors}");
     }
     fs::remove_file(file).expect("the file can be removed");
 }
@@ -474,6 +498,29 @@ fn a_disk_that_is_full_leaves_whole_rows() {
         fs::remove_file(file).expect("the file can be removed");
     }
     fs::remove_file(format!("{}.json", npy.display())).expect("the file can be removed");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_output_that_fails_costs_the_other_nothing() {
+    // A plot that cannot be written costs no row.
+    let plot = temporary("device.svg");
+    std::os::unix::fs::symlink("/dev/full", &plot).expect("a link");
+    let csv = temporary("beside.csv");
+    let (status, output, errors) = lab(&["run", "kepler", "--steps", "10", "-o", path(&csv), "--plot", path(&plot)]);
+    assert_eq!((status, output.as_str()), (Some(1), ""));
+    assert_eq!(errors, format!("error: {}: No space left on device (os error 28)\n", path(&plot)));
+    assert_eq!(rows(&fs::read_to_string(&csv).expect("rows")).len(), 11);
+    // And rows that cannot be written cost no plot.
+    let full = temporary("device.csv");
+    std::os::unix::fs::symlink("/dev/full", &full).expect("a link");
+    fs::remove_file(&plot).expect("the link can be removed");
+    let (status, _, errors) = lab(&["run", "kepler", "--steps", "5000", "-o", path(&full), "--plot", path(&plot)]);
+    assert_eq!((status, errors), (Some(1), format!("error: {}: No space left on device (os error 28)\n", path(&full))));
+    assert!(fs::read_to_string(&plot).expect("the plot").ends_with("</svg>\n"));
+    for file in [plot, csv, full] {
+        fs::remove_file(file).expect("the file can be removed");
+    }
 }
 
 #[cfg(unix)]

@@ -29,7 +29,12 @@ fn own() -> PathBuf {
 fn every_tool_knows_the_system() {
     let (status, rows, errors) = run(&own(), &["run"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
-    assert!(rows.contains("# system: SpringPendulum") && rows.contains("\nt,r,θ,p_r,p_θ,H,E,h\n"), "{rows}");
+    assert!(
+        rows.contains("\n# command: own run\n")
+            && rows.contains("# system: SpringPendulum")
+            && rows.contains("\nt,r,θ,p_r,p_θ,H,E,h\n"),
+        "{rows}"
+    );
     // 1000 steps, their start, six lines of words.
     assert_eq!(rows.lines().filter(|line| !line.starts_with('#')).count(), 1002);
     let (_, set, _) = run(&own(), &["run", "spring-pendulum", "--set", "k=80", "--method", "energy", "--steps", "10"]);
@@ -51,7 +56,7 @@ fn a_new_crate_has_what_it_needs() {
     let name = folder.join("mine");
     let (status, text, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
-    assert!(text.contains("cargo run --release -- run"), "{text}");
+    assert!(text.contains("cargo run --release -- run --plot motion.svg"), "{text}");
     let manifest = fs::read_to_string(name.join("Cargo.toml")).expect("a manifest");
     let manifest: toml::Table = manifest.parse().expect("TOML");
     assert_eq!(manifest["package"]["name"].as_str(), Some("mine"));
@@ -59,10 +64,15 @@ fn a_new_crate_has_what_it_needs() {
         let path = manifest["dependencies"][library]["path"].as_str().expect("a path");
         assert!(Path::new(path).join("Cargo.toml").is_file(), "{path}");
     }
-    let program = fs::read_to_string(name.join("src/main.rs")).expect("a program");
-    assert!(program.contains("lagrangian!") && program.contains("vi_lab::main!"));
+    let source = |file: &str| fs::read_to_string(name.join("src").join(file)).expect("a source");
+    assert!(source("lib.rs").contains("lagrangian!") && source("main.rs").contains("use mine::SpringPendulum;"));
     let readme = fs::read_to_string(name.join("README.md")).expect("a README");
     assert!(readme.starts_with("# mine\n") && !readme.contains("NAME"));
+    let other = folder.join("my-own");
+    let (status, _, errors) = run(&lab(), &["new", other.to_str().expect("text")]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let program = fs::read_to_string(other.join("src/main.rs")).expect("a program");
+    assert!(program.contains("use my_own::SpringPendulum;"), "{program}");
     // What is there is not written over.
     let (status, _, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
     assert_eq!((status, errors), (Some(2), format!("error: {} is there already\n", name.display())));

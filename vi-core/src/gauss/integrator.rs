@@ -62,6 +62,7 @@ where
         let system = changed(&self.system, change)?;
         self.state().velocity(&system)?;
         self.system = system;
+        self.run = self.run.with_other_parameters();
         self.failure = None;
         Ok(())
     }
@@ -73,7 +74,7 @@ where
     }
 
     fn path(&self, before: &State<N>) -> Result<Motion<N, STAGES>, StepError> {
-        if self.run.convergence.has_begun() {
+        if self.run.has_step() {
             Ok(Motion::Collocation(Polynomial::of(&self.system, &self.run, *before)))
         } else {
             Hermite::between(&self.system, before, &self.state(), self.h()).map(Motion::Hermite)

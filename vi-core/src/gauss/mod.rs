@@ -257,17 +257,17 @@ where
     }
 
     /// Discrete energy of the last interval, `E1 = Σ b_i En_i + h Σ b_i c_i (f·v − L_t)_i = −D3 L_d − g_d⁺`, in the units of L; `None`
-    /// before the first step, and where it is not finite: forces may be finite where L is not.
+    /// before the first step, after a change of parameters, and where it is not finite: forces may be finite where L is not.
     pub fn discrete_energy(&self) -> Option<f64> {
         let Self { system, run, .. } = self;
         let energy = energies(system, &run.before, run.h, run.stages.data.0, 0.0).end;
-        (run.convergence.has_begun() && energy.is_finite()).then_some(energy)
+        (run.has_step() && energy.is_finite()).then_some(energy)
     }
 
     /// The discrete Lagrangian of the last step with its derivatives, discrete forces and powers, for checks: `−D2 L_d − f_d⁻ = p0`,
-    /// `D4 L_d + f_d⁺ = p1`. `None` before the first step, after a step of another length ([`Gauss::step_of`]), and where one of them is not finite.
+    /// `D4 L_d + f_d⁺ = p1`. `None` before the first step, after a change of parameters or a step of another length ([`Gauss::step_of`]), and where one of them is not finite.
     pub fn slots(&self) -> Option<Slots<N>> {
-        let slots = self.run.convergence.has_begun().then(|| Slots::of(&self.system, &self.run));
+        let slots = self.run.has_step().then(|| Slots::of(&self.system, &self.run));
         slots.filter(Slots::is_finite)
     }
 
@@ -284,6 +284,16 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let start = if Y::SEPARABLE { flow.force } else { flow.v };
         let stages = SMatrix::from_fn(|_, k| start[k]);
         Ok(Self { node, before: node, h, stages, convergence: Convergence::NONE, stiff: 0, patience: 1 })
+    }
+
+    /// Whether the step is known that led to the node: its stages mean nothing by other parameters.
+    fn has_step(&self) -> bool {
+        self.convergence.has_begun() && self.before != self.node
+    }
+
+    /// The run of a system with other parameters, for which the stages are a guess and no more.
+    fn with_other_parameters(self) -> Self {
+        Self { before: self.node, ..self }
     }
 
     /// Velocities at the stages of the next step, or forces there: the polynomials of the last one, further on.

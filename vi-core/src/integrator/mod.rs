@@ -112,7 +112,7 @@ pub trait Integrator<const N: usize>: Clone {
     fn h(&self) -> f64;
 
     /// Discrete energy `E1 = −D3 L_d − g_d⁺` of the last step; an energy-preserving run has kept it. `None` before the first step, after a step of
-    /// another length ([`Integrator::step_of`]), where it is not finite, and of a composition, whose step is no interval of one
+    /// another length ([`Integrator::step_of`]) and, of Gauss steps, after a change of parameters, where it is not finite, and of a composition, whose step is no interval of one
     /// discrete Lagrangian. The energy at the node, [`Integrator::energy`], is another number.
     fn discrete_energy(&self) -> Option<f64>;
 
@@ -120,7 +120,8 @@ pub trait Integrator<const N: usize>: Clone {
     ///
     /// An energy-preserving run goes on with what the change brought: `E` gains `H_new − H_old` at the node.
     ///
-    /// What is said of the last step, as its discrete energy, is by the new parameters from then on.
+    /// What is said of the last step, as its discrete energy and its path, is by the new parameters from then on. Of Gauss steps nothing is said but the
+    /// cubic path between the nodes, until the next step.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for a parameter that is not finite; [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] where the

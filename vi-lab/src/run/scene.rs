@@ -80,7 +80,11 @@ impl Scene {
     fn parse(text: &str) -> Result<Self, String> {
         let scene: Self = toml::from_str(text).map_err(|error| {
             let is_toml = text.parse::<toml::Table>().is_ok();
-            let hint = if is_toml { "" } else { "; entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`" };
+            let is_of_type = ["invalid type", "wanted"].iter().any(|start| error.message().starts_with(start));
+            let hint = match (is_toml, is_of_type) {
+                (true, false) => "",
+                _ => "; entries are such as `method = \"energy\"`, `h = 0.01`, `steps = 1000` or `q = [0.4, 0.0]`",
+            };
             let message = format!("{}{hint}", error.message().replace('\n', " "));
             let before = error.span().and_then(|span| text.get(..span.start));
             before.map_or(message.clone(), |before| format!("line {}: {message}", before.matches('\n').count() + 1))
@@ -125,7 +129,20 @@ mod tests {
                 "system = \"kepler\"\nevery = 1.5\n",
                 "line 2: invalid value: floating point `1.5`, expected a whole number",
             ),
-            ("system = \"kepler\"\nq = [0.4 0.0]\n", "; entries are such as `method = \"energy\"` or `q = [0.4, 0.0]`"),
+            ("system = \"kepler\"\nq = [0.4 0.0]\n", "; entries are such as `method = \"energy\"`, `h = 0.01`"),
+            (
+                "system = \"kepler\"\nq = 0.4\n",
+                "line 2: invalid type: floating point `0.4`, expected a sequence; entries are",
+            ),
+            (
+                "system = \"kepler\"\nmethod = 3\n",
+                "line 2: wanted string or table; entries are such as `method = \"energy\"`",
+            ),
+            (
+                "system = \"kepler\"\nh = \"0.1\"\n",
+                "line 2: invalid type: string \"0.1\", expected f64; entries are such as",
+            ),
+            ("system = \"kepler\"\nsteps = true\n", "line 2: invalid type: boolean `true`, expected a whole number"),
             ("system = kepler\n", "line 1: string values must be quoted"),
             ("system = \"kepler\"\nsteps = 1\nsteps = 2\n", "line 3: duplicate key"),
             ("system = \"kepler\"\n\ncolour = 1\n", "line 3: unknown field `colour`"),
