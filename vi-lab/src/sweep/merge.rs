@@ -124,7 +124,8 @@ pub(super) fn write(parts: &[Part], output: &Path) -> Result<String, Failure> {
 pub(super) fn summary(path: &Path, runs: u64, failed: u64) -> String {
     let ended =
         if failed == 0 { "all reached their end".to_owned() } else { format!("{failed} did not reach their end") };
-    format!("{}: {runs} runs, {ended}", path.display())
+    let runs = if runs == 1 { "1 run".to_owned() } else { format!("{runs} runs") };
+    format!("{}: {runs}, {ended}", path.display())
 }
 
 /// The file of a table: `study.series.csv` beside `study.csv`.

@@ -68,7 +68,7 @@ impl Format {
             #[cfg(not(feature = "parquet"))]
             Some("parquet") => {
                 let message =
-                    format!("`{shown}`: this command is built without Parquet; build it with --features parquet");
+                    format!("`{shown}`: this command is built without Parquet; build vi-lab with --features parquet");
                 return Err(Failure::Input(message));
             }
             _ => return Err(Failure::Input(format!("the output `{shown}` must end in .csv, .npy or .parquet"))),
