@@ -10,6 +10,7 @@
 //! less a number that is close to them: energies of stages differ from it by little, exactly, so that no sum of large terms is rounded.
 
 use super::general;
+use super::points::Rare;
 use super::stages::Stages;
 use super::sweep::Equations;
 use super::tableau::Tableau;
@@ -42,9 +43,9 @@ pub(super) fn energies<Y, const N: usize, const S: usize>(
     base: f64,
 ) -> Energies
 where
-    Y: Collocation<N>,
+    Y: Collocation<N> + Convertible<N>,
 {
-    Interval::new(system, node, h, stages).energies(system, base, |number| number)
+    Interval::new(&Rare::of(system), node, h, stages).energies(system, base, |number| number)
 }
 
 /// The same in numbers that carry a bound of their rounding, each number of the stages the nearest to the one that is meant.
@@ -58,7 +59,7 @@ pub(super) fn bounded_energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    Interval::new(system, node, h, stages).energies(&system.convert::<Rounded>(), base, Rounded::nearest)
+    Interval::new(&Rare::of(system), node, h, stages).energies(&system.convert::<Rounded>(), base, Rounded::nearest)
 }
 
 /// A step with the positions and the velocities at its stages.
@@ -71,7 +72,7 @@ struct Interval<'a, const N: usize, const S: usize> {
 
 impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
     #[inline(always)]
-    fn new<Y: Collocation<N>>(system: &Y, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
+    fn new(system: &Rare<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
         let equations = general(system, node, h, stages);
         Self { node, h, positions: equations.start(), velocities: equations.guess() }
     }

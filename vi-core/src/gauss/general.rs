@@ -11,53 +11,51 @@
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
 use super::newton::Correctable;
-use super::stages::{AtStages, Stages, change, constant_mass, gathered, product, scaled, scatter, times, weights};
+use super::points::Points;
+use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::Lane;
+use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
 /// The equations of a step; see the [module](self).
-pub(super) struct General<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
-where
-    T: AtStages<S>,
-{
+pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
-    /// M, where it is constant.
-    mass: Option<Y::Mass>,
+    /// M, ready to solve with, where it is constant.
+    inverse: Option<M::Inverse>,
     /// Velocities from which the positions follow.
     velocity: Stages<N, S>,
     /// Velocities and forces at which the equations were evaluated last.
     evaluated: Stages<N, S>,
     force: Stages<N, S>,
+    numbers: PhantomData<T>,
 }
 
-impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> General<'a, T, Y, N, S, FUSED>
+impl<'a, T, Y, M, const N: usize, const S: usize, const FUSED: bool> General<'a, T, Y, M, N, S, FUSED>
 where
     T: AtStages<S>,
-    Y: Collocation<N, T>,
+    Y: Points<N, T>,
+    M: Matrix<N, f64>,
 {
-    /// The equations of the step of length h from `node`, with a guess of the velocities at its stages.
+    /// The equations of the step of length h from `node`, with the mass matrix at the node and a guess of the velocities at the stages.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
-        let mass = Y::CONSTANT_MASS.then(|| constant_mass(system, node));
-        Self { system, node, h, mass, velocity, evaluated: velocity, force: [[0.0; S]; N] }
+    pub(super) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
+        let inverse = system.has_constant_mass().then(|| mass.inverse());
+        Self { system, node, h, inverse, velocity, evaluated: velocity, force: [[0.0; S]; N], numbers: PhantomData }
     }
 
     /// The equations with the velocities that follow from a guess of the forces, which depend on the position alone.
-    pub(super) fn with_forces(system: &'a Y, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
+    pub(super) fn with_forces(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
         let zeros = [[0.0; S]; N];
-        let mut equations = Self { force, ..Self::new(system, node, h, zeros) };
-        let momentum = equations.missing(&zeros);
-        for i in 0..T::EVALUATIONS {
-            if let Some(mass) = &equations.mass {
-                scatter(&mut equations.velocity, i, &mass.solve_unchecked(&gathered::<N, S, T>(&momentum, i)));
-            }
+        let mut equations = Self { force, ..Self::new(system, mass, node, h, zeros) };
+        equations.velocity = equations.missing(&zeros);
+        if let Some(inverse) = &equations.inverse {
+            M::apply_to_rows(inverse, &mut equations.velocity);
         }
         equations
     }
@@ -109,7 +107,7 @@ where
         momentum: &mut Stages<N, S>,
     ) -> Y::Mass {
         let t = T::of(&times::<N, S, FUSED>(self.node, self.h), i);
-        let point = self.system.point(t, &gathered(x, i), &gathered(velocity, i));
+        let point = self.system.at(t, &gathered(x, i), &gathered(velocity, i));
         scatter(force, i, &point.force);
         scatter(momentum, i, &point.momentum);
         point.mass
@@ -165,13 +163,9 @@ where
 
     /// A sweep with the constant mass matrix.
     #[inline(always)]
-    fn sweep_constant(&mut self, mass: Y::Mass, x: &Stages<N, S>) {
-        let missing = self.evaluate(x);
-        let mut correction = [[0.0; S]; N];
-        for i in 0..T::EVALUATIONS {
-            let solved = mass.solve_unchecked(&gathered::<N, S, T>(&missing, i));
-            scatter(&mut correction, i, &solved);
-        }
+    fn sweep_constant(&mut self, inverse: &M::Inverse, x: &Stages<N, S>) {
+        let mut correction = self.evaluate(x);
+        M::apply_to_rows(inverse, &mut correction);
         self.correct(&correction);
     }
 
@@ -190,10 +184,11 @@ where
     }
 }
 
-impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for General<'_, T, Y, N, S, FUSED>
+impl<T, Y, M, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for General<'_, T, Y, M, N, S, FUSED>
 where
     T: AtStages<S>,
-    Y: Collocation<N, T>,
+    Y: Points<N, T>,
+    M: Matrix<N, f64>,
 {
     const PATIENCE: u32 = 5;
 
@@ -204,8 +199,8 @@ where
 
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        match self.mass {
-            Some(mass) if Y::CONSTANT_MASS => self.sweep_constant(mass, x),
+        match self.inverse {
+            Some(inverse) if self.system.has_constant_mass() => self.sweep_constant(&inverse, x),
             _ => self.sweep_varying(x),
         }
         self.positions()
@@ -242,7 +237,11 @@ where
     }
 }
 
-impl<Y: Collocation<N>, const N: usize, const S: usize> Correctable<N, S> for General<'_, f64, Y, N, S, false> {
+impl<Y, M, const N: usize, const S: usize> Correctable<N, S> for General<'_, f64, Y, M, N, S, false>
+where
+    Y: Points<N, f64>,
+    M: Matrix<N, f64>,
+{
     fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
         self.evaluate(x)
     }
@@ -253,6 +252,6 @@ impl<Y: Collocation<N>, const N: usize, const S: usize> Correctable<N, S> for Ge
     }
 
     fn corrected(&self) -> Stages<N, S> {
-        if Y::SEPARABLE { self.force } else { self.velocity }
+        if self.system.is_separable() { self.force } else { self.velocity }
     }
 }

@@ -1,5 +1,6 @@
 //! The run of Gauss steps as one integrator among others.
 
+use super::points::Rare;
 use super::polynomial::Polynomial;
 use super::{Checkpoint, Gauss, Run};
 use crate::collocation::Collocation;
@@ -75,7 +76,7 @@ where
 
     fn path(&self, before: &State<N>) -> Result<Motion<N, STAGES>, StepError> {
         if self.run.has_step() {
-            Ok(Motion::Collocation(Polynomial::of(&self.system, &self.run, *before)))
+            Ok(Motion::Collocation(Polynomial::of(&Rare::of(&self.system), &self.run, *before)))
         } else {
             Hermite::between(&self.system, before, &self.state(), self.h()).map(Motion::Hermite)
         }

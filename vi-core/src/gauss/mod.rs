@@ -18,6 +18,7 @@
 //! | `stages` | numbers of all stages side by side |
 //! | `separable`, `general` | the equations of the stages: forces of the position alone, and any system |
 //! | `sweep` | the solution, by sweeps over the stages until they no longer move |
+//! | `points` | a system as these equations see it, and as rare code does |
 //! | `newton` | else by simplified Newton iterations about the middle of the step |
 //! | `polynomial` | the motion between the nodes of a step |
 //! | `integrator` | what it shares with the other integrators |
@@ -38,6 +39,7 @@ mod general;
 mod integrator;
 mod newton;
 mod pair;
+mod points;
 mod polynomial;
 mod rounding;
 pub mod scaled;
@@ -52,8 +54,9 @@ use crate::checkpoint;
 use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
+use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::{Lane, Lanes, Rounded};
+use crate::real::{Lane, Lanes};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
 use energies::energies;
@@ -61,10 +64,11 @@ use general::General;
 pub use integrator::Motion;
 use nalgebra::SMatrix;
 use newton::{Newton, Stiff};
+use points::{Points, Rare};
 pub use polynomial::Polynomial;
 use separable::Separable;
 pub use slots::Slots;
-use stages::{AtStages, Stages, extrapolated, stage};
+use stages::{AtStages, Stages, constant_mass, extrapolated, stage};
 use sweep::{Convergence, Equations, Increment, Sweeps};
 use vi_dispatch::{Instructions, Loop};
 
@@ -186,54 +190,16 @@ where
     /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
     #[cold]
     fn solve_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<Run<N, STAGES>, StepError> {
-        if let Some(swept) = swept {
-            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
-            let plain;
-            let solved = if swept.sweeps.convergence.change.is_nan() {
-                plain = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
-                &plain
-            } else {
-                swept
-            };
-            let run = self.run.after(solved);
-            if run.node.is_finite() && self.is_solved(solved) {
-                return Ok(run);
-            }
-        }
-        let solved = self.solve_stiff();
-        let run = self.run.after_stiff(&solved);
-        if run.node.is_finite() && self.is_solved(&solved) {
-            return Ok(run);
-        }
-        let lost = StepError::NonFinite { t: self.run.node.t, quantity: "force at a stage", expression: None };
-        let v = self.run.node.state().velocity(&self.system)?;
-        let explained = lost.explained(&self.system, &self.run.node, self.run.h, &v);
-        if let StepError::NonFinite { expression: Some(_), .. } = explained {
-            return Err(explained);
-        }
-        let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
-        Err(solved.sweeps.convergence.unsettled(self.run.node.t, self.run.h, stiffness))
-    }
-
-    /// The step by simplified Newton iterations about its middle.
-    fn solve_stiff(&mut self) -> Solved<N, STAGES> {
         let Self { system, run, newton, .. } = self;
-        let newton = newton.get_or_insert_with(|| Box::new(Newton::new(run.h)));
-        let equations = general(system, &run.node, run.h, run.guess::<false>());
-        let middle = STAGES / 2;
-        let q = stage(&equations.start(), middle);
-        let v = stage(&equations.guess(), middle);
-        newton.set_step(run.h);
-        newton.linearize(system, run.node.t + 0.5 * run.h, &q, &v);
-        finished(Stiff::new(equations, newton), run)
-    }
-
-    /// Whether what the stages leave of their equations is rounding.
-    fn is_solved(&self, solved: &Solved<N, STAGES>) -> bool {
-        let Solved { sweeps, velocities, .. } = solved;
-        let system = self.system.convert::<Rounded>();
-        let node = &self.run.node;
-        solved.is_at_floor() || rounding::are_solved(&system, node, self.run.h, &sweeps.positions, velocities.as_ref())
+        run.with_care(&Rare::of(system), newton, swept).map_err(|unsettled| {
+            let lost = StepError::NonFinite { t: run.node.t, quantity: "force at a stage", expression: None };
+            let v = match run.node.state().velocity(system) {
+                Ok(v) => v,
+                Err(error) => return error,
+            };
+            let explained = lost.explained(system, &run.node, run.h, &v);
+            if matches!(explained, StepError::NonFinite { expression: Some(_), .. }) { explained } else { unsettled }
+        })
     }
 
     /// The state reached last.
@@ -312,6 +278,54 @@ impl<const N: usize, const S: usize> Run<N, S> {
         Self { node, before: self.node, stages, convergence, patience: 1, ..*self }
     }
 
+    /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
+    fn with_care(
+        &self,
+        system: &Rare<'_, N>,
+        newton: &mut Option<Box<Newton<N, S>>>,
+        swept: Option<&Solved<N, S>>,
+    ) -> Result<Self, StepError> {
+        if let Some(swept) = swept {
+            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+            let plain;
+            let solved = if swept.sweeps.convergence.change.is_nan() {
+                let mass = constant_mass::<N, f64, _>(system, &self.node);
+                plain = solved::<f64, _, _, N, S, false>(system, &mass, self);
+                &plain
+            } else {
+                swept
+            };
+            let run = self.after(solved);
+            if run.node.is_finite() && self.is_solved(system, solved) {
+                return Ok(run);
+            }
+        }
+        let newton = newton.get_or_insert_with(|| Box::new(Newton::new(self.h)));
+        let solved = self.stiff(system, newton);
+        let run = self.after_stiff(&solved);
+        if run.node.is_finite() && self.is_solved(system, &solved) {
+            return Ok(run);
+        }
+        Err(solved.sweeps.convergence.unsettled(self.node.t, self.h, newton.stiffness()))
+    }
+
+    /// The step by simplified Newton iterations about its middle.
+    fn stiff(&self, system: &Rare<'_, N>, newton: &mut Newton<N, S>) -> Solved<N, S> {
+        let equations = general(system, &self.node, self.h, self.guess::<false>());
+        let middle = S / 2;
+        let q = stage(&equations.start(), middle);
+        let v = stage(&equations.guess(), middle);
+        newton.set_step(self.h);
+        newton.linearize(system, self.node.t + 0.5 * self.h, &q, &v);
+        finished(Stiff::new(equations, newton), self)
+    }
+
+    /// Whether what the stages leave of their equations is rounding.
+    fn is_solved(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> bool {
+        let Solved { sweeps, velocities, .. } = solved;
+        solved.is_at_floor() || rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
+    }
+
     /// The run after a step by Newton's iteration: sweeps are tried again after twice as many of them as the last time.
     fn after_stiff(&self, solved: &Solved<N, S>) -> Self {
         let run = self.after(solved);
@@ -329,16 +343,18 @@ const LOOPED: usize = 3;
 const MOST: u32 = 64;
 
 /// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
-fn general<'a, Y, const N: usize, const S: usize>(
-    system: &'a Y,
+fn general<'a, const N: usize, const S: usize>(
+    system: &'a Rare<'a, N>,
     node: &'a Node<N>,
     h: f64,
     stages: Stages<N, S>,
-) -> General<'a, f64, Y, N, S, false>
-where
-    Y: Collocation<N>,
-{
-    if Y::SEPARABLE { General::with_forces(system, node, h, stages) } else { General::new(system, node, h, stages) }
+) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
+    let mass = constant_mass::<N, f64, _>(system, node);
+    if Points::<N, f64>::is_separable(system) {
+        General::with_forces(system, &mass, node, h, stages)
+    } else {
+        General::new(system, &mass, node, h, stages)
+    }
 }
 
 /// A solved step.
@@ -362,33 +378,39 @@ struct Solve<'a, Y, const N: usize, const S: usize> {
     run: &'a Run<N, S>,
 }
 
-impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
     type Output = Solved<N, S>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Solved<N, S> {
+        let mass = constant_mass::<N, f64, _>(self.system, &self.run.node);
         if N > LOOPED {
             let system = self.system.convert::<Lanes<S, FUSED>>();
-            return solved::<Lanes<S, FUSED>, _, N, S, FUSED>(&system, self.run);
+            return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&system, &mass, self.run);
         }
         let system = self.system.convert::<Lane<FUSED>>();
-        solved::<Lane<FUSED>, _, N, S, FUSED>(&system, self.run)
+        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&system, &mass, self.run)
     }
 }
 
-/// The next step of a run, the equations evaluated in the numbers T.
+/// The next step of a run, the equations evaluated in the numbers T. `mass` is the mass matrix at the node.
 #[inline(always)]
-fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(system: &Y, run: &Run<N, S>) -> Solved<N, S>
+fn solved<T, Y, M, const N: usize, const S: usize, const FUSED: bool>(
+    system: &Y,
+    mass: &M,
+    run: &Run<N, S>,
+) -> Solved<N, S>
 where
     T: AtStages<S>,
-    Y: Collocation<N, T>,
+    Y: Points<N, T>,
+    M: Matrix<N, f64>,
 {
     let guess = run.guess::<FUSED>();
-    if Y::SEPARABLE {
-        let equations = Separable::<T, Y, N, S, FUSED>::new(system, &run.node, run.h, guess);
+    if system.is_separable() {
+        let equations = Separable::<T, Y, M, N, S, FUSED>::new(system, mass, &run.node, run.h, guess);
         finished(equations, run)
     } else {
-        let equations = General::<T, Y, N, S, FUSED>::new(system, &run.node, run.h, guess);
+        let equations = General::<T, Y, M, N, S, FUSED>::new(system, mass, &run.node, run.h, guess);
         finished(equations, run)
     }
 }

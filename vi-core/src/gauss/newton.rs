@@ -16,13 +16,12 @@
 //!
 //! where D_k⁻¹ exists for whatever oscillates or is damped, however stiff. It allocates once, when a run meets its first stiff step.
 
+use super::points::{Points, Rare};
 use super::stages::Stages;
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::linear::Pivoted;
 use crate::real::Dual;
-use crate::stepping::Convertible;
 use nalgebra::{DMatrix, DVector, SVector};
 
 /// The linearized equations of a step, factored.
@@ -64,16 +63,9 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 
     /// Linearizes the equations of a system at the point (t, q, v).
-    pub(super) fn linearize<Y: Convertible<N>>(
-        &mut self,
-        system: &Y,
-        t: f64,
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) {
-        let system = system.convert::<Dual<f64>>();
+    pub(super) fn linearize(&mut self, system: &Rare<'_, N>, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) {
         for column in 0..2 * N {
-            let [momentum, force] = slopes(&system, t, q, v, column);
+            let [momentum, force] = slopes(system, t, q, v, column);
             for row in 0..N {
                 let unit = if row == column { 1.0 } else { 0.0 };
                 self.left[(row, column)] = unit;
@@ -164,8 +156,8 @@ impl<const N: usize, const S: usize> Newton<N, S> {
 }
 
 /// How `L_v` and `L_q + f` change at a point with one of its coordinates, or, from the index N on, with one of its velocities.
-pub(super) fn slopes<Y: Collocation<N, Dual<f64>>, const N: usize>(
-    system: &Y,
+pub(super) fn slopes<const N: usize>(
+    system: &Rare<'_, N>,
     t: f64,
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
@@ -175,7 +167,7 @@ pub(super) fn slopes<Y: Collocation<N, Dual<f64>>, const N: usize>(
     let mut v = v.map(Dual::fixed);
     let moved = if index < N { &mut q[index] } else { &mut v[index - N] };
     moved.slope = 1.0;
-    let point = system.point(Dual::fixed(t), &q, &v);
+    let point = system.at(Dual::fixed(t), &q, &v);
     [point.momentum, point.force].map(|side| side.map(|entry| entry.slope))
 }
 

@@ -10,11 +10,11 @@
 //! and the same of p with the forces. Of order S + 1 in the step, and of order 2S at its ends (Hairer, Lubich, Wanner, *Geometric Numerical Integration*,
 //! II.1.2 and II.1.3).
 
+use super::points::{Points, Rare};
 use super::stages::{Stages, set, stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use super::{Run, general};
-use crate::collocation::Collocation;
 use crate::integrator::Path;
 use crate::state::State;
 use nalgebra::SVector;
@@ -32,14 +32,14 @@ pub struct Polynomial<const N: usize, const S: usize> {
 
 impl<const N: usize, const S: usize> Polynomial<N, S> {
     /// The motion over the last step of a run, which began at `start`.
-    pub(super) fn of<Y: Collocation<N>>(system: &Y, run: &Run<N, S>, start: State<N>) -> Self {
+    pub(super) fn of(system: &Rare<'_, N>, run: &Run<N, S>, start: State<N>) -> Self {
         let equations = general(system, &run.before, run.h, run.stages.data.0);
         let x = equations.start();
         let velocity = equations.guess();
         let mut force = [[0.0; S]; N];
         for i in 0..S {
             let t = time::<N, S, false, f64>(&run.before, run.h, i);
-            set(&mut force, i, &system.point(t, &stage(&x, i), &stage(&velocity, i)).force);
+            set(&mut force, i, &system.at(t, &stage(&x, i), &stage(&velocity, i)).force);
         }
         Self { start, h: run.h, velocity: coefficients(&velocity), force: coefficients(&force) }
     }

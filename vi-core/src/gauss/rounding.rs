@@ -10,9 +10,9 @@
 //!
 //! It is asked where changes stall above the rounding of the unknowns: where terms cancel, their sum is known less well.
 
+use super::points::{Points, Rare};
 use super::stages::Stages;
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::newton::FLOOR;
 use crate::node::Node;
@@ -30,16 +30,13 @@ pub(super) fn is_rounding(row: Rounded) -> bool {
 }
 
 /// Whether the stages of the step of length h from `node` satisfy their equations.
-pub(super) fn are_solved<Y, const N: usize, const S: usize>(
-    system: &Y,
+pub(super) fn are_solved<const N: usize, const S: usize>(
+    system: &Rare<'_, N>,
     node: &Node<N>,
     h: f64,
     positions: &Stages<N, S>,
     velocities: Option<&Stages<N, S>>,
-) -> bool
-where
-    Y: Collocation<N, Rounded>,
-{
+) -> bool {
     let Tableau { b, c, first, .. } = const { &Tableau::<S>::VALUES };
     let weights = b.map(|b| Rounded::nearest(h * b));
     // The sum over the stages, from `start`.
@@ -53,9 +50,9 @@ where
             // Positions follow from velocities, and carry the rounding of that sum.
             Some(v) => {
                 let q = SVector::from_fn(|k, _| sum(start(k), i, &|j| Rounded::nearest(v[k][j])));
-                system.point(t, &q, &nearest(v, i))
+                system.at(t, &q, &nearest(v, i))
             }
-            None => system.point(t, &nearest(positions, i), &SVector::zeros()),
+            None => system.at(t, &nearest(positions, i), &SVector::zeros()),
         }
     });
     let missing: [SVector<Rounded, N>; S] = core::array::from_fn(|i| {

@@ -9,45 +9,42 @@
 //!
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
-use super::stages::{AtStages, Stages, constant_mass, gathered, product, scaled, scatter, times, weights};
+use super::points::Points;
+use super::stages::{AtStages, Stages, gathered, product, scaled, scatter, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::Lane;
+use core::marker::PhantomData;
 use nalgebra::SVector;
 
 /// The equations of a step; see the [module](self).
-pub(super) struct Separable<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
-where
-    T: AtStages<S>,
-{
+pub(super) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
-    mass: Y::Mass,
+    /// M, ready to solve with.
+    inverse: M::Inverse,
     /// `c_i p0` at the stages.
     drift: Stages<N, S>,
     force: Stages<N, S>,
+    numbers: PhantomData<T>,
 }
 
-impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> Separable<'a, T, Y, N, S, FUSED>
-where
-    T: AtStages<S>,
-    Y: Collocation<N, T>,
+impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool>
+    Separable<'a, T, Y, M, N, S, FUSED>
 {
-    /// The equations of the step of length h from `node`, with a guess of the forces at its stages.
+    /// The equations of the step of length h from `node`, with the mass matrix and a guess of the forces at the stages.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
+    pub(super) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
         let c = const { &Tableau::<S>::VALUES.c };
         let mut drift = [[0.0; S]; N];
         for k in 0..N {
             let p0 = node.p[k] + node.p_low[k];
             drift[k] = scaled(c, &[p0; S]);
         }
-        let mass = constant_mass(system, node);
-        Self { system, node, h, mass, drift, force }
+        Self { system, node, h, inverse: mass.inverse(), drift, force, numbers: PhantomData }
     }
 
     /// What the forces at hand move.
@@ -55,28 +52,34 @@ where
     fn positions(&self) -> Stages<N, S> {
         let second = const { &Tableau::<S>::VALUES.second };
         let weights = weights(self.h);
-        let mut momenta = [[0.0; S]; N];
-        for k in 0..N {
-            momenta[k] = product::<S, FUSED>(second, &scaled(&weights, &self.force[k]), &self.drift[k]);
-        }
         let mut x = [[0.0; S]; N];
-        for i in 0..T::EVALUATIONS {
-            scatter(&mut x, i, &self.mass.solve_unchecked(&gathered::<N, S, T>(&momenta, i)));
-        }
         for k in 0..N {
-            for i in 0..S {
-                let displacement = Lane::<FUSED>::multiply_add(self.h, x[k][i], self.node.q_low[k]);
-                x[k][i] = self.node.q[k] + displacement;
-            }
+            x[k] = product::<S, FUSED>(second, &scaled(&weights, &self.force[k]), &self.drift[k]);
+        }
+        M::apply_to_rows(&self.inverse, &mut x);
+        for k in 0..N {
+            x[k] = self.moved(k, &x[k]);
         }
         x
     }
+
+    /// The coordinate k, moved by the velocities that are its means from the node to the stages.
+    #[inline(always)]
+    fn moved(&self, k: usize, velocity: &[f64; S]) -> [f64; S] {
+        let mut row = [0.0; S];
+        for i in 0..S {
+            let displacement = Lane::<FUSED>::multiply_add(self.h, velocity[i], self.node.q_low[k]);
+            row[i] = self.node.q[k] + displacement;
+        }
+        row
+    }
 }
 
-impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Separable<'_, T, Y, N, S, FUSED>
+impl<T, Y, M, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Separable<'_, T, Y, M, N, S, FUSED>
 where
     T: AtStages<S>,
-    Y: Collocation<N, T>,
+    Y: Points<N, T>,
+    M: Matrix<N, f64>,
 {
     const PATIENCE: u32 = 5;
 
@@ -90,7 +93,7 @@ where
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {
-            let point = self.system.point(T::of(&times, i), &gathered(x, i), &rest);
+            let point = self.system.at(T::of(&times, i), &gathered(x, i), &rest);
             scatter(&mut self.force, i, &point.force);
         }
         self.positions()
@@ -109,10 +112,9 @@ where
                 momentum[k] += impulses[i];
                 ahead = Lane::<FUSED>::multiply_add(1.0 - c[i], impulses[i], ahead);
             }
-            mean[k] = T::real(self.node.p[k] + ahead);
+            mean[k] = self.node.p[k] + ahead;
         }
-        let velocity = self.mass.solve_unchecked(&mean);
-        Increment { velocity: velocity.map(T::to_f64), momentum }
+        Increment { velocity: M::apply(&self.inverse, &mean), momentum }
     }
 
     #[inline(always)]

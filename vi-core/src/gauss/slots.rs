@@ -17,11 +17,13 @@
 //! Where a force acts the sums alone are determined: how they part into slot and force is a convention, since the stages depend on f
 //! (Marsden and West, *Discrete mechanics and variational integrators*, section 3.2).
 
+use super::points::Rare;
 use super::stages::{stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use super::{Run, general};
 use crate::collocation::Collocation;
+use crate::stepping::Convertible;
 use nalgebra::SVector;
 
 /// The slots of one step, in the names of [`DiscreteLagrangian`](crate::DiscreteLagrangian).
@@ -56,9 +58,10 @@ impl<const N: usize> Slots<N> {
     }
 
     /// Those of the last step of a run.
-    pub(super) fn of<Y: Collocation<N>, const S: usize>(system: &Y, run: &Run<N, S>) -> Self {
+    pub(super) fn of<Y: Collocation<N> + Convertible<N>, const S: usize>(system: &Y, run: &Run<N, S>) -> Self {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
-        let equations = general(system, &run.before, run.h, run.stages.data.0);
+        let rare = Rare::of(system);
+        let equations = general(&rare, &run.before, run.h, run.stages.data.0);
         let x = equations.start();
         let velocities = equations.guess();
         let zeros = SVector::zeros();

@@ -3,8 +3,8 @@
 //! In and out: N rows, one a coordinate, of S numbers, one a stage. A loop over the stages of a row, or over all stages of a point,
 //! becomes vector instructions.
 
+use super::points::Points;
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
 use crate::node::Node;
 use crate::real::{Lane, Lanes, Real};
 use nalgebra::SVector;
@@ -114,8 +114,8 @@ pub(super) fn time<const N: usize, const S: usize, const FUSED: bool, T: Real>(n
 
 /// The mass matrix of a system where it is constant.
 #[inline(always)]
-pub(super) fn constant_mass<const N: usize, T: Real, Y: Collocation<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
-    system.point(T::real(node.t), &node.q.map(T::real), &SVector::zeros()).mass
+pub(super) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
+    system.at(T::real(node.t), &node.q.map(T::real), &SVector::zeros()).mass
 }
 
 /// `base_i + Σ_j matrix_ij x_j` at the stages i. In two sums, since each addition waits for the one before.
@@ -179,21 +179,25 @@ pub(super) fn change<const N: usize, const S: usize>(
     after: &Stages<N, S>,
     start: &SVector<f64, N>,
 ) -> f64 {
-    let mut largest = 0.0;
-    let mut lost = 0.0;
+    let mut moved = [0.0; N];
+    let mut scale = [0.0; N];
+    let mut lost = [0.0; S];
     for k in 0..N {
-        let mut moved = [0.0; S];
+        let mut distance = [0.0; S];
         let mut length = [0.0; S];
         for i in 0..S {
-            moved[i] = (after[k][i] - before[k][i]).abs();
+            distance[i] = (after[k][i] - before[k][i]).abs();
             length[i] = after[k][i].abs();
             // Zero, or not a number.
-            lost += moved[i] * 0.0;
+            lost[i] += distance[i] * 0.0;
         }
-        let scale = larger(maximum(&length), start[k].abs()) + f64::MIN_POSITIVE;
-        largest = larger(maximum(&moved) / (scale * f64::EPSILON), largest);
+        moved[k] = maximum(&distance);
+        scale[k] = larger(maximum(&length), start[k].abs()) + f64::MIN_POSITIVE;
     }
-    largest + lost
+    for k in 0..N {
+        moved[k] /= scale[k] * f64::EPSILON;
+    }
+    maximum(&moved) + lost.iter().sum::<f64>()
 }
 
 /// The larger of two numbers.
@@ -202,12 +206,17 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The largest of S numbers that are not negative.
+/// The largest of W numbers that are not negative, each found from a pair: a sequence of comparisons would wait for one another.
 #[inline(always)]
-fn maximum<const S: usize>(of: &[f64; S]) -> f64 {
-    let mut largest = 0.0;
-    for i in 0..S {
-        largest = larger(of[i], largest);
+fn maximum<const W: usize>(of: &[f64; W]) -> f64 {
+    let mut largest = *of;
+    let mut length = W;
+    while length > 1 {
+        let half = length.div_ceil(2);
+        for i in 0..length - half {
+            largest[i] = larger(largest[i], largest[i + half]);
+        }
+        length = half;
     }
-    largest
+    largest[0]
 }

@@ -4,13 +4,14 @@
 //!
 //! ```text
 //! sweep      x' = what the equations give at the forces, masses and momenta of x
-//! accept x   where |x' − x| ≤ 4 ε |q| and |v' − v| ≤ 64 ε |v|, the largest on the way of each coordinate, and the change before
-//!            predicted no further one
+//! accept x   where |x' − x| ≤ 4 ε |q| and |v' − v| ≤ 64 ε |v|, the largest on the way of each coordinate, and the sweeps before
+//!            left a 64th of a rounding
 //! ```
 //!
 //! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
-//! A step is not ended at the first change that is small enough, but where the next one is negligible: an error of the stages that is
-//! left after every step has a sign, and the energy would drift by it.
+//! A step is not ended at the first change that is small enough, but where the error left is negligible: an error of the stages that is
+//! left after every step has a sign, and the energy would drift by it. Rounding hides that error in the change, so it is predicted: each
+//! sweep multiplies it by the contraction, which is measured as long as changes stand out of rounding.
 
 use super::stages::{Stages, change};
 use crate::error::StepError;
@@ -21,13 +22,15 @@ use nalgebra::SVector;
 const SWEEPS: u32 = 60;
 /// The contraction of slow sweeps.
 const SLOW: f64 = 0.5;
-/// Roundings of q below which the contraction says nothing.
-const NOISE: f64 = 1e3;
+/// Roundings of q from which a change is slow to vanish.
+const FAR: f64 = 1e3;
+/// Roundings of q that a change must have for the next one at the floor to say by how much it is smaller: a rounding or two are noise.
+const NOISE: f64 = 64.0;
 /// Sweeps without a smaller change, after which no further one comes closer.
 const STALLS: u32 = 4;
 /// Part of a rounding of q that a rounding of v counts as: velocities are solved for by the mass matrix, and carry its condition.
 const VELOCITY: f64 = 1.0 / 16.0;
-/// Roundings of q that the next change may have for this one to be the last.
+/// Roundings of q that a step may leave of the error of its stages.
 const NEGLIGIBLE: f64 = 1.0 / 64.0;
 
 /// The equations of the stages of a step.
@@ -65,7 +68,7 @@ pub(super) struct Convergence {
     pub(super) sweeps: u32,
     /// The last change, in roundings of q, or in sixteens of those of v.
     pub(super) change: f64,
-    /// How many times smaller a change is than the one before.
+    /// The ratio of a change to the one before, the last that stood out of rounding.
     pub(super) contraction: f64,
 }
 
@@ -102,7 +105,8 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
 ) -> Sweeps<N, S> {
     let mut x = equations.start();
     let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
-    let mut is_last = false;
+    // What x leaves, without the rounding of its change.
+    let mut error = f64::INFINITY;
     let mut least = f64::INFINITY;
     let mut stalls = 0;
     loop {
@@ -110,19 +114,22 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         let of_velocities = equations.change_of_velocities() * VELOCITY;
         // Where one of them is not a number, neither is the sum.
         let change = change(&x, &y, q0).max(of_velocities) + 0.0 * of_velocities;
-        if state.sweeps > 0 {
+        let stands_out = change > FLOOR || state.change > NOISE;
+        // Of the first sweep the step before says nothing.
+        if stands_out && state.sweeps > 0 {
             state.contraction = change / state.change;
         }
+        let without_rounding = if stands_out { change } else { change.min(error) };
         stalls = if change < least { 0 } else { stalls + 1 };
         least = least.min(change);
         state.change = change;
         state.sweeps += 1;
-        let is_solved = change <= FLOOR && (is_last || change == 0.0);
-        let is_slow = state.sweeps >= E::PATIENCE && state.contraction > SLOW && change > NOISE;
+        let is_solved = change <= FLOOR && (error <= NEGLIGIBLE || change == 0.0);
+        let is_slow = state.sweeps >= E::PATIENCE && state.contraction > SLOW && change > FAR;
         if is_solved || stalls == STALLS || is_slow || state.sweeps == SWEEPS {
             return Sweeps { convergence: state, positions: x };
         }
-        is_last = state.contraction * change <= NEGLIGIBLE;
+        error = state.contraction * without_rounding;
         x = y;
     }
 }

@@ -10,6 +10,7 @@
 //! one matrix of S N rows, factored once for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
 use super::newton::slopes;
+use super::points::Rare;
 use super::stages::{stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
@@ -38,7 +39,7 @@ struct Linearized<const N: usize> {
 
 impl<const N: usize> Linearized<N> {
     /// The equations at a stage.
-    fn of<Y: Collocation<N, Dual<f64>>>(system: &Y, t: f64, q: SVector<f64, N>, v: SVector<f64, N>) -> Self {
+    fn of(system: &Rare<'_, N>, t: f64, q: SVector<f64, N>, v: SVector<f64, N>) -> Self {
         let zeros = SMatrix::zeros();
         let mut stage =
             Self { t, q, v, momentum_by_q: zeros, momentum_by_v: zeros, force_by_q: zeros, force_by_v: zeros };
@@ -64,14 +65,14 @@ where
         let Self { system, run, .. } = self;
         let h = run.h;
         let singular = StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" };
-        let equations = general(system, before, h, run.stages.data.0);
+        let rare = Rare::of(system);
+        let equations = general(&rare, before, h, run.stages.data.0);
         let positions = equations.start();
         let velocities = equations.guess();
-        let plain = system.convert::<Dual<f64>>();
         let stages: Vec<Linearized<N>> = (0..STAGES)
             .map(|i| {
                 let t = time::<N, STAGES, false, f64>(before, h, i);
-                Linearized::of(&plain, t, stage(&positions, i), stage(&velocities, i))
+                Linearized::of(&rare, t, stage(&positions, i), stage(&velocities, i))
             })
             .collect();
         // a_ij h

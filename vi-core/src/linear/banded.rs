@@ -74,10 +74,37 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
         inverse.substitute(*rhs)
     }
 
+    #[inline(always)]
+    fn apply_to_rows<const S: usize>(inverse: &Self, rows: &mut [[T; S]; N]) {
+        let (w, factors) = (Self::WIDTH, &inverse.rows);
+        for i in 0..N {
+            for below in 1..(w + 1).min(N - i) {
+                subtract(rows, i + below, factors[i + below][w - below], i);
+            }
+        }
+        for i in (0..N).rev() {
+            for right in 1..(w + 1).min(N - i) {
+                subtract(rows, i, factors[i][w + right], i + right);
+            }
+            for entry in &mut rows[i] {
+                *entry = *entry * factors[i][w];
+            }
+        }
+    }
+
     fn dense(&self) -> SMatrix<T, N, N> {
         SMatrix::from_fn(|i, j| {
             let place = (j + Self::WIDTH).checked_sub(i);
             place.and_then(|place| self.rows[i].get(place)).copied().unwrap_or_else(T::zero)
         })
+    }
+}
+
+/// Subtracts `factor * rows[from]` from `rows[of]`.
+#[inline(always)]
+fn subtract<T: Real, const S: usize, const N: usize>(rows: &mut [[T; S]; N], of: usize, factor: T, from: usize) {
+    let eliminated = rows[from];
+    for (entry, eliminated) in rows[of].iter_mut().zip(eliminated) {
+        *entry -= factor * eliminated;
     }
 }

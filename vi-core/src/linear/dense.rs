@@ -34,6 +34,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
         x
     }
 
+    #[inline]
     fn inverse(&self) -> Self {
         eliminate(*self, Self::identity())
     }
@@ -41,6 +42,19 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     #[inline(always)]
     fn apply(inverse: &Self, rhs: &SVector<T, N>) -> SVector<T, N> {
         inverse * rhs
+    }
+
+    #[inline(always)]
+    fn apply_to_rows<const S: usize>(inverse: &Self, rows: &mut [[T; S]; N]) {
+        let known = *rows;
+        for i in 0..N {
+            rows[i] = [T::zero(); S];
+            for j in 0..N {
+                for column in 0..S {
+                    rows[i][column] += inverse[(i, j)] * known[j][column];
+                }
+            }
+        }
     }
 
     #[inline(always)]
@@ -90,6 +104,7 @@ fn cramer_3<T: Real, const N: usize, const M: usize>(
 }
 
 /// Gaussian elimination in the order of the rows; with pivoting where digits would be lost.
+#[inline]
 pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
     a: SMatrix<T, N, N>,
     b: SMatrix<T, N, M>,
@@ -98,6 +113,7 @@ pub(super) fn eliminate<T: Real, const N: usize, const M: usize>(
 }
 
 /// `None` where a pivot is lost.
+#[inline]
 fn in_order<T: Real, const N: usize, const M: usize>(
     mut a: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, M>,

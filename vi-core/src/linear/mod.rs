@@ -55,6 +55,16 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn inverse(&self) -> Self::Inverse;
     /// The x with `A x = rhs`, from the inverse of A.
     fn apply(inverse: &Self::Inverse, rhs: &SVector<T, N>) -> SVector<T, N>;
+    /// The same for S right-hand sides side by side: row i holds entry i of each, and becomes that of their solutions.
+    #[inline(always)]
+    fn apply_to_rows<const S: usize>(inverse: &Self::Inverse, rows: &mut [[T; S]; N]) {
+        for column in 0..S {
+            let x = Self::apply(inverse, &SVector::from_fn(|i, _| rows[i][column]));
+            for i in 0..N {
+                rows[i][column] = x[i];
+            }
+        }
+    }
     /// A with its zeros.
     fn dense(&self) -> SMatrix<T, N, N>;
 }

@@ -28,34 +28,45 @@ impl Pivoted {
             let pivot = column + below.iamax_full().0;
             self.rows[column] = pivot;
             self.factors.swap_rows(column, pivot);
-            for row in column + 1..size {
-                let factor = self.factors[(row, column)] / self.factors[(column, column)];
-                self.factors[(row, column)] = factor;
-                for k in column + 1..size {
-                    let eliminated = factor * self.factors[(column, k)];
-                    self.factors[(row, k)] -= eliminated;
-                }
+            let (left, right) = self.factors.as_mut_slice().split_at_mut((column + 1) * size);
+            let (upper, multipliers) = left[column * size..].split_at_mut(column + 1);
+            for entry in &mut *multipliers {
+                *entry /= upper[column];
+            }
+            for next in right.chunks_exact_mut(size) {
+                let (upper, below) = next.split_at_mut(column + 1);
+                subtract(below, upper[column], multipliers);
             }
         }
     }
 
     /// Replaces b by the x with `A x = b`.
     pub(crate) fn solve(&self, b: &mut [f64]) {
+        let size = self.rows.len();
         for (column, row) in self.rows.iter().enumerate() {
             b.swap(column, *row);
         }
+        for column in 0..size {
+            let (known, rest) = b.split_at_mut(column + 1);
+            subtract(rest, known[column], &self.column(column)[column + 1..]);
+        }
+        for column in (0..size).rev() {
+            let (rest, known) = b.split_at_mut(column);
+            known[0] /= self.factors[(column, column)];
+            subtract(rest, known[0], &self.column(column)[..column]);
+        }
+    }
+
+    fn column(&self, index: usize) -> &[f64] {
         let size = self.rows.len();
-        for row in 0..size {
-            for column in 0..row {
-                b[row] -= self.factors[(row, column)] * b[column];
-            }
-        }
-        for row in (0..size).rev() {
-            for column in row + 1..size {
-                b[row] -= self.factors[(row, column)] * b[column];
-            }
-            b[row] /= self.factors[(row, row)];
-        }
+        &self.factors.as_slice()[index * size..][..size]
+    }
+}
+
+/// Subtracts `factor * column` from `from`.
+fn subtract(from: &mut [f64], factor: f64, column: &[f64]) {
+    for (entry, multiplier) in from.iter_mut().zip(column) {
+        *entry -= factor * multiplier;
     }
 }
 

@@ -81,6 +81,11 @@ impl<const N: usize, T: Real> Matrix<N, T> for Symmetric<N, T> {
         inverse * rhs
     }
 
+    #[inline(always)]
+    fn apply_to_rows<const S: usize>(inverse: &Self::Inverse, rows: &mut [[T; S]; N]) {
+        SMatrix::apply_to_rows(inverse, rows);
+    }
+
     #[inline]
     fn dense(&self) -> SMatrix<T, N, N> {
         self.0

@@ -32,6 +32,7 @@ mod rounding;
 mod run;
 
 use super::newton::{Newton, Stiff};
+use super::points::Rare;
 use super::stages::{Stages, stage};
 use super::sweep::{self, Increment, Sweeps};
 use crate::checkpoint;
@@ -194,7 +195,7 @@ where
         let v = stage(&rates.velocity, middle);
         let newton = newton.get_or_insert_with(|| Box::new(Newton::new(h)));
         newton.set_step(h);
-        newton.linearize(system, run.node.t + 0.5 * h, &q, &v);
+        newton.linearize(&Rare::of(system), run.node.t + 0.5 * h, &q, &v);
         finished(Stiff::new(equations, newton), run)
     }
 

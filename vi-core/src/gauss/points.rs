@@ -1,0 +1,121 @@
+//! The equations at a point, as the steps ask for them.
+//!
+//! In: a system. Out: [`Points`], which every system is, its function inlined wherever it stands; or [`Rare`], the same system behind
+//! a pointer. Rare code, where sweeps do not settle or something is measured once a step, takes the latter: it is compiled once for
+//! each number of coordinates and stages, however many systems a program has. Three fifths of the code of a step are rare.
+
+use crate::collocation::{Collocation, Point};
+use crate::linear::Matrix;
+use crate::real::{Dual, Real, Rounded};
+use crate::stepping::Convertible;
+use nalgebra::{SMatrix, SVector};
+
+/// Equations of motion in the numbers T.
+pub(super) trait Points<const N: usize, T: Real> {
+    /// The form of the mass matrix.
+    type Mass: Matrix<N, T>;
+
+    /// [`Collocation::SEPARABLE`].
+    fn is_separable(&self) -> bool;
+    /// [`Collocation::CONSTANT_MASS`].
+    fn has_constant_mass(&self) -> bool;
+    /// [`Collocation::point`].
+    fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
+}
+
+impl<Y: Collocation<N, T>, const N: usize, T: Real> Points<N, T> for Y {
+    type Mass = Y::Mass;
+
+    #[inline(always)]
+    fn is_separable(&self) -> bool {
+        Y::SEPARABLE
+    }
+
+    #[inline(always)]
+    fn has_constant_mass(&self) -> bool {
+        Y::CONSTANT_MASS
+    }
+
+    #[inline(always)]
+    fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Y::Mass> {
+        self.point(t, q, v)
+    }
+}
+
+/// A point with the mass matrix as one of any system.
+type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
+
+/// A system in the numbers of rare code.
+trait Erased<const N: usize> {
+    fn is_separable(&self) -> bool;
+    fn has_constant_mass(&self) -> bool;
+    fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
+    fn dual(&self, t: Dual<f64>, q: &SVector<Dual<f64>, N>, v: &SVector<Dual<f64>, N>) -> AnyPoint<N, Dual<f64>>;
+    fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded>;
+}
+
+impl<S: Convertible<N>, const N: usize> Erased<N> for S {
+    fn is_separable(&self) -> bool {
+        S::In::<f64>::SEPARABLE
+    }
+
+    fn has_constant_mass(&self) -> bool {
+        S::In::<f64>::CONSTANT_MASS
+    }
+
+    fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64> {
+        dense(self, t, q, v)
+    }
+
+    fn dual(&self, t: Dual<f64>, q: &SVector<Dual<f64>, N>, v: &SVector<Dual<f64>, N>) -> AnyPoint<N, Dual<f64>> {
+        dense(self, t, q, v)
+    }
+
+    fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded> {
+        dense(self, t, q, v)
+    }
+}
+
+/// The point of a system, in the numbers T.
+fn dense<S: Convertible<N>, T: Real, const N: usize>(
+    system: &S,
+    t: T,
+    q: &SVector<T, N>,
+    v: &SVector<T, N>,
+) -> AnyPoint<N, T> {
+    let Point { momentum, force, mass } = system.convert::<T>().point(t, q, v);
+    Point { momentum, force, mass: mass.dense() }
+}
+
+/// A system behind a pointer.
+#[derive(Clone, Copy)]
+pub(super) struct Rare<'a, const N: usize>(&'a dyn Erased<N>);
+
+impl<'a, const N: usize> Rare<'a, N> {
+    /// The system, as rare code sees it.
+    pub(super) fn of<S: Convertible<N>>(system: &'a S) -> Self {
+        Self(system)
+    }
+}
+
+macro_rules! rare {
+    ($($number:ty, $point:ident);*) => {$(
+        impl<const N: usize> Points<N, $number> for Rare<'_, N> {
+            type Mass = SMatrix<$number, N, N>;
+
+            fn is_separable(&self) -> bool {
+                self.0.is_separable()
+            }
+
+            fn has_constant_mass(&self) -> bool {
+                self.0.has_constant_mass()
+            }
+
+            fn at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> AnyPoint<N, $number> {
+                self.0.$point(t, q, v)
+            }
+        }
+    )*};
+}
+
+rare!(f64, plain; Dual<f64>, dual; Rounded, rounded);
