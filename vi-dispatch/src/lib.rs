@@ -1,7 +1,8 @@
 //! Copies of a loop for the instruction sets of a processor.
 //!
 //! In: a [`Loop`]. Out: what it computes, by the widest vector instructions that this processor has. The compiler makes
-//! each copy of the same source; a build for one processor (`-C target-cpu=native`) needs none of them.
+//! each copy of the same source; a build for one processor (`-C target-cpu=native`) needs none of them. Builds with debug assertions
+//! leave out the copy for vectors of eight: it computes the same numbers as that for four, and takes as long to compile.
 
 /// A loop over numbers, inlined with all that it calls.
 pub trait Loop {
@@ -24,7 +25,7 @@ enum Set {
     #[cfg(target_arch = "x86_64")]
     Avx2,
     /// Vectors of eight numbers, with fused multiply-add.
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
     Avx512,
 }
 
@@ -38,9 +39,12 @@ impl Instructions {
         #[cfg(target_arch = "x86_64")]
         {
             let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
-            let wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
-            if avx2 && wide && is_x86_feature_detected!("avx512dq") {
-                return Self(Set::Avx512);
+            #[cfg(not(debug_assertions))]
+            {
+                let wide = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl");
+                if avx2 && wide && is_x86_feature_detected!("avx512dq") {
+                    return Self(Set::Avx512);
+                }
             }
             if avx2 {
                 return Self(Set::Avx2);
@@ -58,7 +62,7 @@ impl Instructions {
         fn avx2<L: Loop>(of: L) -> L::Output {
             of.run::<true>()
         }
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
         #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
         fn avx512<L: Loop>(of: L) -> L::Output {
             of.run::<true>()
@@ -69,7 +73,7 @@ impl Instructions {
             #[cfg(target_arch = "x86_64")]
             Set::Avx2 => unsafe { avx2(of) },
             // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", not(debug_assertions)))]
             Set::Avx512 => unsafe { avx512(of) },
         }
     }

@@ -5,7 +5,7 @@
 //! ```text
 //! sweep      x' = what the equations give at the forces, masses and momenta of x
 //! accept x   where |x' − x| ≤ 4 ε |q| and |v' − v| ≤ 64 ε |v|, the largest on the way of each coordinate, and the sweeps before
-//!            left a 64th of a rounding
+//!            left a thousandth of a rounding
 //! ```
 //!
 //! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
@@ -31,7 +31,7 @@ const STALLS: u32 = 4;
 /// Part of a rounding of q that a rounding of v counts as: velocities are solved for by the mass matrix, and carry its condition.
 const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q that a step may leave of the error of its stages.
-const NEGLIGIBLE: f64 = 1.0 / 64.0;
+const NEGLIGIBLE: f64 = 1.0 / 1024.0;
 
 /// The equations of the stages of a step.
 pub(super) trait Equations<const N: usize, const S: usize> {
