@@ -107,4 +107,3 @@ fn slots_are_the_derivatives_of_the_discrete_lagrangian() {
     are_derivatives::<2>(unforced);
     are_derivatives::<4>(unforced);
 }
-
