@@ -71,10 +71,12 @@ where
         let system = changed(&self.gauss.system, change)?;
         let state = self.state();
         let brought = state.energy(&system)? - state.energy(&self.gauss.system)?;
+        let before = (self.gauss.system, self.gauss.run.node);
         self.gauss.system = system;
         self.gauss.run.node.add_energy(brought);
+        self.measure_excess().inspect_err(|_| (self.gauss.system, self.gauss.run.node) = before)?;
         self.failure = None;
-        self.measure_excess()
+        Ok(())
     }
 
     fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
