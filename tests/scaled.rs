@@ -8,7 +8,7 @@ use vi_core::collocation::{Collocation, TimeScale};
 use vi_core::integrator::Path;
 use vi_core::real::Dual;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{Gauss, Integrator, Lagrangian, SVector, ScaledGauss, State, StepError, lagrangian};
+use vi_core::{Called, Gauss, Integrator, Lagrangian, SVector, ScaledGauss, State, StepError, lagrangian};
 use vi_systems::Kepler;
 
 lagrangian! {
@@ -36,11 +36,12 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A free particle whose time stands still at x = 1.
+    /// A free particle whose time stands still at x = 1: with k = 0 all of a sudden.
     struct Wall {
+        param k = 1;
         coord x;
         L = dot(x)^2 / 2;
-        time_scale = 1 - x;
+        time_scale = 1 - k * x - (1 - k) * x^8;
         discretize midpoint;
     }
 }
@@ -354,6 +355,8 @@ fn stiff_steps_are_solved_by_newton() {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
         assert!(state.q[0].abs() < 1.1e-3 && run.iterations() > 0);
     }
+    // The run knows that it is stiff: sweeps were tried at the steps 1, 3, 6, 11, 20 and 37, and then not for 32.
+    assert!(format!("{:?}", run.checkpoint()).contains("next: 64"), "{:?}", run.checkpoint());
 }
 
 /// The error of a run, and that the run still has its last state and keeps the error.
@@ -380,10 +383,33 @@ fn a_time_scale_that_is_not_positive_is_an_error_with_its_value() {
     let run = ScaledGauss::<_, 1, 4>::new(Wall::default(), before, 30.0).expect("a valid start");
     let error = ends(run);
     assert!(matches!(error, StepError::TimeScale { g, .. } if g <= 0.0), "{error}");
+    // A step beyond the wall, from a stage before it.
+    let run = ScaledGauss::<_, 1, 1>::new(Wall { k: 0.0 }, before, 1.5).expect("a valid start");
+    let error = ends(run);
+    assert!(matches!(error, StepError::TimeScale { t, g } if (t - 1.4077).abs() < 1e-3 && g < -10.0), "{error}");
     // Short steps never arrive.
     let mut run = ScaledGauss::<_, 1, 4>::new(Wall::default(), before, 0.1).expect("a valid start");
     let reached = run.by_ref().take(100).last().expect("steps").expect("a step");
     assert!((reached.q[0] - (1.0 - (-10.0_f64).exp())).abs() < 1e-13, "{reached:?}");
+}
+
+#[test]
+fn a_system_without_a_time_scale_is_refused() {
+    let system = Called(vi_systems::Pendulum::default());
+    let error = ScaledGauss::<_, 1, 2>::new(system, State::at(&system, 0.0, [1.0], [0.0]), 0.1).expect_err("no g");
+    assert_eq!(error, StepError::NoTimeScale { system: "Pendulum" });
+    // And one with a time scale steps as it does when its functions are no calls.
+    let kepler = Kepler::default();
+    let start = eccentric(&kepler);
+    let mut runs = (
+        ScaledGauss::<_, 2, 4>::new(kepler, start, 0.3).expect("a valid start"),
+        ScaledGauss::<_, 2, 4>::new(Called(kepler), start, 0.3).expect("a valid start"),
+    );
+    for _ in 0..30 {
+        let [one, other] = [runs.0.step(), runs.1.step()].map(|step| step.expect("a step"));
+        // Measured: 0.
+        assert!((one.q - other.q).amax() < 1e-13 && (one.p - other.p).amax() < 1e-13, "{one:?} and {other:?}");
+    }
 }
 
 #[test]

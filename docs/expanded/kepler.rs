@@ -299,6 +299,7 @@ const _: () = {
         type Mass = ::vi_core::linear::Banded<2, 1, T>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
+        const SCALES_TIME: bool = true;
 
         /// L_v, M, and
         ///

@@ -23,6 +23,8 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> {
     const CONSTANT_MASS: bool;
     /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v: then `q'' = M⁻¹ (L_q + f)` is all there is.
     const SEPARABLE: bool;
+    /// Whether the system has a time scale g: then it is a [`TimeScale`], and [`Collocation::scaled_point`] gives g.
+    const SCALES_TIME: bool = false;
 
     /// The equations at a point.
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;

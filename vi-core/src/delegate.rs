@@ -73,15 +73,16 @@ macro_rules! lagrangian {
     };
 }
 
-/// The equations of motion of what dereferences to S.
+/// The equations of motion of what dereferences to S, each function with this attribute.
 macro_rules! collocation {
-    ($wrapper:ty $(, $rule:ident)?) => {
+    ($wrapper:ty, #[$attribute:meta] $(, $rule:ident)?) => {
         impl<const N: usize, T: Real, S: Collocation<N, T>$(, $rule: Rule)?> Collocation<N, T> for $wrapper {
             type Mass = S::Mass;
             const CONSTANT_MASS: bool = S::CONSTANT_MASS;
             const SEPARABLE: bool = S::SEPARABLE;
+            const SCALES_TIME: bool = S::SCALES_TIME;
 
-            #[inline(always)]
+            #[$attribute]
             fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
                 S::point(self, t, q, v)
             }
@@ -91,13 +92,11 @@ macro_rules! collocation {
                 S::power(self, t, q, v)
             }
 
-            #[inline(always)]
+            #[$attribute]
             fn scaled_point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> ScaledPoint<N, T, S::Mass> {
                 S::scaled_point(self, t, q, v)
             }
         }
-
-        impl<const N: usize, T: Real, S: TimeScale<N, T>$(, $rule: Rule)?> TimeScale<N, T> for $wrapper {}
     };
 }
 
@@ -213,7 +212,7 @@ macro_rules! stepping {
 
 // A system may be lent as well as given.
 lagrangian!(&S);
-collocation!(&S);
+collocation!(&S, #[inline(always)]);
 discrete!(&S, R as R, R);
 stepping!(&S, R as R, S::RULE, #[inline(always)], R);
 
@@ -226,11 +225,13 @@ const fn rule_name(of_rule: Option<&'static str>, of_system: Option<&'static str
 }
 
 lagrangian!(By<S, R>, R);
-collocation!(By<S, R>, R);
+collocation!(By<S, R>, #[inline(always)], R);
 discrete!(By<S, R>, R as Own, R);
 stepping!(By<S, R>, R as Own, rule_name(R::NAME, S::RULE), #[inline(always)], R);
 
 lagrangian!(Called<S>);
+collocation!(Called<S>, #[inline(never)]);
+discrete!(Called<S>, Own as Own);
 stepping!(Called<S>, Own as Own, S::RULE, #[inline(never)]);
 
 impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
@@ -239,8 +240,22 @@ impl<T: Real, S: Parameters<T>, R: Rule> Parameters<T> for By<S, R> {
     }
 }
 
+impl<T: Real, S: Parameters<T>> Parameters<T> for Called<S> {
+    fn parameter_mut(&mut self, name: &str) -> Option<&mut T> {
+        self.0.parameter_mut(name)
+    }
+}
+
+impl<const N: usize, T: Real, S: TimeScale<N, T>> TimeScale<N, T> for &S {}
+
+impl<const N: usize, T: Real, S: TimeScale<N, T>, R: Rule> TimeScale<N, T> for By<S, R> {}
+
+// Whether it has one is asked when a run begins.
+impl<const N: usize, T: Real, S: Collocation<N, T>> TimeScale<N, T> for Called<S> {}
+
 impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N, R> for &S {
     type In<T: Real> = S::In<T>;
+    const SIDE_BY_SIDE: bool = S::SIDE_BY_SIDE;
 
     #[inline(always)]
     fn convert<T: Real>(&self) -> Self::In<T> {
@@ -248,8 +263,19 @@ impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N, R> for &S {
     }
 }
 
+impl<const N: usize, S: Convertible<N>> Convertible<N> for Called<S> {
+    type In<T: Real> = Called<S::In<T>>;
+    // A vector of stages would be taken apart for each call.
+    const SIDE_BY_SIDE: bool = false;
+
+    fn convert<T: Real>(&self) -> Self::In<T> {
+        Called(self.0.convert())
+    }
+}
+
 impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N> for By<S, R> {
     type In<T: Real> = By<S::In<T>, R>;
+    const SIDE_BY_SIDE: bool = S::SIDE_BY_SIDE;
 
     fn convert<T: Real>(&self) -> Self::In<T> {
         By::new(self.system().convert(), self.rule())

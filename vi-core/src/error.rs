@@ -98,6 +98,11 @@ pub enum StepError {
         /// Its value there.
         g: f64,
     },
+    /// Steps in scaled time were asked of a system without a time scale.
+    NoTimeScale {
+        /// Name of the system.
+        system: &'static str,
+    },
     /// A matrix that has to be inverted is singular.
     Singular {
         /// Time at which it was met.
@@ -185,6 +190,7 @@ impl fmt::Display for Reason<'_> {
             StepError::TimeScale { t, g } => {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
             }
+            StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
@@ -208,9 +214,12 @@ impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.reason().fmt(f)?;
         match self {
-            Self::NoForwardStep { .. } | Self::DegenerateStep { .. } | Self::StepRatio { .. } => f.write_str(
-                "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on, and so does `EnergyPreservingGauss` with a shift",
-            ),
+            Self::NoForwardStep { h, .. } | Self::DegenerateStep { h, .. } | Self::StepRatio { previous: h, .. } => {
+                write!(
+                    f,
+                    "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` with h = {h:.3e} goes on, and so does `EnergyPreservingGauss` with a shift, which `with_shift_from(duration)` measures"
+                )
+            }
             Self::NoForwardGaussStep { h, largest, .. } => write!(
                 f,
                 "; `with_shift({:.3e})`, beyond the largest |D| so far, makes steps that exist here, other numbers of stages have other densities, and `with_fallback(Fallback::FixedSteps)` or `Gauss` with h = {h:.3e} goes on",
@@ -231,6 +240,9 @@ impl fmt::Display for StepError {
             Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
             Self::TimeScale { .. } => {
                 f.write_str("; take shorter steps, or write a `time_scale` that is positive there")
+            }
+            Self::NoTimeScale { .. } => {
+                f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
             }
             Self::OtherSystem { parameter: None, .. } => {
                 f.write_str("; restart the system that it was taken of, by its rule")

@@ -31,7 +31,7 @@
 #![allow(clippy::inline_always)]
 
 mod branch;
-mod called;
+pub mod called;
 pub mod check;
 pub mod checkpoint;
 pub mod collocation;
@@ -62,6 +62,7 @@ pub mod stepping;
 pub mod support;
 mod vector;
 
+pub use called::Called;
 pub use composition::{Composition, Scheme};
 pub use discrete::DiscreteLagrangian;
 pub use energy_preserving::{EnergyPreserving, Fallback};

@@ -69,6 +69,8 @@ pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<
 pub trait Convertible<const N: usize, R = Own> {
     /// The same system in the numbers T.
     type In<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R> + Parameters<T>;
+    /// Whether Gauss steps evaluate their stages side by side, in vectors, with a copy for each set of instructions.
+    const SIDE_BY_SIDE: bool = true;
 
     /// The same system, every parameter rounded to T.
     fn convert<T: Real>(&self) -> Self::In<T>;

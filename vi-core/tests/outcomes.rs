@@ -122,7 +122,7 @@ fn an_error_ends_in_what_to_do() {
     let degenerate = StepError::DegenerateStep { t: 1.0, h: 0.5, density: 0.0 };
     let ratio = StepError::StepRatio { t: 1.0, previous: 0.5, found: 2.0 };
     let bounds = StepError::StepBounds { t: 1.0, found: 0.25, h_min: 0.5, h_max: 1.0 };
-    let goes_on = "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` goes on, and so does `EnergyPreservingGauss` with a shift";
+    let goes_on = "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` with h = 5.000e-1 goes on, and so does `EnergyPreservingGauss` with a shift, which `with_shift_from(duration)` measures";
     let gauss = StepError::NoForwardGaussStep {
         t: 1.0,
         h: 0.5,

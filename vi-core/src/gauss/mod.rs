@@ -69,7 +69,7 @@ pub use polynomial::Polynomial;
 use separable::Separable;
 pub use slots::Slots;
 use stages::{AtStages, Stages, constant_mass, extrapolated, stage};
-use sweep::{Convergence, Equations, Increment, Sweeps};
+use sweep::{Convergence, Equations, Increment, Pause, Sweeps};
 use vi_dispatch::{Instructions, Loop};
 
 /// Fixed steps of order 2 STAGES; see the [module](self).
@@ -98,9 +98,7 @@ pub struct Run<const N: usize, const S: usize> {
     /// step those of the node.
     stages: SMatrix<f64, S, N>,
     convergence: Convergence,
-    /// Steps that are solved by Newton's iteration before sweeps are tried again, and how many that were the last time.
-    stiff: u32,
-    patience: u32,
+    pause: Pause,
 }
 
 impl<S, const N: usize, const STAGES: usize> Gauss<S, N, STAGES>
@@ -179,10 +177,16 @@ where
 
     /// The run after the next step.
     fn solve(&mut self) -> Result<Run<N, STAGES>, StepError> {
-        if self.run.stiff > 0 {
+        if !self.run.pause.is_over() {
             return self.solve_with_care(None);
         }
-        let swept = self.instructions.run(Solve { system: &self.system, run: &self.run });
+        let swept = if S::SIDE_BY_SIDE {
+            self.instructions.run(Solve { system: &self.system, run: &self.run })
+        } else {
+            let rare = Rare::of(&self.system);
+            let mass = constant_mass::<N, f64, _>(&rare, &self.run.node);
+            solved::<f64, _, _, N, STAGES, false>(&rare, &mass, &self.run)
+        };
         let run = self.run.after(&swept);
         if swept.is_at_floor() && run.node.is_finite() { Ok(run) } else { self.solve_with_care(Some(&swept)) }
     }
@@ -249,7 +253,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let flow = node.state().flow(system)?;
         let start = if Y::SEPARABLE { flow.force } else { flow.v };
         let stages = SMatrix::from_fn(|_, k| start[k]);
-        Ok(Self { node, before: node, h, stages, convergence: Convergence::NONE, stiff: 0, patience: 1 })
+        Ok(Self { node, before: node, h, stages, convergence: Convergence::NONE, pause: Pause::NONE })
     }
 
     /// Whether the step is known that led to the node: its stages mean nothing by other parameters.
@@ -275,7 +279,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
         node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
         let convergence = solved.sweeps.convergence;
         let stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
-        Self { node, before: self.node, stages, convergence, patience: 1, ..*self }
+        Self { node, before: self.node, stages, convergence, pause: Pause::NONE, h: self.h }
     }
 
     /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
@@ -302,7 +306,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
         }
         let newton = newton.get_or_insert_with(|| Box::new(Newton::new(self.h)));
         let solved = self.stiff(system, newton);
-        let run = self.after_stiff(&solved);
+        let run = self.after_newton(&solved);
         if run.node.is_finite() && self.is_solved(system, &solved) {
             return Ok(run);
         }
@@ -326,21 +330,14 @@ impl<const N: usize, const S: usize> Run<N, S> {
         solved.is_at_floor() || rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
     }
 
-    /// The run after a step by Newton's iteration: sweeps are tried again after twice as many of them as the last time.
-    fn after_stiff(&self, solved: &Solved<N, S>) -> Self {
-        let run = self.after(solved);
-        match self.stiff.checked_sub(1) {
-            Some(stiff) => Self { stiff, patience: self.patience, ..run },
-            None => Self { stiff: self.patience, patience: MOST.min(2 * self.patience), ..run },
-        }
+    /// The run after a step by Newton's iteration.
+    fn after_newton(&self, solved: &Solved<N, S>) -> Self {
+        Self { pause: self.pause.after_newton(), ..self.after(solved) }
     }
 }
 
 /// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
 const LOOPED: usize = 3;
-
-/// Steps by Newton's iteration after which sweeps are tried again, at most.
-const MOST: u32 = 64;
 
 /// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
 fn general<'a, const N: usize, const S: usize>(

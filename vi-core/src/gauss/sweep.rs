@@ -60,6 +60,37 @@ pub(super) struct Increment<const N: usize> {
     pub(super) momentum: SVector<f64, N>,
 }
 
+/// How long sweeps are not tried, since the last ones did not converge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Pause {
+    /// Steps that are left to Newton's iteration.
+    left: u32,
+    /// Steps of the next pause.
+    next: u32,
+}
+
+/// Steps by Newton's iteration after which sweeps are tried again, at most.
+const LONGEST_PAUSE: u32 = 64;
+
+impl Pause {
+    /// Where sweeps converge.
+    pub(super) const NONE: Self = Self { left: 0, next: 1 };
+
+    /// Whether sweeps are to be tried.
+    pub(super) fn is_over(self) -> bool {
+        self.left == 0
+    }
+
+    /// The pause after a step by Newton's iteration: where sweeps were tried in vain, twice as long as the last one.
+    pub(super) fn after_newton(self) -> Self {
+        match self.left.checked_sub(1) {
+            Some(left) => Self { left, ..self },
+            None => Self { left: self.next, next: LONGEST_PAUSE.min(2 * self.next) },
+        }
+    }
+}
+
 /// How sweeps ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

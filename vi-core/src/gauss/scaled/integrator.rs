@@ -4,6 +4,7 @@
 //! the state brings the energy `ΔH` to the node, and the run goes on with `E + ΔH`: so `H − E` is what it was.
 
 use super::path::Polynomial;
+use super::run::time_scale;
 use super::{Checkpoint, Run, ScaledGauss, check_time_scale};
 use crate::collocation::TimeScale;
 use crate::error::{Residuals, StepError};
@@ -12,7 +13,6 @@ use crate::integrator::{Integrator, changed, own};
 use crate::node::Node;
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
-use nalgebra::SVector;
 
 /// Trials of Δτ for a step of a given length in time.
 const TRIALS: u32 = 60;
@@ -43,7 +43,7 @@ where
     /// what is known to hold Δτ.
     fn run_of(&self, h: f64) -> Result<Run<N, STAGES>, StepError> {
         let State { t, q, .. } = self.state();
-        let g = self.system.scaled_point(t, &q, &SVector::zeros()).g;
+        let g = time_scale(&self.system, t, &q);
         check_time_scale(t, g)?;
         let missed = f64::EPSILON * (MISSED * h.abs()).max(t.abs());
         // None is tried that is longer than twice what is known to be too short.
@@ -67,8 +67,7 @@ where
                 high = length;
             }
             let end = run.node.state();
-            let g = self.system.scaled_point(end.t, &end.q, &end.velocity(&self.system)?).g;
-            check_time_scale(end.t, g)?;
+            let g = time_scale(&self.system, end.t, &end.q);
             let next = length + left / g;
             let bound = if high.is_finite() { high } else { 2.0 * low };
             let halfway = if high.is_finite() { 0.5 * (low + high) } else { bound };

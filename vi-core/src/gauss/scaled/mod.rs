@@ -23,7 +23,7 @@
 //! | `rounding` | whether stages that stall are solved, by running error analysis |
 //!
 //! AFTER A STEP what its stages leave of their equations was measured, and is at the rounding floor; g is positive and finite at all of
-//! them. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
+//! them, and at the state reached. AFTER AN ERROR the integrator holds the last good state and keeps returning that error.
 
 mod equations;
 mod integrator;
@@ -43,9 +43,9 @@ use crate::real::{Lane, Real, Rounded};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
 use equations::{Clock, Clocked, Rates, Scaled};
-use nalgebra::SVector;
 pub use path::Polynomial;
 pub use run::Run;
+use run::time_scale;
 use vi_dispatch::{Instructions, Loop};
 
 /// Steps of order 2 STAGES in scaled time; see the [module](self).
@@ -71,8 +71,11 @@ where
     /// # Errors
     /// [`StepError::InvalidInput`] for a Δτ that is zero, subnormal or not finite, [`StepError::NonFinite`] for such a state or energy,
     /// [`StepError::TimeScale`] where g is not positive and finite, [`StepError::Singular`] or [`StepError::NotConverged`] where no velocity
-    /// belongs to its momenta.
+    /// belongs to its momenta, [`StepError::NoTimeScale`] for a [`Called`](crate::Called) system without one.
     pub fn new(system: S, state: State<N>, dtau: f64) -> Result<Self, StepError> {
+        if !S::SCALES_TIME {
+            return Err(StepError::NoTimeScale { system: S::NAME });
+        }
         check_dtau(dtau)?;
         let energy = state.energy(&system)?;
         let run = Run::new(&system, Node::new(state, energy), dtau)?;
@@ -104,8 +107,8 @@ where
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`] where the stages do not come to rest: Δτ is too long for the fastest motion of the system;
-    /// [`StepError::TimeScale`] where g is not positive and finite at a stage; [`StepError::NonFinite`]. The same error again after an
-    /// error.
+    /// [`StepError::TimeScale`] where g is not positive and finite at a stage, or at the state reached; [`StepError::NonFinite`]. The same
+    /// error again after an error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         if let Some(failure) = self.failure {
             return Err(failure);
@@ -123,50 +126,55 @@ where
 
     /// The run after the next step.
     fn solve(&mut self) -> Result<Run<N, STAGES>, StepError> {
-        let swept = self.instructions.run(Solve { system: &self.system, run: &self.run });
+        if !self.run.pause.is_over() {
+            return self.solve_with_care(None);
+        }
+        let swept = if S::SIDE_BY_SIDE {
+            self.instructions.run(Solve { system: &self.system, run: &self.run })
+        } else {
+            solved::<f64, S, N, STAGES, false>(&self.system, &self.run)
+        };
         let run = self.run.after(&swept);
-        if swept.is_at_floor() && run.is_sound() { Ok(run) } else { self.solve_with_care(&swept) }
+        if swept.is_at_floor() && run.is_sound(&self.system) { Ok(run) } else { self.solve_with_care(Some(&swept)) }
     }
 
-    /// The run after a step that sweeps do not bring to the rounding of its positions, or whose g is not positive.
+    /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on, or whose g is not
+    /// positive.
     #[cold]
-    fn solve_with_care(&mut self, swept: &Solved<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
-        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
-        let plain;
-        let solved = if swept.sweeps.convergence.change.is_nan() {
-            plain = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
-            &plain
-        } else {
-            swept
-        };
-        if let Some(run) = self.accepted(solved) {
-            return Ok(run);
+    fn solve_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<Run<N, STAGES>, StepError> {
+        if let Some(swept) = swept {
+            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+            let plain;
+            let solved = if swept.sweeps.convergence.change.is_nan() {
+                plain = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
+                &plain
+            } else {
+                swept
+            };
+            let run = self.run.after(solved);
+            if self.is_solved(solved, &run) {
+                return Ok(run);
+            }
         }
         let solved = self.solve_stiff();
-        match self.accepted(&solved) {
-            Some(run) => Ok(run),
-            None => Err(self.failure_of(&solved)),
-        }
+        let run = self.run.after_newton(&solved);
+        if self.is_solved(&solved, &run) { Ok(run) } else { Err(self.failure_of(&solved, &run)) }
     }
 
-    /// The run after a step, if it is solved.
-    fn accepted(&self, solved: &Solved<N, STAGES>) -> Option<Run<N, STAGES>> {
-        let run = self.run.after(solved);
+    /// Whether what the stages leave of their equations is rounding, and the run after them can go on.
+    fn is_solved(&self, solved: &Solved<N, STAGES>, after: &Run<N, STAGES>) -> bool {
         let Run { node, dtau, .. } = &self.run;
-        let is_solved =
-            || solved.is_at_floor() || rounding::are_solved(&self.system.convert::<Rounded>(), node, *dtau, solved);
-        (run.is_sound() && is_solved()).then_some(run)
+        let is_rounding = || rounding::are_solved(&self.system.convert::<Rounded>(), node, *dtau, solved);
+        after.is_sound(&self.system) && (solved.is_at_floor() || is_rounding())
     }
 
     /// Why a step was not solved.
-    fn failure_of(&self, solved: &Solved<N, STAGES>) -> StepError {
+    fn failure_of(&self, solved: &Solved<N, STAGES>, after: &Run<N, STAGES>) -> StepError {
         let Run { node, dtau, h, .. } = &self.run;
-        for i in 0..STAGES {
-            let t = solved.clock.time[i];
-            let q = stage(&solved.sweeps.positions, i);
+        let stages = (0..STAGES).map(|i| (solved.clock.time[i], stage(&solved.sweeps.positions, i)));
+        for (t, q) in stages.chain([(after.node.t, after.node.q)]) {
             let is_known = t.is_finite() && q.iter().all(|q: &f64| q.is_finite());
-            if is_known && let Err(failure) = check_time_scale(t, self.system.scaled_point(t, &q, &SVector::zeros()).g)
-            {
+            if is_known && let Err(failure) = check_time_scale(t, time_scale(&self.system, t, &q)) {
                 return failure;
             }
         }
@@ -180,7 +188,7 @@ where
             return explained;
         }
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
-        let h = self.system.scaled_point(node.t, &node.q, &v).g * dtau;
+        let h = time_scale(&self.system, node.t, &node.q) * dtau;
         solved.sweeps.convergence.unsettled(node.t, h, stiffness)
     }
 

@@ -9,11 +9,11 @@ use crate::compensated;
 use crate::error::StepError;
 use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::stages::{extrapolated, set};
-use crate::gauss::sweep::Convergence;
+use crate::gauss::sweep::{Convergence, Pause};
 use crate::gauss::tableau::{DEGREE, Tableau};
 use crate::node::Node;
 use crate::state::State;
-use nalgebra::{ArrayStorage, SMatrix};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// What a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +29,7 @@ pub struct Run<const N: usize, const S: usize> {
     /// The same of g and of dE/dτ, a column each.
     pub(super) clock: SMatrix<f64, S, 2>,
     pub(super) convergence: Convergence,
+    pub(super) pause: Pause,
 }
 
 impl<const N: usize, const S: usize> Run<N, S> {
@@ -42,7 +43,8 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let gain = g * power + (energy - node.energy) * g_dt;
         let velocities = SMatrix::from_fn(|_, k| v[k]);
         let clock = SMatrix::from_fn(|_, column| if column == 0 { g } else { gain });
-        Ok(Self { node, dtau, taken: dtau, h: g * dtau, velocities, clock, convergence: Convergence::NONE })
+        let h = g * dtau;
+        Ok(Self { node, dtau, taken: dtau, h, velocities, clock, convergence: Convergence::NONE, pause: Pause::NONE })
     }
 
     /// Rates at the stages of the last step.
@@ -99,14 +101,30 @@ impl<const N: usize, const S: usize> Run<N, S> {
         node.add_energy(*energy);
         let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
         let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
-        Self { node, dtau: self.dtau, taken: self.dtau, h: *h, velocities, clock, convergence: sweeps.convergence }
+        let Self { dtau, .. } = *self;
+        let convergence = sweeps.convergence;
+        Self { node, dtau, taken: dtau, h: *h, velocities, clock, convergence, pause: Pause::NONE }
     }
 
-    /// Whether it is finite, and g positive at all stages.
-    #[inline(always)]
-    pub(super) fn is_sound(&self) -> bool {
-        self.node.is_finite() && self.clock.column(0).iter().all(|g| *g > 0.0)
+    /// The run after a step by Newton's iteration.
+    pub(super) fn after_newton(&self, solved: &Solved<N, S>) -> Self {
+        Self { pause: self.pause.after_newton(), ..self.after(solved) }
     }
+
+    /// Whether it is finite, and g positive at all stages and at the node.
+    #[inline(always)]
+    pub(super) fn is_sound<Y: TimeScale<N>>(&self, system: &Y) -> bool {
+        let is_positive = |g: f64| g > 0.0 && g.is_finite();
+        self.node.is_finite()
+            && self.clock.column(0).iter().all(|g| is_positive(*g))
+            && is_positive(time_scale(system, self.node.t, &self.node.q))
+    }
+}
+
+/// g at a place.
+#[inline(always)]
+pub(super) fn time_scale<Y: TimeScale<N>, const N: usize>(system: &Y, t: f64, q: &SVector<f64, N>) -> f64 {
+    system.scaled_point(t, q, &SVector::zeros()).g
 }
 
 /// Lengths of the last step by which its polynomials guess ahead at most.

@@ -16,6 +16,11 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let separable = source.findings.force_of_position;
     let (form, point) = point(source);
     let scaled_point = source.system.continuous.time_scale.as_ref().map(|scale| scaled_point(source, scale));
+    let scales_time = scaled_point.is_some().then(|| {
+        quote!(
+            const SCALES_TIME: bool = true;
+        )
+    });
     let has_time_scale = scaled_point.is_some().then(|| {
         quote! {
             impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#dimension, T> for #name<T> {}
@@ -27,6 +32,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
             type Mass = #form;
             const CONSTANT_MASS: bool = #constant_mass;
             const SEPARABLE: bool = #separable;
+            #scales_time
             #point
             #power
             #scaled_point
