@@ -12,6 +12,7 @@ mod errata;
 mod forced;
 mod law;
 pub(super) mod raw;
+mod theory;
 
 use crate::failure::Failure;
 use crate::input::count;
@@ -55,6 +56,7 @@ pub(crate) fn write(out: &Path, study: Study) -> Result<String, Failure> {
         progress.message("step law");
         law::section(&mut book)?;
         errata::section(&mut book)?;
+        theory::chapter(&mut book, &mut progress)?;
     }
     book.finish(&machine)
 }
@@ -62,7 +64,7 @@ pub(crate) fn write(out: &Path, study: Study) -> Result<String, Failure> {
 /// A step that failed where the study needs one.
 fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
     let before = what.to_owned();
-    move |error| Failure::Step { error, before: before.clone(), method: None }
+    move |error| Failure::Step { error: Box::new(error), before: before.clone(), advice: None }
 }
 
 fn introduction(book: &mut Book, study: Study) {
@@ -95,8 +97,8 @@ mod tests {
         let files: Vec<String> =
             page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).map(String::from).collect();
         let named: Vec<&String> = files.iter().filter(|name| !name.starts_with('#')).collect();
-        // 19 figures in two forms, 7 tables.
-        assert_eq!(named.len(), 2 * 19 + 7);
+        // 24 figures in two forms, 9 tables.
+        assert_eq!(named.len(), 2 * 24 + 9);
         for name in named {
             let length = fs::metadata(folder.join(name)).map_or(0, |file| file.len());
             assert!(length > 100, "{name} has {length} bytes");
