@@ -203,7 +203,7 @@ fn plain(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::{Method, Plan, Start, USUAL_STAGES};
+    use crate::simulation::{Method, PhasePoint, Plan};
     use core::cell::Cell;
 
     #[test]
@@ -235,15 +235,8 @@ mod tests {
             let name = entry.system.name();
             assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
             for method in [Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy] {
-                let plan = Plan {
-                    method,
-                    start: Start::Midpoint,
-                    stages: USUAL_STAGES,
-                    h: entry.h,
-                    t: 0.0,
-                    q: entry.q.clone(),
-                    v: entry.v.clone(),
-                };
+                let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
+                let plan = Plan::new(method, entry.h, start);
                 let evaluations = Cell::new(0);
                 let begun = entry.system.begin(&plan, &evaluations);
                 let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -21,11 +21,11 @@ pub(crate) enum Failure {
     /// A step failed: exit status 1.
     Step {
         /// The error of the integrator.
-        error: StepError,
+        error: Box<StepError>,
         /// The last good state and how many steps led to it.
         before: String,
-        /// The integrator, where the command line can choose another.
-        method: Option<Method>,
+        /// What the command line can do about it.
+        advice: Option<String>,
     },
     /// A run cannot go on, though no step failed: exit status 1.
     Ended {
@@ -86,9 +86,9 @@ impl Failure {
         match error {
             StepError::InvalidInput { .. } => Self::Input(error.to_string()),
             _ => Self::Step {
-                error,
+                advice: advice(&error, *method).map(str::to_owned),
+                error: Box::new(error),
                 before: format!("t = {}, q = {q:?}, v = {v:?}, the initial state", short(*t)),
-                method: Some(*method),
             },
         }
     }
@@ -139,15 +139,26 @@ fn suggestion(error: &clap::Error) -> Option<String> {
 }
 
 /// What the command line can do about a step that failed.
-fn advice(error: &StepError, method: Method) -> Option<&'static str> {
+pub(crate) fn advice(error: &StepError, method: Method) -> Option<&'static str> {
     match (error, method) {
-        (StepError::NoForwardStep { .. } | StepError::StepRatio { .. } | StepError::DegenerateStep { .. }, _) => {
+        (
+            StepError::NoForwardStep { .. }
+            | StepError::NoForwardGaussStep { .. }
+            | StepError::StepRatio { .. }
+            | StepError::DegenerateStep { .. },
+            _,
+        ) => {
             Some("take fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this place")
         }
         (StepError::NotConverged { .. }, Method::Energy) => {
             Some("take shorter steps with --h, or fixed ones with --method fixed")
         }
-        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => Some("take shorter steps with --h"),
+        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => {
+            Some("take shorter steps with --h or --dtau")
+        }
+        (StepError::TimeScale { .. }, _) => Some(
+            "take shorter steps with --dtau, or steps in time with --h; or write a `time_scale` that is positive there",
+        ),
         _ => None,
     }
 }
@@ -156,11 +167,10 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Input(message) => f.write_str(message),
-            Self::Step { error, before, method } => {
+            Self::Step { error, before, advice } => {
                 // The advice of the library is for those who call it.
                 write!(f, "{}\nlast good state: {before}", error.reason())?;
-                let advice = method.and_then(|method| advice(error, method));
-                advice.map_or(Ok(()), |advice| write!(f, "\nwhat to do: {advice}"))
+                advice.as_ref().map_or(Ok(()), |advice| write!(f, "\nwhat to do: {advice}"))
             }
             Self::Ended { why, before } => write!(f, "{why}\nlast good state: {before}"),
             Self::Interrupted { signal, reached } => {

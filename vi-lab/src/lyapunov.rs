@@ -4,7 +4,7 @@
 //! sees whether they have settled; as CSV on standard output. The directions are those of the tangent map of the steps themselves (`vi_core::derivatives`).
 
 use crate::catalogue::kebab;
-use crate::failure::Failure;
+use crate::failure::{Failure, advice};
 use crate::input::{count, number};
 use crate::numbers::short;
 use crate::run;
@@ -79,9 +79,9 @@ pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Fa
     while taken < *steps {
         let part = next.min(*steps) - taken;
         exponents.advance(part).map_err(|error| Failure::Step {
-            error,
+            advice: advice(&error, Method::Gauss).map(str::to_owned),
+            error: Box::new(error),
             before: format!("t = {}, after {taken} steps or more", short(exponents.t())),
-            method: Some(Method::Gauss),
         })?;
         taken += part;
         next *= 2;

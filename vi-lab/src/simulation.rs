@@ -3,9 +3,11 @@
 //! In: a system with its parameters, a [`Plan`]. Out: a [`Simulation`], whose rows are the nodes that the integrator
 //! reaches, the first one the node it starts from. Erased, so that a name on the command line can choose the system;
 //! the numbers are those of the generic integrators, to the last bit, and [`Simulation::advance_until`] is their loop, in
-//! which no call is virtual.
+//! which no call is virtual. Integrators that only a user's run takes are those of [`Called`] systems: built in a third of the time, and
+//! off by rounding.
 
 use crate::counting::Counting;
+use crate::numbers::short;
 use crate::start;
 use clap::ValueEnum;
 use core::cell::Cell;
@@ -14,7 +16,8 @@ use vi_core::collocation::Collocation;
 use vi_core::integrator::{Crossing, Direction, Event};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
-    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, Lagrangian, SVector, Scheme, State, StepError,
+    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Integrator, Lagrangian,
+    SVector, ScaledGauss, Scheme, State, StepError,
 };
 
 /// Which integrator.
@@ -45,6 +48,9 @@ pub(crate) enum Method {
 pub(crate) const STAGES: [usize; 2] = [4, 8];
 /// The number of stages that nobody asked for: the most accurate steps for their time, from errors of 1e-6 on.
 pub(crate) const USUAL_STAGES: usize = 8;
+
+/// Numbers of stages of energy-preserving Gauss steps: with more, rounding loses their length.
+pub(crate) const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
 impl Method {
     /// The scheme of a composition.
@@ -80,15 +86,30 @@ pub(crate) enum Start {
     Points,
 }
 
+/// The shift D_* of the step density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Shift {
+    /// This one.
+    Of(f64),
+    /// Twice the largest step density over this time from the start.
+    Over(f64),
+}
+
 /// What is to be run.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plan {
     /// The integrator.
     pub(crate) method: Method,
-    /// The start of the energy-preserving integrator; the others need none.
+    /// The start of the energy-preserving integrator without stages and shift; the others need none.
     pub(crate) start: Start,
-    /// The stages of Gauss steps, one of [`STAGES`]; the others need none.
-    pub(crate) stages: usize,
+    /// The stages of Gauss steps, one of [`STAGES`], or of energy-preserving ones, one of [`ENERGY_STAGES`].
+    pub(crate) stages: Option<usize>,
+    /// The shift of energy-preserving steps.
+    pub(crate) shift: Option<Shift>,
+    /// Whether fixed steps are taken where there is no energy-preserving one.
+    pub(crate) fallback: bool,
+    /// The step of Gauss steps in scaled time.
+    pub(crate) dtau: Option<f64>,
     /// The step, or the first one.
     pub(crate) h: f64,
     /// Initial time.
@@ -100,16 +121,47 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
+    /// A run by steps of the length h from a point, by what is usual of the method.
+    pub(crate) fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
+        Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
+    }
+
     /// The integrator and its start, as they are asked for on the command line.
     pub(crate) fn method_name(&self) -> String {
-        let name = self.method.name();
-        match (self.method, self.start) {
-            (Method::Energy, Start::Midpoint) => format!("{name}, start midpoint"),
-            (Method::Energy, Start::Points) => format!("{name}, start points"),
-            (Method::Gauss, _) => format!("{name}, {} stages", self.stages),
-            _ => name.to_owned(),
-        }
+        let start = |name: &str| format!("start {name}");
+        let of_the_method = match (self.method, self.energy_stages(), self.start) {
+            (Method::Gauss, _, _) => Some(format!("{} stages", self.stages.unwrap_or(USUAL_STAGES))),
+            (Method::Energy, Some(1), _) => Some("1 stage".to_owned()),
+            (Method::Energy, Some(stages), _) => Some(format!("{stages} stages")),
+            (Method::Energy, None, Start::Midpoint) => Some(start("midpoint")),
+            (Method::Energy, None, Start::Points) => Some(start("points")),
+            _ => None,
+        };
+        let shift = self.shift.map(|shift| match shift {
+            Shift::Of(shift) => format!("shift {}", short(shift)),
+            Shift::Over(time) => format!("shift measured over {}", short(time)),
+        });
+        let fallback = self.fallback.then(|| "with fallback".to_owned());
+        let dtau = self.dtau.map(|dtau| format!("dtau = {}", short(dtau)));
+        let words = [Some(self.method.name().to_owned()), of_the_method, shift, fallback, dtau];
+        words.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
+
+    /// The stages of energy-preserving steps by [`EnergyPreservingGauss`]; none where [`EnergyPreserving`] takes them.
+    pub(crate) fn energy_stages(&self) -> Option<usize> {
+        self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
+    }
+}
+
+/// Where a motion is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PhasePoint {
+    /// Time.
+    pub(crate) t: f64,
+    /// Coordinates.
+    pub(crate) q: Vec<f64>,
+    /// Velocities.
+    pub(crate) v: Vec<f64>,
 }
 
 /// A node, its energies, and the length of the step that led to it.
@@ -126,23 +178,27 @@ pub(crate) struct Row {
     /// E, the discrete energy of the interval that ends at the node; none before the first fixed step, and none of a
     /// composition, whose whole step is no interval of one discrete Lagrangian.
     pub(crate) discrete_energy: Option<f64>,
+    /// E', the energy that steps with a shift keep; none of other methods, whose rows have no such column.
+    pub(crate) shifted_energy: Option<f64>,
     /// Length of the step; in the first row the length asked for.
     pub(crate) h: f64,
 }
 
 impl Row {
-    /// The names of the columns, for these coordinates.
-    pub(crate) fn columns(coordinates: &[&str]) -> Vec<String> {
+    /// The names of the columns, for these coordinates, of steps with a shift or without.
+    pub(crate) fn columns(coordinates: &[&str], is_shifted: bool) -> Vec<String> {
         let q = coordinates.iter().map(|&name| name.to_owned());
         let p = coordinates.iter().map(|name| format!("p_{name}"));
-        let last = ["H", "E", "h"].map(str::to_owned);
+        let last: &[&str] = if is_shifted { &["H", "E", "E'", "h"] } else { &["H", "E", "h"] };
+        let last = last.iter().map(|&name| name.to_owned());
         ["t".to_owned()].into_iter().chain(q).chain(p).chain(last).collect()
     }
 
     /// The entries in the order of the columns.
     pub(crate) fn entries(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let numbers = core::iter::once(&self.t).chain(&self.q).chain(&self.p).copied().map(Some);
-        numbers.chain([self.energy, self.discrete_energy, Some(self.h)])
+        let energies = [self.energy, self.discrete_energy];
+        numbers.chain(energies).chain(self.shifted_energy.map(Some)).chain([Some(self.h)])
     }
 }
 
@@ -207,6 +263,10 @@ pub(crate) trait Simulation {
     fn energy(&self) -> Result<f64, StepError>;
     /// E, the discrete energy of the interval that ends at the node reached last; none where there is no such interval.
     fn discrete_energy(&self) -> Option<f64>;
+    /// E', which steps with a shift keep, and that shift; none of other methods.
+    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
+        None
+    }
     /// Takes one step.
     ///
     /// # Errors
@@ -258,9 +318,19 @@ pub(crate) trait Simulation {
             p: self.p().to_vec(),
             energy: self.energy().ok(),
             discrete_energy: self.discrete_energy(),
+            shifted_energy: self.shifted_energy().map(|of| of.energy),
             h: self.h(),
         }
     }
+}
+
+/// What steps with a shift keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ShiftedEnergy {
+    /// `E' = E − C_s h^2s D_*`.
+    pub(crate) energy: f64,
+    /// D_*.
+    pub(crate) shift: f64,
 }
 
 /// Starts a run of `system`. `evaluations` grows by those of its equations, which [`Counting`] counts; by Gauss steps it grows by the
@@ -287,28 +357,105 @@ where
         Method::Suzuki4 => Ok(Run::boxed(Composition::new(counting, Scheme::SUZUKI_4, state, plan.h)?, evaluations)),
         Method::KahanLi6 => Ok(Run::boxed(Composition::new(counting, Scheme::KAHAN_LI_6, state, plan.h)?, evaluations)),
         Method::KahanLi8 => Ok(Run::boxed(Composition::new(counting, Scheme::KAHAN_LI_8, state, plan.h)?, evaluations)),
-        Method::Gauss => match plan.stages {
-            4 => gauss::<S, N, 4>(system, state, plan.h, evaluations),
-            8 => gauss::<S, N, 8>(system, state, plan.h, evaluations),
-            #[allow(clippy::cast_precision_loss)] // a count that a command line can hold
-            other => Err(StepError::InvalidInput { input: "number of stages", allowed: "4 or 8", value: other as f64 }),
+        Method::Gauss => match (plan.stages.unwrap_or(USUAL_STAGES), plan.dtau) {
+            (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
+            (8, None) => gauss::<S, N, 8>(system, state, plan.h, evaluations),
+            (4, Some(dtau)) => scaled::<S, N, 4>(system, state, dtau, evaluations),
+            (8, Some(dtau)) => scaled::<S, N, 8>(system, state, dtau, evaluations),
+            (other, _) => Err(wrong_stages("4 or 8", other)),
         },
-        Method::Energy => {
-            let integrator = match plan.start {
-                Start::Midpoint => EnergyPreserving::from_midpoint(counting, t, q, v, plan.h)?,
-                Start::Points => {
-                    let second = start::second_point(&system, t, q, v, plan.h)?;
-                    EnergyPreserving::from_points(counting, (t, q), second)?
-                }
-            };
-            let in_the_middle = |run: &EnergyPreserving<Counting<'a, S>, N>| {
-                let v = run.v();
-                let (t, q) = run.node().midpoint(-run.h(), &v);
-                Ok((t, run.system().energy(t, &q, &v)))
-            };
-            Ok(Box::new(Run { sampled_energy: in_the_middle, ..Run::new(integrator, evaluations) }))
-        }
+        Method::Energy => match plan.energy_stages() {
+            None => one_stage(system, plan, (q, v), evaluations),
+            Some(1) => energy::<S, N, 1>(system, state, plan, evaluations),
+            Some(2) => energy::<S, N, 2>(system, state, plan, evaluations),
+            Some(3) => energy::<S, N, 3>(system, state, plan, evaluations),
+            Some(other) => Err(wrong_stages("1, 2 or 3", other)),
+        },
     }
+}
+
+/// Starts a run by energy-preserving steps of one stage without a shift.
+fn one_stage<'a, S, const N: usize>(
+    system: S,
+    plan: &Plan,
+    (q, v): (SVector<f64, N>, SVector<f64, N>),
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
+where
+    S: EnergyStepping<N> + 'a,
+{
+    let Plan { t, h, .. } = *plan;
+    let counting = Counting::new(system, evaluations);
+    let integrator = match plan.start {
+        Start::Midpoint => EnergyPreserving::from_midpoint(counting, t, q, v, h)?,
+        Start::Points => {
+            let second = start::second_point(&system, t, q, v, h)?;
+            EnergyPreserving::from_points(counting, (t, q), second)?
+        }
+    };
+    let in_the_middle = |run: &EnergyPreserving<Counting<'a, S>, N>| {
+        let v = run.v();
+        let (t, q) = run.node().midpoint(-run.h(), &v);
+        Ok((t, run.system().energy(t, &q, &v)))
+    };
+    let run = Run::new(integrator.with_fallback(fallback(plan)), evaluations);
+    Ok(Box::new(Run { sampled_energy: in_the_middle, ..run }))
+}
+
+/// What is done where there is no energy-preserving step.
+fn fallback(plan: &Plan) -> Fallback {
+    if plan.fallback { Fallback::FixedSteps } else { Fallback::Stop }
+}
+
+/// The error for a number of stages that is not built in.
+#[allow(clippy::cast_precision_loss)] // a count that a command line can hold
+fn wrong_stages(allowed: &'static str, stages: usize) -> StepError {
+    StepError::InvalidInput { input: "number of stages", allowed, value: stages as f64 }
+}
+
+/// Starts a run by energy-preserving Gauss steps of so many stages.
+fn energy<'a, S, const N: usize, const STAGES: usize>(
+    system: S,
+    state: State<N>,
+    plan: &Plan,
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
+where
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+{
+    let integrator = EnergyPreservingGauss::<_, N, STAGES>::new(Called(system), state, plan.h)?;
+    let integrator = match plan.shift {
+        None => integrator,
+        Some(Shift::Of(shift)) => integrator.with_shift(shift)?,
+        Some(Shift::Over(time)) => integrator.with_shift_from(time)?,
+    };
+    let run = Run::new(integrator.with_fallback(fallback(plan)), evaluations);
+    let count = |run: &EnergyPreservingGauss<Called<S>, N, STAGES>| u64::from(run.iterations()) * STAGES as u64;
+    let shifted = |run: &EnergyPreservingGauss<Called<S>, N, STAGES>| ShiftedEnergy {
+        energy: run.shifted_energy(),
+        shift: run.shift(),
+    };
+    let shifted = plan.shift.map(|_| shifted as fn(&_) -> _);
+    Ok(Box::new(Run { uncounted: Some(count), shifted, ..run }))
+}
+
+/// Starts a run by Gauss steps of so many stages in scaled time.
+fn scaled<'a, S, const N: usize, const STAGES: usize>(
+    system: S,
+    state: State<N>,
+    dtau: f64,
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
+where
+    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+{
+    // Else they would be built for every system.
+    if !S::SCALES_TIME {
+        return Err(StepError::NoTimeScale { system: S::NAME });
+    }
+    let run = Run::new(ScaledGauss::<_, N, STAGES>::new(Called(system), state, dtau)?, evaluations);
+    let count = |run: &ScaledGauss<Called<S>, N, STAGES>| u64::from(run.iterations()) * STAGES as u64;
+    Ok(Box::new(Run { uncounted: Some(count), ..run }))
 }
 
 /// Starts a run by Gauss steps of so many stages.
@@ -348,12 +495,15 @@ struct Run<'a, I, const N: usize> {
     evaluations: &'a Cell<u64>,
     /// The evaluations of the last step, where its system does not count them.
     uncounted: Option<fn(&I) -> u64>,
+    /// What steps with a shift keep.
+    shifted: Option<fn(&I) -> ShiftedEnergy>,
 }
 
 impl<'a, I: Integrator<N> + 'a, const N: usize> Run<'a, I, N> {
     /// A run whose system counts its evaluations, and which keeps H best at the nodes.
     fn new(integrator: I, evaluations: &'a Cell<u64>) -> Self {
-        Self { integrator, sampled_energy: |run| Ok((run.t(), run.energy()?)), evaluations, uncounted: None }
+        let at_the_node = |run: &I| Ok((run.t(), run.energy()?));
+        Self { integrator, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None }
     }
 
     /// The same, its type erased.
@@ -392,6 +542,10 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
 
     fn discrete_energy(&self) -> Option<f64> {
         self.integrator.discrete_energy()
+    }
+
+    fn shifted_energy(&self) -> Option<ShiftedEnergy> {
+        self.shifted.map(|of| of(&self.integrator))
     }
 
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {

@@ -6,24 +6,14 @@
 
 use crate::exponents::{self, Exponents};
 use crate::rival::{self, Ended};
-use crate::simulation::{self, Plan, Simulation, vector};
+use crate::simulation::{self, ENERGY_STAGES, PhasePoint, Plan, Simulation, vector};
 use core::cell::Cell;
 use vi_core::check::Motion;
 use vi_core::collocation::Collocation;
+use vi_core::gauss::energy::step_density;
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::{Convertible, EnergyStepping};
-use vi_core::{SVector, StepError};
-
-/// Where a motion is.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PhasePoint {
-    /// Time.
-    pub(crate) t: f64,
-    /// Coordinates.
-    pub(crate) q: Vec<f64>,
-    /// Velocities.
-    pub(crate) v: Vec<f64>,
-}
+use vi_core::{Called, SVector, State, StepError};
 
 /// A system with its parameters.
 pub(crate) trait System: Send + Sync {
@@ -41,6 +31,10 @@ pub(crate) trait System: Send + Sync {
     fn conserves_energy(&self) -> bool;
     /// Step density D at t = 0; none where it has no value.
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
+    /// Step densities of 1, 2 and 3 stages at a node, its time, coordinates and momenta given; none where one has no value.
+    fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()];
+    /// g of the time scale at a point; none of a system without a time scale.
+    fn time_scale(&self, at: &PhasePoint) -> Option<f64>;
     /// H at a point.
     ///
     /// # Errors
@@ -125,6 +119,23 @@ where
         let sized = q.len() == N && v.len() == N;
         let density = || self.0.step_density(0.0, &SVector::from_column_slice(q), &SVector::from_column_slice(v)).ok();
         sized.then(density).flatten().filter(|density| density.is_finite())
+    }
+
+    fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()] {
+        let state =
+            vector(q, "number of coordinates").and_then(|q| Ok(State { t, q, p: vector(p, "number of momenta")? }));
+        let Ok(state) = state else { return [None; ENERGY_STAGES.len()] };
+        let system = Called(self.0);
+        [
+            step_density::<_, N, { ENERGY_STAGES[0] }>(&system, &state).ok(),
+            step_density::<_, N, { ENERGY_STAGES[1] }>(&system, &state).ok(),
+            step_density::<_, N, { ENERGY_STAGES[2] }>(&system, &state).ok(),
+        ]
+    }
+
+    fn time_scale(&self, at: &PhasePoint) -> Option<f64> {
+        let Motion { t, q, v } = sized(at).ok()?;
+        S::SCALES_TIME.then(|| self.0.scaled_point(t, &q, &v).g)
     }
 
     fn energy(&self, at: &PhasePoint) -> Result<f64, StepError> {

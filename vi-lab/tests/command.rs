@@ -232,7 +232,7 @@ fn wrong_input_is_one_line_and_status_2() {
         ),
         (
             &["run", "double-well", "--steps", "1", "--stages", "4"],
-            "only Gauss steps have --stages; add --method gauss, or leave it out",
+            "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or leave it out",
         ),
         (&["work-precision", "kepler", "--q", "1"], "give 2 finite coordinates (--q), not [1.0]"),
         (
@@ -418,13 +418,113 @@ fn the_two_energies_have_columns_of_their_own() {
 #[test]
 fn where_no_step_exists_the_advice_leads_on() {
     let run = ["run", "double-well", "--q", "1.05", "--steps", "1000", "--every", "1000"];
-    let (status, _, errors) = lab(&[run.as_slice(), &["--method", "energy"]].concat());
-    let lines: Vec<&str> = errors.lines().collect();
-    assert_eq!((status, lines.len()), (Some(1), 3), "{errors}");
-    assert!(lines[1].starts_with("last good state: t = "), "{errors}");
-    assert!(lines[2].starts_with("what to do: take fixed steps with --method fixed"), "{errors}");
-    let (status, _, errors) = lab(&[run.as_slice(), &["--method", "fixed"]].concat());
-    assert_eq!((status, errors.as_str()), (Some(0), ""), "the advice leads on");
+    let advised = |options: &[&str]| {
+        let (status, _, errors) = lab(&[run.as_slice(), &["--method", "energy"], options].concat());
+        let lines: Vec<&str> = errors.lines().collect();
+        assert_eq!((status, lines.len()), (Some(1), 3), "{errors}");
+        assert!(lines[1].starts_with("last good state: t = "), "{errors}");
+        lines[2].to_owned()
+    };
+    let leads_on = |options: &[&str]| {
+        let (status, _, errors) = lab(&[run.as_slice(), options].concat());
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{options:?}");
+    };
+    let shift =
+        |advice: &str| advice.split("--shift ").nth(1).and_then(|rest| rest.split(' ').next()).map(str::to_owned);
+    let advice = advised(&[]);
+    let given = shift(&advice).expect("a shift");
+    let rest = format!(
+        "what to do: --shift {given} makes steps that exist along this motion; other orders have other step densities, here --stages 2, D = "
+    );
+    assert!(advice.starts_with(&rest) && advice.contains("; --stages 3, D = "), "{advice}");
+    let end = "; --method fixed and --method gauss take no others";
+    assert!(advice.contains("; --fallback goes on with fixed steps of h = ") && advice.ends_with(end), "{advice}");
+    for options in [["--shift", &given].as_slice(), &["--shift", "auto"], &["--stages", "2"], &["--fallback"]] {
+        leads_on(&[&["--method", "energy"], options].concat());
+    }
+    leads_on(&["--method", "fixed"]);
+    leads_on(&["--method", "gauss"]);
+    // A shift that is too small: the one to take is larger.
+    let small = advised(&["--stages", "1", "--shift", "0.01"]);
+    assert!(small.starts_with("what to do: --stages 1 --shift "), "{small}");
+    leads_on(&["--method", "energy", "--stages", "1", "--shift", &shift(&small).expect("a shift")]);
+}
+
+#[test]
+fn steps_too_short_to_have_a_length_are_told_a_longer_one() {
+    let run = ["run", "double-well", "--method", "energy", "--stages", "3"];
+    let (status, _, errors) = lab(&[run.as_slice(), &["--h", "0.01"]].concat());
+    assert_eq!(status, Some(1), "{errors}");
+    assert!(errors.starts_with("error: the step length is not determined at t = 0"), "{errors}");
+    let longer = errors.split("what to do: --h ").nth(1).and_then(|rest| rest.split(':').next()).expect("a length");
+    for options in [["--h", longer].as_slice(), &[]] {
+        let (status, _, errors) = lab(&[run.as_slice(), options].concat());
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{options:?}");
+    }
+}
+
+#[test]
+fn steps_with_a_shift_keep_an_energy_of_their_own() {
+    let pendulum =
+        ["run", "pendulum", "--set", "g=1", "--q", "2", "--h", "0.05", "--steps", "340", "--method", "energy"];
+    let (status, csv, errors) = lab(&[pendulum.as_slice(), &["--stages", "2", "--shift", "auto"]].concat());
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(csv.contains("\nt,θ,p_θ,H,E,E',h\n"), "{csv}");
+    let kept = "E': E − C h^4 D*, which is kept, with C = 1/864 and the shift D* = 18.";
+    assert!(csv.contains("\n# method: energy, 2 stages, shift 18.") && csv.contains(kept), "{csv}");
+    let rows = rows(&csv);
+    assert_eq!((rows.len(), rows[0][0]), (341, 0.0));
+    let swing = |column: usize| {
+        let values = || rows.iter().map(|row| row[column]);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    // Predicted by docs/theory.md, section 5: H by 1.21e-8, E by 4.08e-8. Measured E': 2.2e-16.
+    let [total, discrete, shifted] = [3, 4, 5].map(swing);
+    println!("H swings by {total:e}, E by {discrete:e}, E' by {shifted:e}");
+    assert!((total / 1.21e-8 - 1.0).abs() < 0.01 && (discrete / 4.08e-8 - 1.0).abs() < 0.01, "{total:e}, {discrete:e}");
+    assert!(shifted < 5e-16, "{shifted:e}");
+    // The order of the stages without a shift: E is kept, and H nearer to it.
+    let (_, csv, _) =
+        lab(&["run", "kepler", "--method", "energy", "--stages", "3", "--h", "0.05", "--q", "0.7,0", "--v", "0,1.36"]);
+    assert!(
+        csv.contains("\n# method: energy, 3 stages, h = 0.05,") && csv.contains("that ends there, none before"),
+        "{csv}"
+    );
+    let rows: Vec<Vec<&str>> =
+        csv.lines().filter(|line| !line.starts_with(['#', 't'])).map(|line| line.split(',').collect()).collect();
+    assert!(rows.len() == 1001 && rows.iter().all(|row| row[6] == rows[0][6]), "E is kept to the last bit");
+    let scene = temporary("shift.toml");
+    fs::write(&scene, "system = \"pendulum\"\nmethod = \"energy\"\nstages = 2\nshift = \"auto\"\nq = [2.0]\n")
+        .expect("a scene");
+    assert_eq!(lab(&["run", path(&scene)]).0, Some(0));
+    // What belongs to the method of the scene is none of another.
+    assert_eq!(lab(&["run", path(&scene), "--method", "fixed"]).0, Some(0));
+    fs::remove_file(&scene).expect("the file can be removed");
+}
+
+#[test]
+fn gauss_steps_in_scaled_time_follow_an_eccentric_orbit() {
+    // Eccentricity 0.9: three periods of fifteen steps each, as in the cookbook.
+    let orbit = ["run", "kepler", "--q", "0.1,0", "--v", "0,4.358898943540674", "--method", "gauss"];
+    let (status, csv, errors) = lab(&[orbit.as_slice(), &["--dtau", "0.5578667", "--steps", "45"]].concat());
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    assert!(csv.contains("# method: gauss, 8 stages, dtau = 0.5578667, h = 0.0176"), "{csv}");
+    let rows = rows(&csv);
+    let last = rows.last().expect("rows");
+    let longest = rows.iter().fold(0.0_f64, |longest, row| longest.max(row[7]));
+    println!("t = {}, H + 1/2 = {:e}, the longest step {longest}", last[0], last[5] + 0.5);
+    // Measured: 45 steps end 2e-3 before the third period is over; H as it began to 1.5e-13, while a step is up to 80 times as long as the first.
+    assert!((last[0] - 6.0 * std::f64::consts::PI).abs() < 0.01 && (last[5] + 0.5).abs() < 1e-12 && longest > 1.0);
+    assert_refused(&[
+        (
+            &["run", "pendulum", "--method", "gauss", "--dtau", "0.5"],
+            "pendulum has no time scale; take steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+        ),
+        (
+            &["run", "kepler", "--method", "gauss", "--dtau", "0.5", "--h", "0.1"],
+            "the argument '--dtau <DTAU>' cannot be used with '--h <H>'",
+        ),
+    ]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! Numbers are the shortest that read back to the same bits; an entry that has no value is empty. AFTER A BLOCK IS
 //! WRITTEN the file consists of whole lines, whatever ends the run.
 
-use super::{BLOCK, ENERGIES, Request, Sink};
+use super::{BLOCK, Request, Sink, energies};
 use crate::failure::Failure;
 use crate::machine::{VERSION, command_line};
 use crate::numbers::short;
@@ -87,7 +87,7 @@ fn head(request: &Request) -> String {
     let rows = if *every == 1 { "every node".to_owned() } else { format!("one node in {every}, and the last") };
     format!(
         "# vi-lab {VERSION}\n# command: {}\n# system: {}\n# parameters: {}\n# method: {}, h = {}, t = {}, q = {:?}, v = {:?}\n\
-         # rows: {rows}\n# {ENERGIES}\n{}\n",
+         # rows: {rows}\n# {}\n{}\n",
         command_line(),
         system.name(),
         parameters.join(", "),
@@ -96,6 +96,7 @@ fn head(request: &Request) -> String {
         short(plan.t),
         plan.q,
         plan.v,
+        energies(plan),
         columns.join(","),
     )
 }
@@ -132,9 +133,19 @@ mod tests {
     #[test]
     fn an_entry_without_a_value_is_empty() {
         let mut block = String::new();
-        let row = Row { t: 0.0, q: vec![1.0], p: vec![-2.5], energy: Some(1e-300), discrete_energy: None, h: 0.01 };
+        let row = Row {
+            t: 0.0,
+            q: vec![1.0],
+            p: vec![-2.5],
+            energy: Some(1e-300),
+            discrete_energy: None,
+            shifted_energy: None,
+            h: 0.01,
+        };
         line(&mut block, &row);
-        line(&mut block, &Row { energy: None, discrete_energy: Some(3.0), ..row });
-        assert_eq!(block, "0.0,1.0,-2.5,1e-300,,0.01\n0.0,1.0,-2.5,,3.0,0.01\n");
+        let row = Row { energy: None, discrete_energy: Some(3.0), ..row };
+        line(&mut block, &row);
+        line(&mut block, &Row { shifted_energy: Some(2.0), ..row });
+        assert_eq!(block, "0.0,1.0,-2.5,1e-300,,0.01\n0.0,1.0,-2.5,,3.0,0.01\n0.0,1.0,-2.5,,3.0,2.0,0.01\n");
     }
 }

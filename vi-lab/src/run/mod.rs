@@ -1,13 +1,15 @@
 //! `vi-lab run`: one system simulated, its nodes written as CSV or NPY, or drawn.
 //!
 //! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`, where
-//! H is the energy at the node and E the discrete energy of the interval that ends there. AFTER A RUN THAT ENDS EARLY, by
-//! a step that fails or a signal, the output and the plot hold every row up to there, and the last node whatever `--every` says.
+//! H is the energy at the node and E the discrete energy of the interval that ends there; before h, E' of steps with a shift. AFTER A RUN THAT ENDS
+//! EARLY, by a step that fails or a signal, the output and the plot hold every row up to there, and the last node whatever `--every` says.
 //!
 //! | module | part of a run |
 //! |---|---|
 //! | [`request`], [`scene`] | what is to be done: command line and scene, checked |
+//! | [`shift`] | how a shift is written |
 //! | [`resolution`], [`extent`] | what is refused: steps that rounding swallows, outputs of gigabytes |
+//! | [`ways_out`] | what to do where an energy-preserving step does not exist |
 //! | [`csv`], [`npy`], [`plot`] | where rows go |
 
 mod csv;
@@ -17,19 +19,22 @@ mod plot;
 mod request;
 mod resolution;
 mod scene;
+mod shift;
+mod ways_out;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, advice};
 use crate::input::{count, number};
 use crate::interrupt::{Interrupt, Signal};
 use crate::numbers::short;
 use crate::progress::Progress;
-use crate::simulation::{Method, Plan, Row, Simulation, Start};
+use crate::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift, Simulation, Start};
 use crate::system::System;
 use clap::Args;
 use core::cell::Cell;
 use extent::Extent;
 use request::Output;
 pub(crate) use request::{Length, Request};
+use shift::Wanted;
 use std::path::PathBuf;
 
 /// Bytes of whole rows that are written at once.
@@ -38,21 +43,45 @@ const BLOCK: usize = 1 << 16;
 /// What the two columns of energies are, for the files that hold them.
 const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interval that ends there, none before the first \
                         step of a given length and none of a composition";
+/// `C_s` of 1, 2 and 3 stages: H − E is `C_s h^2s D` to leading order, D the step density.
+const CONSTANTS: [&str; ENERGY_STAGES.len()] = ["1/8", "1/864", "1/288000"];
+
+/// What the columns of energies are in the rows of a plan, and which of them is kept.
+fn energies(plan: &Plan) -> String {
+    let kept = match (plan.method, plan.shift) {
+        (Method::Energy, Some(Shift::Of(shift))) => {
+            let stages = plan.energy_stages().unwrap_or(1);
+            let constant = CONSTANTS.get(stages - 1).copied().unwrap_or_default();
+            let (order, shift) = (2 * stages, short(shift));
+            format!("; E': E − C h^{order} D*, which is kept, with C = {constant} and the shift D* = {shift}")
+        }
+        (Method::Energy, _) if plan.fallback => "; E is kept, but by fixed steps".to_owned(),
+        (Method::Energy, _) => "; E is kept".to_owned(),
+        _ => String::new(),
+    };
+    format!("{ENERGIES}{kept}")
+}
 
 /// Arguments of `vi-lab run`.
 #[derive(Clone, Debug, Default, Args)]
 #[command(after_help = "\
 Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the \
 discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
-term of order h², with Gauss steps of S stages by one of order h^2S. H and E of the first two differ by h²D/8 to leading order, D the step density. A run of fixed or Gauss steps has no interval \
+term of order h², with Gauss steps of S stages by one of order h^2S. H and E of the first two differ by h²D/8 to leading order, D the step density. \
+With --shift D* a column E' comes before h: E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3, which is kept then, while E and H swing. A run of fixed or Gauss steps has no interval \
 before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
 length of the step that led to the node.
 
 --plot draws the rows that --every leaves: energies less H at the start, every coordinate over time and with its momentum, up to 24 of them, and \
 the path of two in their plane. A long run takes no more memory than a short one: stretches of it keep their extremes, a phase portrait becomes dots.
 
+Energy-preserving steps: without --stages and --shift they are of order 2. They exist where the step density D, another \
+one for each number of stages, keeps its sign; with --shift D*, where D + D* does: D* above the largest |D| makes steps everywhere, the larger the \
+nearer to fixed ones. --shift auto takes twice the largest |D| that fixed steps meet over the time of the run, or over its first 10000 steps, and the \
+head of the CSV names it. --fallback takes fixed steps where there is no other.
+
 Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial \
-state is the middle of the first interval, and that node lies half a step later. The node reached last is always written.
+state is the middle of the first interval, and that node lies half a step later. With --stages or --shift the first row is the initial state. The node reached last is always written.
 
 Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
 (SIGINT, SIGTERM); 141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there \
@@ -67,13 +96,22 @@ pub(crate) struct Arguments {
     /// Integrator [default: fixed]
     #[arg(long)]
     pub(crate) method: Option<Method>,
-    /// First interval of the energy-preserving integrator [default: midpoint]
+    /// First interval of energy-preserving steps without --stages and --shift [default: midpoint]
     #[arg(long)]
     pub(crate) start: Option<Start>,
-    /// Stages of a step of --method gauss: 4 or 8 [default: 8]
+    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3, of order 2, 4 or 6
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
     pub(crate) stages: Option<u64>,
-    /// Step, or first step [default: the system's]
+    /// Shift of the step density of --method energy, with which steps exist where its sign changes: a number, or auto
+    #[arg(long, value_name = "D|auto", allow_hyphen_values = true, value_parser = shift::wanted)]
+    pub(crate) shift: Option<Wanted>,
+    /// Takes fixed steps where --method energy has no others
+    #[arg(long)]
+    pub(crate) fallback: bool,
+    /// Step of --method gauss in scaled time, for systems with a `time_scale`
+    #[arg(long, value_name = "DTAU", allow_hyphen_values = true, value_parser = number, conflicts_with = "h")]
+    pub(crate) dtau: Option<f64>,
+    /// Step, or first step [default: the system's; four and eight times that with --method energy --stages 2 and 3]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
     /// Number of steps, such as 1e6 [default: 1000]
@@ -139,12 +177,16 @@ pub(crate) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<
 /// # Errors
 /// Wrong input, a failed step, a file that cannot be written, a signal.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let request = Request::of(arguments)?;
+    let mut request = Request::of(arguments)?;
     resolution::check_times(&request.plan, request.length)?;
     let extent = Extent::of(&request)?;
     let evaluations = Cell::new(0);
     let begun = request.system.begin(&request.plan, &evaluations);
     let mut simulation = begun.map_err(|error| Failure::start(error, &request.plan))?;
+    if let Some(of) = simulation.shifted_energy() {
+        // A shift that was measured is from here on one that is given.
+        request.plan.shift = Some(Shift::Of(of.shift));
+    }
     resolution::check_state(&request)?;
     let mut sinks = sinks(&request)?;
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
@@ -211,14 +253,14 @@ impl Course<'_> {
     /// Takes one step; an error says why the run ends here.
     fn advance(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
         let t = simulation.t();
-        let method = self.request.plan.method;
         if let Some(signal) = signal() {
             return Err(Failure::Interrupted { signal, reached: format!("{} steps at t = {}", self.steps, short(t)) });
         }
-        simulation.advance().map_err(|error| Failure::Step {
-            error,
-            before: describe(&simulation.row(), self.steps),
-            method: Some(method),
+        simulation.advance().map_err(|error| {
+            let node = simulation.row();
+            let general = || advice(&error, self.request.plan.method).map(str::to_owned);
+            let advice = ways_out::of(self.request, &error, &node).or_else(general);
+            Failure::Step { error: Box::new(error), before: describe(&node, self.steps), advice }
         })?;
         self.steps += 1;
         let ended = |why| Failure::Ended { why, before: describe(&simulation.row(), self.steps) };
@@ -242,8 +284,8 @@ impl Course<'_> {
 
 /// A node in words.
 fn describe(row: &Row, steps: u64) -> String {
-    let Row { t, q, p, energy, discrete_energy, h } = row;
-    let energies: String = [("H", energy), ("E", discrete_energy)]
+    let Row { t, q, p, energy, discrete_energy, shifted_energy, h } = row;
+    let energies: String = [("H", energy), ("E", discrete_energy), ("E'", shifted_energy)]
         .into_iter()
         .filter_map(|(name, energy)| energy.map(|energy| format!(", {name} = {}", short(energy))))
         .collect();

@@ -4,7 +4,7 @@
 //! AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
 //! the file, whatever ends the run.
 
-use super::{BLOCK, ENERGIES, Request, Sink};
+use super::{BLOCK, Request, Sink, energies};
 use crate::failure::Failure;
 use crate::machine::{VERSION, command_line};
 use crate::npy::{ROOM, head};
@@ -75,7 +75,7 @@ fn description(request: &Request) -> serde_json::Value {
     json!({
         "version": VERSION, "command": command_line(), "system": system.name(), "parameters": parameters,
         "method": plan.method_name(), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "every": every,
-        "columns": request.columns(), "energies": ENERGIES,
+        "columns": request.columns(), "energies": energies(plan),
     })
 }
 

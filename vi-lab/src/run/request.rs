@@ -2,12 +2,13 @@
 
 use super::Arguments;
 use super::scene::Scene;
+use super::shift::Wanted;
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::input::number;
 use crate::numbers::short;
 use crate::place;
-use crate::simulation::{Method, Plan, Row, STAGES, Start, USUAL_STAGES};
+use crate::simulation::{ENERGY_STAGES, Method, PhasePoint, Plan, Row, STAGES, Shift, Start};
 use crate::sweep::items::Items;
 use crate::sweep::scene::Sweep;
 use crate::system::System;
@@ -17,6 +18,8 @@ use std::path::{Path, PathBuf};
 
 /// Steps of a run that is not told otherwise.
 const USUAL_STEPS: u64 = 1000;
+/// Steps over which a shift is measured, at most.
+const MEASURED_STEPS: f64 = 1e4;
 
 /// A run, ready to begin.
 pub(crate) struct Request {
@@ -71,6 +74,11 @@ impl Length {
             Self::Steps(wanted) => wanted as f64,
             Self::Until(end) => ((end - plan.t) / plan.h).ceil(),
         }
+    }
+
+    /// The time over which a shift is measured: that of the run, or of its first steps.
+    pub(super) fn measured(self, plan: &Plan) -> f64 {
+        self.steps(plan).clamp(1.0, MEASURED_STEPS) * plan.h
     }
 
     /// The time at which the run ends, were all steps as long as the first.
@@ -180,35 +188,35 @@ impl Request {
             }
             set(system.as_mut(), name, value)?;
         }
-        let mut plan = Plan {
-            method: arguments.method.or(scene.method).unwrap_or(Method::Fixed),
-            start: arguments.start.or(scene.start).unwrap_or(Start::Midpoint),
-            stages: stages(arguments.stages.or(scene.stages))?,
-            h: arguments.h.or(scene.h).unwrap_or(entry.h),
+        let start = PhasePoint {
             t: arguments.t.or(scene.t).unwrap_or(0.0),
-            q: arguments.q.clone().or(scene.q).unwrap_or(entry.q),
-            v: arguments.v.clone().or(scene.v).unwrap_or(entry.v),
+            q: arguments.q.clone().or(scene.q.clone()).unwrap_or(entry.q),
+            v: arguments.v.clone().or(scene.v.clone()).unwrap_or(entry.v),
+        };
+        let method = arguments.method.or(scene.method).unwrap_or(Method::Fixed);
+        let options = Options::of(arguments, &scene);
+        options.check(method)?;
+        let stages = options.stages.map(|wanted| stages(method, wanted)).transpose()?;
+        let usual = entry.h * usual_length(method, stages);
+        let h = arguments.h.or(scene.h).unwrap_or(usual);
+        let mut plan = Plan {
+            start: options.start.unwrap_or(Start::Midpoint),
+            stages,
+            fallback: options.fallback,
+            ..Plan::new(method, h, start)
         };
         if let (Some(sweep), Some(item)) = (&scene.sweep, arguments.item) {
             set_item(sweep, item, system.as_mut(), &mut plan)?;
         }
         check_initial(system.as_ref(), &plan)?;
-        // A start that belongs to another method of the scene is no mistake.
-        let start = arguments.start.or(scene.start.filter(|_| arguments.method.is_none()));
-        if start.is_some() && plan.method != Method::Energy {
-            let message = "only energy-preserving steps have a --start; add --method energy, or leave it out";
-            return Err(Failure::Input(message.to_owned()));
-        }
-        let stages = arguments.stages.or(scene.stages.filter(|_| arguments.method.is_none()));
-        if stages.is_some() && plan.method != Method::Gauss {
-            return Err(Failure::Input(
-                "only Gauss steps have --stages; add --method gauss, or leave it out".to_owned(),
-            ));
+        if let Some(dtau) = options.dtau {
+            scale_time(system.as_ref(), &mut plan, dtau)?;
         }
         let length = match (arguments.steps, arguments.until) {
             (None, None) => length(scene.steps, scene.until, &plan)?,
             (steps, until) => length(steps, until, &plan)?,
         };
+        plan.shift = options.shift.map(|wanted| shift(wanted, length, &plan)).transpose()?;
         let every = arguments.every.or(scene.every).unwrap_or(1);
         if every == 0 {
             return Err(Failure::Input("every how many nodes one is written (--every) must be at least 1".to_owned()));
@@ -225,20 +233,118 @@ impl Request {
 
     /// Names of the columns of a row.
     pub(crate) fn columns(&self) -> Vec<String> {
-        Row::columns(&self.system.coordinates())
+        Row::columns(&self.system.coordinates(), self.plan.shift.is_some())
+    }
+}
+
+/// What belongs to some methods only.
+#[derive(Clone, Copy, Debug)]
+struct Options {
+    start: Option<Start>,
+    stages: Option<u64>,
+    shift: Option<Wanted>,
+    fallback: bool,
+    dtau: Option<f64>,
+}
+
+impl Options {
+    /// Those of the command line, else of the scene, unless its method is not the one of the run: what belongs to that is no mistake.
+    fn of(arguments: &Arguments, scene: &Scene) -> Self {
+        let other = Scene::default();
+        let scene = if arguments.method.is_none() { scene } else { &other };
+        // A step in time on the command line replaces one in scaled time.
+        let dtau = scene.dtau.filter(|_| arguments.h.is_none());
+        Self {
+            start: arguments.start.or(scene.start),
+            stages: arguments.stages.or(scene.stages),
+            shift: arguments.shift.or(scene.shift),
+            fallback: arguments.fallback || scene.fallback.unwrap_or(false),
+            dtau: arguments.dtau.or(dtau),
+        }
+    }
+
+    /// Whether the method has all of them, and they go together.
+    fn check(&self, method: Method) -> Result<(), Failure> {
+        let Self { start, stages, shift, fallback, dtau } = *self;
+        let energy = "only energy-preserving steps have a";
+        let (is_energy, is_gauss) = (method == Method::Energy, method == Method::Gauss);
+        let message = match () {
+            () if start.is_some() && !is_energy => {
+                format!("{energy} --start; add --method energy, or leave it out")
+            }
+            () if shift.is_some() && !is_energy => {
+                format!("{energy} --shift; add --method energy, or leave it out")
+            }
+            () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or leave it out"),
+            () if stages.is_some() && !is_energy && !is_gauss => {
+                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or leave it out"
+                    .to_owned()
+            }
+            () if dtau.is_some() && !is_gauss => {
+                "only Gauss steps have a step in scaled time, --dtau; add --method gauss, or leave it out".to_owned()
+            }
+            () if start.is_some() && (stages.is_some() || shift.is_some()) => {
+                "steps with --stages or --shift start from the initial state; leave --start out".to_owned()
+            }
+            () => return Ok(()),
+        };
+        Err(Failure::Input(message))
     }
 }
 
 /// A number of stages that is built into the command.
-fn stages(wanted: Option<u64>) -> Result<usize, Failure> {
-    let Some(wanted) = wanted else { return Ok(USUAL_STAGES) };
-    let built = STAGES.into_iter().find(|built| *built as u64 == wanted);
-    built.ok_or_else(|| {
-        let [first, second] = STAGES;
-        Failure::Input(format!(
-            "Gauss steps of {wanted} stages are not built into the command; --stages may be {first} or {second}"
-        ))
+fn stages(method: Method, wanted: u64) -> Result<usize, Failure> {
+    let built: &[usize] = if method == Method::Energy { &ENERGY_STAGES } else { &STAGES };
+    let found = built.iter().copied().find(|built| *built as u64 == wanted);
+    found.ok_or_else(|| {
+        Failure::Input(match method {
+            Method::Energy => format!(
+                "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: of more, rounding loses the length"
+            ),
+            _ => format!("Gauss steps of {wanted} stages are not built into the command; --stages may be 4 or 8"),
+        })
     })
+}
+
+/// How many times a step that nobody gave is as long as the system's: of short energy-preserving ones of order 4 and 6 the energy tells
+/// no length.
+fn usual_length(method: Method, stages: Option<usize>) -> f64 {
+    match (method, stages) {
+        (Method::Energy, Some(2)) => 4.0,
+        (Method::Energy, Some(3)) => 8.0,
+        _ => 1.0,
+    }
+}
+
+/// Makes the steps of a plan those of one length in scaled time, of which the first is as long as g says.
+fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Failure> {
+    let Plan { t, q, v, .. } = plan.clone();
+    let Some(g) = system.time_scale(&PhasePoint { t, q, v }) else {
+        return Err(Failure::Input(format!(
+            "{} has no time scale; take steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+            catalogue::kebab(system.name())
+        )));
+    };
+    if !dtau.is_finite() || dtau == 0.0 {
+        return Err(Failure::Input(format!(
+            "the step in scaled time (--dtau) must be finite and not zero, not {dtau}"
+        )));
+    }
+    plan.dtau = Some(dtau);
+    // Where g is no scale the run says so.
+    plan.h = if g > 0.0 && g.is_finite() { g * dtau } else { dtau };
+    Ok(())
+}
+
+/// The shift that is wanted: `auto` is measured over the run, or its first part.
+fn shift(wanted: Wanted, length: Length, plan: &Plan) -> Result<Shift, Failure> {
+    match wanted {
+        Wanted::Given(shift) if !shift.is_finite() => {
+            Err(Failure::Input(format!("the shift (--shift) must be finite, not {shift}")))
+        }
+        Wanted::Given(shift) => Ok(Shift::Of(shift)),
+        Wanted::Auto => Ok(Shift::Over(length.measured(plan))),
+    }
 }
 
 fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
@@ -351,6 +457,10 @@ mod tests {
         Request::of(arguments).err().map_or_else(String::new, |failure| failure.to_string())
     }
 
+    fn plan_of(arguments: &Arguments) -> Plan {
+        Request::of(arguments).map_or_else(|failure| panic!("{failure}"), |request| request.plan)
+    }
+
     #[test]
     fn every_wrong_input_has_its_message() {
         let with = |change: fn(&mut Arguments)| {
@@ -358,7 +468,7 @@ mod tests {
             change(&mut arguments);
             message(&arguments)
         };
-        let cases: [(String, &str); 16] = [
+        let cases: [(String, &str); 23] = [
             (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
             (
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
@@ -369,7 +479,40 @@ mod tests {
                 with(|a| a.start = Some(Start::Points)),
                 "only energy-preserving steps have a --start; add --method energy, or leave it out",
             ),
-            (with(|a| a.stages = Some(8)), "only Gauss steps have --stages; add --method gauss, or leave it out"),
+            (
+                with(|a| a.stages = Some(8)),
+                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or leave it out",
+            ),
+            (
+                with(|a| (a.method, a.stages) = (Some(Method::Energy), Some(4))),
+                "energy-preserving steps have 1, 2 or 3 stages, not 4: of more, rounding loses the length",
+            ),
+            (
+                with(|a| (a.method, a.shift) = (Some(Method::Gauss), Some(Wanted::Auto))),
+                "only energy-preserving steps have a --shift; add --method energy, or leave it out",
+            ),
+            (
+                with(|a| (a.method, a.shift) = (Some(Method::Energy), Some(Wanted::Given(f64::INFINITY)))),
+                "the shift (--shift) must be finite, not inf",
+            ),
+            (
+                with(|a| a.fallback = true),
+                "only energy-preserving steps have a --fallback; add --method energy, or leave it out",
+            ),
+            (
+                with(|a| {
+                    (a.method, a.start, a.shift) = (Some(Method::Energy), Some(Start::Points), Some(Wanted::Auto));
+                }),
+                "steps with --stages or --shift start from the initial state; leave --start out",
+            ),
+            (
+                with(|a| a.dtau = Some(0.1)),
+                "only Gauss steps have a step in scaled time, --dtau; add --method gauss, or leave it out",
+            ),
+            (
+                with(|a| (a.method, a.dtau) = (Some(Method::Gauss), Some(0.1))),
+                "double-well has no time scale; take steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+            ),
             (
                 with(|a| (a.method, a.stages) = (Some(Method::Gauss), Some(5))),
                 "Gauss steps of 5 stages are not built into the command; --stages may be 4 or 8",
@@ -397,6 +540,26 @@ mod tests {
         for (found, expected) in cases {
             assert_eq!(found, expected);
         }
+    }
+
+    #[test]
+    fn a_step_in_scaled_time_begins_as_long_as_the_scale_says() {
+        let scaled = |dtau| Arguments { method: Some(Method::Gauss), dtau: Some(dtau), ..arguments("kepler") };
+        let plan = plan_of(&scaled(0.5));
+        // g = r^(3/2) at r = 0.4.
+        assert!((plan.h - 0.5 * 0.4_f64.powf(1.5)).abs() < 1e-15 && plan.dtau == Some(0.5), "{plan:?}");
+        assert_eq!(message(&scaled(0.0)), "the step in scaled time (--dtau) must be finite and not zero, not 0");
+    }
+
+    #[test]
+    fn a_shift_is_measured_over_the_run_or_its_first_steps() {
+        let over = |steps| {
+            let (method, shift) = (Some(Method::Energy), Some(Wanted::Auto));
+            let arguments = Arguments { method, shift, steps: Some(steps), ..arguments("double-well") };
+            plan_of(&arguments).shift
+        };
+        assert_eq!([over(0), over(500)], [Some(Shift::Over(0.01)), Some(Shift::Over(5.0))]);
+        assert_eq!(over(10_000_000), Some(Shift::Over(100.0)));
     }
 
     #[test]

@@ -14,7 +14,8 @@ use core::cell::Cell;
 pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {
     square(plan.h)?;
     time(plan.t, plan.h)?;
-    if plan.method == Method::Energy { Ok(()) } else { time(length.end(plan), plan.h) }
+    let finds_its_length = plan.method == Method::Energy || plan.dtau.is_some();
+    if finds_its_length { Ok(()) } else { time(length.end(plan), plan.h) }
 }
 
 /// The equations of a step contain h².

@@ -3,8 +3,11 @@
 //! ```toml
 //! system = "damped-oscillator"      # required; everything else has a default or comes from the command line
 //! method = "energy"
-//! start = "midpoint"                # of energy-preserving steps; stages = 8, of Gauss steps
-//! h = 0.01
+//! start = "midpoint"                # of energy-preserving steps without stages and shift
+//! stages = 2                        # of Gauss steps, and of energy-preserving ones
+//! shift = "auto"                    # of energy-preserving steps, or a number
+//! fallback = true                   # of energy-preserving steps: fixed ones where there is none
+//! h = 0.01                          # or dtau = 0.5, of Gauss steps in scaled time
 //! steps = 1000                      # or until = 10.0
 //! every = 10
 //! t = 0.0
@@ -16,6 +19,7 @@
 //!
 //! With a table `[sweep]` it is many runs: see `sweep/scene.rs`.
 
+use super::shift::{self, Wanted};
 use crate::failure::Failure;
 use crate::input::count_of_scene;
 use crate::simulation::{Method, Start};
@@ -35,9 +39,16 @@ pub(super) struct Scene {
     pub(super) method: Option<Method>,
     /// First interval of the energy-preserving integrator.
     pub(super) start: Option<Start>,
-    /// Stages of a Gauss step.
+    /// Stages of a Gauss step, or of an energy-preserving one.
     #[serde(default, deserialize_with = "count_of_scene")]
     pub(super) stages: Option<u64>,
+    /// Shift of energy-preserving steps.
+    #[serde(default, deserialize_with = "shift::of_scene")]
+    pub(super) shift: Option<Wanted>,
+    /// Whether fixed steps are taken where there is no energy-preserving one.
+    pub(super) fallback: Option<bool>,
+    /// Step in scaled time.
+    pub(super) dtau: Option<f64>,
     /// Step.
     pub(super) h: Option<f64>,
     /// Number of steps.
@@ -92,6 +103,9 @@ impl Scene {
         if scene.system.is_empty() {
             return Err("no system is named; add a line such as `system = \"kepler\"`".to_owned());
         }
+        if scene.h.is_some() && scene.dtau.is_some() {
+            return Err("give either `h` or `dtau`, not both".to_owned());
+        }
         if scene.steps.is_some() && scene.until.is_some() {
             return Err("give either `steps` or `until`, not both".to_owned());
         }
@@ -119,6 +133,11 @@ mod tests {
         assert_eq!(Scene::parse(text), Ok(expected));
         let expected = Scene { method: Some(Method::Gauss), stages: Some(4), ..Scene::of_system("kepler") };
         assert_eq!(Scene::parse("system = \"kepler\"\nmethod = \"gauss\"\nstages = 4\n"), Ok(expected));
+        let shifted = |shift| Scene { shift: Some(shift), fallback: Some(true), ..Scene::of_system("kepler") };
+        for (text, expected) in [("\"auto\"", Wanted::Auto), ("2", Wanted::Given(2.0)), ("1.5", Wanted::Given(1.5))] {
+            let text = format!("system = \"kepler\"\nshift = {text}\nfallback = true\n");
+            assert_eq!(Scene::parse(&text), Ok(shifted(expected)));
+        }
     }
 
     #[test]
@@ -147,6 +166,11 @@ mod tests {
             ("system = \"kepler\"\nsteps = 1\nsteps = 2\n", "line 3: duplicate key"),
             ("system = \"kepler\"\n\ncolour = 1\n", "line 3: unknown field `colour`"),
             ("system = \"kepler\"\nsteps = 1\nuntil = 2.0\n", "give either `steps` or `until`, not both"),
+            ("system = \"kepler\"\nh = 1.0\ndtau = 2.0\n", "give either `h` or `dtau`, not both"),
+            (
+                "system = \"kepler\"\nshift = \"much\"\n",
+                "line 2: invalid value: string \"much\", expected a number in the units of the step density, such as 4.9, or auto",
+            ),
             ("h = 1.0\n", "no system is named; add a line such as `system = \"kepler\"`"),
             (
                 "system = \"a\"\nmethod = \"euler\"\n",

@@ -10,7 +10,7 @@ use crate::catalogue::{Entry, kebab};
 use crate::chart::{Class, Look, Series, boundary, middles};
 use crate::failure::Failure;
 use crate::quantity::Quantity;
-use crate::simulation::{Method, Plan, Simulation, Start, USUAL_STAGES};
+use crate::simulation::{Method, PhasePoint, Plan, Simulation};
 use crate::system::System;
 use core::cell::Cell;
 
@@ -139,7 +139,7 @@ fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) ->
     let mut system = entry.system.copy();
     let q = entry.q.clone();
     let v = entry.v.clone();
-    let mut plan = Plan { method, start: Start::Midpoint, stages: USUAL_STAGES, h: entry.h, t: 0.0, q, v };
+    let mut plan = Plan::new(method, entry.h, PhasePoint { t: 0.0, q, v });
     for (span, value) in axes.iter().zip([place.0, place.1]) {
         span.quantity.set(value, system.as_mut(), &mut plan);
     }

@@ -30,9 +30,9 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     atlas.section("A small first step and the energy");
     let rungs: Result<Vec<Rung>, StepError> = LADDER.par_iter().map(|&h0| rung(h0)).collect();
     let rungs = rungs.map_err(|error| Failure::Step {
-        error,
+        error: Box::new(error),
         before: "the first steps of the ladder".to_owned(),
-        method: None,
+        advice: None,
     })?;
     let line = |label: &str, look: Look, pick: fn(&Rung) -> f64| {
         Series::line(label, look, rungs.iter().map(|rung| (rung.h0, pick(rung))).collect())

@@ -10,8 +10,8 @@ use super::reference::Reference;
 use crate::numbers::order;
 use crate::progress::Progress;
 use crate::rival::Ended;
-use crate::simulation::Plan;
-use crate::system::{PhasePoint, System};
+use crate::simulation::{PhasePoint, Plan};
+use crate::system::System;
 use core::cell::Cell;
 
 /// Tolerances of DOP853.

@@ -6,8 +6,8 @@
 
 use crate::chart::Look;
 use crate::rival::Ended;
-use crate::simulation::{self, Plan, Simulation, Start};
-use crate::system::{PhasePoint, System};
+use crate::simulation::{self, PhasePoint, Plan, Simulation};
+use crate::system::System;
 use core::cell::Cell;
 
 /// A method of the comparison.
@@ -128,12 +128,11 @@ impl Task<'_> {
     /// The plan of a run of one of this project's integrators; none for the rival.
     pub(super) fn plan(&self) -> Option<Plan> {
         let (method, stages) = match self.method {
-            Method::Own(method) => (method, simulation::USUAL_STAGES),
-            Method::Gauss(stages) => (simulation::Method::Gauss, stages),
+            Method::Own(method) => (method, None),
+            Method::Gauss(stages) => (simulation::Method::Gauss, Some(stages)),
             Method::Rival | Method::Heyoka => return None,
         };
-        let PhasePoint { t, q, v } = self.start.clone();
-        Some(Plan { method, start: Start::Midpoint, stages, h: self.setting, t, q, v })
+        Some(Plan { stages, ..Plan::new(method, self.setting, self.start.clone()) })
     }
 
     /// The state reached, with the number of evaluations added to `evaluations`.

@@ -11,7 +11,8 @@
 
 use super::method::{Method, Reached, Task};
 use crate::rival::Ended;
-use crate::system::{PhasePoint, System};
+use crate::simulation::PhasePoint;
+use crate::system::System;
 use core::cell::Cell;
 
 /// Parts of the time at whose ends the reference is stored.

@@ -10,7 +10,8 @@ use crate::catalogue::Entry;
 use crate::numbers::{median, order};
 use crate::progress::Progress;
 use crate::rival::Ended;
-use crate::system::{PhasePoint, System};
+use crate::simulation::PhasePoint;
+use crate::system::System;
 use core::cell::Cell;
 
 /// Usual steps up to the end of the runs whose errors are measured.

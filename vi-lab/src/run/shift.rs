@@ -1,0 +1,57 @@
+//! The shift of energy-preserving steps as a user writes it: a number, or `auto`.
+//!
+//! In: text, or a value of TOML. Out: the shift, or one line that says what is allowed.
+
+use crate::input::number;
+use core::fmt;
+use serde::Deserializer;
+use serde::de::{self, Visitor};
+
+/// A shift that is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Wanted {
+    /// This one, in the units of the step density.
+    Given(f64),
+    /// The one that fits the motion.
+    Auto,
+}
+
+/// What a shift is.
+const SHIFT: &str = "a number in the units of the step density, such as 4.9, or auto";
+
+/// The shift of a command line.
+pub(crate) fn wanted(text: &str) -> Result<Wanted, String> {
+    if text.trim() == "auto" {
+        return Ok(Wanted::Auto);
+    }
+    number(text).map(Wanted::Given).map_err(|_| format!("write {SHIFT}"))
+}
+
+/// The shift of an entry of a scene.
+pub(super) fn of_scene<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<Wanted>, D::Error> {
+    entry.deserialize_any(Entry).map(Some)
+}
+
+/// Reads a shift.
+struct Entry;
+
+impl Visitor<'_> for Entry {
+    type Value = Wanted;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(SHIFT)
+    }
+
+    fn visit_str<E: de::Error>(self, value: &str) -> Result<Wanted, E> {
+        if value == "auto" { Ok(Wanted::Auto) } else { Err(E::invalid_value(de::Unexpected::Str(value), &self)) }
+    }
+
+    #[allow(clippy::cast_precision_loss)] // a shift is no count
+    fn visit_i64<E: de::Error>(self, value: i64) -> Result<Wanted, E> {
+        Ok(Wanted::Given(value as f64))
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<Wanted, E> {
+        Ok(Wanted::Given(value))
+    }
+}
