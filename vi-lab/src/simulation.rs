@@ -570,6 +570,7 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
                 p: state.p.as_slice().to_vec(),
                 energy: state.energy(&system).ok(),
                 discrete_energy: None,
+                shifted_energy: None,
                 h: length,
             });
         }

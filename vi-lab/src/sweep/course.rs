@@ -153,10 +153,10 @@ impl Course {
         run.cross(section, last.t, take)
     }
 
-    /// The entries of the last node, for so many coordinates.
-    pub(super) fn end(&self, dimension: usize) -> Vec<f64> {
+    /// The entries of the last node, in so many columns.
+    pub(super) fn end(&self, columns: usize) -> Vec<f64> {
         let entries = |row: &Row| row.entries().map(|entry| entry.unwrap_or(f64::NAN)).collect();
-        self.last.as_ref().map_or_else(|| vec![f64::NAN; 2 * dimension + 4], entries)
+        self.last.as_ref().map_or_else(|| vec![f64::NAN; columns], entries)
     }
 
     /// Smallest and largest value of each coordinate, then of H.

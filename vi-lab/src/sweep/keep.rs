@@ -19,6 +19,8 @@ pub(super) struct Kept {
     kinds: Vec<Keep>,
     /// The section whose crossings are kept.
     pub(super) section: Option<Section>,
+    /// Whether rows have the energy that steps with a shift keep.
+    is_shifted: bool,
 }
 
 impl Kept {
@@ -32,7 +34,7 @@ impl Kept {
         if sweep.keep.is_empty() && section.is_none() {
             return Err(Failure::Input("`keep` names nothing; leave it out to keep how each run ends".to_owned()));
         }
-        Ok(Self { kinds: sweep.keep.clone(), section })
+        Ok(Self { kinds: sweep.keep.clone(), section, is_shifted: plan.shift.is_some() })
     }
 
     /// Whether this is kept.
@@ -47,7 +49,7 @@ impl Kept {
         if self.has(Keep::Ending) {
             runs.extend([Column::words("ending", &Ending::WORDS), Column::count("steps")]);
         }
-        let rows = Row::columns(coordinates);
+        let rows = Row::columns(coordinates, self.is_shifted);
         if self.has(Keep::End) {
             runs.extend(rows.iter().map(|name| Column::number(format!("end_{name}"))));
         }
@@ -61,8 +63,8 @@ impl Kept {
         let mut shapes = vec![Shape { suffix: String::new(), columns: runs }];
         let nodes: Vec<Column> = core::iter::once(item()).chain(rows.into_iter().map(Column::number)).collect();
         if self.section.is_some() {
-            // A crossing is no node: it has no E and no h.
-            let columns = nodes[..nodes.len() - 2].to_vec();
+            // A crossing is no node: it has no discrete energies and no h.
+            let columns = nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }].to_vec();
             shapes.push(Shape { suffix: "section".to_owned(), columns });
         }
         if self.has(Keep::Series) {

@@ -146,7 +146,7 @@ impl Study {
             runs.extend([course.ending.number(), course.steps as f64]);
         }
         if self.kept.has(Keep::End) {
-            runs.extend(course.end(member.plan.q.len()));
+            runs.extend(course.end(self.request.columns().len()));
         }
         if self.kept.has(Keep::Extremes) {
             runs.extend(course.extremes());

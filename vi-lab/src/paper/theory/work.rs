@@ -145,7 +145,7 @@ impl Orbit {
         let mut error = 0.0_f64;
         while run.t() < PERIODS * TAU {
             run.advance()?;
-            error = error.max(self.error(run.t(), &run.q()));
+            error = error.max(self.error(run.t(), run.q()));
         }
         drop(run);
         #[allow(clippy::cast_precision_loss)] // a count far below 2⁵³
