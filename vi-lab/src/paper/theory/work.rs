@@ -17,9 +17,10 @@ use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.
 const PERIODS: f64 = 10.0;
-/// The longest step of a ladder, for orders 2, 4 and 6, and the rungs, each half of the one above.
+/// The longest step of a ladder, for orders 2, 4 and 6, and the rungs, each half of the one above: of shorter steps of order 6 the energy
+/// tells no length.
 const LONGEST: [f64; 3] = [0.04, 0.16, 0.32];
-const RUNGS: i32 = 5;
+const RUNGS: [i32; 3] = [5, 5, 4];
 /// The error at which work is compared.
 const COMPARED: f64 = 1e-2;
 /// How fixed steps of these orders are drawn.
@@ -116,7 +117,7 @@ impl Orbit {
 
     /// The runs of the steps of an order.
     fn ladder(&self, index: usize, run: impl Fn(f64) -> Result<(f64, f64), StepError>) -> Result<Ladder, StepError> {
-        let steps = (0..RUNGS).map(|rung| LONGEST[index] * (1.0 - self.eccentricity) * 0.5_f64.powi(rung));
+        let steps = (0..RUNGS[index]).map(|rung| LONGEST[index] * (1.0 - self.eccentricity) * 0.5_f64.powi(rung));
         steps.map(run).collect()
     }
 
