@@ -68,7 +68,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         series,
     };
     let caption = format!(
-        "Without a shift this run ends at <i>t</i> = 0.1. With <i>D</i><sub>∗</sub> = {shift:.1}, twice the largest \
+        "Without a shift this run ends at <i>t</i> = 0.45. With <i>D</i><sub>∗</sub> = {shift:.1}, twice the largest \
          |<i>D</i><sub>2</sub>|, it goes on: <i>E</i>′ stays within {}, <i>H</i> swings by {}, as the law predicts (dashed: {}), and \
          <i>E</i> by four times as much.",
         scientific(high - low),

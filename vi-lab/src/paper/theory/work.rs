@@ -19,10 +19,10 @@ use vi_systems::Kepler;
 const PERIODS: f64 = 10.0;
 /// The longest step of a ladder, for orders 2, 4 and 6, and the rungs, each half of the one above: of shorter steps of order 6 the energy
 /// tells no length.
-const LONGEST: [f64; 3] = [0.04, 0.16, 0.32];
+const LONGEST: [f64; 3] = [0.02, 0.16, 0.48];
 const RUNGS: [i32; 3] = [5, 5, 4];
 /// The error at which work is compared.
-const COMPARED: f64 = 1e-2;
+const COMPARED: f64 = 1e-3;
 /// How fixed steps of these orders are drawn.
 const FIXED: [Look; 3] = [Look::FIXED.dotted(), Look::FIXED.dashed(), Look::FIXED.line()];
 
@@ -79,10 +79,9 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
 
 fn caption(eccentricity: f64) -> &'static str {
     if eccentricity < 0.5 {
-        "A nearly round orbit: what it costs to find the length is more than what a length that follows the motion saves."
+        "A nearly round orbit. Steps that follow the motion pay at order 2; the table says what finding their length costs at order 4 and 6."
     } else {
-        "An eccentric orbit: steps that are short at the pericentre make up for it at order 2 and 4. At order 6 no step exists \
-         beyond <i>e</i> = 0.587 but with a shift, whose steps vary less."
+        "An eccentric orbit. At order 6 no step exists beyond <i>e</i> = 0.587 but with a shift, whose steps vary less."
     }
 }
 
