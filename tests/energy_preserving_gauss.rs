@@ -869,13 +869,13 @@ fn a_run_goes_on_with_what_a_change_brings() {
 
 #[test]
 fn parameters_whose_energy_is_beyond_the_numbers_change_nothing() {
-    let mut run = begin::<1, 2, _>(HarmonicOscillator { m: 1.0, k: 1.0 }, ([1.2], [0.0]), 0.1);
-    run.set_parameters(|system| system.k = -1.7e308).expect("H = k q²/2 is finite");
+    let mut run = begin::<1, 2, _>(Pendulum { m: 1.0, l: 1.0, g: 1.0 }, ([0.1], [0.0]), 0.1);
+    run.set_parameters(|system| system.g = 1.7e308).expect("H = −m g l cos θ is finite");
     let before = format!("{run:?}");
     // So is this one, but not by how much it differs.
-    let error = run.set_parameters(|system| system.k = 1.7e308).expect_err("too much energy");
+    let error = run.set_parameters(|system| system.g = -1.7e308).expect_err("too much energy");
     assert!(matches!(error, StepError::NonFinite { quantity: "energy", .. }), "{error}");
     assert_eq!(format!("{run:?}"), before);
-    run.set_parameters(|system| system.k = 1.0).expect("the parameters of before");
+    run.set_parameters(|system| system.g = 1.0).expect("the parameters of before");
     run.step().expect("a step as before");
 }
