@@ -161,7 +161,7 @@ impl fmt::Display for Reason<'_> {
             ),
             StepError::NoForwardGaussStep { t, h, stages, excess, density, shift, .. } => write!(
                 f,
-                "no energy-preserving step of {stages} stages leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e}, shifted by {shift:.3e})"
+                "no energy-preserving step with s = {stages} leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e}, shifted by {shift:.3e})"
             ),
             StepError::DegenerateStep { t, h, density } => write!(
                 f,

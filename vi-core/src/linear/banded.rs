@@ -87,7 +87,7 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
                 subtract(rows, i, factors[i][w + right], i + right);
             }
             for entry in &mut rows[i] {
-                *entry = *entry * factors[i][w];
+                *entry *= factors[i][w];
             }
         }
     }

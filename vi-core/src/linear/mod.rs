@@ -60,8 +60,8 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     fn apply_to_rows<const S: usize>(inverse: &Self::Inverse, rows: &mut [[T; S]; N]) {
         for column in 0..S {
             let x = Self::apply(inverse, &SVector::from_fn(|i, _| rows[i][column]));
-            for i in 0..N {
-                rows[i][column] = x[i];
+            for (row, x) in rows.iter_mut().zip(x.iter()) {
+                row[column] = *x;
             }
         }
     }
