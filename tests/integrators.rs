@@ -438,7 +438,7 @@ fn of_the_last_step_is_said_what_the_new_parameters_make_of_it() {
     let path = fixed.path(&before).expect("regular");
     let gauss_path = gauss.path(&gauss_before).expect("regular");
     let errors = [
-        fixed.discrete_energy().expect("a step") - energy((x0 + x1) / 2.0, (x1 - x0) / h) - u * (x1 - x0) / 2.0,
+        fixed.discrete_energy().expect("a step") - energy(f64::midpoint(x0, x1), (x1 - x0) / h) - u * (x1 - x0) / 2.0,
         fixed.energy().expect("regular") - energy(x1, after.p[0] / m),
         path.velocity(before.t)[0] - before.p[0] / m,
         path.velocity(after.t)[0] - after.p[0] / m,
