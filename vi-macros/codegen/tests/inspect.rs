@@ -321,6 +321,7 @@ fn a_gauss_step_is_explained_with_the_equations_of_the_system() {
         "(D2 L_d)_x = sum_i b_i*((1 - c_i)*h*L_x_i - p_x_i)",
         "g_d⁺ = -sum_i b_i*c_i*h*(f_x_i*x_dot_i + f_y_i*y_dot_i)",
         "E1 = -D3 L_d - g_d⁺",
+        "H(t0, q0, p0) - E0 = h^4*D_2*1/864 + O(h^5)",
     ] {
         assert!(text.lines().any(|shown| shown.trim_start() == line), "{line}: {text}");
     }

@@ -16,7 +16,7 @@ pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
     let [places, equations] = equations(derived, stages);
     let update = update(derived, stages);
     let title = "Equations of the stages, which their positions and velocities solve: the momenta agree";
-    vec![
+    let mut sections = vec![
         Section { title: "Gauss points c, weights b, coefficients a", lines: tableau },
         Section { title: "Stage i: time, position, momentum p and force F = L_q + f", lines: places },
         Section { title, lines: equations },
@@ -25,7 +25,36 @@ pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
             title: "Discrete Lagrangian, its slot derivatives, forces, powers and energies",
             lines: slots(derived),
         },
-    ]
+    ];
+    sections.extend(length(stages));
+    sections
+}
+
+/// What determines the length of an energy-preserving step (`docs/theory.md`); none where rounding hides it, beyond three stages.
+fn length(stages: usize) -> Option<Section> {
+    let share = ["1/8", "1/864", "1/288000"].get(stages.checked_sub(1)?)?;
+    let order = 2 * stages;
+    let excess = said(
+        "H(t0, q0, p0) - E0",
+        &format!("h^{order}*D_{stages}*{share} + O(h^{})", order + 1),
+        "H(t_0, q_0, p_0) - E_0",
+        &format!(
+            "C_{{{stages}}} h^{{{order}}} D_{{{stages}}} + O(h^{{{}}}), \\quad C_{{{stages}}} = {share}",
+            order + 1
+        ),
+    );
+    let density = said(
+        &format!("D_{stages}"),
+        &format!(
+            "(d/dtau)^{order} H(t0 + tau, q(tau), p(tau)), tau = 0, with Taylor's polynomials of degree {stages} of the motion"
+        ),
+        &format!("D_{{{stages}}}"),
+        &format!(
+            "\\left. \\frac{{d^{{{order}}}}}{{d\\tau^{{{order}}}}} H(t_0 + \\tau, \\pi_q(\\tau), \\pi_p(\\tau)) \\right|_{{\\tau = 0}}, \\quad \\pi \\text{{ of degree }} {stages}"
+        ),
+    );
+    let title = "Length of an energy-preserving step: a root exists where the step density D keeps its sign";
+    Some(Section { title, lines: vec![excess, density] })
 }
 
 /// `left = right`, the same in LaTeX.
