@@ -11,11 +11,7 @@ use std::sync::OnceLock;
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::{Convertible, EnergyStepping};
-use vi_systems::{
-    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
-    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
-    SphericalPendulum, ThreeBody,
-};
+use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, Kepler, Pendulum};
 
 /// The systems of a program of one's own, set once before its command is read.
 static OWN: OnceLock<Own> = OnceLock::new();
@@ -70,13 +66,16 @@ where
 }
 
 /// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
+#[cfg(not(test))]
 const LOWEST_MODE: [f64; 16] =
     [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996, 0.996, 0.962, 0.895, 0.798, 0.674, 0.526, 0.361, 0.184];
 
 /// The figure of eight: coordinates x and y of the bodies, in the digits of C. Simó.
+#[cfg(not(test))]
 const EIGHT: [f64; 6] =
     [0.970_004_356_697_34, -0.970_004_356_697_34, 0.0, -0.243_087_531_535_83, 0.243_087_531_535_83, 0.0];
 /// The velocities: the third body, in the middle, moves against both others.
+#[cfg(not(test))]
 const EIGHT_V: [f64; 6] = [
     0.466_203_685_720_52,
     0.466_203_685_720_52,
@@ -111,30 +110,51 @@ pub(crate) fn first_own() -> Result<String, Failure> {
 /// The ready systems.
 fn ready() -> Vec<Entry> {
     let rest = [0.0];
-    let inclined = [0.8, 0.0];
-    vec![
+    let mut ready = vec![
         entry::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
         entry::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
-        entry::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
         entry::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        entry::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
+        entry::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
+    ];
+    ready.extend(others());
+    ready
+}
+
+/// None of the others: the tests of these files do without them, and each takes the compiler ten seconds once more. `tests/command.rs`
+/// runs them all.
+#[cfg(test)]
+fn others() -> [Entry; 0] {
+    []
+}
+
+/// Those that the tests of these files do without.
+#[cfg(not(test))]
+fn others() -> [Entry; 12] {
+    use vi_systems::{
+        ChargedParticle, DoubleWellDuffing, FpuChain, HardDuffing, HarmonicOscillator, HenonHeiles, NPendulum,
+        OuterSolarSystem, ParametricPendulum, RotatingHoop, SphericalPendulum, ThreeBody,
+    };
+    let rest = [0.0];
+    let inclined = [0.8, 0.0];
+    [
+        entry::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
         entry::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),
         entry::<DoubleWellDuffing, 1>("driven double well: chaos", [0.8], rest, 0.01),
         entry::<ParametricPendulum, 1>("pendulum with a modulated gravity", [0.5], rest, 0.01),
-        entry::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
+        entry::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
+        entry::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
+        entry::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
+        entry::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
+        entry::<NPendulum, 4>("four pendula, each hanging from the one above", [0.6, 0.4, 0.2, 0.1], [0.0; 4], 0.005),
         entry::<ThreeBody, 6>("three bodies on a figure of eight, period 6.3259", EIGHT, EIGHT_V, 0.005),
+        entry::<FpuChain, 16>("sixteen masses on nonlinear springs, in their lowest mode", LOWEST_MODE, [0.0; 16], 0.1),
         entry::<OuterSolarSystem, 18>(
             "the Sun and five planets; AU, days, solar masses",
             OuterSolarSystem::POSITIONS,
             OuterSolarSystem::VELOCITIES,
             10.0,
         ),
-        entry::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
-        entry::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
-        entry::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
-        entry::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
-        entry::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
-        entry::<NPendulum, 4>("four pendula, each hanging from the one above", [0.6, 0.4, 0.2, 0.1], [0.0; 4], 0.005),
-        entry::<FpuChain, 16>("sixteen masses on nonlinear springs, in their lowest mode", LOWEST_MODE, [0.0; 16], 0.1),
     ]
 }
 

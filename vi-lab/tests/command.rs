@@ -96,10 +96,47 @@ fn exponents_of_chaos_and_of_a_swing() {
 fn the_list_names_every_system_with_its_parameters() {
     let (status, list, errors) = lab(&["list"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
-    for name in ["double-well", "damped-oscillator", "kepler", "spherical-pendulum", "charged-particle"] {
+    for name in SYSTEMS {
         assert!(list.contains(name), "{name} is missing");
     }
     assert!(list.contains("m = 1, k = 4, c = 0.04"), "{list}");
+}
+
+/// The names of all ready systems.
+const SYSTEMS: [&str; 17] = [
+    "double-well",
+    "damped-oscillator",
+    "pendulum",
+    "kepler",
+    "double-pendulum",
+    "harmonic-oscillator",
+    "hard-duffing",
+    "double-well-duffing",
+    "parametric-pendulum",
+    "rotating-hoop",
+    "spherical-pendulum",
+    "henon-heiles",
+    "charged-particle",
+    "n-pendulum",
+    "three-body",
+    "fpu-chain",
+    "outer-solar-system",
+];
+
+#[test]
+fn every_system_runs_by_every_method_and_is_explained() {
+    for name in SYSTEMS {
+        for method in ["fixed", "kahan-li-6", "gauss", "energy"] {
+            let (status, csv, errors) = lab(&["run", name, "--method", method, "--steps", "10"]);
+            assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}, {method}");
+            let rows = rows(&csv);
+            assert_eq!(rows.len(), 11, "{name}, {method}");
+            assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{name}, {method}: {csv}");
+        }
+        let (status, text, errors) = lab(&["explain", name]);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{name}");
+        assert!(text.contains("D1 L_d"), "{name}: {text}");
+    }
 }
 
 #[test]
