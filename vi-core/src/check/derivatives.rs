@@ -14,7 +14,6 @@ use super::comparison::Comparison;
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::subject::{Checked, Place};
-use crate::called::Called;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
 use crate::real::dual::Dual;
@@ -88,8 +87,7 @@ fn continuous<const N: usize, S: Checked<N>>(
 
 fn jacobian<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let node = sample.node();
-    let (bounded, dual) = (Called(system.convert::<Bounded>()), Called(system.convert::<First>()));
+    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
     let found = system.momentum_equation(&node, *h, v);
     let known = node.map(Bounded::exact);
     let lifted = node.map(|number| Dual::fixed(Bounded::exact(number)));

@@ -15,7 +15,6 @@ use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::steps::ends;
 use super::subject::{EnergyChecked, Place};
-use crate::called::Called;
 use crate::discrete::DiscreteLagrangian;
 use crate::linear::Matrix;
 use crate::real::dual::{Dual, along, lift, slopes, unit};
@@ -44,7 +43,7 @@ fn rows<const N: usize, S: EnergyChecked<N>>(
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (node, bounded) = (sample.node(), Called(system.convert::<Bounded>()));
+    let (node, bounded) = (sample.node(), system.convert::<Bounded>());
     let (known, step, velocity) = (node.map(Bounded::exact), Bounded::exact(*h), exact(v));
     let (found, measured) = (system.extended_system(&node, *h, v), system.extended_residual(&node, *h, v));
     let again = bounded.extended_residual(&known, step, &velocity);
@@ -73,8 +72,7 @@ fn jacobian<const N: usize, S: EnergyChecked<N>>(
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let node = sample.node();
-    let (bounded, dual) = (Called(system.convert::<Bounded>()), Called(system.convert::<First>()));
+    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
     let found = system.extended_system(&node, *h, v);
     let known = node.map(Bounded::exact);
     let lifted = node.map(|number| Dual::fixed(Bounded::exact(number)));
