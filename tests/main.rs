@@ -1,4 +1,5 @@
-//! The tests across crates, one program: what they share, generated steppers above all, is compiled once.
+//! The tests across crates that take few steps, one program, compiled without optimization: what they share, generated steppers above all,
+//! is compiled once. Those that take many are `long`.
 
 mod arrays;
 mod bodies;
@@ -6,29 +7,19 @@ mod checks;
 mod composition;
 mod declarations;
 mod derivatives;
-mod derivatives_of_runs;
-mod energy_preserving_gauss;
 mod extremes;
-mod failures;
 mod flow;
 mod forms;
-mod gauss;
-mod gauss_slots;
-mod hunt;
 mod integrators;
-mod invariants;
-mod iterations;
 mod loops;
 mod orders;
 mod predicted;
 mod references;
 mod resonances;
 mod restarts;
-mod robustness;
 mod rules;
 mod scaled;
 mod single_precision;
-mod solvability;
 mod step_law;
 mod support;
 mod symmetries;

@@ -1,4 +1,5 @@
-//! What the tests of several files share.
+//! What the tests of several files share, of two programs.
+#![allow(dead_code, unused_imports, unused_macros, reason = "each program uses a part")]
 // Step numbers and drawn mantissas are far below 2^53.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 

@@ -1,12 +1,16 @@
 //! The 50-digit values of `tests/reference`, read as `f64`.
 
 use serde_json::Value;
+use std::path::Path;
 
 /// The contents of a file of `tests/reference`.
 pub(crate) fn file(name: &str) -> Value {
-    let path = format!("{}/tests/reference/{name}", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
+    // The root's tests stand in `tests`, the others in `tests/long`.
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("tests/reference"));
+    let path = folders.map(|folder| folder.join(name)).find(|path| path.exists());
+    let path = path.unwrap_or_else(|| panic!("there is no tests/reference/{name}"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// A number, given as a string of 50 digits, as a fraction, or as a number.

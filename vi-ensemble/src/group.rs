@@ -27,7 +27,7 @@ pub(crate) enum Group<S: Batch<N>, const N: usize> {
 impl<S: Batch<N>, const N: usize> Group<S, N> {
     /// The group of these trajectories, at least one.
     pub(crate) fn new(trajectories: &[(S, State<N>)], h: f64, instructions: Instructions) -> Self {
-        if N <= LARGEST && S::INLINED {
+        if const { N <= LARGEST } && S::INLINED {
             return Self::Together(Box::new(Block::new(trajectories, h, instructions)));
         }
         let alone = |&(system, state): &(S, State<N>)| {

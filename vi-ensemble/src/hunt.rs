@@ -1,4 +1,4 @@
-//! A hunt for steps of lanes that are taken and not solved, as `tests/hunt` hunts those of other integrators.
+//! A hunt for steps of lanes that are taken and not solved, as `tests/long/hunt` hunts those of other integrators.
 //!
 //! The residual of each step is computed here, in plain numbers, from the node before it and the velocity that was taken; row by row
 //! it must be at most four roundings of what the row is a sum of, and of what running error analysis says.

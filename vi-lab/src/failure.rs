@@ -3,12 +3,12 @@
 use crate::interrupt::Signal;
 use crate::machine::program;
 use crate::numbers::short;
-use crate::simulation::{Method, Plan};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use core::fmt;
 use std::io;
 use std::path::Path;
 use vi_core::StepError;
+use vi_runs::simulation::{Method, Plan};
 
 /// The exit status where nobody reads standard output any more: that of a command which SIGPIPE ends.
 const UNREAD: u8 = 141;

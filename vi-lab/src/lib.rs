@@ -6,9 +6,7 @@
 //!
 //! | module | what it makes |
 //! |---|---|
-//! | `system`, `simulation` | any system and one run of it, their types erased: all that is compiled once for each system |
-//! | `counting`, `rival`, `start`, `exponents` | what stands below them: evaluations, DOP853, an accurate start, Lyapunov exponents |
-//! | `catalogue` | the systems by name, each with a place to start from |
+//! | `catalogue` | the systems by name |
 //! | `new` | `vi-lab new`: a crate of one's own with all of this command |
 //! | `run` | `vi-lab run`: rows as CSV or NPY |
 //! | `paper` | `vi-lab paper`: figures, tables and the page |
@@ -24,10 +22,8 @@
 
 mod catalogue;
 mod chart;
-mod counting;
 mod expand;
 mod explain;
-mod exponents;
 mod failure;
 mod html;
 mod input;
@@ -42,22 +38,19 @@ mod place;
 mod progress;
 mod quantity;
 mod report;
-mod rival;
 mod run;
-mod simulation;
 mod stability;
-mod start;
 mod sweep;
-mod system;
 mod table;
 mod work_precision;
 
-pub use catalogue::{Entry, Own};
+pub use catalogue::Own;
 use clap::{Parser, Subcommand};
 use failure::Failure;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
+pub use vi_runs::ready::Entry;
 
 /// Variational integrators at work: simulate a system, or reproduce the paper.
 #[derive(Debug, Parser)]

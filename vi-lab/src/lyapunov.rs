@@ -8,8 +8,8 @@ use crate::failure::{Failure, advice};
 use crate::input::{count, number};
 use crate::numbers::short;
 use crate::run;
-use crate::simulation::Method;
 use clap::Args;
+use vi_runs::simulation::Method;
 
 /// The command line of `vi-lab lyapunov`.
 #[derive(Debug, Args)]

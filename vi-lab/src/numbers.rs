@@ -32,6 +32,12 @@ pub(crate) fn short(value: f64) -> String {
     if is_plain { value.to_string() } else { format!("{value:e}") }
 }
 
+/// Names with their values, in all digits: `m = 1, k = 4`.
+pub(crate) fn assigned(values: &[(&str, f64)]) -> String {
+    let each: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
+    each.join(", ")
+}
+
 /// A number in three digits at most: `1.5e-154`, `84`.
 pub(crate) fn about(value: f64) -> String {
     format!("{value:.2e}").parse().map_or_else(|_| value.to_string(), short)

@@ -3,8 +3,8 @@
 //! In: a name: that of a coordinate or a parameter, `v_` before a coordinate for its velocity, `h`. Out: a [`Quantity`], which sets a system and a plan.
 
 use crate::failure::Failure;
-use crate::simulation::Plan;
-use crate::system::System;
+use vi_runs::simulation::Plan;
+use vi_runs::system::System;
 
 /// One quantity that differs from run to run.
 #[derive(Clone, Debug, PartialEq, Eq)]

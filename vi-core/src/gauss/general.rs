@@ -11,7 +11,7 @@
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
 use super::newton::Correctable;
-use super::points::Points;
+use super::points::{Form, Points};
 use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
@@ -42,21 +42,20 @@ where
     Y: Points<N, T>,
     M: Matrix<N, f64>,
 {
-    /// The equations of the step of length h from `node`, with the mass matrix at the node and a guess of the velocities at the stages.
+    /// The equations of the step of length h from `node`, with the mass matrix, where it is constant, and a guess of the velocities at the stages.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
-        let inverse = system.has_constant_mass().then(|| mass.inverse());
+    pub(super) fn new(system: &'a Y, mass: Option<&M>, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
+        let inverse = mass.map(Matrix::inverse);
         Self { system, node, h, inverse, velocity, evaluated: velocity, force: [[0.0; S]; N], numbers: PhantomData }
     }
 
     /// The equations with the velocities that follow from a guess of the forces, which depend on the position alone.
-    pub(super) fn with_forces(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
+    pub(super) fn with_forces(system: &'a Y, mass: Option<&M>, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
         let zeros = [[0.0; S]; N];
         let mut equations = Self { force, ..Self::new(system, mass, node, h, zeros) };
-        equations.velocity = equations.missing(&zeros);
-        if let Some(inverse) = &equations.inverse {
-            M::apply_to_rows(inverse, &mut equations.velocity);
-        }
+        let mut velocity = equations.missing(&zeros);
+        equations.solve(&mut velocity);
+        equations.velocity = velocity;
         equations
     }
 
@@ -94,6 +93,14 @@ where
             }
         }
         missing
+    }
+
+    /// Velocities of momenta, by the constant mass matrix.
+    #[inline(always)]
+    fn solve(&self, momenta: &mut Stages<N, S>) {
+        if let Some(inverse) = &self.inverse {
+            M::apply_to_rows(inverse, momenta);
+        }
     }
 
     /// Evaluates the equations at a stage, writes L_q + f and L_v, and returns the mass matrix.
@@ -163,9 +170,9 @@ where
 
     /// A sweep with the constant mass matrix.
     #[inline(always)]
-    fn sweep_constant(&mut self, inverse: &M::Inverse, x: &Stages<N, S>) {
+    fn sweep_constant(&mut self, x: &Stages<N, S>) {
         let mut correction = self.evaluate(x);
-        M::apply_to_rows(inverse, &mut correction);
+        self.solve(&mut correction);
         self.correct(&correction);
     }
 
@@ -199,9 +206,12 @@ where
 
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        match self.inverse {
-            Some(inverse) if self.system.has_constant_mass() => self.sweep_constant(&inverse, x),
-            _ => self.sweep_varying(x),
+        // Of a known type the compiler sees one of the two.
+        let varies = || self.system.form() == Form::VaryingMass;
+        if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
+            self.sweep_varying(x);
+        } else {
+            self.sweep_constant(x);
         }
         self.positions()
     }
@@ -252,6 +262,6 @@ where
     }
 
     fn corrected(&self) -> Stages<N, S> {
-        if self.system.is_separable() { self.force } else { self.velocity }
+        if self.system.form() == Form::Separable { self.force } else { self.velocity }
     }
 }

@@ -54,7 +54,6 @@ use crate::checkpoint;
 use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
-use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::{Lane, Lanes};
 use crate::state::State;
@@ -64,11 +63,11 @@ use general::General;
 pub use integrator::Motion;
 use nalgebra::SMatrix;
 use newton::{Newton, Stiff};
-use points::{Points, Rare};
+use points::{Form, Points, Rare};
 pub use polynomial::Polynomial;
 use separable::Separable;
 pub use slots::Slots;
-use stages::{AtStages, Stages, constant_mass, extrapolated, stage};
+use stages::{AtStages, Stages, constant_mass, extrapolated, mass, stage};
 use sweep::{Convergence, Equations, Increment, Pause, Sweeps};
 use vi_dispatch::{Instructions, Loop};
 
@@ -184,8 +183,7 @@ where
             self.instructions.run(Solve { system: &self.system, run: &self.run })
         } else {
             let rare = Rare::of(&self.system);
-            let mass = constant_mass::<N, f64, _>(&rare, &self.run.node);
-            solved::<f64, _, _, N, STAGES, false>(&rare, &mass, &self.run)
+            solved::<f64, _, _, N, STAGES, false>(&rare, &rare, &self.run)
         };
         let run = self.run.after(&swept);
         if swept.is_at_floor() && run.node.is_finite() { Ok(run) } else { self.solve_with_care(Some(&swept)) }
@@ -195,15 +193,8 @@ where
     #[cold]
     fn solve_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<Run<N, STAGES>, StepError> {
         let Self { system, run, newton, .. } = self;
-        run.with_care(&Rare::of(system), newton, swept).map_err(|unsettled| {
-            let lost = StepError::NonFinite { t: run.node.t, quantity: "force at a stage", expression: None };
-            let v = match run.node.state().velocity(system) {
-                Ok(v) => v,
-                Err(error) => return error,
-            };
-            let explained = lost.explained(system, &run.node, run.h, &v);
-            if matches!(explained, StepError::NonFinite { expression: Some(_), .. }) { explained } else { unsettled }
-        })
+        let cared = run.with_care(&Rare::of(system), newton, swept);
+        cared.map_err(|unsettled| lost_force(system, &run.node, run.h).unwrap_or(unsettled))
     }
 
     /// The state reached last.
@@ -293,8 +284,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
             // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
             let plain;
             let solved = if swept.sweeps.convergence.change.is_nan() {
-                let mass = constant_mass::<N, f64, _>(system, &self.node);
-                plain = solved::<f64, _, _, N, S, false>(system, &mass, self);
+                plain = solved::<f64, _, _, N, S, false>(system, system, self);
                 &plain
             } else {
                 swept
@@ -347,11 +337,24 @@ fn general<'a, const N: usize, const S: usize>(
     stages: Stages<N, S>,
 ) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
     let mass = constant_mass::<N, f64, _>(system, node);
-    if Points::<N, f64>::is_separable(system) {
-        General::with_forces(system, &mass, node, h, stages)
+    if Points::<N, f64>::form(system) == Form::Separable {
+        General::with_forces(system, mass.as_ref(), node, h, stages)
     } else {
-        General::new(system, &mass, node, h, stages)
+        General::new(system, mass.as_ref(), node, h, stages)
     }
+}
+
+/// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or a part of L or f is not
+/// finite, which the system names. None where they can.
+#[cold]
+fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
+    let v = match node.state().velocity(system) {
+        Ok(v) => v,
+        Err(failure) => return Some(failure),
+    };
+    let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
+    let explained = lost.explained(system, node, h, &v);
+    matches!(explained, StepError::NonFinite { expression: Some(_), .. }).then_some(explained)
 }
 
 /// A solved step.
@@ -380,35 +383,36 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Solved<N, S> {
-        let mass = constant_mass::<N, f64, _>(self.system, &self.run.node);
-        if N > LOOPED {
+        if const { N > LOOPED } {
             let system = self.system.convert::<Lanes<S, FUSED>>();
-            return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&system, &mass, self.run);
+            return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&system, self.system, self.run);
         }
         let system = self.system.convert::<Lane<FUSED>>();
-        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&system, &mass, self.run)
+        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&system, self.system, self.run)
     }
 }
 
-/// The next step of a run, the equations evaluated in the numbers T. `mass` is the mass matrix at the node.
+/// The next step of a run, the equations evaluated in the numbers T; `plain` is the same system in plain ones.
 #[inline(always)]
-fn solved<T, Y, M, const N: usize, const S: usize, const FUSED: bool>(
+fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
-    mass: &M,
+    plain: &P,
     run: &Run<N, S>,
 ) -> Solved<N, S>
 where
     T: AtStages<S>,
     Y: Points<N, T>,
-    M: Matrix<N, f64>,
+    P: Points<N, f64>,
 {
+    let Run { node, h, .. } = run;
     let guess = run.guess::<FUSED>();
-    if system.is_separable() {
-        let equations = Separable::<T, Y, M, N, S, FUSED>::new(system, mass, &run.node, run.h, guess);
-        finished(equations, run)
+    // Of a known type the compiler sees one of the two.
+    if const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable {
+        let mass = mass(plain, node);
+        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, *h, guess), run)
     } else {
-        let equations = General::<T, Y, M, N, S, FUSED>::new(system, mass, &run.node, run.h, guess);
-        finished(equations, run)
+        let mass = constant_mass(plain, node);
+        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, *h, guess), run)
     }
 }
 

@@ -10,15 +10,43 @@ use crate::real::{Dual, Real, Rounded};
 use crate::stepping::Convertible;
 use nalgebra::{SMatrix, SVector};
 
+/// The form of equations of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// The mass matrix is constant, and forces depend on the position alone: [`Collocation::SEPARABLE`].
+    Separable,
+    /// The mass matrix is constant: [`Collocation::CONSTANT_MASS`].
+    ConstantMass,
+    /// The mass matrix varies.
+    VaryingMass,
+}
+
+impl Form {
+    /// The form of the equations of a type.
+    const fn of<Y: Collocation<N, T>, const N: usize, T: Real>() -> Self {
+        match (Y::SEPARABLE, Y::CONSTANT_MASS) {
+            (true, _) => Self::Separable,
+            (false, true) => Self::ConstantMass,
+            (false, false) => Self::VaryingMass,
+        }
+    }
+
+    /// Whether the type of a system says that its equations have this form. In `if const { … }` the other branch is then not compiled.
+    pub(super) const fn is_known(self, known: Option<Self>) -> bool {
+        matches!(known, Some(known) if known as u8 == self as u8)
+    }
+}
+
 /// Equations of motion in the numbers T.
 pub(super) trait Points<const N: usize, T: Real> {
     /// The form of the mass matrix.
     type Mass: Matrix<N, T>;
 
-    /// [`Collocation::SEPARABLE`].
-    fn is_separable(&self) -> bool;
-    /// [`Collocation::CONSTANT_MASS`].
-    fn has_constant_mass(&self) -> bool;
+    /// The form, where the type of the system says it.
+    const FORM: Option<Form>;
+
+    /// The form of the equations.
+    fn form(&self) -> Form;
     /// [`Collocation::point`].
     fn at(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
 }
@@ -26,14 +54,11 @@ pub(super) trait Points<const N: usize, T: Real> {
 impl<Y: Collocation<N, T>, const N: usize, T: Real> Points<N, T> for Y {
     type Mass = Y::Mass;
 
-    #[inline(always)]
-    fn is_separable(&self) -> bool {
-        Y::SEPARABLE
-    }
+    const FORM: Option<Form> = Some(Form::of::<Y, N, T>());
 
     #[inline(always)]
-    fn has_constant_mass(&self) -> bool {
-        Y::CONSTANT_MASS
+    fn form(&self) -> Form {
+        const { Form::of::<Y, N, T>() }
     }
 
     #[inline(always)]
@@ -47,20 +72,15 @@ type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
 
 /// A system in the numbers of rare code.
 trait Erased<const N: usize> {
-    fn is_separable(&self) -> bool;
-    fn has_constant_mass(&self) -> bool;
+    fn form(&self) -> Form;
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
     fn dual(&self, t: Dual<f64>, q: &SVector<Dual<f64>, N>, v: &SVector<Dual<f64>, N>) -> AnyPoint<N, Dual<f64>>;
     fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded>;
 }
 
 impl<S: Convertible<N>, const N: usize> Erased<N> for S {
-    fn is_separable(&self) -> bool {
-        S::In::<f64>::SEPARABLE
-    }
-
-    fn has_constant_mass(&self) -> bool {
-        S::In::<f64>::CONSTANT_MASS
+    fn form(&self) -> Form {
+        const { Form::of::<S::In<f64>, N, f64>() }
     }
 
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64> {
@@ -103,12 +123,10 @@ macro_rules! rare {
         impl<const N: usize> Points<N, $number> for Rare<'_, N> {
             type Mass = SMatrix<$number, N, N>;
 
-            fn is_separable(&self) -> bool {
-                self.0.is_separable()
-            }
+            const FORM: Option<Form> = None;
 
-            fn has_constant_mass(&self) -> bool {
-                self.0.has_constant_mass()
+            fn form(&self) -> Form {
+                self.0.form()
             }
 
             fn at(&self, t: $number, q: &SVector<$number, N>, v: &SVector<$number, N>) -> AnyPoint<N, $number> {

@@ -3,7 +3,7 @@
 //! In and out: N rows, one a coordinate, of S numbers, one a stage. A loop over the stages of a row, or over all stages of a point,
 //! becomes vector instructions.
 
-use super::points::Points;
+use super::points::{Form, Points};
 use super::tableau::Tableau;
 use crate::node::Node;
 use crate::real::{Lane, Lanes, Real};
@@ -112,10 +112,16 @@ pub(super) fn time<const N: usize, const S: usize, const FUSED: bool, T: Real>(n
     T::real(node.t + Lane::<FUSED>::multiply_add(h, c[i], node.t_low))
 }
 
-/// The mass matrix of a system where it is constant.
+/// The mass matrix of a system at a node.
 #[inline(always)]
-pub(super) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
+pub(super) fn mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
     system.at(T::real(node.t), &node.q.map(T::real), &SVector::zeros()).mass
+}
+
+/// The mass matrix of a system, where it is constant.
+#[inline(always)]
+pub(super) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Option<Y::Mass> {
+    (system.form() != Form::VaryingMass).then(|| mass(system, node))
 }
 
 /// `base_i + Σ_j matrix_ij x_j` at the stages i. In two sums, since each addition waits for the one before.

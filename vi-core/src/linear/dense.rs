@@ -21,7 +21,7 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     #[inline(always)]
     fn solve<const M: usize>(&self, rhs: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let (mut x, determinant) = self.quotient(rhs);
-        if N <= 3 {
+        if const { N <= 3 } {
             let reciprocal = determinant.recip();
             // Not a number where the determinant overflowed, or is too small to hold all its digits.
             let lost = determinant * reciprocal * T::zero();

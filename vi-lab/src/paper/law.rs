@@ -5,10 +5,10 @@ use super::unexpected;
 use crate::failure::Failure;
 use crate::numbers::{extremes, order, scientific};
 use crate::report::math::{id, num, op, row, sqrt, sub, sub_sup};
-use crate::start::second_point;
 use crate::table::Table;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, SVector, StepError};
+use vi_runs::start::second_point;
 use vi_systems::{DampedOscillator, DoubleWell};
 
 /// Initial steps at which constancy is measured.

@@ -3,16 +3,16 @@
 //! Numbers are the shortest that read back to the same bits; an entry that has no value is empty. AFTER A BLOCK IS
 //! WRITTEN the file consists of whole lines, whatever ends the run.
 
-use super::{BLOCK, Request, Sink, energies};
+use super::{BLOCK, Request, Sink, energies, method};
 use crate::failure::Failure;
 use crate::machine::{VERSION, command_line};
-use crate::numbers::short;
-use crate::simulation::Row;
+use crate::numbers::{assigned, short};
 use crate::table::csv_field;
 use core::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use vi_runs::simulation::Row;
 
 /// A CSV file, or standard output.
 pub(super) struct Csv {
@@ -81,8 +81,6 @@ impl Target {
 /// What made the file, in comment lines, and the names of the columns.
 fn head(request: &Request) -> String {
     let Request { system, plan, every, .. } = request;
-    let parameters: Vec<String> =
-        system.parameters().iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
     let columns: Vec<String> = request.columns().iter().map(|column| csv_field(column)).collect();
     let rows = if *every == 1 { "every node".to_owned() } else { format!("one node in {every}, and the last") };
     format!(
@@ -90,8 +88,8 @@ fn head(request: &Request) -> String {
          # rows: {rows}\n# {}\n{}\n",
         command_line(),
         system.name(),
-        parameters.join(", "),
-        plan.method_name(),
+        assigned(&system.parameters()),
+        method::in_words(plan),
         short(plan.h),
         short(plan.t),
         plan.q,

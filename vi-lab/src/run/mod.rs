@@ -14,6 +14,7 @@
 
 mod csv;
 mod extent;
+pub(crate) mod method;
 mod npy;
 mod plot;
 mod request;
@@ -27,8 +28,6 @@ use crate::input::{count, number};
 use crate::interrupt::{Interrupt, Signal};
 use crate::numbers::short;
 use crate::progress::Progress;
-use crate::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift, Simulation, Start};
-use crate::system::System;
 use clap::Args;
 use core::cell::Cell;
 use extent::Extent;
@@ -36,6 +35,8 @@ use request::Output;
 pub(crate) use request::{Length, Request};
 use shift::Wanted;
 use std::path::PathBuf;
+use vi_runs::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift, Simulation, Start};
+use vi_runs::system::System;
 
 /// Bytes of whole rows that are written at once.
 const BLOCK: usize = 1 << 16;
@@ -295,10 +296,10 @@ fn describe(row: &Row, steps: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::Section;
     use core::cell::RefCell;
     use std::rc::Rc;
     use vi_core::StepError;
+    use vi_runs::simulation::Section;
 
     /// A run that cannot go on after three steps, at t = 1.5.
     struct Ending {

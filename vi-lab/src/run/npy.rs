@@ -4,15 +4,15 @@
 //! AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
 //! the file, whatever ends the run.
 
-use super::{BLOCK, Request, Sink, energies};
+use super::{BLOCK, Request, Sink, energies, method};
 use crate::failure::Failure;
 use crate::machine::{VERSION, command_line};
 use crate::npy::{ROOM, head};
-use crate::simulation::Row;
 use serde_json::json;
 use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use vi_runs::simulation::Row;
 
 /// An NPY file.
 pub(super) struct Npy {
@@ -74,7 +74,7 @@ fn description(request: &Request) -> serde_json::Value {
         system.parameters().into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
     json!({
         "version": VERSION, "command": command_line(), "system": system.name(), "parameters": parameters,
-        "method": plan.method_name(), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "every": every,
+        "method": method::in_words(plan), "h": plan.h, "t": plan.t, "q": plan.q, "v": plan.v, "every": every,
         "columns": request.columns(), "energies": energies(plan),
     })
 }

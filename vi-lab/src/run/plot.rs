@@ -3,16 +3,16 @@
 //! In: the rows that a run writes. Out: the file, when the run ends, however it ends. A long run takes bounded memory: of a function of the time the extremes of
 //! each stretch are kept, of a phase portrait every 2^k-th row, which is then drawn as dots.
 
-use super::{Request, Sink};
+use super::{Request, Sink, method};
 use crate::catalogue::kebab;
 use crate::chart::{Axis, Chart, Look, Panel, Sample, Series, Sheet, Trace};
 use crate::failure::Failure;
 use crate::machine::{VERSION, command_line};
-use crate::numbers::short;
-use crate::simulation::Row;
+use crate::numbers::{assigned, short};
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use vi_runs::simulation::Row;
 
 /// The most coordinates that are drawn.
 const MOST: usize = 24;
@@ -48,8 +48,6 @@ impl Plot {
         let file = File::create(path).map_err(|error| Failure::file(path, error))?;
         let Request { system, plan, .. } = request;
         let names = system.coordinates();
-        let parameters: Vec<String> =
-            system.parameters().iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
         let shown = names.len().min(MOST);
         let few = if shown < names.len() {
             format!(" (the first {shown} of {} coordinates)", names.len())
@@ -59,8 +57,8 @@ impl Plot {
         Ok(Self {
             path: path.to_owned(),
             file,
-            title: format!("{}, {}, h = {}{few}", kebab(system.name()), plan.method_name(), short(plan.h)),
-            parameters: parameters.join(", "),
+            title: format!("{}, {}, h = {}{few}", kebab(system.name()), method::in_words(plan), short(plan.h)),
+            parameters: assigned(&system.parameters()),
             energy: Trace::default(),
             discrete_energy: Trace::default(),
             coordinates: vec![Coordinate::default(); shown],

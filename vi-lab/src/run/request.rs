@@ -8,13 +8,13 @@ use crate::failure::Failure;
 use crate::input::number;
 use crate::numbers::short;
 use crate::place;
-use crate::simulation::{ENERGY_STAGES, Method, PhasePoint, Plan, Row, STAGES, Shift, Start};
 use crate::sweep::items::Items;
 use crate::sweep::scene::Sweep;
-use crate::system::System;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use vi_runs::simulation::{ENERGY_STAGES, Method, PhasePoint, Plan, Row, STAGES, Shift, Start};
+use vi_runs::system::System;
 
 /// Steps of a run that is not told otherwise.
 const USUAL_STEPS: u64 = 1000;

@@ -22,11 +22,11 @@
 use super::shift::{self, Wanted};
 use crate::failure::Failure;
 use crate::input::count_of_scene;
-use crate::simulation::{Method, Start};
 use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
+use vi_runs::simulation::{Method, Start};
 
 /// The entries of a scene file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]

@@ -6,9 +6,9 @@
 
 use super::request::Request;
 use crate::numbers::about;
-use crate::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift};
 use core::cell::Cell;
 use vi_core::StepError;
+use vi_runs::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift};
 
 /// Steps are tried up to 2^DOUBLINGS times as long.
 const DOUBLINGS: u32 = 10;

@@ -78,7 +78,7 @@ mod tests {
     fn runs_end_beyond_the_bound_for_short_steps() {
         let x = Axis::linear("e").over(0.0, 0.95);
         let y = Axis::log10("h").over(0.01, 0.02);
-        let grid = Grid::new(Axes { x, y }, 40);
+        let grid = Grid::new(Axes { x, y }, 25);
         let cells = grid.cells(|e, h| energy(e, h).class(), |_| ());
         assert_eq!(strays(&grid, &cells, LASTING, |e, _| e < BOUND), 0);
     }

@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_trapezoidal_rule_is_stable_up_to_h_omega_2() {
-        let grid = Grid::new(axes(), 60);
+        let grid = Grid::new(axes(), 30);
         let cells = grid.cells(|h, zeta| class(trapezoidal(Oscillator { c: 2.0 * zeta }), h, zeta), |_| ());
         // Where the motion decays the boundary is h ω = 2; where it grows, that of the characteristic polynomial.
         assert_eq!(

@@ -70,7 +70,7 @@ mod tests {
 
     fn cells(class: impl Fn(f64, f64) -> Class + Sync) -> (Grid, Vec<Class>) {
         let axes = Axes { x: Axis::linear("a").over(0.2, 3.0), y: Axis::log10("h").over(0.03, 0.06) };
-        let grid = Grid::new(axes, 30);
+        let grid = Grid::new(axes, 20);
         let cells = grid.cells(class, |_| ());
         (grid, cells)
     }

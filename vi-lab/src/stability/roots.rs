@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_kepler_map_ends_at_its_bound() {
-        let grid = Grid::new(kepler_axes(), 80).square();
+        let grid = Grid::new(kepler_axes(), 50).square();
         let cells = grid.cells(kepler, |_| ());
         let inside = |x: f64, y: f64| x.hypot(y + KEPLER_STEP * KEPLER_MOMENTUM / 2.0) < kepler_radius();
         assert_eq!(strays(&grid, &cells, NOT_CONVERGED, inside), 0);

@@ -81,10 +81,10 @@ mod tests {
 
     #[test]
     fn what_runs_is_inside_the_separatrix() {
-        let grid = Grid::new(Axes { x: Axis::linear("q").over(-1.5, 1.5), y: Axis::linear("v").over(-1.2, 1.2) }, 50);
+        let grid = Grid::new(Axes { x: Axis::linear("q").over(-1.5, 1.5), y: Axis::linear("v").over(-1.2, 1.2) }, 30);
         let cells = grid.cells(|q, v| course(DoubleWell::default(), q, v, 0.02), |_| ());
         assert_eq!(strays(&grid, &cells, LASTING, |q, v| v * v + q.powi(4) - q * q < 0.0), 0);
-        let grid = Grid::new(Axes { x: Axis::linear("θ").over(-3.1, 3.1), y: Axis::linear("v").over(-3.0, 3.0) }, 50);
+        let grid = Grid::new(Axes { x: Axis::linear("θ").over(-3.1, 3.1), y: Axis::linear("v").over(-3.0, 3.0) }, 30);
         let cells = grid.cells(|q, v| course(Pendulum::default(), q, v, 0.02), |_| ());
         assert_eq!(strays(&grid, &cells, LASTING, |q, v| v * v / 2.0 - q.cos() < 1.0), 0);
     }

@@ -2,10 +2,10 @@
 //!
 //! In: `NAME=LOW:HIGH`. Out: a [`Span`].
 
-use crate::catalogue::Entry;
 use crate::chart::Axis;
 use crate::failure::Failure;
 use crate::quantity::Quantity;
+use vi_runs::ready::Entry;
 
 /// A quantity with its range.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,13 +6,14 @@
 use super::atlas::{Atlas, Axes, Grid, Labels};
 use super::ending::{Course, Ending, Limit};
 use super::span::Span;
-use crate::catalogue::{Entry, kebab};
+use crate::catalogue::kebab;
 use crate::chart::{Class, Look, Series, boundary, middles};
 use crate::failure::Failure;
 use crate::quantity::Quantity;
-use crate::simulation::{Method, PhasePoint, Plan, Simulation};
-use crate::system::System;
 use core::cell::Cell;
+use vi_runs::ready::Entry;
+use vi_runs::simulation::{Method, PhasePoint, Plan, Simulation};
+use vi_runs::system::System;
 
 /// Steps of a run.
 const STEPS: u32 = 2500;

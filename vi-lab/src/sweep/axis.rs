@@ -8,8 +8,8 @@ use super::scene::{Over, Spacing};
 use crate::failure::Failure;
 use crate::numbers::short;
 use crate::quantity::Quantity;
-use crate::system::System;
 use core::fmt;
+use vi_runs::system::System;
 
 /// A quantity with its values.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,10 +5,10 @@
 use super::ending::Ending;
 use super::keep::STEPS_OF_A_PERIOD;
 use crate::run::{self, Length};
-use crate::simulation::{Plan, Row, Section, Simulation};
-use crate::system::System;
 use core::cell::Cell;
 use vi_core::StepError;
+use vi_runs::simulation::{Plan, Row, Section, Simulation};
+use vi_runs::system::System;
 
 /// Steps that find their own length may become so many times more than was foreseen.
 const PATIENCE: f64 = 1000.0;

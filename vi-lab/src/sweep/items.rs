@@ -8,8 +8,8 @@ use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
 use crate::failure::Failure;
-use crate::simulation::Plan;
-use crate::system::System;
+use vi_runs::simulation::Plan;
+use vi_runs::system::System;
 
 /// Items are counted in columns of numbers.
 const MOST: u64 = 1 << 53;

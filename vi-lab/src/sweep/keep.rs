@@ -7,8 +7,8 @@ use super::scene::{Cut, Keep, Passing, Sweep};
 use super::shape::{Column, Shape};
 use crate::failure::Failure;
 use crate::numbers::short;
-use crate::simulation::{Plan, Row, Section};
 use vi_core::integrator::Direction;
+use vi_runs::simulation::{Plan, Row, Section};
 
 /// Steps of a period at least, so that none is passed over.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;

@@ -12,8 +12,8 @@ use super::shard::Shard;
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::machine::VERSION;
-use crate::numbers::{about, short};
-use crate::run::{Length, Request};
+use crate::numbers::{about, assigned, short};
+use crate::run::{Length, Request, method};
 
 /// Steps in a chunk: some hundredths of a second of fixed steps.
 const STEPS: f64 = 5e4;
@@ -77,8 +77,6 @@ impl Study {
     /// All on which its tables depend.
     fn description(&self) -> Description {
         let Request { system, plan, length, every, .. } = &self.request;
-        let parameters: Vec<String> =
-            system.parameters().iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
         let length = match length {
             Length::Steps(steps) => format!("{steps} steps"),
             Length::Until(end) => format!("until t = {}", short(*end)),
@@ -92,8 +90,8 @@ impl Study {
             ("vi-lab", VERSION.to_owned()),
             ("system", system.name().to_owned()),
             ("sources", format!("{sources:08x}")),
-            ("parameters", parameters.join(", ")),
-            ("method", plan.method_name()),
+            ("parameters", assigned(&system.parameters())),
+            ("method", method::in_words(plan)),
             ("step", format!("h = {}", short(plan.h))),
             ("start", format!("t = {}, q = {:?}, v = {:?}", short(plan.t), plan.q, plan.v)),
             ("length", format!("{length}, series of one node in {every}, and the last")),

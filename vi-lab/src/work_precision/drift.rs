@@ -9,10 +9,10 @@ use super::method::{Method, TOO_MANY, Task};
 use super::reference::Reference;
 use crate::numbers::order;
 use crate::progress::Progress;
-use crate::rival::Ended;
-use crate::simulation::{PhasePoint, Plan};
-use crate::system::System;
 use core::cell::Cell;
+use vi_runs::rival::Ended;
+use vi_runs::simulation::{PhasePoint, Plan};
+use vi_runs::system::System;
 
 /// Tolerances of DOP853.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];

@@ -5,10 +5,10 @@
 //! end on; the others take the number of steps that is nearest.
 
 use crate::chart::Look;
-use crate::rival::Ended;
-use crate::simulation::{self, PhasePoint, Plan, Simulation};
-use crate::system::System;
 use core::cell::Cell;
+use vi_runs::rival::Ended;
+use vi_runs::simulation::{self, PhasePoint, Plan, Simulation};
+use vi_runs::system::System;
 
 /// A method of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]

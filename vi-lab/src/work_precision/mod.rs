@@ -23,7 +23,7 @@ mod method;
 mod reference;
 mod study;
 
-use crate::catalogue::{self, Entry};
+use crate::catalogue;
 use crate::failure::Failure;
 use crate::html::escape;
 use crate::input::number;
@@ -35,6 +35,7 @@ use clap::Args;
 use method::Method;
 use std::path::PathBuf;
 use study::Findings;
+use vi_runs::ready::Entry;
 
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]

@@ -10,10 +10,10 @@
 //! ```
 
 use super::method::{Method, Reached, Task};
-use crate::rival::Ended;
-use crate::simulation::PhasePoint;
-use crate::system::System;
 use core::cell::Cell;
+use vi_runs::rival::Ended;
+use vi_runs::simulation::PhasePoint;
+use vi_runs::system::System;
 
 /// Parts of the time at whose ends the reference is stored.
 const PARTS: u32 = 256;

@@ -6,13 +6,13 @@ use super::clock;
 use super::drift::{self, Drift};
 use super::method::{Method, Task};
 use super::reference::{Agreement, Reference};
-use crate::catalogue::Entry;
 use crate::numbers::{median, order};
 use crate::progress::Progress;
-use crate::rival::Ended;
-use crate::simulation::PhasePoint;
-use crate::system::System;
 use core::cell::Cell;
+use vi_runs::ready::Entry;
+use vi_runs::rival::Ended;
+use vi_runs::simulation::PhasePoint;
+use vi_runs::system::System;
 
 /// Usual steps up to the end of the runs whose errors are measured.
 const STEPS: f64 = 4000.0;
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn only_the_seconds_differ_between_two_studies() {
-        let found = || quick("double-pendulum", &[0.5, 0.3]);
+        let found = || quick("pendulum", &[0.5]);
         let one = found();
         let other = found();
         let plain = |found: &Findings| -> Vec<_> {

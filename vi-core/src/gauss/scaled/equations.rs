@@ -69,7 +69,7 @@ where
     /// The equations of the step of length Δτ from `node`, with a guess of the rates at its stages.
     #[inline(always)]
     pub(super) fn new(system: &'a Y, node: &'a Node<N>, dtau: f64, rates: Rates<N, S>) -> Self {
-        let mass = Y::CONSTANT_MASS.then(|| constant_mass(system, node));
+        let mass = constant_mass(system, node);
         let clock = Clock { time: [node.t; S], energy: [node.energy; S] };
         let force = [[0.0; S]; N];
         let velocity = rates.velocity;
@@ -170,11 +170,13 @@ where
 
     /// The corrections of the velocities by the constant mass matrix.
     #[inline(always)]
-    fn by_constant_mass(&mut self, mass: Y::Mass, x: &Stages<N, S>) -> Stages<N, S> {
+    fn by_constant_mass(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
         let missing = self.evaluate(x, |_, _| {});
         let mut correction = [[0.0; S]; N];
-        for i in 0..S {
-            set(&mut correction, i, &mass.solve_unchecked(&stage::<N, S, T>(&missing, i)));
+        if let Some(mass) = self.mass {
+            for i in 0..S {
+                set(&mut correction, i, &mass.solve_unchecked(&stage::<N, S, T>(&missing, i)));
+            }
         }
         correction
     }
@@ -236,10 +238,7 @@ where
 
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        let correction = match self.mass {
-            Some(mass) if Y::CONSTANT_MASS => self.by_constant_mass(mass, x),
-            _ => self.by_varying_mass(x),
-        };
+        let correction = if Y::CONSTANT_MASS { self.by_constant_mass(x) } else { self.by_varying_mass(x) };
         self.moved(&correction)
     }
 

@@ -31,6 +31,7 @@ mod path;
 mod rounding;
 mod run;
 
+use super::lost_force;
 use super::newton::{Newton, Stiff};
 use super::points::Rare;
 use super::stages::{Stages, stage};
@@ -178,14 +179,8 @@ where
                 return failure;
             }
         }
-        let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
-        let v = match node.state().velocity(&self.system) {
-            Ok(v) => v,
-            Err(failure) => return failure,
-        };
-        let explained = lost.explained(&self.system, node, *h, &v);
-        if let StepError::NonFinite { expression: Some(_), .. } = explained {
-            return explained;
+        if let Some(failure) = lost_force(&self.system, node, *h) {
+            return failure;
         }
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
         let h = time_scale(&self.system, node.t, &node.q) * dtau;

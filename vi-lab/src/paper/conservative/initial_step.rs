@@ -7,9 +7,9 @@ use super::runs::Case;
 use crate::chart::{Axis, Chart, Look, Series};
 use crate::failure::Failure;
 use crate::numbers::{extremes, order, scientific};
-use crate::start::motion;
 use crate::table::Table;
 use vi_core::{FixedStep, Lagrangian, SVector, StepError};
+use vi_runs::start::motion;
 use vi_systems::DoubleWell;
 
 /// Initial steps.

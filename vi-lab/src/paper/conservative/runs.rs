@@ -3,8 +3,8 @@
 //! In: a [`Case`]. Out: a [`Run`]: samples of the beginning, the growth of the energy error over the whole run.
 
 use crate::progress::Progress;
-use crate::start::second_point;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, StepError};
+use vi_runs::start::second_point;
 use vi_systems::DoubleWell;
 
 /// Time for which samples are kept: several oscillations.

@@ -2,12 +2,12 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{LOOKS, released, swing};
+use super::{LOOKS, end, released, swing};
 use crate::chart::{Axis, Chart, Look, Series};
 use crate::failure::Failure;
 use crate::report::math::{frac, id, num, op, row, sub, sub_sup, sup};
+use vi_core::StepError;
 use vi_core::gauss::energy::step_density;
-use vi_core::{EnergyPreservingGauss, StepError};
 
 /// Where the pendulum is released.
 const ANGLE: f64 = 2.0;
@@ -32,7 +32,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         states.iter().map(|state| Ok((state.t, density(&released(ANGLE).0, state)?))).collect::<Result<Vec<_>, _>>()
     };
     let densities = [of(step_density::<_, 1, 1>), of(step_density::<_, 1, 2>), of(step_density::<_, 1, 3>)];
-    let ends = [end::<1>(0.01), end::<2>(0.03), end::<3>(0.08)];
+    let ends = [end::<1>(ANGLE, 0.01, UNTIL), end::<2>(ANGLE, 0.03, UNTIL), end::<3>(ANGLE, 0.08, UNTIL)];
     let mut series = vec![Series::line("zero", Look::BACKGROUND, vec![(0.0, 0.0), (UNTIL, 0.0)]).unlabelled()];
     let mut marks = Vec::new();
     for ((density, look), (stages, end)) in densities.into_iter().zip(LOOKS).zip((1..).zip(ends)) {
@@ -59,18 +59,6 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         "Along this swing <i>D</i><sub>1</sub> keeps its sign, <i>D</i><sub>2</sub> and <i>D</i><sub>3</sub> do not: runs of \
          short steps end where the density comes to zero.",
     )
-}
-
-/// When a run of energy-preserving steps ends, if it does.
-fn end<const S: usize>(h: f64) -> Result<Option<f64>, StepError> {
-    let (system, start) = released(ANGLE);
-    let mut run = EnergyPreservingGauss::<_, 1, S>::new(system, start, h)?;
-    while run.state().t < UNTIL {
-        if run.step().is_err() {
-            return Ok(Some(run.state().t));
-        }
-    }
-    Ok(None)
 }
 
 /// `H − E = C_s h^2s D_s + …`, `D_s = (d/dτ)^2s H(t + τ, π(τ))`.

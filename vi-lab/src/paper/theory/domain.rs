@@ -2,12 +2,12 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{LOOKS, released, swing};
+use super::{LOOKS, end, released, swing};
 use crate::chart::{Axis, Chart, Look, Series};
 use crate::failure::Failure;
 use crate::table::Table;
 use vi_core::gauss::energy::step_density;
-use vi_core::{Called, EnergyPreservingGauss, State, StepError};
+use vi_core::{Called, State, StepError};
 use vi_systems::Pendulum;
 
 /// Amplitudes, in radians.
@@ -100,12 +100,5 @@ fn crossing(points: &[(f64, f64)]) -> Option<f64> {
 fn lasts<const S: usize>(angle: f64) -> Result<bool, StepError> {
     // The length of shorter ones would be lost in rounding.
     let h = [0.005, 0.03, 0.1][S - 1];
-    let (system, start) = released(angle);
-    let mut run = EnergyPreservingGauss::<_, 1, S>::new(system, start, h)?;
-    while run.state().t < LASTING {
-        if run.step().is_err() {
-            return Ok(false);
-        }
-    }
-    Ok(true)
+    Ok(end::<S>(angle, h, LASTING)?.is_none())
 }

@@ -12,7 +12,7 @@ use super::book::Book;
 use crate::chart::Look;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use vi_core::{Called, Gauss, State, StepError};
+use vi_core::{Called, EnergyPreservingGauss, Gauss, State, StepError};
 use vi_systems::Pendulum;
 
 /// How energy-preserving steps of 1, 2 and 3 stages are drawn.
@@ -34,6 +34,18 @@ pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Fa
 fn released(angle: f64) -> (Called<Pendulum>, State<1>) {
     let system = Pendulum::default();
     (Called(system), State::at(&system, 0.0, [angle], [0.0]))
+}
+
+/// When a run of energy-preserving steps from rest at an angle ends, if it does before a time.
+fn end<const S: usize>(angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
+    let (system, start) = released(angle);
+    let mut run = EnergyPreservingGauss::<_, 1, S>::new(system, start, h)?;
+    while run.state().t < until {
+        if run.step().is_err() {
+            return Ok(Some(run.state().t));
+        }
+    }
+    Ok(None)
 }
 
 /// States along the accurate motion of a pendulum from rest, until a time.

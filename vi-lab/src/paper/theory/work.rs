@@ -7,12 +7,12 @@ use super::super::book::Book;
 use super::super::unexpected;
 use crate::chart::{Axis, Chart, Look, Series};
 use crate::failure::Failure;
-use crate::simulation::{Method, PhasePoint, Plan, Shift};
-use crate::system::{self, System};
 use crate::table::Table;
 use core::cell::Cell;
 use core::f64::consts::TAU;
 use vi_core::{Called, Gauss, State, StepError};
+use vi_runs::simulation::{Method, PhasePoint, Plan, Shift};
+use vi_runs::system::{self, System};
 use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.

@@ -12,7 +12,7 @@ use vi_core::{Gauss, Integrator as _, State, StepError};
 const STAGES: usize = 8;
 
 /// Lyapunov exponents along a run.
-pub(crate) trait Exponents {
+pub trait Exponents {
     /// Takes so many steps.
     ///
     /// # Errors
@@ -45,11 +45,7 @@ where
 ///
 /// # Errors
 /// What the integrator says of the initial state.
-pub(crate) fn begin<'a, S, const N: usize>(
-    system: S,
-    plan: &Plan,
-    count: usize,
-) -> Result<Box<dyn Exponents + 'a>, StepError>
+pub fn begin<'a, S, const N: usize>(system: S, plan: &Plan, count: usize) -> Result<Box<dyn Exponents + 'a>, StepError>
 where
     S: Collocation<N> + Convertible<N> + FixedStepping<N> + 'a,
 {

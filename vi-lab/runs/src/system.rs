@@ -16,7 +16,7 @@ use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{Called, SVector, State, StepError};
 
 /// A system with its parameters.
-pub(crate) trait System: Send + Sync {
+pub trait System: Send + Sync {
     /// Name of the type.
     fn name(&self) -> &'static str;
     /// Names of the coordinates.
@@ -79,7 +79,8 @@ pub(crate) trait System: Send + Sync {
 struct Typed<S, const N: usize>(S);
 
 /// The system `S` with its default parameters.
-pub(crate) fn erased<S, const N: usize>() -> Box<dyn System>
+#[must_use]
+pub fn erased<S, const N: usize>() -> Box<dyn System>
 where
     S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
 {

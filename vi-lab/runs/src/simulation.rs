@@ -7,7 +7,6 @@
 //! off by rounding.
 
 use crate::counting::Counting;
-use crate::numbers::short;
 use crate::start;
 use clap::ValueEnum;
 use core::cell::Cell;
@@ -23,7 +22,7 @@ use vi_core::{
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Method {
+pub enum Method {
     /// The variational integrator with a given step
     Fixed,
     /// Five fixed steps composed to order 4, by Suzuki
@@ -45,16 +44,17 @@ pub(crate) enum Method {
 }
 
 /// Numbers of stages of the Gauss steps that are built into the command, for each system: each costs a second or two of the compiler.
-pub(crate) const STAGES: [usize; 2] = [4, 8];
+pub const STAGES: [usize; 2] = [4, 8];
 /// The number of stages that nobody asked for: the most accurate steps for their time, from errors of 1e-6 on.
-pub(crate) const USUAL_STAGES: usize = 8;
+pub const USUAL_STAGES: usize = 8;
 
 /// Numbers of stages of energy-preserving Gauss steps: with more, rounding loses their length.
-pub(crate) const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
+pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
 impl Method {
     /// The scheme of a composition.
-    pub(crate) fn scheme(self) -> Option<Scheme> {
+    #[must_use]
+    pub fn scheme(self) -> Option<Scheme> {
         match self {
             Self::Suzuki4 => Some(Scheme::SUZUKI_4),
             Self::KahanLi6 => Some(Scheme::KAHAN_LI_6),
@@ -64,7 +64,8 @@ impl Method {
     }
 
     /// Its name on the command line.
-    pub(crate) fn name(self) -> &'static str {
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
             Self::Suzuki4 => "suzuki-4",
@@ -79,7 +80,7 @@ impl Method {
 /// How the energy-preserving integrator gets its first interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Start {
+pub enum Start {
     /// The initial state is the middle of the first interval
     Midpoint,
     /// The first interval ends in the exact solution at t0 + h: the paper's start
@@ -88,7 +89,7 @@ pub(crate) enum Start {
 
 /// The shift D_* of the step density.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Shift {
+pub enum Shift {
     /// This one.
     Of(f64),
     /// Twice the largest step density over this time from the start.
@@ -97,96 +98,78 @@ pub(crate) enum Shift {
 
 /// What is to be run.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Plan {
+pub struct Plan {
     /// The integrator.
-    pub(crate) method: Method,
+    pub method: Method,
     /// The start of the energy-preserving integrator without stages and shift; the others need none.
-    pub(crate) start: Start,
+    pub start: Start,
     /// The stages of Gauss steps, one of [`STAGES`], or of energy-preserving ones, one of [`ENERGY_STAGES`].
-    pub(crate) stages: Option<usize>,
+    pub stages: Option<usize>,
     /// The shift of energy-preserving steps.
-    pub(crate) shift: Option<Shift>,
+    pub shift: Option<Shift>,
     /// Whether fixed steps are taken where there is no energy-preserving one.
-    pub(crate) fallback: bool,
+    pub fallback: bool,
     /// The step of Gauss steps in scaled time.
-    pub(crate) dtau: Option<f64>,
+    pub dtau: Option<f64>,
     /// The step, or the first one.
-    pub(crate) h: f64,
+    pub h: f64,
     /// Initial time.
-    pub(crate) t: f64,
+    pub t: f64,
     /// Initial coordinates.
-    pub(crate) q: Vec<f64>,
+    pub q: Vec<f64>,
     /// Initial velocities.
-    pub(crate) v: Vec<f64>,
+    pub v: Vec<f64>,
 }
 
 impl Plan {
     /// A run by steps of the length h from a point, by what is usual of the method.
-    pub(crate) fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
+    #[must_use]
+    pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
         Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
     }
 
-    /// The integrator and its start, as they are asked for on the command line.
-    pub(crate) fn method_name(&self) -> String {
-        let start = |name: &str| format!("start {name}");
-        let of_the_method = match (self.method, self.energy_stages(), self.start) {
-            (Method::Gauss, _, _) => Some(format!("{} stages", self.stages.unwrap_or(USUAL_STAGES))),
-            (Method::Energy, Some(1), _) => Some("1 stage".to_owned()),
-            (Method::Energy, Some(stages), _) => Some(format!("{stages} stages")),
-            (Method::Energy, None, Start::Midpoint) => Some(start("midpoint")),
-            (Method::Energy, None, Start::Points) => Some(start("points")),
-            _ => None,
-        };
-        let shift = self.shift.map(|shift| match shift {
-            Shift::Of(shift) => format!("shift {}", short(shift)),
-            Shift::Over(time) => format!("shift measured over {}", short(time)),
-        });
-        let fallback = self.fallback.then(|| "with fallback".to_owned());
-        let dtau = self.dtau.map(|dtau| format!("dtau = {}", short(dtau)));
-        let words = [Some(self.method.name().to_owned()), of_the_method, shift, fallback, dtau];
-        words.into_iter().flatten().collect::<Vec<_>>().join(", ")
-    }
-
     /// The stages of energy-preserving steps by [`EnergyPreservingGauss`]; none where [`EnergyPreserving`] takes them.
-    pub(crate) fn energy_stages(&self) -> Option<usize> {
+    #[must_use]
+    pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
     }
 }
 
 /// Where a motion is.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PhasePoint {
+pub struct PhasePoint {
     /// Time.
-    pub(crate) t: f64,
+    pub t: f64,
     /// Coordinates.
-    pub(crate) q: Vec<f64>,
+    pub q: Vec<f64>,
     /// Velocities.
-    pub(crate) v: Vec<f64>,
+    pub v: Vec<f64>,
 }
 
 /// A node, its energies, and the length of the step that led to it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Row {
+pub struct Row {
     /// Time.
-    pub(crate) t: f64,
+    pub t: f64,
     /// Coordinates.
-    pub(crate) q: Vec<f64>,
+    pub q: Vec<f64>,
     /// Momenta.
-    pub(crate) p: Vec<f64>,
+    pub p: Vec<f64>,
     /// H, the energy at the node; none where no velocity belongs to the momenta.
-    pub(crate) energy: Option<f64>,
+    pub energy: Option<f64>,
     /// E, the discrete energy of the interval that ends at the node; none before the first fixed step, and none of a
     /// composition, whose whole step is no interval of one discrete Lagrangian.
-    pub(crate) discrete_energy: Option<f64>,
+    pub discrete_energy: Option<f64>,
     /// E', the energy that steps with a shift keep; none of other methods, whose rows have no such column.
-    pub(crate) shifted_energy: Option<f64>,
+    pub shifted_energy: Option<f64>,
     /// Length of the step; in the first row the length asked for.
-    pub(crate) h: f64,
+    pub h: f64,
 }
 
 impl Row {
     /// The names of the columns, for these coordinates, of steps with a shift or without.
-    pub(crate) fn columns(coordinates: &[&str], is_shifted: bool) -> Vec<String> {
+    #[must_use]
+    pub fn columns(coordinates: &[&str], is_shifted: bool) -> Vec<String> {
         let q = coordinates.iter().map(|&name| name.to_owned());
         let p = coordinates.iter().map(|name| format!("p_{name}"));
         let last: &[&str] = if is_shifted { &["H", "E", "E'", "h"] } else { &["H", "E", "h"] };
@@ -195,7 +178,7 @@ impl Row {
     }
 
     /// The entries in the order of the columns.
-    pub(crate) fn entries(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+    pub fn entries(&self) -> impl Iterator<Item = Option<f64>> + '_ {
         let numbers = core::iter::once(&self.t).chain(&self.q).chain(&self.p).copied().map(Some);
         let energies = [self.energy, self.discrete_energy];
         numbers.chain(energies).chain(self.shifted_energy.map(Some)).chain([Some(self.h)])
@@ -204,7 +187,7 @@ impl Row {
 
 /// A surface that a motion crosses again and again: a Poincaré section.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Section {
+pub enum Section {
     /// A coordinate has this value, and passes it in this direction.
     Coordinate {
         /// Which coordinate.
@@ -247,7 +230,7 @@ impl Section {
 }
 
 /// A run that has been started.
-pub(crate) trait Simulation {
+pub trait Simulation {
     /// Time of the node reached last.
     fn t(&self) -> f64;
     /// Coordinates of the node reached last.
@@ -326,11 +309,11 @@ pub(crate) trait Simulation {
 
 /// What steps with a shift keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ShiftedEnergy {
+pub struct ShiftedEnergy {
     /// `E' = E − C_s h^2s D_*`.
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// D_*.
-    pub(crate) shift: f64,
+    pub shift: f64,
 }
 
 /// Starts a run of `system`. `evaluations` grows by those of its equations, which [`Counting`] counts; by Gauss steps it grows by the
@@ -339,7 +322,7 @@ pub(crate) struct ShiftedEnergy {
 /// # Errors
 /// What the integrators say of the initial state; [`StepError::InvalidInput`] where the numbers of coordinates or
 /// velocities are not those of the system, and for stages that are not among [`STAGES`].
-pub(crate) fn begin<'a, S, const N: usize>(
+pub fn begin<'a, S, const N: usize>(
     system: S,
     plan: &Plan,
     evaluations: &'a Cell<u64>,
@@ -477,7 +460,7 @@ where
 ///
 /// # Errors
 /// [`StepError::InvalidInput`] where there are more or fewer values.
-pub(crate) fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVector<f64, N>, StepError> {
+pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVector<f64, N>, StepError> {
     if values.len() == N {
         Ok(SVector::from_column_slice(values))
     } else {

@@ -1,0 +1,14 @@
+//! The tests across crates that take many steps, one program, compiled with optimization.
+
+mod derivatives_of_runs;
+mod energy_preserving_gauss;
+mod failures;
+mod gauss;
+mod gauss_slots;
+mod hunt;
+mod invariants;
+mod iterations;
+mod robustness;
+mod solvability;
+#[path = "../support/mod.rs"]
+mod support;

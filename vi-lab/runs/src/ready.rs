@@ -1,0 +1,97 @@
+//! The ready systems, each with a place to start from.
+//!
+//! In: the systems of `vi_systems`. Out: a list of [`Entry`], their types erased: here, once for each of them, the compiler meets all that is
+//! generic over systems.
+
+use crate::system::{self, System};
+use vi_core::collocation::Collocation;
+use vi_core::lagrangian::Parameters;
+use vi_core::stepping::{Convertible, EnergyStepping};
+use vi_systems::{
+    ChargedParticle, DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HardDuffing,
+    HarmonicOscillator, HenonHeiles, Kepler, NPendulum, OuterSolarSystem, ParametricPendulum, Pendulum, RotatingHoop,
+    SphericalPendulum, ThreeBody,
+};
+
+/// A system with a place to start from.
+pub struct Entry {
+    /// The system, with the default parameters.
+    pub system: Box<dyn System>,
+    /// What it is.
+    pub about: &'static str,
+    /// Default initial coordinates.
+    pub q: Vec<f64>,
+    /// Default initial velocities.
+    pub v: Vec<f64>,
+    /// Default step.
+    pub h: f64,
+}
+
+impl Entry {
+    /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
+    #[must_use]
+    pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    where
+        S: EnergyStepping<N> + Collocation<N> + Convertible<N> + Parameters + Default + Clone + Send + Sync + 'static,
+    {
+        Self { system: system::erased::<S, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+    }
+}
+
+/// sin(π (i + 1)/17), to three digits: the lowest mode of 16 masses between walls.
+const LOWEST_MODE: [f64; 16] =
+    [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996, 0.996, 0.962, 0.895, 0.798, 0.674, 0.526, 0.361, 0.184];
+
+/// The figure of eight: coordinates x and y of the bodies, in the digits of C. Simó.
+const EIGHT: [f64; 6] =
+    [0.970_004_356_697_34, -0.970_004_356_697_34, 0.0, -0.243_087_531_535_83, 0.243_087_531_535_83, 0.0];
+/// The velocities: the third body, in the middle, moves against both others.
+const EIGHT_V: [f64; 6] = [
+    0.466_203_685_720_52,
+    0.466_203_685_720_52,
+    -0.932_407_371_441_04,
+    0.432_365_730_460_51,
+    0.432_365_730_460_51,
+    -0.864_731_460_921_02,
+];
+
+/// The ready systems, in the order in which they are listed.
+#[must_use]
+pub fn systems() -> Vec<Entry> {
+    let rest = [0.0];
+    let inclined = [0.8, 0.0];
+    vec![
+        Entry::new::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
+        Entry::new::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
+        Entry::new::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
+        Entry::new::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
+        Entry::new::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
+        Entry::new::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),
+        Entry::new::<DoubleWellDuffing, 1>("driven double well: chaos", [0.8], rest, 0.01),
+        Entry::new::<ParametricPendulum, 1>("pendulum with a modulated gravity", [0.5], rest, 0.01),
+        Entry::new::<RotatingHoop, 1>("bead on a rotating hoop", [1.0], rest, 0.01),
+        Entry::new::<SphericalPendulum, 2>("mass on a rod in space", inclined, [0.0, 4.0], 0.005),
+        Entry::new::<HenonHeiles, 2>("star in a galaxy near its circular orbit", [0.0, 0.1], [0.5, 0.0], 0.02),
+        Entry::new::<ChargedParticle, 3>("charge in a magnetic field", [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], 0.01),
+        Entry::new::<NPendulum, 4>(
+            "four pendula, each hanging from the one above",
+            [0.6, 0.4, 0.2, 0.1],
+            [0.0; 4],
+            0.005,
+        ),
+        Entry::new::<ThreeBody, 6>("three bodies on a figure of eight, period 6.3259", EIGHT, EIGHT_V, 0.005),
+        Entry::new::<FpuChain, 16>(
+            "sixteen masses on nonlinear springs, in their lowest mode",
+            LOWEST_MODE,
+            [0.0; 16],
+            0.1,
+        ),
+        Entry::new::<OuterSolarSystem, 18>(
+            "the Sun and five planets; AU, days, solar masses",
+            OuterSolarSystem::POSITIONS,
+            OuterSolarSystem::VELOCITIES,
+            10.0,
+        ),
+    ]
+}

@@ -1,0 +1,6 @@
+//! The tests of this crate, one program.
+
+mod counting;
+mod ready;
+mod rival;
+mod start;

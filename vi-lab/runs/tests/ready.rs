@@ -1,0 +1,30 @@
+//! Every ready system starts, by every method.
+
+use core::cell::Cell;
+use vi_runs::ready;
+use vi_runs::simulation::{Method, PhasePoint, Plan};
+
+#[test]
+fn every_entry_starts_and_keeps_its_parameters() {
+    for mut entry in ready::systems() {
+        let size = entry.system.coordinates().len();
+        let name = entry.system.name();
+        assert_eq!((entry.q.len(), entry.v.len()), (size, size), "{name}");
+        for method in [Method::Fixed, Method::KahanLi6, Method::Gauss, Method::Energy] {
+            let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
+            let plan = Plan::new(method, entry.h, start);
+            let evaluations = Cell::new(0);
+            let begun = entry.system.begin(&plan, &evaluations);
+            let mut run = begun.unwrap_or_else(|error| panic!("{name}: {error}"));
+            let first = run.t();
+            for _ in 0..10 {
+                run.advance().unwrap_or_else(|error| panic!("{name}, {method:?}: {error}"));
+            }
+            assert!(run.t() > first && evaluations.get() > 0, "{name}");
+        }
+        for (parameter, value) in entry.system.parameters() {
+            assert!(entry.system.set(parameter, value + 1.0), "{name}: {parameter}");
+        }
+        assert!(!entry.system.set("no such parameter", 1.0));
+    }
+}

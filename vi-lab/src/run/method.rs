@@ -1,0 +1,25 @@
+//! The integrator of a run in words: `energy, 2 stages, shift 0.5, with fallback`.
+
+use crate::numbers::short;
+use vi_runs::simulation::{Method, Plan, Shift, Start, USUAL_STAGES};
+
+/// The integrator of a plan and its start, as they are asked for on the command line.
+pub(crate) fn in_words(plan: &Plan) -> String {
+    let start = |name: &str| format!("start {name}");
+    let of_the_method = match (plan.method, plan.energy_stages(), plan.start) {
+        (Method::Gauss, _, _) => Some(format!("{} stages", plan.stages.unwrap_or(USUAL_STAGES))),
+        (Method::Energy, Some(1), _) => Some("1 stage".to_owned()),
+        (Method::Energy, Some(stages), _) => Some(format!("{stages} stages")),
+        (Method::Energy, None, Start::Midpoint) => Some(start("midpoint")),
+        (Method::Energy, None, Start::Points) => Some(start("points")),
+        _ => None,
+    };
+    let shift = plan.shift.map(|shift| match shift {
+        Shift::Of(shift) => format!("shift {}", short(shift)),
+        Shift::Over(time) => format!("shift measured over {}", short(time)),
+    });
+    let fallback = plan.fallback.then(|| "with fallback".to_owned());
+    let dtau = plan.dtau.map(|dtau| format!("dtau = {}", short(dtau)));
+    let words = [Some(plan.method.name().to_owned()), of_the_method, shift, fallback, dtau];
+    words.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
