@@ -11,7 +11,7 @@ use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, State, StepError};
 
 /// Draws for each system, each from four starts.
-const DRAWS: usize = 3000;
+const DRAWS: usize = 1500;
 const STEPS: usize = 5;
 
 /// A number that no one should give, and everyone does.

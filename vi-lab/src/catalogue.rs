@@ -44,11 +44,15 @@ pub(crate) fn entries() -> Vec<Entry> {
     all
 }
 
-/// The name of the first system of one's own.
-pub(crate) fn first_own() -> Result<String, Failure> {
+/// The first system of one's own: what a command is about that names none.
+pub(crate) fn first_own() -> Result<Entry, Failure> {
     let first = OWN.get().and_then(|own| (own.entries)().into_iter().next());
-    let none = || Failure::Input(format!("name a system, as `{} list` does, or a scene file", program()));
-    first.map(|entry| entry.system.name().to_owned()).ok_or_else(none)
+    first.ok_or_else(|| Failure::Input(format!("name a system, as `{} list` does", program())))
+}
+
+/// The entry of this name, or the first of one's own.
+pub(crate) fn named(name: Option<&str>) -> Result<Entry, Failure> {
+    name.map_or_else(first_own, find)
 }
 
 /// The entry of this name.

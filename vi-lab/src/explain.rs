@@ -14,9 +14,9 @@ use vi_codegen::inspect::{self, source};
 /// The command line of `vi-lab explain`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A system of `vi-lab list`, or a file of Rust
+    /// A system of `vi-lab list`, or a file of Rust [default: the first system of this program's own]
     #[arg(value_name = "SYSTEM|FILE.rs")]
-    system: String,
+    system: Option<String>,
     /// Write a LaTeX document
     #[arg(long)]
     latex: bool,
@@ -53,10 +53,11 @@ pub(crate) fn explain(arguments: &Arguments) -> Result<String, Failure> {
     let Arguments { system, latex, .. } = arguments;
     let show = |explanation: inspect::Explanation| if *latex { explanation.latex() } else { explanation.text() };
     let explained = |tokens| arguments.explained(tokens);
-    if Path::new(system).extension().is_some_and(|extension| extension == "rs") {
-        return expand::each(Path::new(system), |tokens| explained(tokens).map(show));
+    let file = system.as_ref().map(Path::new).filter(|path| path.extension().is_some_and(|kind| kind == "rs"));
+    if let Some(file) = file {
+        return expand::each(file, |tokens| explained(tokens).map(show));
     }
-    let entry = catalogue::find(system)?;
+    let entry = catalogue::named(system.as_deref())?;
     ready(entry.system.name(), explained).map(show)
 }
 

@@ -88,7 +88,7 @@ fn exponents_of_chaos_and_of_a_swing() {
     assert!(last[1].abs() < 0.05, "{text}");
     assert_refused(&[
         (&["lyapunov", "kepler", "--count", "5"], "kepler has 1 to 4 exponents (--count), not 5"),
-        (&["lyapunov"], "name a system, as `vi-lab list` does, or a scene file"),
+        (&["lyapunov"], "name a system, as `vi-lab list` does"),
     ]);
 }
 
@@ -228,9 +228,11 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
 
 #[test]
 fn wrong_input_is_one_line_and_status_2() {
-    let cases: [(&[&str], &str); 29] = [
+    let cases: [(&[&str], &str); 31] = [
+        (&["explain"], "name a system, as `vi-lab list` does"),
+        (&["work-precision"], "name a system, as `vi-lab list` does"),
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
-        (&["run"], "name a system, as `vi-lab list` does, or a scene file"),
+        (&["run"], "name a system, as `vi-lab list` does"),
         (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
         (&["run", "double-well", "--steps", "1", "--set", "k=1"], "double-well has no parameter `k`; it has `m`"),
         (

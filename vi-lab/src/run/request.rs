@@ -170,7 +170,7 @@ impl Request {
     fn read(arguments: &Arguments) -> Result<(Self, Option<Sweep>), Failure> {
         let target = match &arguments.target {
             Some(target) => target.clone(),
-            None => catalogue::first_own()?,
+            None => catalogue::first_own()?.system.name().to_owned(),
         };
         let extension = Path::new(&target).extension();
         let is_scene = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));

@@ -40,8 +40,8 @@ use vi_runs::ready::Entry;
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// System of the catalogue
-    system: String,
+    /// A system of `vi-lab list` [default: the first system of this program's own]
+    system: Option<String>,
     /// Folder for the page, its figures (SVG) and their data (CSV)
     #[arg(long, value_name = "DIR", default_value = "work-precision")]
     out: PathBuf,
@@ -93,7 +93,7 @@ pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
 
 /// The entry of the system, with the start that is asked for.
 fn entry(arguments: &Arguments) -> Result<Entry, Failure> {
-    let entry = catalogue::find(&arguments.system)?;
+    let entry = catalogue::named(arguments.system.as_deref())?;
     let q = arguments.q.clone().unwrap_or(entry.q);
     let v = arguments.v.clone().unwrap_or(entry.v);
     for (what, values) in [("coordinates (--q)", &q), ("velocities (--v)", &v)] {

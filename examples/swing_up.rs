@@ -1,0 +1,230 @@
+//! Optimal control: a cart swings its pole up with the least force.
+//!
+//! In: nothing. Out: the force of each step, and where it brings the pole; `cargo run --release --example swing_up`. With forces `u_k`, constant over
+//! a step each,
+//!
+//! ```text
+//! minimise  C(u) = h/2 Σ u_k²        where the run of Gauss steps ends in  z_K = (x, a, p_x, p_a) = 0
+//! ```
+//!
+//! It is discrete mechanics and optimal control (Ober-Blöbaum, Junge and Marsden, ESAIM: COCV 17, 2011): the steps are the constraints, and no error of
+//! time discretization stands between C and its gradient, which is that of the steps themselves, by one sweep backwards. The condition at the end is an augmented Lagrangian
+//! (Nocedal and Wright, *Numerical Optimization*, 17.3), whose minima L-BFGS finds.
+
+use argmin::core::{CostFunction, Error, Executor, Gradient as HasGradient, State as _};
+use argmin::solver::linesearch::MoreThuenteLineSearch;
+use argmin::solver::quasinewton::LBFGS;
+use vi_core::derivatives::{Covector, Objective, gradient};
+use vi_core::{Gauss, Integrator, SVector, State, StepError, lagrangian};
+
+lagrangian! {
+    /// A pole on a cart; the angle a is zero where the pole is upright.
+    struct CartPole {
+        param M = 1.0, m = 0.2, l = 0.5, g = 9.81;
+        /// Force on the cart.
+        param u = 0.0;
+        coord x, a;
+        L = (M + m) * dot(x)^2 / 2 + m * l * dot(x) * dot(a) * cos(a) + m * l^2 * dot(a)^2 / 2 - m * g * l * cos(a);
+        force x = u;
+        discretize midpoint;
+    }
+}
+
+/// Steps of order 4.
+type Run = Gauss<CartPole, 2, 2>;
+
+/// Length of a step, in seconds.
+const H: f64 = 0.1;
+/// Steps: two and a half seconds.
+const STEPS: u32 = 25;
+/// Distance of the end from where it has to be.
+const TOLERANCE: f64 = 1e-8;
+
+/// The augmented Lagrangian `C + λ·z_K + (w/2) |z_K|²`.
+#[derive(Clone)]
+struct SwingUp {
+    start: Run,
+    /// λ.
+    multipliers: SVector<f64, 4>,
+    /// w.
+    weight: f64,
+}
+
+impl SwingUp {
+    /// The pole hangs at rest, and no condition at its end weighs more than the force.
+    fn new() -> Result<Self, StepError> {
+        let pole = CartPole::default();
+        let start = State::at(&pole, 0.0, [0.0, std::f64::consts::PI], [0.0, 0.0]);
+        Ok(Self { start: Run::new(pole, start, H)?, multipliers: SVector::zeros(), weight: 100.0 })
+    }
+
+    /// Where forces lead.
+    fn end(&self, forces: &[f64]) -> Result<SVector<f64, 4>, StepError> {
+        let mut run = self.start.clone();
+        for &force in forces {
+            run.set_parameters(|pole| pole.u = force)?;
+            run.step()?;
+        }
+        Ok(coordinates(&run.state()))
+    }
+
+    /// What is minimised.
+    fn value(&self, forces: &[f64]) -> Result<f64, StepError> {
+        let z = self.end(forces)?;
+        Ok(price(forces) + self.multipliers.dot(&z) + 0.5 * self.weight * z.norm_squared())
+    }
+
+    /// Its gradient.
+    fn slope(&self, forces: &[f64]) -> Result<Vec<f64>, StepError> {
+        let steps = forces.len() as u64;
+        let of_the_end = gradient(&self.start, steps, forces.len(), &Course { forces, problem: self })?;
+        Ok(of_the_end.parameters.iter().zip(forces).map(|(by, force)| by[0] + H * force).collect())
+    }
+}
+
+/// What forces cost.
+fn price(forces: &[f64]) -> f64 {
+    0.5 * H * forces.iter().map(|force| force * force).sum::<f64>()
+}
+
+/// Coordinates and momenta.
+fn coordinates(state: &State<2>) -> SVector<f64, 4> {
+    SVector::from([state.q[0], state.q[1], state.p[0], state.p[1]])
+}
+
+/// A run with its forces, for the sweep backwards.
+struct Course<'a> {
+    forces: &'a [f64],
+    problem: &'a SwingUp,
+}
+
+impl Objective<Run, 2> for Course<'_> {
+    fn prepare(&self, step: u64, run: &mut Run) -> Result<(), StepError> {
+        let force = usize::try_from(step).ok().and_then(|step| self.forces.get(step)).copied().unwrap_or(0.0);
+        run.set_parameters(|pole| pole.u = force)
+    }
+
+    fn parameters(&self) -> &[&str] {
+        &["u"]
+    }
+
+    fn slope(&self, step: u64, state: &State<2>) -> Covector<2> {
+        if step < self.forces.len() as u64 {
+            return Covector::zero();
+        }
+        let SwingUp { multipliers, weight, .. } = self.problem;
+        let by = multipliers + coordinates(state) * *weight;
+        Covector { q: [by[0], by[1]].into(), p: [by[2], by[3]].into(), ..Covector::zero() }
+    }
+}
+
+impl CostFunction for SwingUp {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, forces: &Vec<f64>) -> Result<f64, Error> {
+        Ok(self.value(forces)?)
+    }
+}
+
+impl HasGradient for SwingUp {
+    type Param = Vec<f64>;
+    type Gradient = Vec<f64>;
+
+    fn gradient(&self, forces: &Vec<f64>) -> Result<Vec<f64>, Error> {
+        Ok(self.slope(forces)?)
+    }
+}
+
+/// The forces, and the problem with the multipliers at which they are its minimum.
+fn solved() -> Result<(Vec<f64>, SwingUp), Error> {
+    let mut problem = SwingUp::new()?;
+    // At rest below nothing says to which side to swing: a push does.
+    let mut forces: Vec<f64> = (0..STEPS).map(|step| 2.0 * (f64::from(step) * H * 5.0).sin()).collect();
+    for _ in 0..20 {
+        let solver =
+            LBFGS::new(MoreThuenteLineSearch::new(), 40).with_tolerance_grad(1e-9)?.with_tolerance_cost(0.0)?;
+        let outcome = Executor::new(problem.clone(), solver)
+            .configure(|state| state.param(forces.clone()).max_iters(2000))
+            .run()?;
+        if let Some(best) = outcome.state().get_best_param() {
+            forces.clone_from(best);
+        }
+        let z = problem.end(&forces)?;
+        println!("force {:.6}, at its end {:.1e} from the top", price(&forces), z.norm());
+        if z.norm() < TOLERANCE {
+            break;
+        }
+        problem.multipliers += z * problem.weight;
+        problem.weight = (10.0 * problem.weight).min(1e5);
+    }
+    Ok((forces, problem))
+}
+
+fn main() -> Result<(), Error> {
+    let (forces, _) = solved()?;
+    for (step, force) in (0..STEPS).zip(&forces) {
+        println!("{:5.2} s {force:9.4} N", f64::from(step) * H);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Unit vectors that look random, by a linear congruence (Knuth, MMIX).
+    fn directions() -> impl Iterator<Item = Vec<f64>> {
+        let mut entry = 1_u64;
+        let mut next = move || {
+            entry = entry.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            u32::try_from(entry >> 40).map_or(0.0, f64::from) / f64::from(1 << 24) - 0.5
+        };
+        (0..10).map(move |_| {
+            let direction: Vec<f64> = (0..STEPS).map(|_| next()).collect();
+            let norm = direction.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+            direction.iter().map(|entry| entry / norm).collect()
+        })
+    }
+
+    fn moved(forces: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
+        forces.iter().zip(direction).map(|(force, along)| force + by * along).collect()
+    }
+
+    /// The derivative of what is minimised along a direction, by differences of runs.
+    fn difference(problem: &SwingUp, forces: &[f64], direction: &[f64]) -> f64 {
+        let value = |by| problem.value(&moved(forces, direction, by)).expect("a run");
+        (value(1e-6) - value(-1e-6)) / 2e-6
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_the_runs() {
+        let problem = SwingUp::new().expect("a start");
+        let forces: Vec<f64> = (0..STEPS).map(|step| f64::from(step).cos()).collect();
+        let slope = problem.slope(&forces).expect("a gradient");
+        for direction in directions() {
+            let exact: f64 = slope.iter().zip(&direction).map(|(by, along)| by * along).sum();
+            let found = difference(&problem, &forces, &direction);
+            assert!(
+                (found - exact).abs() < 1e-6 * slope.iter().map(|by| by.abs()).fold(0.0, f64::max),
+                "{found} {exact}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_pole_is_swung_up_and_no_other_forces_nearby_cost_less() {
+        let (forces, problem) = solved().expect("a solution");
+        let z = problem.end(&forces).expect("a run");
+        assert!(z.norm() < TOLERANCE, "{z}");
+        let least = problem.value(&forces).expect("a run");
+        for direction in directions() {
+            let slope = difference(&problem, &forces, &direction);
+            // Measured: at most 8.0e-8.
+            assert!(slope.abs() < 1e-6, "{slope:e}");
+            for by in [-0.05, 0.05] {
+                assert!(problem.value(&moved(&forces, &direction, by)).expect("a run") > least);
+            }
+        }
+    }
+}
