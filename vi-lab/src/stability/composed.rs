@@ -225,7 +225,7 @@ mod tests {
     fn the_maps_agree_with_the_product() {
         for band in BANDS {
             let Band { scheme, name, .. } = band;
-            let grid = Grid::new(band.axes(), 20);
+            let grid = Grid::new(band.axes(), 16);
             let cells = grid.cells(|ch, h_omega| class(scheme, ch, h_omega), |_| ());
             assert!(cells.iter().all(|cell| [DECAYS, UNBOUNDED].contains(cell)), "{name}");
             assert_eq!(strays(&grid, &cells, UNBOUNDED, |ch, h_omega| radius(scheme, ch, h_omega) > 1.0), 0, "{name}");

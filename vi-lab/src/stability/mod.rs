@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn a_coarse_page_has_every_file() {
         let out = std::env::temp_dir().join(format!("vi-lab-stability-{}", std::process::id()));
-        let arguments = Arguments { system: None, out: out.clone(), columns: 10, x: None, y: None };
+        let arguments = Arguments { system: None, out: out.clone(), columns: 6, x: None, y: None };
         let place = write(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
         let page = fs::read_to_string(place).expect("the page");
         let files: Vec<&str> = page
