@@ -36,13 +36,13 @@ type Run = Gauss<CartPole, 2, 2>;
 /// Length of a step, in seconds.
 const H: f64 = 0.1;
 /// Steps: two and a half seconds.
-const STEPS: u32 = 25;
+pub(crate) const STEPS: u32 = 25;
 /// Distance of the end from where it has to be.
-const TOLERANCE: f64 = 1e-8;
+pub(crate) const TOLERANCE: f64 = 1e-8;
 
 /// The augmented Lagrangian `C + λ·z_K + (w/2) |z_K|²`.
 #[derive(Clone)]
-struct SwingUp {
+pub(crate) struct SwingUp {
     start: Run,
     /// λ.
     multipliers: SVector<f64, 4>,
@@ -51,15 +51,15 @@ struct SwingUp {
 }
 
 impl SwingUp {
-    /// The pole hangs at rest, and no condition at its end weighs more than the force.
-    fn new() -> Result<Self, StepError> {
+    /// The pole hangs at rest, and the weight of its end is small.
+    pub(crate) fn new() -> Result<Self, StepError> {
         let pole = CartPole::default();
         let start = State::at(&pole, 0.0, [0.0, std::f64::consts::PI], [0.0, 0.0]);
         Ok(Self { start: Run::new(pole, start, H)?, multipliers: SVector::zeros(), weight: 100.0 })
     }
 
     /// Where forces lead.
-    fn end(&self, forces: &[f64]) -> Result<SVector<f64, 4>, StepError> {
+    pub(crate) fn end(&self, forces: &[f64]) -> Result<SVector<f64, 4>, StepError> {
         let mut run = self.start.clone();
         for &force in forces {
             run.set_parameters(|pole| pole.u = force)?;
@@ -69,13 +69,13 @@ impl SwingUp {
     }
 
     /// What is minimised.
-    fn value(&self, forces: &[f64]) -> Result<f64, StepError> {
+    pub(crate) fn value(&self, forces: &[f64]) -> Result<f64, StepError> {
         let z = self.end(forces)?;
         Ok(price(forces) + self.multipliers.dot(&z) + 0.5 * self.weight * z.norm_squared())
     }
 
     /// Its gradient.
-    fn slope(&self, forces: &[f64]) -> Result<Vec<f64>, StepError> {
+    pub(crate) fn slope(&self, forces: &[f64]) -> Result<Vec<f64>, StepError> {
         let steps = forces.len() as u64;
         let of_the_end = gradient(&self.start, steps, forces.len(), &Course { forces, problem: self })?;
         Ok(of_the_end.parameters.iter().zip(forces).map(|(by, force)| by[0] + H * force).collect())
@@ -137,7 +137,7 @@ impl HasGradient for SwingUp {
 }
 
 /// The forces, and the problem with the multipliers at which they are its minimum.
-fn solved() -> Result<(Vec<f64>, SwingUp), Error> {
+pub(crate) fn solved() -> Result<(Vec<f64>, SwingUp), Error> {
     let mut problem = SwingUp::new()?;
     // At rest below nothing says to which side to swing: a push does.
     let mut forces: Vec<f64> = (0..STEPS).map(|step| 2.0 * (f64::from(step) * H * 5.0).sin()).collect();
@@ -167,64 +167,4 @@ fn main() -> Result<(), Error> {
         println!("{:5.2} s {force:9.4} N", f64::from(step) * H);
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Unit vectors that look random, by a linear congruence (Knuth, MMIX).
-    fn directions() -> impl Iterator<Item = Vec<f64>> {
-        let mut entry = 1_u64;
-        let mut next = move || {
-            entry = entry.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            u32::try_from(entry >> 40).map_or(0.0, f64::from) / f64::from(1 << 24) - 0.5
-        };
-        (0..10).map(move |_| {
-            let direction: Vec<f64> = (0..STEPS).map(|_| next()).collect();
-            let norm = direction.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
-            direction.iter().map(|entry| entry / norm).collect()
-        })
-    }
-
-    fn moved(forces: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
-        forces.iter().zip(direction).map(|(force, along)| force + by * along).collect()
-    }
-
-    /// The derivative of what is minimised along a direction, by differences of runs.
-    fn difference(problem: &SwingUp, forces: &[f64], direction: &[f64]) -> f64 {
-        let value = |by| problem.value(&moved(forces, direction, by)).expect("a run");
-        (value(1e-6) - value(-1e-6)) / 2e-6
-    }
-
-    #[test]
-    fn the_gradient_is_that_of_the_runs() {
-        let problem = SwingUp::new().expect("a start");
-        let forces: Vec<f64> = (0..STEPS).map(|step| f64::from(step).cos()).collect();
-        let slope = problem.slope(&forces).expect("a gradient");
-        for direction in directions() {
-            let exact: f64 = slope.iter().zip(&direction).map(|(by, along)| by * along).sum();
-            let found = difference(&problem, &forces, &direction);
-            assert!(
-                (found - exact).abs() < 1e-6 * slope.iter().map(|by| by.abs()).fold(0.0, f64::max),
-                "{found} {exact}"
-            );
-        }
-    }
-
-    #[test]
-    fn the_pole_is_swung_up_and_no_other_forces_nearby_cost_less() {
-        let (forces, problem) = solved().expect("a solution");
-        let z = problem.end(&forces).expect("a run");
-        assert!(z.norm() < TOLERANCE, "{z}");
-        let least = problem.value(&forces).expect("a run");
-        for direction in directions() {
-            let slope = difference(&problem, &forces, &direction);
-            // Measured: at most 8.0e-8.
-            assert!(slope.abs() < 1e-6, "{slope:e}");
-            for by in [-0.05, 0.05] {
-                assert!(problem.value(&moved(&forces, &direction, by)).expect("a run") > least);
-            }
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! Gauss steps in scaled time: against references, by their order, by what they keep, and where they fail.
 
+use crate::support::assert_order_of;
 use crate::support::reference::{file, number, steps, vector};
-use crate::support::slope;
 use serde_json::Value;
 use std::f64::consts::PI;
 use vi_core::collocation::{Collocation, TimeScale};
@@ -137,9 +137,7 @@ fn order<const S: usize>(longest: f64, tolerance: f64) {
             (dtau, (reached.q - exact.q).amax().max((reached.p - exact.p).amax()))
         })
         .collect();
-    let slope = slope(&format!("{S} stages"), &points, 1e-13);
-    let expected = f64::from(2 * u32::try_from(S).expect("a few stages"));
-    assert!((slope - expected).abs() <= tolerance * expected, "{S} stages: slope {slope}, {points:?}");
+    assert_order_of(S, "scaled time", &points, tolerance);
 }
 
 #[test]

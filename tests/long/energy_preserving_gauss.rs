@@ -1,10 +1,10 @@
 //! Energy-preserving steps of order 2s: their density, their order, what they keep, where they exist, the shift, and where they fail.
 
 use crate::gauss::{Everything, System};
+use crate::support::assert_order_of;
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number, vector};
 use crate::support::scenes::{self, Scene};
-use crate::support::slope;
 use core::f64::consts::{FRAC_PI_2, TAU};
 use vi_core::gauss::energy::{self, step_density};
 use vi_core::real::Rounded;
@@ -166,10 +166,7 @@ fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longe
             (h, error)
         })
         .collect();
-    let name = name_of(&scene.system);
-    let slope = slope(&format!("{name}, {S} stages"), &points, 1e-13);
-    let expected = f64::from(2 * u32::try_from(S).expect("a few stages"));
-    assert!((slope - expected).abs() <= 0.05 * expected, "{name}, {S} stages: slope {slope}, {points:?}");
+    assert_order_of(S, name_of(&scene.system), &points, 0.05);
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Gauss steps: against references, by their order, by what they keep, where they are stiff, and where they fail.
 
+use crate::support::assert_order_of;
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number, steps, vector};
 use crate::support::scenes::{self, Scene};
-use crate::support::slope;
 use serde_json::Value;
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
@@ -116,11 +116,7 @@ fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longe
             (h, error)
         })
         .collect();
-    let name = name_of(&scene.system);
-    // The accurate motion is good to 1e-14.
-    let slope = slope(&format!("{name}, {S} stages"), &points, 1e-13);
-    let expected = f64::from(2 * u32::try_from(S).expect("a few stages"));
-    assert!((slope - expected).abs() <= tolerance * expected, "{name}, {S} stages: slope {slope}, {points:?}");
+    assert_order_of(S, name_of(&scene.system), &points, tolerance);
 }
 
 fn name_of<const N: usize, S: Lagrangian<N>>(_: &S) -> &'static str {

@@ -12,6 +12,4 @@ mod robustness;
 mod solvability;
 #[path = "../support/mod.rs"]
 mod support;
-#[allow(dead_code, reason = "its `main` is the example's")]
-#[path = "../../examples/swing_up.rs"]
 mod swing_up;

@@ -1,5 +1,5 @@
 //! What the tests of several files share, of two programs.
-#![allow(dead_code, unused_imports, unused_macros, reason = "each program uses a part")]
+#![allow(dead_code, reason = "each program uses a part")]
 // Step numbers and drawn mantissas are far below 2^53.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
@@ -43,4 +43,12 @@ pub(crate) fn slope(name: &str, points: &[(f64, f64)], plateau: f64) -> f64 {
         points[points.len() - 1].1
     );
     slope
+}
+
+/// The error of steps of so many stages falls with an order of twice their number, up to a part of it. What it is measured against is good to
+/// 1e-14.
+pub(crate) fn assert_order_of(stages: usize, name: &str, points: &[(f64, f64)], tolerance: f64) {
+    let slope = slope(&format!("{name}, {stages} stages"), points, 1e-13);
+    let expected = f64::from(2 * u32::try_from(stages).expect("a few stages"));
+    assert!((slope - expected).abs() <= tolerance * expected, "{name}, {stages} stages: slope {slope}, {points:?}");
 }

@@ -8,7 +8,7 @@ use core::fmt;
 use std::io;
 use std::path::Path;
 use vi_core::StepError;
-use vi_runs::simulation::{Method, Plan};
+use vi_runs::plan::{Method, Plan};
 
 /// The exit status where nobody reads standard output any more: that of a command which SIGPIPE ends.
 const UNREAD: u8 = 141;

@@ -9,7 +9,7 @@ use crate::input::{count, number};
 use crate::numbers::short;
 use crate::run;
 use clap::Args;
-use vi_runs::simulation::Method;
+use vi_runs::plan::Method;
 
 /// The command line of `vi-lab lyapunov`.
 #[derive(Debug, Args)]

@@ -3,7 +3,7 @@
 //! In: a name: that of a coordinate or a parameter, `v_` before a coordinate for its velocity, `h`. Out: a [`Quantity`], which sets a system and a plan.
 
 use crate::failure::Failure;
-use vi_runs::simulation::Plan;
+use vi_runs::plan::Plan;
 use vi_runs::system::System;
 
 /// One quantity that differs from run to run.

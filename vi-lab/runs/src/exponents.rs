@@ -2,7 +2,8 @@
 //!
 //! In: a system with its parameters, a [`Plan`], how many exponents. Out: [`Exponents`], whose estimates follow the run.
 
-use crate::simulation::{Plan, vector};
+use crate::plan::Plan;
+use crate::simulation::vector;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::Lyapunov;
 use vi_core::stepping::{Convertible, FixedStepping};

@@ -1,12 +1,13 @@
 //! Runs of any system by any integrator, their types erased.
 //!
-//! In: a system that `lagrangian!` declares. Out: a [`System`](system::System), and of a [`Plan`](simulation::Plan) a
+//! In: a system that `lagrangian!` declares. Out: a [`System`](system::System), and of a [`Plan`](plan::Plan) a
 //! [`Simulation`](simulation::Simulation), whose rows a command writes or charts. All that is generic over systems stands here, and is compiled
 //! once for each of them; the command `vi-lab` names none of their types.
 //!
 //! | module | what it makes |
 //! |---|---|
 //! | [`ready`] | the ready systems, each with a place to start from |
+//! | [`plan`] | what is to be run |
 //! | [`system`], [`simulation`] | any system, and one run of it |
 //! | [`counting`] | a system that counts its evaluations |
 //! | [`rival`] | its motion by DOP853 |
@@ -15,6 +16,7 @@
 
 pub mod counting;
 pub mod exponents;
+pub mod plan;
 pub mod ready;
 pub mod rival;
 pub mod simulation;

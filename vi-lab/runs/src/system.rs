@@ -5,8 +5,9 @@
 //! once for each system, however many charts use them.
 
 use crate::exponents::{self, Exponents};
+use crate::plan::{ENERGY_STAGES, PhasePoint, Plan};
 use crate::rival::{self, Ended};
-use crate::simulation::{self, ENERGY_STAGES, PhasePoint, Plan, Simulation, vector};
+use crate::simulation::{self, Simulation, vector};
 use core::cell::Cell;
 use vi_core::check::Motion;
 use vi_core::collocation::Collocation;

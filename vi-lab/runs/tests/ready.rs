@@ -1,8 +1,8 @@
 //! Every ready system starts, by every method.
 
 use core::cell::Cell;
+use vi_runs::plan::{Method, PhasePoint, Plan};
 use vi_runs::ready;
-use vi_runs::simulation::{Method, PhasePoint, Plan};
 
 #[test]
 fn every_entry_starts_and_keeps_its_parameters() {

@@ -35,7 +35,8 @@ use request::Output;
 pub(crate) use request::{Length, Request};
 use shift::Wanted;
 use std::path::PathBuf;
-use vi_runs::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift, Simulation, Start};
+use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
+use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
 /// Bytes of whole rows that are written at once.

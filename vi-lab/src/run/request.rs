@@ -13,7 +13,8 @@ use crate::sweep::scene::Sweep;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use vi_runs::simulation::{ENERGY_STAGES, Method, PhasePoint, Plan, Row, STAGES, Shift, Start};
+use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
+use vi_runs::simulation::Row;
 use vi_runs::system::System;
 
 /// Steps of a run that is not told otherwise.

@@ -8,7 +8,7 @@ use super::request::{Length, Request};
 use crate::failure::Failure;
 use crate::numbers::{about, short};
 use core::cell::Cell;
-use vi_runs::simulation::{Method, Plan};
+use vi_runs::plan::{Method, Plan};
 
 /// Checks the step by itself and against the times of the run.
 pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {

@@ -26,7 +26,7 @@ use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
-use vi_runs::simulation::{Method, Start};
+use vi_runs::plan::{Method, Start};
 
 /// The entries of a scene file.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]

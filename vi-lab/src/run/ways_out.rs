@@ -8,7 +8,8 @@ use super::request::Request;
 use crate::numbers::about;
 use core::cell::Cell;
 use vi_core::StepError;
-use vi_runs::simulation::{ENERGY_STAGES, Method, Plan, Row, Shift};
+use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift};
+use vi_runs::simulation::Row;
 
 /// Steps are tried up to 2^DOUBLINGS times as long.
 const DOUBLINGS: u32 = 10;

@@ -11,8 +11,9 @@ use crate::chart::{Class, Look, Series, boundary, middles};
 use crate::failure::Failure;
 use crate::quantity::Quantity;
 use core::cell::Cell;
+use vi_runs::plan::{Method, PhasePoint, Plan};
 use vi_runs::ready::Entry;
-use vi_runs::simulation::{Method, PhasePoint, Plan, Simulation};
+use vi_runs::simulation::Simulation;
 use vi_runs::system::System;
 
 /// Steps of a run.

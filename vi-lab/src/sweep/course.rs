@@ -7,7 +7,8 @@ use super::keep::STEPS_OF_A_PERIOD;
 use crate::run::{self, Length};
 use core::cell::Cell;
 use vi_core::StepError;
-use vi_runs::simulation::{Plan, Row, Section, Simulation};
+use vi_runs::plan::Plan;
+use vi_runs::simulation::{Row, Section, Simulation};
 use vi_runs::system::System;
 
 /// Steps that find their own length may become so many times more than was foreseen.

@@ -8,7 +8,7 @@ use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
 use crate::failure::Failure;
-use vi_runs::simulation::Plan;
+use vi_runs::plan::Plan;
 use vi_runs::system::System;
 
 /// Items are counted in columns of numbers.

@@ -8,7 +8,8 @@ use super::shape::{Column, Shape};
 use crate::failure::Failure;
 use crate::numbers::short;
 use vi_core::integrator::Direction;
-use vi_runs::simulation::{Plan, Row, Section};
+use vi_runs::plan::Plan;
+use vi_runs::simulation::{Row, Section};
 
 /// Steps of a period at least, so that none is passed over.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;

@@ -10,8 +10,8 @@ use super::reference::Reference;
 use crate::numbers::order;
 use crate::progress::Progress;
 use core::cell::Cell;
+use vi_runs::plan::{PhasePoint, Plan};
 use vi_runs::rival::Ended;
-use vi_runs::simulation::{PhasePoint, Plan};
 use vi_runs::system::System;
 
 /// Tolerances of DOP853.

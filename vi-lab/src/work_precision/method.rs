@@ -6,15 +6,16 @@
 
 use crate::chart::Look;
 use core::cell::Cell;
+use vi_runs::plan::{self, PhasePoint, Plan};
 use vi_runs::rival::Ended;
-use vi_runs::simulation::{self, PhasePoint, Plan, Simulation};
+use vi_runs::simulation::Simulation;
 use vi_runs::system::System;
 
 /// A method of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Method {
     /// An integrator of this project.
-    Own(simulation::Method),
+    Own(plan::Method),
     /// Gauss steps of so many stages.
     Gauss(usize),
     /// The Runge–Kutta method of order 8 that chooses its steps by a tolerance.
@@ -25,20 +26,20 @@ pub(super) enum Method {
 
 impl Method {
     /// Fixed steps of order 2.
-    pub(super) const FIXED: Self = Self::Own(simulation::Method::Fixed);
+    pub(super) const FIXED: Self = Self::Own(plan::Method::Fixed);
     /// Fixed steps composed to order 8.
-    pub(super) const KAHAN_LI_8: Self = Self::Own(simulation::Method::KahanLi8);
+    pub(super) const KAHAN_LI_8: Self = Self::Own(plan::Method::KahanLi8);
     /// The integrator that solves for its own step.
-    pub(super) const ENERGY: Self = Self::Own(simulation::Method::Energy);
+    pub(super) const ENERGY: Self = Self::Own(plan::Method::Energy);
 
     /// All that are run here, in the order of the legends.
     pub(super) const ALL: [Self; 8] = [
         Self::FIXED,
-        Self::Own(simulation::Method::Suzuki4),
-        Self::Own(simulation::Method::KahanLi6),
+        Self::Own(plan::Method::Suzuki4),
+        Self::Own(plan::Method::KahanLi6),
         Self::KAHAN_LI_8,
-        Self::Gauss(simulation::STAGES[0]),
-        Self::Gauss(simulation::STAGES[1]),
+        Self::Gauss(plan::STAGES[0]),
+        Self::Gauss(plan::STAGES[1]),
         Self::ENERGY,
         Self::Rival,
     ];
@@ -46,8 +47,8 @@ impl Method {
     /// Its name in legends and tables.
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Own(simulation::Method::Fixed) => "fixed step",
-            Self::Own(simulation::Method::Energy) => "energy-preserving",
+            Self::Own(plan::Method::Fixed) => "fixed step",
+            Self::Own(plan::Method::Energy) => "energy-preserving",
             Self::Own(composed) => composed.scheme().map_or(composed.name(), |scheme| scheme.name),
             Self::Gauss(4) => "Gauss, 4 stages",
             Self::Gauss(_) => "Gauss, 8 stages",
@@ -61,13 +62,13 @@ impl Method {
         let [four, six, eight, _] = Look::OTHERS;
         let [few, many] = Look::GAUSS;
         match self {
-            Self::Own(simulation::Method::Fixed) => Look::FIXED,
-            Self::Own(simulation::Method::Suzuki4) => four,
-            Self::Own(simulation::Method::KahanLi6) => six,
-            Self::Own(simulation::Method::KahanLi8) => eight,
+            Self::Own(plan::Method::Fixed) => Look::FIXED,
+            Self::Own(plan::Method::Suzuki4) => four,
+            Self::Own(plan::Method::KahanLi6) => six,
+            Self::Own(plan::Method::KahanLi8) => eight,
             Self::Gauss(4) => few,
-            Self::Gauss(_) | Self::Own(simulation::Method::Gauss) => many,
-            Self::Own(simulation::Method::Energy) => Look::ENERGY,
+            Self::Gauss(_) | Self::Own(plan::Method::Gauss) => many,
+            Self::Own(plan::Method::Energy) => Look::ENERGY,
             Self::Rival => Look::RIVAL,
             Self::Heyoka => Look::ELSEWHERE,
         }
@@ -87,7 +88,7 @@ impl Method {
     pub(super) fn setting(self, setting: f64) -> String {
         match self {
             Self::Rival | Self::Heyoka => format!("tolerance {setting:.0e}"),
-            Self::Own(simulation::Method::Energy) => format!("h₀ = {setting:.4}"),
+            Self::Own(plan::Method::Energy) => format!("h₀ = {setting:.4}"),
             Self::Own(_) | Self::Gauss(_) => format!("h = {setting:.4}"),
         }
     }
@@ -129,7 +130,7 @@ impl Task<'_> {
     pub(super) fn plan(&self) -> Option<Plan> {
         let (method, stages) = match self.method {
             Method::Own(method) => (method, None),
-            Method::Gauss(stages) => (simulation::Method::Gauss, Some(stages)),
+            Method::Gauss(stages) => (plan::Method::Gauss, Some(stages)),
             Method::Rival | Method::Heyoka => return None,
         };
         Some(Plan { stages, ..Plan::new(method, self.setting, self.start.clone()) })

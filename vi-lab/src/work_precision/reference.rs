@@ -11,8 +11,8 @@
 
 use super::method::{Method, Reached, Task};
 use core::cell::Cell;
+use vi_runs::plan::PhasePoint;
 use vi_runs::rival::Ended;
-use vi_runs::simulation::PhasePoint;
 use vi_runs::system::System;
 
 /// Parts of the time at whose ends the reference is stored.

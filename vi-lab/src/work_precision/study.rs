@@ -9,9 +9,9 @@ use super::reference::{Agreement, Reference};
 use crate::numbers::{median, order};
 use crate::progress::Progress;
 use core::cell::Cell;
+use vi_runs::plan::PhasePoint;
 use vi_runs::ready::Entry;
 use vi_runs::rival::Ended;
-use vi_runs::simulation::PhasePoint;
 use vi_runs::system::System;
 
 /// Usual steps up to the end of the runs whose errors are measured.

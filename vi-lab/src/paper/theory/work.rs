@@ -11,7 +11,7 @@ use crate::table::Table;
 use core::cell::Cell;
 use core::f64::consts::TAU;
 use vi_core::{Called, Gauss, State, StepError};
-use vi_runs::simulation::{Method, PhasePoint, Plan, Shift};
+use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
 use vi_runs::system::{self, System};
 use vi_systems::Kepler;
 

@@ -1,0 +1,134 @@
+//! What is to be run: an integrator with its options, and where it starts.
+//!
+//! In: what a command line or a scene asks for. Out: a [`Plan`].
+
+use clap::ValueEnum;
+use serde::Deserialize;
+use vi_core::Scheme;
+
+/// Which integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// The variational integrator with a given step
+    Fixed,
+    /// Five fixed steps composed to order 4, by Suzuki
+    #[value(name = "suzuki-4")]
+    #[serde(rename = "suzuki-4")]
+    Suzuki4,
+    /// Nine fixed steps composed to order 6, by Kahan and Li
+    #[value(name = "kahan-li-6")]
+    #[serde(rename = "kahan-li-6")]
+    KahanLi6,
+    /// Seventeen fixed steps composed to order 8, by Kahan and Li
+    #[value(name = "kahan-li-8")]
+    #[serde(rename = "kahan-li-8")]
+    KahanLi8,
+    /// Collocation at Gauss points, of twice the order of its --stages
+    Gauss,
+    /// The integrator that solves for its own step and preserves the discrete energy
+    Energy,
+}
+
+/// Numbers of stages of the Gauss steps that are built into the command, for each system: each costs a second or two of the compiler.
+pub const STAGES: [usize; 2] = [4, 8];
+/// The number of stages that nobody asked for: the most accurate steps for their time, from errors of 1e-6 on.
+pub const USUAL_STAGES: usize = 8;
+
+/// Numbers of stages of energy-preserving Gauss steps: with more, rounding loses their length.
+pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
+
+impl Method {
+    /// The scheme of a composition.
+    #[must_use]
+    pub fn scheme(self) -> Option<Scheme> {
+        match self {
+            Self::Suzuki4 => Some(Scheme::SUZUKI_4),
+            Self::KahanLi6 => Some(Scheme::KAHAN_LI_6),
+            Self::KahanLi8 => Some(Scheme::KAHAN_LI_8),
+            Self::Fixed | Self::Gauss | Self::Energy => None,
+        }
+    }
+
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Suzuki4 => "suzuki-4",
+            Self::KahanLi6 => "kahan-li-6",
+            Self::KahanLi8 => "kahan-li-8",
+            Self::Gauss => "gauss",
+            Self::Energy => "energy",
+        }
+    }
+}
+
+/// How the energy-preserving integrator gets its first interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Start {
+    /// The initial state is the middle of the first interval
+    Midpoint,
+    /// The first interval ends in the exact solution at t0 + h: the paper's start
+    Points,
+}
+
+/// The shift D_* of the step density.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shift {
+    /// This one.
+    Of(f64),
+    /// Twice the largest step density over this time from the start.
+    Over(f64),
+}
+
+/// What is to be run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The integrator.
+    pub method: Method,
+    /// The start of the energy-preserving integrator without stages and shift; the others need none.
+    pub start: Start,
+    /// The stages of Gauss steps, one of [`STAGES`], or of energy-preserving ones, one of [`ENERGY_STAGES`].
+    pub stages: Option<usize>,
+    /// The shift of energy-preserving steps.
+    pub shift: Option<Shift>,
+    /// Whether fixed steps are taken where there is no energy-preserving one.
+    pub fallback: bool,
+    /// The step of Gauss steps in scaled time.
+    pub dtau: Option<f64>,
+    /// The step, or the first one.
+    pub h: f64,
+    /// Initial time.
+    pub t: f64,
+    /// Initial coordinates.
+    pub q: Vec<f64>,
+    /// Initial velocities.
+    pub v: Vec<f64>,
+}
+
+impl Plan {
+    /// A run by steps of the length h from a point, by what is usual of the method.
+    #[must_use]
+    pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
+        Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
+    }
+
+    /// The stages of energy-preserving steps by [`EnergyPreservingGauss`]; none where [`EnergyPreserving`] takes them.
+    #[must_use]
+    pub fn energy_stages(&self) -> Option<usize> {
+        self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
+    }
+}
+
+/// Where a motion is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhasePoint {
+    /// Time.
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Velocities.
+    pub v: Vec<f64>,
+}
