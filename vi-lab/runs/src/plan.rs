@@ -115,7 +115,8 @@ impl Plan {
         Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
     }
 
-    /// The stages of energy-preserving steps by [`EnergyPreservingGauss`]; none where [`EnergyPreserving`] takes them.
+    /// The stages of energy-preserving steps by [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); none where
+    /// [`EnergyPreserving`](vi_core::EnergyPreserving) takes them.
     #[must_use]
     pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
