@@ -14,6 +14,8 @@ pub enum Target {
     Faster(f64),
     /// Slower than the rival by this factor: one trajectory against many.
     Slower(f64),
+    /// The rival computes more, by at most so many times the time.
+    Costs(f64),
     /// Shown, not judged.
     None,
 }

@@ -10,10 +10,12 @@ use crate::hand::{self, Compensated, Plain};
 use crate::newton::{Difference, Dual, Newton};
 use crate::pendulum::TriplePendulum;
 use crate::problem::Problem;
+use crate::run::{Adjoint, Stepper};
 use core::array::from_fn;
 use std::hint::black_box;
+use vi_core::derivatives::{Differentiable, Tangent, Variation};
 use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, SVector, State};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, SVector, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
 
@@ -48,6 +50,9 @@ pub fn all() -> Vec<Contest> {
         kepler_energy(),
         double_pendulum(),
         double_pendulum_energy(),
+        double_pendulum_derivatives(),
+        kepler_energy_derivatives(),
+        double_pendulum_gauss_derivatives(),
         pendula("Triple pendulum, fixed step, h = 0.01", &black_box(TriplePendulum::default())),
         pendula("Four pendula, fixed step, h = 0.01", &black_box(NPendulum::default())),
         oscillator(),
@@ -130,6 +135,36 @@ fn double_pendulum() -> Contest {
         .rival(DUAL, LOST, Target::Faster(5.0), newton::<_, Dual, 2>(&system, start, h, 1e-13))
         .rival(DIFFERENCE, LOST, Target::None, newton::<_, Difference, 2>(&system, start, h, 1e-13))
         .ensemble(TOGETHER, 64, TOGETHER_KEPT, Target::Slower(8.0), together(&system, start, h))
+}
+
+/// A run and its variations in 1, 2 and 4 directions, and its gradient by one sweep backwards, run included.
+fn derivatives<I, const N: usize>(name: &'static str, run: &I) -> Contest
+where
+    I: Differentiable<N> + Stepper + 'static,
+{
+    let along = |count: usize| Tangent::new(run.clone(), Variation::of_state().into_iter().take(count).collect());
+    Contest::new(name, run.clone())
+        .rival("variations, 1 direction", 0.0, Target::Costs(1.5), along(1))
+        .rival("variations, 2 directions", 0.0, Target::Costs(2.0), along(2))
+        .rival("variations, 4 directions", 0.0, Target::Costs(3.0), along(4))
+        .rival("gradient", 0.0, Target::Costs(4.0), Adjoint(run.clone()))
+}
+
+fn double_pendulum_derivatives() -> Contest {
+    let (system, start, h) = (black_box(DoublePendulum::default()), ([0.3, 0.2], [0.0, 0.1]), black_box(0.01));
+    derivatives("Double pendulum, fixed step with derivatives, h = 0.01", &fixed(&system, start, h))
+}
+
+fn kepler_energy_derivatives() -> Contest {
+    let (system, start, h) = (black_box(Kepler::default()), ([0.8, 0.0], [0.0, 1.2]), black_box(0.01));
+    derivatives("Kepler, energy-preserving with derivatives, h0 = 0.01", &energy_preserving(&system, start, h))
+}
+
+fn double_pendulum_gauss_derivatives() -> Contest {
+    let (system, (q, v), h) = (black_box(DoublePendulum::default()), ([0.3, 0.2], [0.0, 0.1]), black_box(0.05));
+    let state = State::at(&system, 0.0, SVector::from(q), SVector::from(v));
+    let run = Gauss::<_, 2, 4>::new(system, state, h).expect("a step");
+    derivatives("Double pendulum, Gauss of 4 stages with derivatives, h = 0.05", &run)
 }
 
 fn double_pendulum_energy() -> Contest {

@@ -63,6 +63,7 @@ fn judged(target: Target, ratio: f64) -> (String, &'static str) {
         Target::AtMost(factor) => (format!("≤ {factor}"), ratio <= factor),
         Target::Faster(factor) => (format!("≤ 1/{factor}"), ratio * factor <= 1.0),
         Target::Slower(factor) => (format!("≥ {factor}"), ratio >= factor),
+        Target::Costs(factor) => (format!("≥ 1/{factor}"), ratio * factor >= 1.0),
         Target::None => return (String::new(), ""),
     };
     (text, if reached { "yes" } else { "no" })
@@ -100,6 +101,7 @@ mod tests {
         assert_eq!(judged(Target::AtMost(1.05), 1.06), ("≤ 1.05".to_owned(), "no"));
         assert_eq!(judged(Target::Faster(3.0), 0.33), ("≤ 1/3".to_owned(), "yes"));
         assert_eq!(judged(Target::Slower(8.0), 7.9), ("≥ 8".to_owned(), "no"));
+        assert_eq!(judged(Target::Costs(3.0), 0.34), ("≥ 1/3".to_owned(), "yes"));
         assert_eq!([ratio(1.5), ratio(0.25)], ["1.50", "1/4.00"]);
     }
 }

@@ -3,8 +3,11 @@
 //! In: anything that takes steps. Out: [`Run`], behind which a table of unlike steppers is one list. The loop over the steps is
 //! inside, so that a step is inlined into it as in a user's program.
 
-use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep};
+use std::cell::Cell;
+use vi_core::collocation::Collocation;
+use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
+use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, State};
 use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.
@@ -36,7 +39,7 @@ impl<S: Stepper> Run for S {
     }
 }
 
-fn flat<const N: usize>(state: vi_core::State<N>) -> Vec<f64> {
+fn flat<const N: usize>(state: State<N>) -> Vec<f64> {
     [state.t].into_iter().chain(state.q.iter().copied()).chain(state.p.iter().copied()).collect()
 }
 
@@ -66,6 +69,22 @@ impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<
     }
 }
 
+impl<S, const N: usize, const STAGES: usize> Stepper for Gauss<S, N, STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    #[inline]
+    fn step(&mut self) {
+        if let Err(failure) = Gauss::step(self) {
+            panic!("{failure}");
+        }
+    }
+
+    fn state(&self) -> Vec<f64> {
+        flat(Gauss::state(self))
+    }
+}
+
 /// One block of trajectories or less, which the thread that asks moves by itself.
 impl<S: Batch<N>, const N: usize> Run for Ensemble<S, N> {
     fn run(&self, steps: usize) -> Vec<f64> {
@@ -75,5 +94,47 @@ impl<S: Batch<N>, const N: usize> Run for Ensemble<S, N> {
             Some(Ok(state)) => flat(state),
             outcome => panic!("no state, but {outcome:?}"),
         }
+    }
+}
+
+impl<I: Differentiable<N>, const N: usize> Stepper for Tangent<I, N> {
+    fn step(&mut self) {
+        if let Err(failure) = Tangent::step(self) {
+            panic!("{failure}");
+        }
+    }
+
+    fn state(&self) -> Vec<f64> {
+        flat(self.run().state())
+    }
+}
+
+/// The gradient of the last coordinate that a run reaches.
+pub struct Adjoint<I, const N: usize>(pub I);
+
+impl<I: Differentiable<N>, const N: usize> Run for Adjoint<I, N> {
+    fn run(&self, steps: usize) -> Vec<f64> {
+        let end = Cell::new(None);
+        if let Err(failure) = gradient(&self.0, steps as u64, 0, &Last { steps: steps as u64, end: &end }) {
+            panic!("{failure}");
+        }
+        flat(end.get().expect("the sweep begins at the end"))
+    }
+}
+
+/// The last coordinate after so many steps, and the state there.
+struct Last<'a, const N: usize> {
+    steps: u64,
+    end: &'a Cell<Option<State<N>>>,
+}
+
+impl<I, const N: usize> Objective<I, N> for Last<'_, N> {
+    fn slope(&self, step: u64, state: &State<N>) -> Covector<N> {
+        let mut slope = Covector::zero();
+        if step == self.steps {
+            self.end.set(Some(*state));
+            slope.q[N - 1] = 1.0;
+        }
+        slope
     }
 }

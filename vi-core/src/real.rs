@@ -26,7 +26,7 @@ mod rounded;
 mod series;
 pub mod sine;
 
-pub use dual::Dual;
+pub use dual::{Dual, Slope, Slopes};
 pub use lane::Lane;
 pub use lanes::Lanes;
 pub use rounded::Rounded;

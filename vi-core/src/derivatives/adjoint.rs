@@ -10,10 +10,11 @@
 //! [`crate::Integrator::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
 //!
 //! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, or more where the caller allows it, and one more
-//! run of work (Griewank and Walther, *Evaluating Derivatives*, chapter 12). The derivative of a step costs 2N + 1 directions, and one for each parameter that is asked for.
+//! run of work (Griewank and Walther, *Evaluating Derivatives*, chapter 12). Of each step 2N + 1 directions are followed, and one for each parameter
+//! that is asked for.
 
 use super::steps::Differentiable;
-use super::variation::Variation;
+use super::variation::{TOGETHER, Variation};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::node::Node;
@@ -180,12 +181,14 @@ where
 {
     let v = state.velocity(system)?;
     let node = Node::new(*state, 0.0);
-    let change = |direction: &Variation<N>| {
-        let node = direction.node(&node);
-        let varied = direction.system(system).lagrangian(node.t, &node.q, &v.map(Dual::fixed));
-        v.dot(&direction.p) - varied.slope
-    };
-    Ok(directions.iter().map(change).collect())
+    let mut changes = Vec::with_capacity(directions.len());
+    for directions in directions.chunks(TOGETHER) {
+        let node = Variation::node::<TOGETHER>(directions, &node);
+        let varied = Variation::system(directions, system).lagrangian(node.t, &node.q, &v.map(Dual::fixed));
+        let of_lagrangian = varied.slope.0.into_iter();
+        changes.extend(directions.iter().zip(of_lagrangian).map(|(direction, slope)| v.dot(&direction.p) - slope));
+    }
+    Ok(changes)
 }
 
 /// What a number changes by in all directions, sorted: the covector at the start of a step, and the changes by the parameters of the step.

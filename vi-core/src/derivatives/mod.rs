@@ -29,3 +29,4 @@ pub use lyapunov::Lyapunov;
 pub use steps::Differentiable;
 pub use tangent::Tangent;
 pub use variation::Variation;
+pub(crate) use variation::{Changes, Jacobians, TOGETHER, Varied, changes};

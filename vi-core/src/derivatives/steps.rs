@@ -1,9 +1,10 @@
 //! Variations of one step, for each integrator; those of a Gauss step stand with its stages (`gauss/variation.rs`).
 //!
 //! In: an integrator after a step, the node at which the step began, variations of that node. Out: those of the node reached. The unknowns of the step are at
-//! hand, so each direction costs one evaluation of the equations in dual numbers and one solution of the linearized ones.
+//! hand. Of a few coordinates the equations are linearized in all of them, by one or two evaluations in dual numbers that serve every direction; else they are evaluated
+//! along the directions, twice for each pair: with the unknowns held, and as they vary.
 
-use super::variation::Variation;
+use super::variation::{Jacobians, TOGETHER, Variation, Varied, changes};
 use crate::composition::Composition;
 use crate::energy_preserving::{EnergyPreserving, Fallback};
 use crate::error::StepError;
@@ -11,9 +12,9 @@ use crate::fixed_step::FixedStep;
 use crate::integrator::Integrator;
 use crate::linear;
 use crate::node::Node;
-use crate::real::{Dual, Real};
-use crate::stepping::{Convertible, EnergyStepping, ExtendedSystem, FixedStepping};
-use nalgebra::SVector;
+use crate::real::{Dual, Real, Slopes};
+use crate::stepping::{Convertible, EnergyStepping, ExtendedSystem, FixedStepping, MomentumResidual};
+use nalgebra::{RowSVector, SMatrix, SVector};
 
 /// An integrator whose steps have derivatives.
 pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> {
@@ -34,29 +35,97 @@ fn singular(t: f64) -> StepError {
     StepError::Singular { t, matrix: "derivative of the equations of a step" }
 }
 
+/// Directions that one long evaluation follows: the slopes that a register of every processor holds.
+const PAIR: usize = 2;
+
+/// A number that varies in W directions, its value a number that may vary itself.
+type Along<T, const W: usize> = Dual<T, Slopes<T, W>>;
+
+/// How fast each entry changes: a column a direction.
+fn slopes<T: Real, const N: usize, const W: usize>(of: &SVector<Along<T, W>, N>) -> SMatrix<T, N, W> {
+    SMatrix::from_fn(|row, direction| of[row].slope.0[direction])
+}
+
+/// A vector that changes by so much in each direction.
+fn varied<T: Real, const N: usize, const W: usize>(
+    value: &SVector<T, N>,
+    slopes: &SMatrix<T, N, W>,
+) -> SVector<Along<T, W>, N> {
+    SVector::from_fn(|row, _| Dual {
+        value: value[row],
+        slope: Slopes(slopes.row(row).into_owned().data.0.map(|[slope]| slope)),
+    })
+}
+
 /// The node after the momentum step `(v, h)` of a system, in dual numbers whose values solve it: one Newton step, by the derivative of the same system
-/// in the numbers T, gives v its slope.
-fn momentum_step<T, P, S, const N: usize>(
+/// in the numbers T, gives v its slopes.
+fn momentum_step<T, P, S, const N: usize, const W: usize>(
     plain: &P,
     system: &S,
-    mut node: Node<N, Dual<T>>,
+    mut node: Node<N, Along<T, W>>,
     h: T,
     v: &SVector<T, N>,
-) -> Result<Node<N, Dual<T>>, StepError>
+) -> Result<Node<N, Along<T, W>>, StepError>
 where
     T: Real,
     P: FixedStepping<N, T>,
-    S: FixedStepping<N, Dual<T>>,
+    S: FixedStepping<N, Along<T, W>>,
 {
     let jacobian = plain.momentum_equation(&node.map(|number| number.value), h, v).jacobian;
     let h = Dual::fixed(h);
     let residual = system.momentum_residual(&node, h, &v.map(Dual::fixed)).residual;
-    let change =
-        linear::solve(&jacobian, &residual.map(|entry| entry.slope)).ok_or_else(|| singular(node.t.to_f64()))?;
-    let v = v.zip_map(&change, |value, change| Dual { value, slope: -change });
+    let change = linear::solve(&jacobian, &slopes(&residual)).ok_or_else(|| singular(node.t.to_f64()))?;
+    let v = varied(v, &-change);
     let increment = system.momentum_residual(&node, h, &v).increment;
     node.advance(h, &v, &increment);
     Ok(node)
+}
+
+/// Turns variations of a node into those of the node after the momentum step `(v, h)`.
+///
+/// Up to [`TOGETHER`] coordinates one or two evaluations give the derivatives by all of them and by v; beyond, two along the directions take less.
+fn vary<S, const N: usize>(
+    system: &S,
+    node: &Node<N>,
+    h: f64,
+    v: &SVector<f64, N>,
+    variations: &mut [Variation<N>],
+) -> Result<(), StepError>
+where
+    S: FixedStepping<N> + Convertible<N>,
+{
+    if const { N > TOGETHER } {
+        for variations in variations.chunks_mut(PAIR) {
+            let varied = Variation::system::<_, PAIR>(variations, system);
+            let node = momentum_step(system, &varied, Variation::node(variations, node), h, v)?;
+            Variation::take(variations, &node);
+        }
+        return Ok(());
+    }
+    let fixed = node.map(Varied::fixed);
+    let still = system.convert::<Varied>();
+    let sides = |q: &SVector<Varied, N>, v: &SVector<Varied, N>| {
+        let MomentumResidual { residual, increment, .. } =
+            still.momentum_residual(&Node { q: *q, ..fixed }, Dual::fixed(h), v);
+        [residual, increment]
+    };
+    let Jacobians { by_q, by_v } = Jacobians::of(sides, &node.q, v);
+    for variations in variations.chunks_mut(TOGETHER) {
+        let explicit = Variation::varying_system(variations, system).map(|varied| {
+            let node = Node { t: Variation::number(variations, node.t, |variation| variation.t), ..fixed };
+            let MomentumResidual { residual, increment, .. } =
+                varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed));
+            changes(&[residual, increment])
+        });
+        for (direction, variation) in variations.iter_mut().enumerate() {
+            let [residual, increment] = explicit.map_or([SVector::zeros(); 2], |changes| changes[direction]);
+            let residual = residual + by_q[0] * variation.q - variation.p;
+            let of_v = -linear::solve(&by_v[0], &residual).ok_or_else(|| singular(node.t))?;
+            variation.p += increment + by_q[1] * variation.q + by_v[1] * of_v;
+            variation.q += of_v * h;
+        }
+    }
+    Ok(())
 }
 
 impl<S, const N: usize> Differentiable<N> for FixedStep<S, N>
@@ -64,12 +133,7 @@ where
     S: FixedStepping<N> + Convertible<N>,
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        for variation in variations {
-            let system = variation.system(self.system());
-            let node = momentum_step(self.system(), &system, variation.node(before), self.h(), &self.v())?;
-            variation.take(&node);
-        }
-        Ok(())
+        vary(self.system(), before, self.h(), &self.v(), variations)
     }
 }
 
@@ -88,30 +152,32 @@ where
         one: &Variation<N>,
         other: &Variation<N>,
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
-        let mut system = self.system().convert::<Dual<Dual<f64>>>();
+        let mut system = self.system().convert::<Along<Varied<1>, 1>>();
         for (index, name) in S::PARAMETERS.iter().enumerate() {
             if let Some(parameter) = crate::lagrangian::Parameters::parameter_mut(&mut system, name) {
-                parameter.slope.value = one.parameters.get(index).copied().unwrap_or(0.0);
-                parameter.value.slope = other.parameters.get(index).copied().unwrap_or(0.0);
+                parameter.slope.0[0].value = one.parameters.get(index).copied().unwrap_or(0.0);
+                parameter.value.slope.0[0] = other.parameters.get(index).copied().unwrap_or(0.0);
             }
         }
-        let inner = other.node(before);
-        let node = nested(&one.node(before), &inner);
+        let [one, other] = [one, other].map(core::slice::from_ref);
+        let inner = Variation::node::<1>(other, before);
+        let node = nested(&Variation::node(one, before), &inner);
         // The velocity as the other direction varies it; the dual numbers of the first differentiate its equation once more.
-        let plain = other.system(self.system());
+        let plain = Variation::system::<_, 1>(other, self.system());
         let equation = plain.momentum_equation(&inner, Dual::fixed(self.h()), &self.v().map(Dual::fixed));
         let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(|| singular(before.t))?;
         let v = self.v().zip_map(&change, |value, change| Dual { value, slope: -change.slope });
         let node = momentum_step(&plain, &system, node, Dual::fixed(self.h()), &v)?;
-        let q = SVector::from_fn(|k, _| node.q[k].slope.slope + node.q_low[k].slope.slope);
-        let p = SVector::from_fn(|k, _| node.p[k].slope.slope + node.p_low[k].slope.slope);
+        let second = |number: Along<Varied<1>, 1>| number.slope.0[0].slope.0[0];
+        let q = SVector::from_fn(|k, _| second(node.q[k]) + second(node.q_low[k]));
+        let p = SVector::from_fn(|k, _| second(node.p[k]) + second(node.p_low[k]));
         Ok((q, p))
     }
 }
 
 /// A node that varies in two directions.
-fn nested<const N: usize>(one: &Node<N, Dual<f64>>, other: &Node<N, Dual<f64>>) -> Node<N, Dual<Dual<f64>>> {
-    let both = |one: Dual<f64>, other: Dual<f64>| Dual { value: other, slope: Dual::fixed(one.slope) };
+fn nested<const N: usize>(one: &Node<N, Varied<1>>, other: &Node<N, Varied<1>>) -> Node<N, Along<Varied<1>, 1>> {
+    let both = |one: Varied<1>, other: Varied<1>| Dual { value: other, slope: Slopes(one.slope.0.map(Dual::fixed)) };
     Node {
         t: both(one.t, other.t),
         t_low: both(one.t_low, other.t_low),
@@ -129,13 +195,12 @@ where
     S: FixedStepping<N> + Convertible<N>,
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        for variation in variations {
-            let system = variation.system(self.system());
-            let mut node = variation.node(before);
-            for (weight, v) in self.scheme().weights.iter().zip(self.velocities()) {
-                node = momentum_step(self.system(), &system, node, weight * self.h(), &v)?;
-            }
-            variation.take(&node);
+        let mut node = *before;
+        for (weight, v) in self.scheme().weights.iter().zip(self.velocities()) {
+            let h = weight * self.h();
+            vary(self.system(), &node, h, &v, variations)?;
+            let increment = self.system().momentum_residual(&node, h, &v).increment;
+            node.advance(h, &v, &increment);
         }
         Ok(())
     }
@@ -144,7 +209,7 @@ where
 impl<S, const N: usize> Differentiable<N> for EnergyPreserving<S, N>
 where
     S: EnergyStepping<N> + Convertible<N>,
-    S::In<Dual<f64>>: EnergyStepping<N, Dual<f64>>,
+    S::In<Dual<f64, Slopes<f64, PAIR>>>: EnergyStepping<N, Dual<f64, Slopes<f64, PAIR>>>,
 {
     const KEEPS_ENERGY: bool = true;
 
@@ -161,23 +226,24 @@ where
             self.system().extended_system(before, h, &v);
         let along_h = linear::solve(&momentum.jacobian, &residual_dh).ok_or_else(|| singular(before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
-        for variation in variations {
-            let system = variation.system(self.system());
-            let mut node = variation.node(before);
-            let dual = system.extended_system(&node, Dual::fixed(h), &v.map(Dual::fixed));
-            let residual = dual.momentum.residual.map(|entry| entry.slope);
-            let still = linear::solve(&momentum.jacobian, &residual).ok_or_else(|| singular(before.t))?;
-            let change_of_h = (energy_dv.dot(&still) - dual.energy_residual.slope / h) / schur;
-            if !change_of_h.is_finite() {
+        for variations in variations.chunks_mut(PAIR) {
+            let system = Variation::system::<_, PAIR>(variations, self.system());
+            let mut node = Variation::node(variations, before);
+            let still = system.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed));
+            let of_residual =
+                linear::solve(&momentum.jacobian, &slopes(&still.residual)).ok_or_else(|| singular(before.t))?;
+            let of_energy = still.energy_residual.slope.0.map(|slope| slope / h);
+            let change_of_h = (energy_dv.transpose() * of_residual - RowSVector::from(of_energy)) / schur;
+            if !change_of_h.iter().all(|change| change.is_finite()) {
                 return Err(singular(before.t));
             }
-            let change_of_v = -still - along_h * change_of_h;
-            let h = Dual { value: h, slope: change_of_h };
-            let v = v.zip_map(&change_of_v, |value, slope| Dual { value, slope });
+            let change_of_v = -of_residual - along_h * change_of_h;
+            let h = Dual { value: h, slope: Slopes(core::array::from_fn(|direction| change_of_h[direction])) };
+            let v = varied(&v, &change_of_v);
             let increment = system.extended_residual(&node, h, &v).increment;
             node.advance(h, &v, &increment.momentum);
             node.add_energy(increment.energy);
-            variation.take(&node);
+            Variation::take(variations, &node);
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Variations along a run.
 //!
-//! In: a run, variations of its node. Out: step after step, with the variations of the node reached. A direction of two degrees of freedom costs half a step or
-//! less; directions of a chaotic motion grow, and it is for the caller to make them shorter again ([`Tangent::variations_mut`]).
+//! In: a run, variations of its node. Out: step after step, with the variations of the node reached. Directions share what is evaluated, so that more of them
+//! cost little (`docs/benchmarks.md`); those of a chaotic motion grow, and it is for the caller to make them shorter again ([`Tangent::variations_mut`]).
 
 use super::steps::Differentiable;
 use super::variation::Variation;

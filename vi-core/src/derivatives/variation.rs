@@ -4,9 +4,62 @@
 
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
-use crate::real::Dual;
+use crate::real::{Dual, Slopes};
 use crate::stepping::Convertible;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
+
+/// Directions that one evaluation follows.
+pub(crate) const TOGETHER: usize = 4;
+
+/// A number that varies in W directions.
+pub(crate) type Varied<const W: usize = TOGETHER> = Dual<f64, Slopes<f64, W>>;
+
+/// How two vectors change with the coordinates and velocities that they are functions of: a column each.
+pub(crate) struct Jacobians<const N: usize> {
+    /// By the coordinates, of each of the two.
+    pub(crate) by_q: [SMatrix<f64, N, N>; 2],
+    /// By the velocities.
+    pub(crate) by_v: [SMatrix<f64, N, N>; 2],
+}
+
+impl<const N: usize> Jacobians<N> {
+    /// Those of a function at (q, v), by one evaluation for [`TOGETHER`] columns.
+    #[inline]
+    pub(crate) fn of(
+        function: impl Fn(&SVector<Varied, N>, &SVector<Varied, N>) -> [SVector<Varied, N>; 2],
+        q: &SVector<f64, N>,
+        v: &SVector<f64, N>,
+    ) -> Self {
+        let zeros = [SMatrix::zeros(); 2];
+        let mut jacobians = Self { by_q: zeros, by_v: zeros };
+        for first in (0..2 * N).step_by(TOGETHER) {
+            let columns = first..(first + TOGETHER).min(2 * N);
+            let mut q = q.map(Varied::fixed);
+            let mut v = v.map(Varied::fixed);
+            for (direction, column) in columns.clone().enumerate() {
+                let moved = if column < N { &mut q[column] } else { &mut v[column - N] };
+                moved.slope.0[direction] = 1.0;
+            }
+            let values = function(&q, &v);
+            for (direction, column) in columns.enumerate() {
+                let by = if column < N { &mut jacobians.by_q } else { &mut jacobians.by_v };
+                for (matrix, value) in by.iter_mut().zip(&values) {
+                    matrix.set_column(column % N, &value.map(|entry| entry.slope.0[direction]));
+                }
+            }
+        }
+        jacobians
+    }
+}
+
+/// What two vectors change by in each of [`TOGETHER`] directions.
+pub(crate) type Changes<const N: usize> = [[SVector<f64, N>; 2]; TOGETHER];
+
+/// What two vectors change by, a row a direction.
+pub(crate) fn changes<const N: usize>(of: &[SVector<Varied, N>; 2]) -> Changes<N> {
+    let along = |direction: usize| of.map(|vector| vector.map(|entry| entry.slope.0[direction]));
+    core::array::from_fn(along)
+}
 
 /// How fast a node and the parameters of its system change in one direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,38 +119,65 @@ impl<const N: usize> Variation<N> {
         Some(variation)
     }
 
-    /// The system, its parameters varied.
-    pub(crate) fn system<S: Convertible<N> + Lagrangian<N>>(&self, system: &S) -> S::In<Dual<f64>> {
-        let mut dual = system.convert::<Dual<f64>>();
-        for (name, slope) in S::PARAMETERS.iter().zip(&self.parameters) {
-            if let Some(parameter) = dual.parameter_mut(name) {
-                parameter.slope = *slope;
+    /// The number that varies as `of` says in each of the directions.
+    pub(crate) fn number<const W: usize>(variations: &[Self], value: f64, of: impl Fn(&Self) -> f64) -> Varied<W> {
+        let mut slopes = [0.0; W];
+        for (slope, variation) in slopes.iter_mut().zip(variations) {
+            *slope = of(variation);
+        }
+        Dual { value, slope: Slopes(slopes) }
+    }
+
+    /// The system, its parameters varied in each of the directions; none where neither they nor the time vary in any.
+    pub(crate) fn varying_system<S: Convertible<N> + Lagrangian<N>>(
+        variations: &[Self],
+        system: &S,
+    ) -> Option<S::In<Varied>> {
+        let is_explicit = |of: &Self| !S::AUTONOMOUS && of.t != 0.0 || of.parameters.iter().any(|slope| *slope != 0.0);
+        variations.iter().any(is_explicit).then(|| Self::system(variations, system))
+    }
+
+    /// The system, its parameters varied in each of the directions.
+    pub(crate) fn system<S: Convertible<N> + Lagrangian<N>, const W: usize>(
+        variations: &[Self],
+        system: &S,
+    ) -> S::In<Varied<W>> {
+        let mut varied = system.convert::<Varied<W>>();
+        for (direction, variation) in variations.iter().enumerate() {
+            for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {
+                if let Some(parameter) = varied.parameter_mut(name) {
+                    parameter.slope.0[direction] = *slope;
+                }
             }
         }
-        dual
+        varied
     }
 
-    /// The node, varied.
-    pub(super) fn node(&self, node: &Node<N>) -> Node<N, Dual<f64>> {
-        let mut dual = node.map(Dual::fixed);
-        dual.t.slope = self.t;
-        dual.energy.slope = self.energy;
-        for k in 0..N {
-            dual.q[k].slope = self.q[k];
-            dual.p[k].slope = self.p[k];
+    /// The node, varied in each of the directions.
+    pub(super) fn node<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
+        let mut varied = node.map(Varied::<W>::fixed);
+        for (direction, variation) in variations.iter().enumerate() {
+            varied.t.slope.0[direction] = variation.t;
+            varied.energy.slope.0[direction] = variation.energy;
+            for k in 0..N {
+                varied.q[k].slope.0[direction] = variation.q[k];
+                varied.p[k].slope.0[direction] = variation.p[k];
+            }
         }
-        dual
+        varied
     }
 
-    /// Takes the variation of a node; that of the parameters stays.
-    pub(super) fn take(&mut self, node: &Node<N, Dual<f64>>) {
-        // Both parts of a sum vary.
-        let whole = |number: Dual<f64>, low: Dual<f64>| number.slope + low.slope;
-        self.t = whole(node.t, node.t_low);
-        self.energy = whole(node.energy, node.energy_low);
-        for k in 0..N {
-            self.q[k] = whole(node.q[k], node.q_low[k]);
-            self.p[k] = whole(node.p[k], node.p_low[k]);
+    /// Takes the variations of a node; those of the parameters stay.
+    pub(super) fn take<const W: usize>(variations: &mut [Self], node: &Node<N, Varied<W>>) {
+        for (direction, variation) in variations.iter_mut().enumerate() {
+            // Both parts of a sum vary.
+            let whole = |number: Varied<W>, low: Varied<W>| number.slope.0[direction] + low.slope.0[direction];
+            variation.t = whole(node.t, node.t_low);
+            variation.energy = whole(node.energy, node.energy_low);
+            for k in 0..N {
+                variation.q[k] = whole(node.q[k], node.q_low[k]);
+                variation.p[k] = whole(node.p[k], node.p_low[k]);
+            }
         }
     }
 }

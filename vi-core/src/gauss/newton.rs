@@ -20,8 +20,8 @@ use super::points::{Points, Rare};
 use super::stages::Stages;
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
+use crate::derivatives::{Jacobians, Varied};
 use crate::linear::Pivoted;
-use crate::real::Dual;
 use nalgebra::{DMatrix, DVector, SVector};
 
 /// The linearized equations of a step, factored.
@@ -64,16 +64,13 @@ impl<const N: usize, const S: usize> Newton<N, S> {
 
     /// Linearizes the equations of a system at the point (t, q, v).
     pub(super) fn linearize(&mut self, system: &Rare<'_, N>, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) {
-        for column in 0..2 * N {
-            let [momentum, force] = slopes(system, t, q, v, column);
-            for row in 0..N {
-                let unit = if row == column { 1.0 } else { 0.0 };
-                self.left[(row, column)] = unit;
-                self.right[(row, column)] = if row + N == column { 1.0 } else { 0.0 };
-                self.left[(row + N, column)] = momentum[row];
-                self.right[(row + N, column)] = force[row];
-            }
-        }
+        let Jacobians { by_q: [c, k], by_v: [m, b] } = jacobians(system, t, q, v);
+        self.left.view_mut((N, 0), (N, N)).copy_from(&c);
+        self.left.view_mut((N, N), (N, N)).copy_from(&m);
+        self.right.view_mut((N, 0), (N, N)).copy_from(&k);
+        self.right.view_mut((N, N), (N, N)).copy_from(&b);
+        self.left.view_mut((0, 0), (N, N)).fill_with_identity();
+        self.right.view_mut((0, N), (N, N)).fill_with_identity();
         for k in 0..S {
             self.room.copy_from(&self.right);
             match k.checked_sub(1) {
@@ -155,20 +152,18 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 }
 
-/// How `L_v` and `L_q + f` change at a point with one of its coordinates, or, from the index N on, with one of its velocities.
-pub(super) fn slopes<const N: usize>(
+/// How `L_v` and `L_q + f` change at the point (t, q, v).
+pub(super) fn jacobians<const N: usize>(
     system: &Rare<'_, N>,
     t: f64,
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
-    index: usize,
-) -> [SVector<f64, N>; 2] {
-    let mut q = q.map(Dual::fixed);
-    let mut v = v.map(Dual::fixed);
-    let moved = if index < N { &mut q[index] } else { &mut v[index - N] };
-    moved.slope = 1.0;
-    let point = system.at(Dual::fixed(t), &q, &v);
-    [point.momentum, point.force].map(|side| side.map(|entry| entry.slope))
+) -> Jacobians<N> {
+    let sides = |q: &SVector<Varied, N>, v: &SVector<Varied, N>| {
+        let point = system.at(Varied::fixed(t), q, v);
+        [point.momentum, point.force]
+    };
+    Jacobians::of(sides, q, v)
 }
 
 /// Multiplications that estimate the stiffness.

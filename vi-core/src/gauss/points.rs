@@ -5,8 +5,9 @@
 //! each number of coordinates and stages, however many systems a program has. Three fifths of the code of a step are rare.
 
 use crate::collocation::{Collocation, Point};
+use crate::derivatives::Varied;
 use crate::linear::Matrix;
-use crate::real::{Dual, Real, Rounded};
+use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
 use nalgebra::{SMatrix, SVector};
 
@@ -74,7 +75,7 @@ type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
 trait Erased<const N: usize> {
     fn form(&self) -> Form;
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
-    fn dual(&self, t: Dual<f64>, q: &SVector<Dual<f64>, N>, v: &SVector<Dual<f64>, N>) -> AnyPoint<N, Dual<f64>>;
+    fn varied(&self, t: Varied, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> AnyPoint<N, Varied>;
     fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded>;
 }
 
@@ -87,7 +88,7 @@ impl<S: Convertible<N>, const N: usize> Erased<N> for S {
         dense(self, t, q, v)
     }
 
-    fn dual(&self, t: Dual<f64>, q: &SVector<Dual<f64>, N>, v: &SVector<Dual<f64>, N>) -> AnyPoint<N, Dual<f64>> {
+    fn varied(&self, t: Varied, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> AnyPoint<N, Varied> {
         dense(self, t, q, v)
     }
 
@@ -136,4 +137,4 @@ macro_rules! rare {
     )*};
 }
 
-rare!(f64, plain; Dual<f64>, dual; Rounded, rounded);
+rare!(f64, plain; Varied, varied; Rounded, rounded);

@@ -9,50 +9,28 @@
 //!
 //! one matrix of S N rows, factored once for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
-use super::newton::slopes;
+use super::newton::jacobians;
 use super::points::Rare;
 use super::stages::{stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use super::{Gauss, general};
 use crate::collocation::Collocation;
-use crate::derivatives::{Differentiable, Variation};
+use crate::derivatives::{Changes, Differentiable, Jacobians, TOGETHER, Variation, changes};
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
 use crate::linear::Pivoted;
 use crate::node::Node;
 use crate::real::Dual;
 use crate::stepping::{Convertible, FixedStepping};
-use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, SVector};
 
-/// A stage of a solved step, linearized.
-struct Linearized<const N: usize> {
+/// A stage of a solved step.
+struct Stage<const N: usize> {
     t: f64,
     q: SVector<f64, N>,
     v: SVector<f64, N>,
-    /// C and M.
-    momentum_by_q: SMatrix<f64, N, N>,
-    momentum_by_v: SMatrix<f64, N, N>,
-    /// K and B.
-    force_by_q: SMatrix<f64, N, N>,
-    force_by_v: SMatrix<f64, N, N>,
-}
-
-impl<const N: usize> Linearized<N> {
-    /// The equations at a stage.
-    fn of(system: &Rare<'_, N>, t: f64, q: SVector<f64, N>, v: SVector<f64, N>) -> Self {
-        let zeros = SMatrix::zeros();
-        let mut stage =
-            Self { t, q, v, momentum_by_q: zeros, momentum_by_v: zeros, force_by_q: zeros, force_by_v: zeros };
-        for column in 0..N {
-            let [momentum, force] = slopes(system, t, &q, &v, column);
-            stage.momentum_by_q.set_column(column, &momentum);
-            stage.force_by_q.set_column(column, &force);
-            let [momentum, force] = slopes(system, t, &q, &v, column + N);
-            stage.momentum_by_v.set_column(column, &momentum);
-            stage.force_by_v.set_column(column, &force);
-        }
-        stage
-    }
+    jacobians: Jacobians<N>,
 }
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<N> for Gauss<S, N, STAGES>
@@ -69,63 +47,86 @@ where
         let equations = general(&rare, before, h, run.stages.data.0);
         let positions = equations.start();
         let velocities = equations.guess();
-        let stages: Vec<Linearized<N>> = (0..STAGES)
+        let stages: Vec<Stage<N>> = (0..STAGES)
             .map(|i| {
                 let t = time::<N, STAGES, false, f64>(before, h, i);
-                Linearized::of(&rare, t, stage(&positions, i), stage(&velocities, i))
+                let [q, v] = [stage(&positions, i), stage(&velocities, i)];
+                Stage { t, q, v, jacobians: jacobians(&rare, t, &q, &v) }
             })
             .collect();
-        // a_ij h
-        let weight = |i: usize, j: usize| h * b[j] * first[j][i];
+        // h a_ij
+        let mut weights = [[0.0; STAGES]; STAGES];
+        for i in 0..STAGES {
+            for j in 0..STAGES {
+                weights[i][j] = h * b[j] * first[j][i];
+            }
+        }
         let mut matrix = DMatrix::zeros(N * STAGES, N * STAGES);
         for i in 0..STAGES {
             for j in 0..STAGES {
-                let mut block = (stages[i].momentum_by_q - stages[j].force_by_v) * weight(i, j);
+                let mut block = (stages[i].jacobians.by_q[0] - stages[j].jacobians.by_v[1]) * weights[i][j];
                 for k in 0..STAGES {
-                    block -= stages[k].force_by_q * (weight(i, k) * weight(k, j));
+                    block -= stages[k].jacobians.by_q[1] * (weights[i][k] * weights[k][j]);
                 }
                 if i == j {
-                    block += stages[i].momentum_by_v;
+                    block += stages[i].jacobians.by_v[0];
                 }
                 matrix.view_mut((N * i, N * j), (N, N)).copy_from(&block);
             }
         }
         let mut factors = Pivoted::new(N * STAGES);
         factors.factor(&matrix);
-        for variation in variations {
-            let dual = variation.system(system);
-            let zeros = SVector::<f64, N>::zeros();
-            let mut of_momentum = [zeros; STAGES];
-            let mut of_force = [zeros; STAGES];
-            for (i, stage) in stages.iter().enumerate() {
-                let t = Dual { value: stage.t, slope: variation.t };
-                let point = dual.point(t, &stage.q.map(Dual::fixed), &stage.v.map(Dual::fixed));
-                of_momentum[i] = point.momentum.map(|entry| entry.slope) + stage.momentum_by_q * variation.q;
-                of_force[i] = point.force.map(|entry| entry.slope) + stage.force_by_q * variation.q;
-            }
-            let mut change = DVector::zeros(N * STAGES);
-            for i in 0..STAGES {
-                let mut row = variation.p - of_momentum[i];
+        let mut change = DVector::zeros(N * STAGES);
+        for variations in variations.chunks_mut(TOGETHER) {
+            let explicit = explicit(system, &stages, variations);
+            for (direction, variation) in variations.iter_mut().enumerate() {
+                let mut of_momentum = [SVector::<f64, N>::zeros(); STAGES];
+                let mut of_force = of_momentum;
+                for (i, stage) in stages.iter().enumerate() {
+                    let [momentum, force] = explicit.as_ref().map_or([SVector::zeros(); 2], |of| of[i][direction]);
+                    of_momentum[i] = momentum + stage.jacobians.by_q[0] * variation.q;
+                    of_force[i] = force + stage.jacobians.by_q[1] * variation.q;
+                }
+                for i in 0..STAGES {
+                    let mut row = variation.p - of_momentum[i];
+                    for j in 0..STAGES {
+                        row += of_force[j] * weights[i][j];
+                    }
+                    change.rows_mut(N * i, N).copy_from(&row);
+                }
+                factors.solve(change.as_mut_slice());
+                if !change.iter().all(|entry| entry.is_finite()) {
+                    return Err(singular);
+                }
+                let of_velocity = |j: usize| SVector::<f64, N>::from_fn(|k, _| change[N * j + k]);
                 for j in 0..STAGES {
-                    row += of_force[j] * weight(i, j);
+                    let mut moved = SVector::zeros();
+                    for k in 0..STAGES {
+                        moved += of_velocity(k) * weights[j][k];
+                    }
+                    let force = of_force[j]
+                        + stages[j].jacobians.by_q[1] * moved
+                        + stages[j].jacobians.by_v[1] * of_velocity(j);
+                    variation.q += of_velocity(j) * (h * b[j]);
+                    variation.p += force * (h * b[j]);
                 }
-                change.rows_mut(N * i, N).copy_from(&row);
-            }
-            factors.solve(change.as_mut_slice());
-            if !change.iter().all(|entry| entry.is_finite()) {
-                return Err(singular);
-            }
-            let of_velocity = |j: usize| SVector::<f64, N>::from_fn(|k, _| change[N * j + k]);
-            for j in 0..STAGES {
-                let mut moved = zeros;
-                for k in 0..STAGES {
-                    moved += of_velocity(k) * weight(j, k);
-                }
-                let force = of_force[j] + stages[j].force_by_q * moved + stages[j].force_by_v * of_velocity(j);
-                variation.q += of_velocity(j) * (h * b[j]);
-                variation.p += force * (h * b[j]);
             }
         }
         Ok(())
     }
+}
+
+/// What `L_v` and `L_q + f` change by with the time and the parameters, a row a stage; none where neither varies in any direction.
+fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize>(
+    system: &S,
+    stages: &[Stage<N>],
+    variations: &[Variation<N>],
+) -> Option<Vec<Changes<N>>> {
+    let varied = Variation::varying_system(variations, system)?;
+    let at = |stage: &Stage<N>| {
+        let t = Variation::number(variations, stage.t, |variation| variation.t);
+        let point = varied.point(t, &stage.q.map(Dual::fixed), &stage.v.map(Dual::fixed));
+        changes(&[point.momentum, point.force])
+    };
+    Some(stages.iter().map(at).collect())
 }

@@ -1,39 +1,130 @@
 //! Dual numbers a + b ε with ε² = 0: derivatives that owe nothing to the symbolic ones.
 //!
 //! In: a function that is generic over [`Real`]. Out, for `x = a + b ε`: `f(x) = f(a) + f'(a) b ε`, differentiated
-//! operation by operation. `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating
-//! Derivatives, chapter 3.
+//! operation by operation. b is a number, or several side by side ([`Slopes`]): derivatives in several directions by one evaluation.
+//! `Dual<Dual<f64>>` gives second derivatives. Source: Griewank and Walther, Evaluating Derivatives, chapter 3.
 
 use crate::real::Real;
+use core::array;
+use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use nalgebra::SVector;
 
-/// A value and its derivative by one variable.
+/// A value and its derivative by one variable, or by several.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dual<T> {
+pub struct Dual<T, D = T> {
     /// The value.
     pub value: T,
     /// Its derivative.
-    pub slope: T,
+    pub slope: D,
+}
+
+/// W derivatives of a number T, side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slopes<T, const W: usize>(pub [T; W]);
+
+/// Derivatives of numbers T: what is added, and multiplied by such numbers.
+pub trait Slope<T>:
+    Copy + Debug + PartialEq + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self>
+{
+    /// The derivative of what does not change.
+    fn zero() -> Self;
+    /// Whether all are zero.
+    fn is_zero(&self) -> bool;
+    /// Whether all are finite.
+    fn is_finite(self) -> bool;
+    /// `factor · self`.
+    #[must_use]
+    fn times(self, factor: T) -> Self;
+    /// `self / divisor`.
+    #[must_use]
+    fn over(self, divisor: T) -> Self;
+    /// `derivative · self`; zero where self is zero: what does not change has no slope, not even by a function whose own slope is infinite there.
+    #[must_use]
+    fn chain(self, derivative: T) -> Self;
+}
+
+impl<T: Real> Slope<T> for T {
+    fn zero() -> Self {
+        num_traits::Zero::zero()
+    }
+    fn is_zero(&self) -> bool {
+        num_traits::Zero::is_zero(self)
+    }
+    fn is_finite(self) -> bool {
+        Real::is_finite(self)
+    }
+    fn times(self, factor: T) -> Self {
+        self * factor
+    }
+    fn over(self, divisor: T) -> Self {
+        self / divisor
+    }
+    fn chain(self, derivative: T) -> Self {
+        if num_traits::Zero::is_zero(&self) { T::zero() } else { derivative * self }
+    }
+}
+
+impl<T: Real, const W: usize> Slope<T> for Slopes<T, W> {
+    fn zero() -> Self {
+        Self([T::zero(); W])
+    }
+    fn is_zero(&self) -> bool {
+        self.0.iter().all(num_traits::Zero::is_zero)
+    }
+    fn is_finite(self) -> bool {
+        self.0.into_iter().all(Real::is_finite)
+    }
+    fn times(self, factor: T) -> Self {
+        Self(self.0.map(|slope| slope * factor))
+    }
+    fn over(self, divisor: T) -> Self {
+        Self(self.0.map(|slope| slope / divisor))
+    }
+    fn chain(self, derivative: T) -> Self {
+        Self(self.0.map(|slope| slope.chain(derivative)))
+    }
+}
+
+impl<T: Real, const W: usize> Add for Slopes<T, W> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(array::from_fn(|k| self.0[k] + other.0[k]))
+    }
+}
+
+impl<T: Real, const W: usize> Sub for Slopes<T, W> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(array::from_fn(|k| self.0[k] - other.0[k]))
+    }
+}
+
+impl<T: Real, const W: usize> Neg for Slopes<T, W> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(self.0.map(Neg::neg))
+    }
 }
 
 impl<T: Real> Dual<T> {
-    /// A number that does not change.
-    #[must_use]
-    pub fn fixed(value: T) -> Self {
-        Self { value, slope: T::zero() }
-    }
-
     /// The variable itself.
     #[must_use]
     pub fn variable(value: T) -> Self {
         Self { value, slope: T::one() }
     }
+}
+
+impl<T: Real, D: Slope<T>> Dual<T, D> {
+    /// A number that does not change.
+    #[must_use]
+    pub fn fixed(value: T) -> Self {
+        Self { value, slope: D::zero() }
+    }
 
     /// f(self), with f' at self.
     fn chain(self, value: T, derivative: T) -> Self {
-        // What does not change has no slope, not even by a function whose own slope is infinite there.
-        Self { value, slope: if self.slope.is_zero() { T::zero() } else { derivative * self.slope } }
+        Self { value, slope: self.slope.chain(derivative) }
     }
 }
 
@@ -57,61 +148,61 @@ pub(crate) fn slopes<T: Real, const N: usize>(vector: &SVector<Dual<T>, N>) -> S
     vector.map(|entry| entry.slope)
 }
 
-impl<T: Real> Add for Dual<T> {
+impl<T: Real, D: Slope<T>> Add for Dual<T, D> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { value: self.value + other.value, slope: self.slope + other.slope }
     }
 }
 
-impl<T: Real> Sub for Dual<T> {
+impl<T: Real, D: Slope<T>> Sub for Dual<T, D> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Self { value: self.value - other.value, slope: self.slope - other.slope }
     }
 }
 
-impl<T: Real> Mul for Dual<T> {
+impl<T: Real, D: Slope<T>> Mul for Dual<T, D> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Self { value: self.value * other.value, slope: self.slope * other.value + self.value * other.slope }
+        Self { value: self.value * other.value, slope: self.slope.times(other.value) + other.slope.times(self.value) }
     }
 }
 
-impl<T: Real> Div for Dual<T> {
+impl<T: Real, D: Slope<T>> Div for Dual<T, D> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self { value, slope: (self.slope - value * other.slope) / other.value }
+        Self { value, slope: (self.slope - other.slope.times(value)).over(other.value) }
     }
 }
 
-impl<T: Real> Neg for Dual<T> {
+impl<T: Real, D: Slope<T>> Neg for Dual<T, D> {
     type Output = Self;
     fn neg(self) -> Self {
         Self { value: -self.value, slope: -self.slope }
     }
 }
 
-impl<T: Real> AddAssign for Dual<T> {
+impl<T: Real, D: Slope<T>> AddAssign for Dual<T, D> {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<T: Real> SubAssign for Dual<T> {
+impl<T: Real, D: Slope<T>> SubAssign for Dual<T, D> {
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl<T: Real> MulAssign for Dual<T> {
+impl<T: Real, D: Slope<T>> MulAssign for Dual<T, D> {
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-impl<T: Real> num_traits::Zero for Dual<T> {
+impl<T: Real, D: Slope<T>> num_traits::Zero for Dual<T, D> {
     fn zero() -> Self {
         Self::fixed(T::zero())
     }
@@ -120,13 +211,13 @@ impl<T: Real> num_traits::Zero for Dual<T> {
     }
 }
 
-impl<T: Real> num_traits::One for Dual<T> {
+impl<T: Real, D: Slope<T>> num_traits::One for Dual<T, D> {
     fn one() -> Self {
         Self::fixed(T::one())
     }
 }
 
-impl<T: Real> Real for Dual<T> {
+impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
     const EPSILON: f64 = T::EPSILON;
 
     fn real(value: f64) -> Self {
@@ -174,7 +265,7 @@ impl<T: Real> Real for Dual<T> {
     }
     fn atan2(self, other: Self) -> Self {
         let square = self.value * self.value + other.value * other.value;
-        let slope = (self.slope * other.value - self.value * other.slope) / square;
+        let slope = (self.slope.times(other.value) - other.slope.times(self.value)).over(square);
         Self { value: self.value.atan2(other.value), slope }
     }
     fn sinh(self) -> Self {
@@ -198,10 +289,12 @@ impl<T: Real> Real for Dual<T> {
     }
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
-        let by_base = self.slope * exponent.value * self.value.pow(exponent.value - T::one());
+        let by_base = self.slope.chain(exponent.value * self.value.pow(exponent.value - T::one()));
         // A fixed exponent needs no logarithm, which a base below zero does not have.
-        let by_exponent = if exponent.slope.is_zero() { T::zero() } else { value * self.value.ln() * exponent.slope };
-        Self { value, slope: by_base + by_exponent }
+        if exponent.slope.is_zero() {
+            return Self { value, slope: by_base };
+        }
+        Self { value, slope: by_base + exponent.slope.chain(value * self.value.ln()) }
     }
     fn max(self, other: Self) -> Self {
         if self.value.to_f64() >= other.value.to_f64() { self } else { other }
