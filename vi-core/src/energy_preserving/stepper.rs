@@ -14,7 +14,6 @@ use crate::node::Node;
 use crate::real::Scalar;
 use crate::state::{Method, State, Step};
 use crate::stepping::EnergyStepping;
-use core::hint::black_box;
 use nalgebra::SVector;
 
 /// The integrator that solves for its own step; see the [module](crate::energy_preserving).
@@ -53,7 +52,7 @@ where
                 return Ok(step);
             }
         }
-        let (run, outcome) = uncommon(black_box(self.system), black_box(self.run));
+        let (run, outcome) = uncommon(self.system, self.run);
         self.run = run;
         outcome.inspect_err(|failure| self.failure = Some(*failure))
     }
