@@ -7,7 +7,7 @@ use std::cell::Cell;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
 use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, State};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, State, StepError};
 use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.
@@ -39,6 +39,12 @@ impl<S: Stepper> Run for S {
     }
 }
 
+/// What a step gives that has to be there.
+#[inline]
+fn taken<T>(outcome: Result<T, StepError>) -> T {
+    outcome.unwrap_or_else(|failure| panic!("{failure}"))
+}
+
 fn flat<const N: usize>(state: State<N>) -> Vec<f64> {
     [state.t].into_iter().chain(state.q.iter().copied()).chain(state.p.iter().copied()).collect()
 }
@@ -46,9 +52,7 @@ fn flat<const N: usize>(state: State<N>) -> Vec<f64> {
 impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
     #[inline]
     fn step(&mut self) {
-        if let Err(failure) = FixedStep::step(self) {
-            panic!("{failure}");
-        }
+        taken(FixedStep::step(self));
     }
 
     fn state(&self) -> Vec<f64> {
@@ -59,9 +63,7 @@ impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
 impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<S, N> {
     #[inline]
     fn step(&mut self) {
-        if let Err(failure) = EnergyPreserving::step(self) {
-            panic!("{failure}");
-        }
+        taken(EnergyPreserving::step(self));
     }
 
     fn state(&self) -> Vec<f64> {
@@ -75,9 +77,7 @@ where
 {
     #[inline]
     fn step(&mut self) {
-        if let Err(failure) = Gauss::step(self) {
-            panic!("{failure}");
-        }
+        taken(Gauss::step(self));
     }
 
     fn state(&self) -> Vec<f64> {
@@ -99,9 +99,7 @@ impl<S: Batch<N>, const N: usize> Run for Ensemble<S, N> {
 
 impl<I: Differentiable<N>, const N: usize> Stepper for Tangent<I, N> {
     fn step(&mut self) {
-        if let Err(failure) = Tangent::step(self) {
-            panic!("{failure}");
-        }
+        taken(Tangent::step(self));
     }
 
     fn state(&self) -> Vec<f64> {
@@ -115,9 +113,8 @@ pub struct Adjoint<I, const N: usize>(pub I);
 impl<I: Differentiable<N>, const N: usize> Run for Adjoint<I, N> {
     fn run(&self, steps: usize) -> Vec<f64> {
         let end = Cell::new(None);
-        if let Err(failure) = gradient(&self.0, steps as u64, 0, &Last { steps: steps as u64, end: &end }) {
-            panic!("{failure}");
-        }
+        let steps = steps as u64;
+        taken(gradient(&self.0, steps, 0, &Last { steps, end: &end }));
         flat(end.get().expect("the sweep begins at the end"))
     }
 }

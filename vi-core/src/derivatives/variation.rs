@@ -40,11 +40,11 @@ impl<const N: usize> Jacobians<N> {
                 let moved = if column < N { &mut q[column] } else { &mut v[column - N] };
                 moved.slope.0[direction] = 1.0;
             }
-            let values = function(&q, &v);
-            for (direction, column) in columns.enumerate() {
+            let slopes = changes(&function(&q, &v));
+            for (along, column) in slopes.iter().zip(columns) {
                 let by = if column < N { &mut jacobians.by_q } else { &mut jacobians.by_v };
-                for (matrix, value) in by.iter_mut().zip(&values) {
-                    matrix.set_column(column % N, &value.map(|entry| entry.slope.0[direction]));
+                for (matrix, slope) in by.iter_mut().zip(along) {
+                    matrix.set_column(column % N, slope);
                 }
             }
         }
