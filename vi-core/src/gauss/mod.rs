@@ -182,8 +182,7 @@ where
         let swept = if S::SIDE_BY_SIDE {
             self.instructions.run(Solve { system: &self.system, run: &self.run })
         } else {
-            let rare = Rare::of(&self.system);
-            solved::<f64, _, _, N, STAGES, false>(&rare, &rare, &self.run)
+            self.run.swept(&Rare::of(&self.system))
         };
         let run = self.run.after(&swept);
         if swept.is_at_floor() && run.node.is_finite() { Ok(run) } else { self.solve_with_care(Some(&swept)) }
@@ -284,7 +283,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
             // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
             let plain;
             let solved = if swept.sweeps.convergence.change.is_nan() {
-                plain = solved::<f64, _, _, N, S, false>(system, system, self);
+                plain = self.swept(system);
                 &plain
             } else {
                 swept
@@ -301,6 +300,12 @@ impl<const N: usize, const S: usize> Run<N, S> {
             return Ok(run);
         }
         Err(solved.sweeps.convergence.unsettled(self.node.t, self.h, newton.stiffness()))
+    }
+
+    /// The next step by sweeps in plain numbers. Not inlined: one copy serves all systems of N coordinates.
+    #[inline(never)]
+    fn swept(&self, system: &Rare<'_, N>) -> Solved<N, S> {
+        solved::<f64, _, _, N, S, false>(system, system, self)
     }
 
     /// The step by simplified Newton iterations about its middle.
@@ -328,6 +333,10 @@ impl<const N: usize, const S: usize> Run<N, S> {
 
 /// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
 const LOOPED: usize = 3;
+
+/// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
+/// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
+const WIDE: bool = !cfg!(target_arch = "x86_64");
 
 /// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
 fn general<'a, const N: usize, const S: usize>(
@@ -383,7 +392,7 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Solved<N, S> {
-        if const { N > LOOPED } {
+        if const { N > LOOPED && (FUSED || WIDE) } {
             let system = self.system.convert::<Lanes<S, FUSED>>();
             return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&system, self.system, self.run);
         }

@@ -15,8 +15,10 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
     #[inline(always)]
     fn each(self, function: impl Fn(f64) -> f64) -> Self {
         let mut all = self;
-        for number in &mut all.0 {
-            *number = function(*number);
+        let mut i = 0;
+        while i < W {
+            all.0[i] = function(all.0[i]);
+            i += 1;
         }
         all
     }
@@ -25,8 +27,10 @@ impl<const W: usize, const FUSED: bool> Lanes<W, FUSED> {
     #[inline(always)]
     fn pairs(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
         let mut all = self;
-        for (number, other) in all.0.iter_mut().zip(other.0) {
-            *number = function(*number, other);
+        let mut i = 0;
+        while i < W {
+            all.0[i] = function(all.0[i], other.0[i]);
+            i += 1;
         }
         all
     }
