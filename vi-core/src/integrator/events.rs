@@ -133,24 +133,50 @@ impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
         let h = run.time_to(ahead.t()) + ahead.node().t_low;
         let left = run.time_to(self.until);
         let is_last = ahead.time_to(self.until) * h.signum() <= 0.0;
-        for (index, event) in self.wanted.iter().enumerate() {
-            // Erased: what looks for changes of sign is compiled once, and not for each integrator of each system.
+        let until = self.until;
+        let reached = |event: &Event<'_, N>, length: f64, until: f64| reached(run, event, length, until);
+        let step = Step { t: start.t, h, left, is_last, until, path: &path, reached: &reached };
+        self.found = step.crossings(self.wanted, &mut self.signs)?;
+        Ok(())
+    }
+}
+
+/// A step that is searched. Its integrator is erased, so that the search is compiled once, and not for each integrator of each system.
+struct Step<'a, const N: usize> {
+    /// Time of the node before it.
+    t: f64,
+    h: f64,
+    /// The time left to the end of the search, `until`.
+    left: f64,
+    is_last: bool,
+    until: f64,
+    /// The motion over it, by the time since its start.
+    path: &'a dyn Path<N>,
+    /// The end of a step of a length, or of the one that ends at a time if that is shorter.
+    reached: &'a dyn Fn(&Event<'_, N>, f64, f64) -> Result<Reached<N>, StepError>,
+}
+
+impl<const N: usize> Step<'_, N> {
+    /// The crossings of it, the last first; `signs` go on to its end.
+    fn crossings(&self, wanted: &[Event<'_, N>], signs: &mut [Option<bool>]) -> Result<Vec<Crossing<N>>, StepError> {
+        let &Self { h, left, .. } = self;
+        let mut found = Vec::new();
+        for (index, (event, sign)) in wanted.iter().zip(signs).enumerate() {
             let along: &dyn Fn(f64) -> Result<f64, StepError> = &|part| {
                 let passed = part * h;
-                let state = path.state(passed);
-                event.value(&State { t: start.t + passed, ..state }, &path.velocity(passed))
+                let state = self.path.state(passed);
+                event.value(&State { t: self.t + passed, ..state }, &self.path.velocity(passed))
             };
             let by_steps: &dyn Fn(f64) -> Result<Sample, StepError> = &|part| {
-                let value = reached(run, event, part * h, f64::INFINITY.copysign(h))?.value;
+                let value = (self.reached)(event, part * h, f64::INFINITY.copysign(h))?.value;
                 Ok(Sample { part, value })
             };
-            let sign = &mut self.signs[index];
             // Where a search begins and ends, signs are those of steps: velocities of a path are off there, and the search before or after has another path.
             if sign.is_none() {
                 let first = by_steps(START)?;
                 *sign = (first.value != 0.0).then_some(first.is_positive());
             }
-            let last = if is_last { Some(by_steps(left / h + START)?) } else { None };
+            let last = if self.is_last { Some(by_steps(left / h + START)?) } else { None };
             for change in changes(along, last, sign)? {
                 let Some(part) = located(by_steps, along, &change)? else {
                     // It is in the next step.
@@ -160,14 +186,13 @@ impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
                 *sign = Some(change.is_rising);
                 let length = part * h;
                 if event.admits(change.is_rising) && (length - left) * h.signum() <= START * h.abs() {
-                    let reached = reached(run, event, length, self.until)?;
-                    let (state, v, length) = (reached.state, reached.v, reached.length);
-                    self.found.push(Crossing { event: index, is_rising: change.is_rising, state, v, length });
+                    let Reached { state, v, length, .. } = (self.reached)(event, length, self.until)?;
+                    found.push(Crossing { event: index, is_rising: change.is_rising, state, v, length });
                 }
             }
         }
-        self.found.sort_by(|a, b| b.length.abs().total_cmp(&a.length.abs()));
-        Ok(())
+        found.sort_by(|a, b| b.length.abs().total_cmp(&a.length.abs()));
+        Ok(found)
     }
 }
 

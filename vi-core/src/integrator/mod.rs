@@ -279,7 +279,7 @@ pub trait Integrator<const N: usize>: Clone {
         }
         // Where the next step ends there, it is that one.
         let is_next = Self::LONGEST <= 1.0 && left.to_bits() == self.h().to_bits();
-        let outcome = if is_next { self.step() } else { self.step_of(left) };
+        let outcome = if is_next { self.step_apart() } else { self.step_of(left) };
         outcome.map(|_| self.set_time(t))
     }
 
@@ -287,7 +287,14 @@ pub trait Integrator<const N: usize>: Clone {
     #[doc(hidden)]
     fn after_a_step(&self) -> Result<Self, StepError> {
         let mut ahead = self.clone();
-        ahead.step().map(|_| ahead)
+        ahead.step_apart().map(|_| ahead)
+    }
+
+    /// [`Integrator::step`] where it is no loop: a step is inlined wherever it stands, and one more copy of it serves all these places.
+    #[doc(hidden)]
+    #[inline(never)]
+    fn step_apart(&mut self) -> Result<State<N>, StepError> {
+        self.step()
     }
 
     /// Sets the time of the node reached last, to which it is equal but for rounding.

@@ -24,7 +24,9 @@ pub trait Path<const N: usize> {
     /// The same motion by the time since the start of the step: far from zero the time itself is too coarse.
     #[doc(hidden)]
     #[must_use]
-    fn since_start(self) -> Self;
+    fn since_start(self) -> Self
+    where
+        Self: Sized;
 }
 
 /// Cubics through the ends of a step.

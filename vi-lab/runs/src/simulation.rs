@@ -164,9 +164,12 @@ pub trait Simulation {
         }
         Ok(taken)
     }
+}
 
+impl dyn Simulation + '_ {
     /// The node reached last, with its energies.
-    fn row(&self) -> Row {
+    #[must_use]
+    pub fn row(&self) -> Row {
         Row {
             t: self.t(),
             q: self.q().to_vec(),
@@ -408,7 +411,7 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
-        self.integrator.step()?;
+        self.integrator.step_apart()?;
         self.count(&self.integrator);
         Ok(())
     }
