@@ -20,7 +20,7 @@ use crate::stepping::{Convertible, FixedStepping};
 use nalgebra::SVector;
 
 /// `C_s` of s stages; see the [module](self).
-pub(super) const fn constant(stages: usize) -> f64 {
+const fn constant(stages: usize) -> f64 {
     match stages {
         1 => 1.0 / 8.0,
         2 => 1.0 / 864.0,
@@ -29,6 +29,11 @@ pub(super) const fn constant(stages: usize) -> f64 {
             panic!("an energy-preserving Gauss step has 1 to 3 stages: the length of one with more is lost in rounding")
         }
     }
+}
+
+/// `C_s h^2s` of s = S stages.
+pub(super) fn power<const S: usize>(h: f64) -> f64 {
+    (1..S).fold(h * h, |power, _| power * (h * h)) * const { constant(S) }
 }
 
 /// The step density `D_s` of s = STAGES stages at a state, in units of energy by time to the power 2s. An energy-preserving step exists, for
@@ -42,6 +47,14 @@ where
     S: Convertible<N> + FixedStepping<N>,
 {
     const { constant(STAGES) };
+    density(system, state, STAGES)
+}
+
+/// The step density of so many stages. A number here, not a type: one copy of this serves all.
+fn density<S, const N: usize>(system: &S, state: &State<N>, stages: usize) -> Result<f64, StepError>
+where
+    S: Convertible<N> + FixedStepping<N>,
+{
     let series = system.convert::<Series>();
     let t = Series::variable(state.t);
     let start = state.q.map(Series::fixed);
@@ -50,19 +63,19 @@ where
     let mut p = momentum;
     let mut v = state.velocity(system)?.map(Series::fixed);
     // Each integration makes one more term right.
-    for _ in 0..STAGES {
+    for _ in 0..stages {
         v = velocity(&series, t, [&q, &p], v);
         let force = series.point(t, &q, &v).force;
         q = start + v.map(|v| v.integral());
         p = momentum + force.map(|force| force.integral());
     }
-    let q = q.map(|q| q.truncated(STAGES));
-    let p = p.map(|p| p.truncated(STAGES));
+    let q = q.map(|q| q.truncated(stages));
+    let p = p.map(|p| p.truncated(stages));
     // The velocities are those of π up to the term s − 1; each iteration doubles the number of right terms.
     v = velocity(&series, t, [&q, &p], v);
     v = velocity(&series, t, [&q, &p], v);
     let energy = crate::Lagrangian::energy(&series, t, &q, &v);
-    let density = energy.derivative(2 * STAGES);
+    let density = energy.derivative(2 * stages);
     if density.is_finite() {
         Ok(density)
     } else {

@@ -11,18 +11,13 @@
 //! to leading order without force, which has the sign of D where D has that of D_0. Only where no step has the energy of before, E is the
 //! discrete energy of the last fixed step from there on.
 
-use super::EnergyPreservingGauss;
 use super::run::Course;
-use crate::collocation::Collocation;
+use super::stepper::Stepper;
 use crate::energy_preserving::fallback::{Fallback, GROWTH, Phase};
 use crate::error::StepError;
 use crate::state::Method;
-use crate::stepping::{Convertible, FixedStepping};
 
-impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-{
+impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     /// Whether a step is so much longer than the last that D is about to vanish, and the user wants no such step.
     fn runs_away(&self, h: f64) -> bool {
         self.course.fallback == Fallback::FixedSteps && h > self.course.h() * GROWTH
@@ -35,7 +30,7 @@ where
         }
         match self.found() {
             Ok(step) if self.runs_away(step.h()) => {
-                let t = self.gauss.run.node.t;
+                let t = self.gauss.run().node.t;
                 let failure = StepError::StepRatio { t, previous: self.course.h(), found: step.h() };
                 self.fall_back(failure)
             }
@@ -47,8 +42,9 @@ where
     /// The first fixed step, where the user allows it; else the failure.
     #[cold]
     fn fall_back(&mut self, failure: StepError) -> Result<(), StepError> {
-        let Course { fallback, bounds, .. } = self.course;
-        let phase = Phase::instead_of(failure, fallback, bounds.as_ref(), self.course.h(), self.told_density())?;
+        let Course { fallback, bounds, .. } = *self.course;
+        let phase =
+            Phase::instead_of(failure, fallback, bounds.as_ref(), self.course.h(), self.course.told_density::<S>())?;
         self.fixed_step(phase)?;
         self.course.switches.count += 1;
         Ok(())
@@ -60,15 +56,15 @@ where
         if !phase.is_over(Self::SLOPE + 1.0) {
             return self.fixed_step(phase);
         }
-        let node = self.gauss.run.node;
-        let course = self.course;
+        let node = self.gauss.run().node;
+        let course = *self.course;
         if let Ok(step) = self.found() {
             self.take(&step, Method::EnergyPreserving)?;
             self.course.switches.returns += 1;
             self.course.phase = None;
             return Ok(());
         }
-        self.gauss.run.node.add_energy(phase.gap);
+        self.gauss.run_mut().node.add_energy(phase.gap);
         if self.measure_excess().is_ok()
             && let Ok(step) = self.found()
         {
@@ -78,17 +74,17 @@ where
             self.course.phase = None;
             return Ok(());
         }
-        self.gauss.run.node = node;
-        self.course = course;
+        self.gauss.run_mut().node = node;
+        *self.course = course;
         self.fixed_step(phase)
     }
 
     /// One fixed step of the phase.
     fn fixed_step(&mut self, phase: Phase<f64>) -> Result<(), StepError> {
-        let step = self.trial(phase.h, self.stages_for(phase.h))?;
-        let last = self.told_density();
+        let step = self.trial_of(phase.h)?;
+        let last = self.course.told_density::<S>();
         self.take(&step, Method::FixedStep)?;
-        let density = self.told_density();
+        let density = self.course.told_density::<S>();
         // The next interval has the same length.
         self.course.phase = Some(Phase { gap: step.residual, density_next: density + (density - last), ..phase });
         self.course.switches.fixed_steps += 1;

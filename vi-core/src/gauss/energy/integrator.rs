@@ -30,7 +30,7 @@ where
             return Err(failure);
         }
         check_step("the step h", h)?;
-        let step = self.trial(h, self.stages_for(h))?;
+        let step = self.stepper().trial_of(h)?;
         let mut node = step.after.node;
         node.add_energy(step.work);
         node.check_finite(self.gauss.run.node.t)?;
@@ -43,7 +43,7 @@ where
     fn go_on_from(&mut self, node: Node<N>) -> Result<(), StepError> {
         let before = self.gauss.run;
         self.gauss.run = Run::new(&self.gauss.system, node, self.course.h())?;
-        self.measure_excess().inspect_err(|_| self.gauss.run = before)
+        self.stepper().measure_excess().inspect_err(|_| self.gauss.run = before)
     }
 }
 
@@ -74,7 +74,7 @@ where
         let before = (self.gauss.system, self.gauss.run.node);
         self.gauss.system = system;
         self.gauss.run.node.add_energy(brought);
-        self.measure_excess().inspect_err(|_| (self.gauss.system, self.gauss.run.node) = before)?;
+        self.stepper().measure_excess().inspect_err(|_| (self.gauss.system, self.gauss.run.node) = before)?;
         self.failure = None;
         Ok(())
     }

@@ -21,6 +21,8 @@
 //!
 //! | file | part of a step |
 //! |---|---|
+//! | `stepper` | the step to the next node |
+//! | `solver` | what it asks of a system |
 //! | `trial` | the stages of a step of some length, and its energy |
 //! | `root` | the length: by secants from the lengths before |
 //! | `search` | else the smallest length, by its bracket; or why there is none |
@@ -39,7 +41,9 @@ mod integrator;
 mod root;
 mod run;
 mod search;
+mod solver;
 mod starts;
+mod stepper;
 mod trial;
 
 pub use density::step_density;
@@ -48,13 +52,13 @@ pub use run::{Checkpoint, Run};
 use super::Gauss;
 use crate::collocation::Collocation;
 use crate::energy_preserving::fallback::{Phase, StepBounds};
-use crate::energy_preserving::interval::RATIO;
 use crate::energy_preserving::{Fallback, Switches};
 use crate::error::StepError;
 use crate::state::{Method, State};
 use crate::stepping::{Convertible, FixedStepping};
+use density::power;
 use run::Course;
-use trial::Trial;
+use stepper::Stepper;
 
 /// Energy-preserving steps of order 2 STAGES; see the [module](self).
 #[derive(Clone, Debug)]
@@ -80,62 +84,13 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        match self.advance() {
+        match self.stepper().advance() {
             Ok(()) => Ok(self.state()),
             Err(failure) => {
                 self.failure = Some(failure);
                 Err(failure)
             }
         }
-    }
-
-    /// The next step, within the bounds.
-    fn found(&mut self) -> Result<Trial<N, STAGES>, StepError> {
-        let t = self.gauss.run.node.t;
-        let Course { excess, size, .. } = self.course;
-        let previous = self.course.h();
-        if excess.abs() < Self::least_excess(f64::EPSILON * size) {
-            return Err(StepError::DegenerateStep { t, h: previous, density: excess / Self::power(previous) });
-        }
-        // Past a change of sign lies another root.
-        if self.course.density().is_some_and(|last| excess * last < 0.0) {
-            return Err(self.no_step());
-        }
-        let step = match self.root() {
-            Some(step) => step,
-            None => self.smallest_root()?,
-        };
-        let found = step.h();
-        if found > previous * RATIO || previous > found * RATIO {
-            return Err(StepError::StepRatio { t, previous, found });
-        }
-        match &self.course.bounds {
-            Some(bounds) if !bounds.admit(found) => Err(bounds.refusal(t, found)),
-            _ => Ok(step),
-        }
-    }
-
-    /// Takes a step that was found.
-    fn take(&mut self, step: &Trial<N, STAGES>, method: Method) -> Result<(), StepError> {
-        let mut after = step.after;
-        if !S::AUTONOMOUS || S::FORCED {
-            after.node.add_energy(step.work);
-            after.node.check_finite(self.gauss.run.node.t)?;
-        }
-        let [excess, size] = self.excess_of(after.node.energy, after.node.energy_low, &after.node.state())?;
-        // The mean of `H − E0` at the start and of `H − E1` at the end.
-        let mean = 0.5 * (self.course.excess + excess) - step.residual;
-        let course = &mut self.course;
-        course.push(step.h(), mean / Self::power(step.h()));
-        course.residual = if method == Method::FixedStep { 0.0 } else { step.roundings() };
-        if method == Method::FixedStep {
-            course.forget_lengths();
-        }
-        course.excess = excess;
-        course.size = size;
-        course.method = method;
-        self.gauss.run = after;
-        Ok(())
     }
 
     /// What to do where no energy-preserving step exists; [`Fallback::Stop`] unless this is called.
@@ -188,7 +143,7 @@ where
     /// [`State::energy`].
     pub fn discrete_energy(&self) -> f64 {
         let gap = self.course.phase.map_or(0.0, |phase| phase.gap);
-        self.shifted_energy() + gap + Self::power(self.course.h()) * self.course.shift
+        self.shifted_energy() + gap + power::<STAGES>(self.course.h()) * self.course.shift
     }
 
     /// The shift D_* of the step density.
@@ -199,7 +154,7 @@ where
     /// Step density D_s of the last step, without the shift, as its energy tells it: the mean of `H − E` at both ends, by `C_s h^2s`. Before
     /// the first step, of its start.
     pub fn density(&self) -> f64 {
-        self.told_density() - self.course.shift
+        self.course.told_density::<STAGES>() - self.course.shift
     }
 
     /// What the last step leaves of its equations, in roundings: of the coordinates at its stages, and of the terms of its energy. Zero
@@ -223,9 +178,9 @@ where
         self.course.switches
     }
 
-    /// `D_s + D_*` of the last step, as its energy tells it.
-    fn told_density(&self) -> f64 {
-        self.course.density().unwrap_or(self.course.excess / Self::power(self.course.h()))
+    /// The run on its way to the next node.
+    fn stepper(&mut self) -> Stepper<'_, N, STAGES> {
+        Stepper { gauss: &mut self.gauss, course: &mut self.course }
     }
 }
 

@@ -8,11 +8,9 @@
 //!
 //! where y = 0 is the root. Two or three lengths are tried, each from the stages of the one before.
 
-use super::EnergyPreservingGauss;
+use super::stepper::Stepper;
 use super::trial::Trial;
-use crate::collocation::Collocation;
 use crate::newton::FLOOR;
-use crate::stepping::{Convertible, FixedStepping};
 
 /// Lengths that are tried.
 const TRIALS: u32 = 8;
@@ -23,18 +21,15 @@ const FACTOR: f64 = 1.5;
 /// Roundings by which two energies differ that tell a slope to three digits.
 const TOLD: f64 = 1e4;
 
-impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-{
+impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     /// The order, which is the slope of `ln (H − E0)` over ln h to leading order.
     #[allow(clippy::cast_precision_loss)]
-    pub(super) const SLOPE: f64 = 2.0 * STAGES as f64;
+    pub(super) const SLOPE: f64 = 2.0 * S as f64;
 
     /// The next step; none where secants do not lead to one.
-    pub(super) fn root(&mut self) -> Option<Trial<N, STAGES>> {
+    pub(super) fn root(&mut self) -> Option<Trial<N, S>> {
         let mut h = self.course.predicted_length();
-        let mut best = self.trial(h, self.stages_for(h)).ok()?;
+        let mut best = self.trial_of(h).ok()?;
         let mut last = best.residual;
         let mut slope = self.course.slope;
         let mut sweeps = best.after.convergence.sweeps;

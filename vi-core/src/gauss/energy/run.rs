@@ -3,6 +3,7 @@
 //! In: a run, between two steps. Out: a [`Checkpoint`], and the run again (see [`crate::checkpoint`]).
 
 use super::EnergyPreservingGauss;
+use super::density::power;
 use crate::checkpoint;
 use crate::collocation::Collocation;
 use crate::energy_preserving::fallback::{Fallback, Phase, StepBounds, Switches, check_step};
@@ -111,6 +112,11 @@ impl Course {
     /// `D_s + D_*` of the last step.
     pub(super) fn density(&self) -> Option<f64> {
         self.densities.map(|[density, _]| density)
+    }
+
+    /// The same, before the first step of its start, as the energy of S stages tells it.
+    pub(super) fn told_density<const S: usize>(&self) -> f64 {
+        self.density().unwrap_or(self.excess / power::<S>(self.h))
     }
 
     /// Starts the extrapolation of lengths anew, from the last one.

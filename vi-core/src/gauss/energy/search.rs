@@ -9,14 +9,11 @@
 //! the step is where φ first becomes positive. Between two lengths that are looked at it can rise above zero and fall again, where D_s is
 //! about to vanish: a maximum below zero is followed to its top.
 
-use super::EnergyPreservingGauss;
-use super::density::step_density;
+use super::stepper::Stepper;
 use super::trial::Trial;
-use crate::collocation::Collocation;
 use crate::energy_preserving::interval::RATIO;
 use crate::error::{Residuals, StepError};
 use crate::newton::FLOOR;
-use crate::stepping::{Convertible, FixedStepping};
 
 /// φ is looked at from `h_last/REACH` to `REACH · h_last`: wide enough to tell a step beyond the factor from none.
 const REACH: f64 = RATIO * RATIO;
@@ -26,12 +23,9 @@ const BISECTIONS: u32 = 60;
 /// Sections of a maximum: each leaves 0.62 of it.
 const SECTIONS: u32 = 40;
 
-impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-{
+impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     /// φ; see the [module](self).
-    fn height(&self, trial: &Trial<N, STAGES>) -> f64 {
+    fn height(&self, trial: &Trial<N, S>) -> f64 {
         -trial.residual / self.course.excess
     }
 
@@ -41,12 +35,12 @@ where
     /// [`StepError::NoForwardGaussStep`], [`StepError::StepRatio`], [`StepError::DegenerateStep`], [`StepError::NotConverged`]; those of
     /// [`Gauss::step`](crate::Gauss::step) where the stages have no solution at a length that is allowed.
     #[cold]
-    pub(super) fn smallest_root(&mut self) -> Result<Trial<N, STAGES>, StepError> {
-        let t = self.gauss.run.node.t;
+    pub(super) fn smallest_root(&mut self) -> Result<Trial<N, S>, StepError> {
+        let t = self.gauss.run().node.t;
         let last = self.course.h();
         let factor = (REACH * REACH).powf(1.0 / f64::from(POINTS));
         let mut h = last / REACH;
-        let mut before = self.trial(h, self.stages_for(h))?;
+        let mut before = self.trial_of(h)?;
         if self.height(&before) >= 0.0 {
             return Err(StepError::StepRatio { t, previous: last, found: h });
         }
@@ -72,7 +66,7 @@ where
     }
 
     /// A step between two lengths at which φ is not negative, by golden sections towards its maximum; none where it is negative there.
-    fn top(&mut self, earlier: Trial<N, STAGES>, later: Trial<N, STAGES>) -> Option<Trial<N, STAGES>> {
+    fn top(&mut self, earlier: Trial<N, S>, later: Trial<N, S>) -> Option<Trial<N, S>> {
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
         let mut low = earlier.h();
         let mut high = later.h();
@@ -96,16 +90,12 @@ where
     }
 
     /// The step of length h, from the stages of another.
-    fn trial_beside(&mut self, other: &Trial<N, STAGES>, h: f64) -> Option<Trial<N, STAGES>> {
+    fn trial_beside(&mut self, other: &Trial<N, S>, h: f64) -> Option<Trial<N, S>> {
         self.trial(h, other.stages_for(h)).ok()
     }
 
     /// The root between two lengths, by bisection to the rounding of the energy.
-    fn between(
-        &mut self,
-        mut low: Trial<N, STAGES>,
-        mut high: Trial<N, STAGES>,
-    ) -> Result<Trial<N, STAGES>, StepError> {
+    fn between(&mut self, mut low: Trial<N, S>, mut high: Trial<N, S>) -> Result<Trial<N, S>, StepError> {
         let mut best = high;
         let mut residuals = Residuals::new();
         for _ in 0..BISECTIONS {
@@ -127,7 +117,7 @@ where
         if best.roundings() <= FLOOR || self.is_preserved(&best) {
             return Ok(best);
         }
-        let t = self.gauss.run.node.t;
+        let t = self.gauss.run().node.t;
         let h = best.h();
         let residual = best.roundings();
         Err(StepError::NotConverged { t, h, iterations: BISECTIONS, residual, residuals })
@@ -136,12 +126,12 @@ where
     /// The error where no step leads forward.
     pub(super) fn no_step(&self) -> StepError {
         let course = &self.course;
-        let state = self.state();
-        let density = step_density::<S, N, STAGES>(self.system(), &state).unwrap_or_else(|_| self.density());
+        let state = self.gauss.run().node.state();
+        let density = self.gauss.step_density(&state).unwrap_or_else(|_| course.told_density::<S>() - course.shift);
         StepError::NoForwardGaussStep {
             t: state.t,
             h: course.h(),
-            stages: STAGES,
+            stages: S,
             excess: course.excess,
             density,
             shift: course.shift,

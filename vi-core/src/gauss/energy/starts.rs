@@ -4,8 +4,9 @@
 //! fixed steps, or given.
 
 use super::EnergyPreservingGauss;
-use super::density::step_density;
+use super::density::{power, step_density};
 use super::run::Course;
+use super::stepper::Stepper;
 use crate::collocation::Collocation;
 use crate::energy_preserving::fallback::check_step;
 use crate::error::StepError;
@@ -26,12 +27,12 @@ where
     /// too long for the motion.
     pub fn new(system: S, state: State<N>, h: f64) -> Result<Self, StepError> {
         let mut integrator = Self::from_energy(system, state, 0.0, h)?;
-        let first = integrator.trial(h, integrator.stages_for(h))?;
+        let first = integrator.stepper().trial_of(h)?;
         let run = &mut integrator.gauss.run;
         run.node.energy = first.residual;
         // The stages of the first step are known.
         run.stages = first.after.stages;
-        integrator.measure_excess()?;
+        integrator.stepper().measure_excess()?;
         Ok(integrator)
     }
 
@@ -44,8 +45,8 @@ where
         check_step("the step h", h)?;
         let mut gauss = Gauss::new(system, state, h)?;
         gauss.run.node.energy = energy;
-        let mut integrator = Self { gauss, course: Course::new(h, Self::SLOPE), failure: None };
-        integrator.measure_excess()?;
+        let mut integrator = Self { gauss, course: Course::new(h, Stepper::<N, STAGES>::SLOPE), failure: None };
+        integrator.stepper().measure_excess()?;
         Ok(integrator)
     }
 
@@ -66,10 +67,10 @@ where
             });
         }
         let change = shift - self.course.shift;
-        self.gauss.run.node.add_energy(-Self::power(self.course.h()) * change);
+        self.gauss.run.node.add_energy(-power::<STAGES>(self.course.h()) * change);
         self.course.shift = shift;
         self.course.densities = self.course.densities.map(|densities| densities.map(|density| density + change));
-        self.measure_excess()?;
+        self.stepper().measure_excess()?;
         Ok(self)
     }
 
@@ -89,29 +90,5 @@ where
             largest = largest.max(of(&steps.step()?)?.abs());
         }
         self.with_shift(2.0 * largest)
-    }
-
-    /// Measures the energy of the node.
-    pub(super) fn measure_excess(&mut self) -> Result<(), StepError> {
-        let node = &self.gauss.run.node;
-        let [excess, size] = self.excess_of(node.energy, node.energy_low, &node.state())?;
-        self.course.excess = excess;
-        self.course.size = size;
-        Ok(())
-    }
-
-    /// `H − E'` at a state, E' with its low part, and the size of the terms of H.
-    pub(super) fn excess_of(&self, energy: f64, low: f64, state: &State<N>) -> Result<[f64; 2], StepError> {
-        let system = &self.gauss.system;
-        let State { t, q, p } = state;
-        let v = crate::Lagrangian::flow(system, *t, q, p)?.v;
-        let total = system.energy(*t, q, &v);
-        let excess = (total - energy) - low;
-        let size = v.dot(p).abs() + total.abs();
-        if excess.is_finite() && size.is_finite() {
-            Ok([excess, size])
-        } else {
-            Err(StepError::NonFinite { t: *t, quantity: "energy", expression: None })
-        }
     }
 }
