@@ -111,7 +111,11 @@ impl fmt::Display for CheckFailure {
                 }
             }
             Self::NotApplicable { system, check, why } => write!(f, "{system}, {check}: does not apply, {why}"),
-            Self::Step { system, check, error } => write!(f, "{system}, {check}: {error}"),
+            Self::Step { system, check, error } => write!(
+                f,
+                "{system}, {check}: {}; a check needs steps: try another place, where D keeps its sign, or a shorter h",
+                error.reason()
+            ),
         }
     }
 }

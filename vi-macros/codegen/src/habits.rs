@@ -46,8 +46,26 @@ pub enum Habit {
     Conversion,
     /// `1.e-3`, `.5`.
     PointWithoutDigits { number: String },
-    /// `if`, `match`.
+    /// `if`, `match`, `a ? b : c`, `a > b`.
     Condition,
+    /// `a % b`, `n!`.
+    NoOperator { sign: char },
+    /// `{a + b}`, `[a + b]`.
+    OtherBrackets,
+    /// `self.m`, `x.dot`.
+    Field { name: String },
+    /// `# text`.
+    Comment,
+    /// `param m = 1,5`.
+    DecimalComma,
+    /// `let f(x) = …`.
+    FunctionDefinition { name: String },
+    /// `let mut u`.
+    Mutable,
+    /// `let y := x`.
+    ColonEquals,
+    /// `force x += …`.
+    AddedForce,
     /// `0..=3`.
     InclusiveRange,
     /// `dot(q)[0]`.
@@ -55,7 +73,7 @@ pub enum Habit {
     /// A clause, or a line of a rule, without `;` at its end.
     MissingSemicolon { after: String },
     /// A definition without `=`.
-    MissingValue { name: String },
+    MissingValue { name: String, is_parameter: bool },
     /// `coord x = 1`.
     ValueOfCoordinate,
     /// `force = …`.
@@ -87,12 +105,23 @@ impl Habit {
             Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
             Self::TypeOfNumber { digits, name } => format!("the number `{digits}` has the type `{name}`"),
             Self::Conversion => "numbers need no conversion".to_owned(),
-            Self::PointWithoutDigits { .. } => "a number has digits on both sides of its point".to_owned(),
+            Self::PointWithoutDigits { .. } => {
+                "a number has a digit before its point, and one before its exponent".to_owned()
+            }
             Self::Condition => "an expression has no conditions".to_owned(),
+            Self::NoOperator { sign } => format!("`{sign}` is no operator"),
+            Self::OtherBrackets => "a part of an expression stands in parentheses".to_owned(),
+            Self::Field { name } => format!("`.{name}`: names have no fields"),
+            Self::Comment => "`#` begins no comment".to_owned(),
+            Self::DecimalComma => "a decimal fraction has a point".to_owned(),
+            Self::FunctionDefinition { name } => format!("`{name}(…)`: functions are not declared"),
+            Self::Mutable => "`let` names an expression, which does not change".to_owned(),
+            Self::ColonEquals => "a definition has `=`".to_owned(),
+            Self::AddedForce => "a force is written once".to_owned(),
             Self::InclusiveRange => "a range stops before its end".to_owned(),
             Self::IndexBehind => "an index stands behind a name only".to_owned(),
             Self::MissingSemicolon { after } => format!("`;` is missing behind `{after}`"),
-            Self::MissingValue { name } => format!("`{name}` has no value"),
+            Self::MissingValue { name, .. } => format!("`{name}` has no value"),
             Self::ValueOfCoordinate => "a coordinate is declared without a value".to_owned(),
             Self::ForceWithoutCoordinate => "a force on no coordinate".to_owned(),
         }
@@ -136,15 +165,31 @@ impl Habit {
             Self::Conversion => "leave `as` out; an index is a number, as in `i / 2`".to_owned(),
             Self::PointWithoutDigits { number } => format!("write `{number}`"),
             Self::Condition => CONDITION.to_owned(),
+            Self::NoOperator { sign: '%' } => {
+                "the operators are `+ - * / ^`; angles need no remainder, since `sin` and `cos` are periodic".to_owned()
+            }
+            Self::NoOperator { .. } => "the operators are `+ - * / ^`".to_owned(),
+            Self::OtherBrackets => "write `(a + b)`; brackets hold an index, and braces the lines of a rule or of a check".to_owned(),
+            Self::Field { name } if name == "dot" => "write `dot(x)` for the velocity of `x`".to_owned(),
+            Self::Field { .. } => "write names alone: a parameter `m` is `m`, and the entries of an array are `q[0]`, `q[1]`".to_owned(),
+            Self::Comment => "write `// …`".to_owned(),
+            Self::DecimalComma => "write `1.5`; a comma begins the next definition".to_owned(),
+            Self::FunctionDefinition { name } => {
+                format!("write `let {name} = …;`, an expression of coordinates, velocities and parameters")
+            }
+            Self::Mutable => "leave `mut` out".to_owned(),
+            Self::ColonEquals => "write `=` alone".to_owned(),
+            Self::AddedForce => "write `force x = …;`, all forces on `x` added up in one line".to_owned(),
             Self::InclusiveRange => "write `0..N + 1` for the indices 0 to N".to_owned(),
             Self::IndexBehind => "write `dot(q[0])` for the velocity of `q[0]`, and name other arrays with `let`".to_owned(),
             Self::MissingSemicolon { .. } => {
                 "every clause ends with `;`; entries of one list are separated by `,`".to_owned()
             }
-            Self::MissingValue { name } if matches!(name.as_str(), "dissipation" | "time_scale") => {
+            Self::MissingValue { name, .. } if matches!(name.as_str(), "dissipation" | "time_scale") => {
                 format!("write `{name} = …;`, one function for all coordinates")
             }
-            Self::MissingValue { name } => {
+            Self::MissingValue { name, is_parameter: false } => format!("write `{name} = …`"),
+            Self::MissingValue { name, .. } => {
                 format!("write `{name} = 1.0`: a `param` has a default, which its field may replace")
             }
             Self::ValueOfCoordinate => {
@@ -172,11 +217,12 @@ const TYPES: [&str; 14] =
     ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
 /// Clauses.
-const CLAUSES: [(&[&str], &str); 11] = [
+const CLAUSES: [(&[&str], &str); 12] = [
     (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
     (&["coordinate", "coordinates", "var", "dof"], "write `coord x, y;`"),
     (&["constant", "constants", "static"], "write `const g = 9.81;`"),
-    (&["lagrangian", "Lagrangian", "Lagrange"], "write `L = …;`"),
+    (&["lagrangian", "Lagrangian", "Lagrange", "Lag"], "write `L = …;`"),
+    (&["l"], "write `L = …;` for the Lagrangian, `let l = …;` to name a part"),
     (&["rayleigh", "Rayleigh", "damping", "friction"], "write `dissipation = …;`, Rayleigh's function"),
     (&["constraint", "constraints", "constrain", "subject", "holonomic"], CONSTRAINT),
     (
@@ -190,7 +236,7 @@ const CLAUSES: [(&[&str], &str); 11] = [
 ];
 
 /// Functions.
-const FUNCTIONS: [(&[&str], &str); 20] = [
+const FUNCTIONS: [(&[&str], &str); 25] = [
     (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
     (&["log10"], "write `ln(a) / ln(10)`"),
     (&["log2"], "write `ln(a) / ln(2)`"),
@@ -204,6 +250,11 @@ const FUNCTIONS: [(&[&str], &str); 20] = [
     (&["cot", "cotan", "ctg"], "write `1 / tan(a)`"),
     (&["sec"], "write `1 / cos(a)`"),
     (&["csc", "cosec"], "write `1 / sin(a)`"),
+    (&["sech"], "write `1 / cosh(a)`"),
+    (&["csch"], "write `1 / sinh(a)`"),
+    (&["coth"], "write `1 / tanh(a)`"),
+    (&["sinc"], "write `sin(a) / a`, which has no value at a = 0"),
+    (&["floor", "ceil", "round", "mod", "fmod"], "a formula is smooth: `sin` and `cos` are periodic without it"),
     (&["asinh", "arsinh", "arcsinh"], "write `ln(a + sqrt(a^2 + 1))`"),
     (&["cbrt"], "write `a^(1/3)`"),
     (&["square", "sqr", "sq"], "write `a^2`"),
@@ -217,10 +268,14 @@ const FUNCTIONS: [(&[&str], &str); 20] = [
 const DERIVATIVES: [&str; 7] = ["diff", "der", "ddt", "d", "D", "derivative", "prime"];
 
 /// Names.
-const NAMES: [(&[&str], &str); 5] = [
+const NAMES: [(&[&str], &str); 6] = [
     (&["π", "PI", "Pi", "M_PI"], "write `pi`"),
     (&["e"], "write `exp(x)` for e^x, `exp(1)` for the number"),
     (&["time"], "write `t`"),
+    (
+        &["i", "j", "k"],
+        "an index has its range, as in `sum(i in 0..3, q[i])`; else declare it with `param`, `const` or `coord`",
+    ),
     (&["dt", "ddt"], "write `dot(x)` for the derivative of `x` by time"),
     (&["lambda", "λ", "multiplier"], CONSTRAINT),
 ];
@@ -239,7 +294,7 @@ pub(crate) const GAUSS: &str = "every system has Gauss steps without a clause: `
     order 2 S";
 
 /// Where a step and a start are given.
-const RUN: &str = "a step and a start belong to a run: `FixedStep::new(system, State::at(&system, t, q, v), h)`; those of checks stand in \
+pub(crate) const RUN: &str = "a step and a start belong to a run: `FixedStep::new(system, State::at(&system, t, q, v), h)`; those of checks stand in \
     `check { x = 1; h = 0.01; }`";
 
 /// Greek letters by their words.

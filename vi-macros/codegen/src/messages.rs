@@ -43,6 +43,17 @@ impl Absence {
     }
 }
 
+/// How a coordinate stands in L that adds nothing to the mass matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Massless {
+    /// Its velocity is not there.
+    Absent,
+    /// Its velocity is there, in the first power alone.
+    Linear,
+    /// It multiplies a function of others.
+    Multiplier,
+}
+
 /// A mistake in the input. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -140,7 +151,7 @@ pub enum Message {
     /// L does not depend on any velocity.
     NoVelocity,
     /// The mass matrix has no inverse anywhere.
-    SingularMass { missing: Option<String>, multiplies: bool },
+    SingularMass { missing: Option<(String, Massless)> },
     /// A rule by a name that does not exist.
     UnknownRule { name: String, near: Option<String> },
     /// A rule that a list names twice.
@@ -160,7 +171,7 @@ pub enum Message {
     /// A vector where a rule needs a number, or the reverse.
     Shape { needs: &'static str },
     /// A clause that does not exist.
-    UnknownClause { found: String, near: Option<String>, is_defined: bool },
+    UnknownClause { found: String, near: Option<String>, is_defined: bool, is_coordinate: bool },
     /// Anything that the grammar does not allow at this token.
     Expected { what: &'static str },
     /// What is written otherwise in this language.
@@ -207,6 +218,14 @@ fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
 
+/// What to write in place of a name that is not declared.
+fn name_for(name: &str, near: Option<&String>) -> String {
+    let declare = "declare it with `param`, `const` or `coord`, or above with `let`";
+    // A lone letter is an index or a name of its own before it is `pi`.
+    let near = near.filter(|near| *near != "pi" || name.chars().count() > 1);
+    did_you_mean(near, &habits::name(name).unwrap_or_else(|| declare.to_owned()))
+}
+
 /// What to write in place of a rule that does not exist.
 fn rule_for(name: &str, near: Option<&String>) -> String {
     let rules = || format!("the rules are {}; {}", rules::list(), habits::GAUSS);
@@ -222,11 +241,16 @@ fn with_arguments(name: &str, takes: usize) -> String {
     }
 }
 
-/// What to do about a direction without kinetic energy; a coordinate that is missing in it may multiply a constraint.
-fn move_with_energy(missing: Option<&str>, multiplies: bool) -> String {
+/// What to do about a direction without kinetic energy.
+fn move_with_energy(missing: Option<&(String, Massless)>) -> String {
     match missing {
-        Some(name) if multiplies => format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT),
-        Some(name) => format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`"),
+        Some((name, Massless::Multiplier)) => format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT),
+        Some((name, Massless::Absent)) => {
+            format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`")
+        }
+        Some((name, Massless::Linear)) => format!(
+            "`dot({name})` stands in `L` in the first power alone, which is no kinetic energy: add a term with `dot({name})^2`"
+        ),
         None => "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned(),
     }
 }
@@ -322,10 +346,7 @@ impl Message {
                 "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`"
                     .to_owned()
             }
-            Self::Unknown { name, near } => {
-                let declare = "declare it with `param`, `const` or `coord`, or above with `let`";
-                did_you_mean(near.as_ref(), &habits::name(name).unwrap_or_else(|| declare.to_owned()))
-            }
+            Self::Unknown { name, near } => name_for(name, near.as_ref()),
             Self::Absent { absence, .. } => absence.help(),
             Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
                 near.as_ref(),
@@ -383,7 +404,7 @@ impl Message {
             }
             Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
-            Self::SingularMass { missing, multiplies } => move_with_energy(missing.as_deref(), *multiplies),
+            Self::SingularMass { missing } => move_with_energy(missing.as_ref()),
             Self::UnknownRule { name, near } => rule_for(name, near.as_ref()),
             Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
             Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
@@ -397,7 +418,8 @@ impl Message {
                 "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"
                     .to_owned()
             }
-            Self::UnknownClause { found, near, is_defined } => clause_for(found, near.as_ref(), *is_defined),
+            Self::UnknownClause { is_coordinate: true, .. } => habits::RUN.to_owned(),
+            Self::UnknownClause { found, near, is_defined, .. } => clause_for(found, near.as_ref(), *is_defined),
             Self::Expected { .. } => "a clause reads `name = expression;`, and a sum `a + 2 * b`".to_owned(),
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),

@@ -137,7 +137,10 @@ fn velocities() {
         "coord x, y; «L» = (dot(x) + dot(y))^2; discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state",
     );
-    case("coord «x»; L = x * dot(x); discretize midpoint;", "the mass matrix ∂²L/∂v² is singular for every state");
+    case(
+        "coord «x»; L = x * dot(x); discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `dot(x)` stands in `L` in the first power alone",
+    );
 }
 
 #[test]
@@ -291,6 +294,43 @@ fn velocities_functions_and_products_in_a_name() {
     says("«ẍ»", "an expression cannot depend on the acceleration `ẍ`");
 }
 
+/// Operators, fields and brackets of other languages.
+#[test]
+fn other_operators_fields_and_brackets() {
+    let lagrangian =
+        |summand: &str| format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;");
+    let says = |summand: &str, message: &str| case(&lagrangian(summand), message);
+    says("x.«y»", "`.y`: names have no fields\nhelp: write names alone");
+    says("x.«dot»", "`.dot`: names have no fields\nhelp: write `dot(x)` for the velocity of `x`");
+    for condition in ["x «>» 0", "x «=»= 1", "x «!»= 1", "x «<»= 1", "x «?» 1 : 2"] {
+        says(condition, "an expression has no conditions\nhelp: a formula holds everywhere: write `abs(a)`");
+    }
+    says("x «%» 2", "`%` is no operator\nhelp: the operators are `+ - * / ^`; angles need no remainder");
+    says("x«!»", "`!` is no operator\nhelp: the operators are `+ - * / ^`");
+    says("2 * «[»x + 1]", "a part of an expression stands in parentheses\nhelp: write `(a + b)`");
+    says("2 * «{»x + 1}", "a part of an expression stands in parentheses");
+    says("«m·x»", "unknown name `m·x`\nhelp: write `m * x` for a product");
+    says("«i» * x", "unknown name `i`\nhelp: an index has its range, as in `sum(i in 0..3, q[i])`");
+}
+
+/// Definitions as other languages write them.
+#[test]
+fn other_definitions() {
+    let clause = |clause: &str, message: &str| case(&format!("{clause} {REST}"), message);
+    clause("const «c»;", "`c` has no value\nhelp: write `c = …`");
+    clause("let «y»;", "`y` has no value\nhelp: write `y = …`");
+    clause("let y «:»= x;", "a definition has `=`\nhelp: write `=` alone");
+    clause("let «mut» u = x;", "`let` names an expression, which does not change\nhelp: leave `mut` out");
+    clause("let u«(»x) = x;", "`u(…)`: functions are not declared\nhelp: write `let u = …;`");
+    clause("param a = 1, «5»;", "a decimal fraction has a point\nhelp: write `1.5`");
+    clause("«#» the mass", "`#` begins no comment\nhelp: write `// …`");
+    clause("force x «+»= 1;", "a force is written once\nhelp: write `force x = …;`, all forces on `x` added up");
+    clause("force dot«(»x) = 1;", "a force on no coordinate\nhelp: write the coordinate that it acts on");
+    clause("coord z; «z» = 1;", "unknown clause `z`\nhelp: a step and a start belong to a run");
+    clause("coord z; «z»(0) = 1;", "unknown clause `z`\nhelp: a step and a start belong to a run");
+    clause("«l» = 1;", "unknown clause `l`\nhelp: write `L = …;` for the Lagrangian, `let l = …;` to name a part");
+}
+
 /// Of Rust, of other languages and of paper.
 #[test]
 fn habits() {
@@ -301,15 +341,14 @@ fn habits() {
     says("2.0.«sqrt»()", "`.sqrt(…)`: numbers have no methods");
     says("(x + 1).«powi»(2)", "`.powi(…)`: numbers have no methods\nhelp: write `a^b`");
     says("x.«max»(1)", "`.max(…)`: numbers have no methods\nhelp: write `(a + b + abs(a - b)) / 2` for the larger");
-    says("x«.»y", "expected an operator or `;`");
     says("x «*»* 2", "`**` is no operator\nhelp: write `x^2`");
     says("x «as»  f64", "numbers need no conversion\nhelp: leave `as` out");
     says("«1.0f64» * x", "the number `1.0` has the type `f64`\nhelp: write `1.0`: numbers are exact");
     says("«2_i32» * x", "the number `2` has the type `i32`\nhelp: write `2`");
     says("«2usize» * x", "the number `2` has the type `usize`\nhelp: write `2`");
-    says("1.«e» - 3 * x", "a number has digits on both sides of its point\nhelp: write `1.0e-3`");
-    says("1.«e3» * x", "a number has digits on both sides of its point\nhelp: write `1.0e3`");
-    says("«.»5 * x", "a number has digits on both sides of its point\nhelp: write `0.5`");
+    says("1.«e» - 3 * x", "a number has a digit before its point, and one before its exponent\nhelp: write `1.0e-3`");
+    says("1.«e3» * x", "a number has a digit before its point, and one before its exponent\nhelp: write `1.0e3`");
+    says("«.»5 * x", "a number has a digit before its point, and one before its exponent\nhelp: write `0.5`");
     says(
         "«if» x { 1 } else { 2 }",
         "an expression has no conditions\nhelp: a formula holds everywhere: write `abs(a)`",
@@ -353,6 +392,9 @@ fn habits() {
         ("arctan", "write `atan(a)`"),
         ("asinh", "write `ln(a + sqrt(a^2 + 1))`"),
         ("cbrt", "write `a^(1/3)`"),
+        ("sech", "write `1 / cosh(a)`"),
+        ("sinc", "write `sin(a) / a`"),
+        ("floor", "a formula is smooth"),
         ("diff", "write `dot(a)` for a derivative by time"),
     ] {
         says(&format!("«{function}»(x, 1)"), &format!("unknown function `{function}`\nhelp: {help}"));

@@ -184,8 +184,8 @@ pub struct Broken {
 }
 
 impl Broken {
-    /// What is left of a system: so that the code that uses it still type-checks, its struct, and, where the number of coordinates
-    /// can be told, the traits without a body.
+    /// What is left of a system: so that the code that uses it still type-checks, its struct, and the traits without a body; where
+    /// the number of coordinates cannot be told, for every number.
     #[must_use]
     pub fn of(system: &System) -> Self {
         Self { conditions: conditions(&system.attributes).cloned().collect(), stub: stub(system) }
@@ -219,11 +219,10 @@ fn stub(system: &System) -> TokenStream {
     let zeros =
         lengths.iter().map(|length| length.as_ref().map_or_else(|| quote!(0.0), |length| quote!([0.0; #length])));
     let (marker, marker_value) = marker(names.is_empty());
-    let traits = dimension(system).map(|dimension| {
-        let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &dimension, rule.as_ref()));
-        let lagrangian = stub_lagrangian(name, &dimension);
-        quote!(#lagrangian #(#by_rules)*)
-    });
+    let size = Size::of(system);
+    let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
+    let lagrangian = stub_lagrangian(name, &size);
+    let traits = quote!(#lagrangian #(#by_rules)*);
     let (derived, conditions) = (derived(), conditions(&system.attributes).collect::<Vec<_>>());
     quote! {
         #(#conditions)*
@@ -286,7 +285,23 @@ fn rules(system: &System) -> Vec<Option<TokenStream>> {
     rules
 }
 
-fn stub_lagrangian(name: &Ident, n: &Literal) -> TokenStream {
+/// The number of coordinates of a stub, as it stands in types.
+struct Size {
+    /// What declares it, where it cannot be told.
+    generic: Option<TokenStream>,
+    n: TokenStream,
+}
+
+impl Size {
+    fn of(system: &System) -> Self {
+        match dimension(system) {
+            Some(dimension) => Self { generic: None, n: quote!(#dimension) },
+            None => Self { generic: Some(quote!(const N: ::core::primitive::usize,)), n: quote!(N) },
+        }
+    }
+}
+
+fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
     let none = quote!({ loop {} });
     let at = quote!(&self, _: T, _: &::vi_core::SVector<T, #n>, _: &::vi_core::SVector<T, #n>);
     let vector = quote!(::vi_core::SVector<T, #n>);
@@ -294,7 +309,7 @@ fn stub_lagrangian(name: &Ident, n: &Literal) -> TokenStream {
     let (or_vector, or_number) = (or_error(vector.clone()), or_error(quote!(T)));
     let or_flow = or_error(quote!(::vi_core::lagrangian::Flow<#n, T>));
     quote! {
-        impl<T: ::vi_core::real::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::Lagrangian<#n, T> for #name<T> {
             const NAME: &'static str = "";
             const COORDINATES: [&'static str; #n] = [""; #n];
             const AUTONOMOUS: bool = false;
@@ -308,7 +323,7 @@ fn stub_lagrangian(name: &Ident, n: &Literal) -> TokenStream {
             fn step_density(#at) -> #or_number #none
             fn flow(#at) -> #or_flow #none
         }
-        impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
             type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_MASS: bool = false;
             const SEPARABLE: bool = false;
@@ -318,13 +333,13 @@ fn stub_lagrangian(name: &Ident, n: &Literal) -> TokenStream {
     }
 }
 
-fn stub_steps(name: &Ident, n: &Literal, rule: Option<&TokenStream>) -> TokenStream {
+fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStream>) -> TokenStream {
     let none = quote!({ loop {} });
     let over = quote!(&self, _: &::vi_core::Interval<#n, T>);
     let from = quote!(&self, _: &::vi_core::node::Node<#n, T>, _: T, _: &::vi_core::SVector<T, #n>);
     let vector = quote!(::vi_core::SVector<T, #n>);
     quote! {
-        impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#n, T #rule> for #name<T> {
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<#n, T #rule> for #name<T> {
             fn ld(#over) -> T #none
             fn d1_ld(#over) -> T #none
             fn d2_ld(#over) -> #vector #none
@@ -335,7 +350,7 @@ fn stub_steps(name: &Ident, n: &Literal, rule: Option<&TokenStream>) -> TokenStr
             fn gd_minus(#over) -> T #none
             fn gd_plus(#over) -> T #none
         }
-        impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T #rule> for #name<T> {
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T #rule> for #name<T> {
             type Jacobian = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
             fn momentum_equation(#from) -> ::vi_core::stepping::MomentumEquation<#n, T> #none
@@ -343,7 +358,7 @@ fn stub_steps(name: &Ident, n: &Literal, rule: Option<&TokenStream>) -> TokenStr
             fn momentum_rounding(#from) -> #vector #none
             fn discrete_energy(#from) -> T #none
         }
-        impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T #rule> for #name<T> {
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T #rule> for #name<T> {
             fn extended_system(#from) -> ::vi_core::stepping::ExtendedSystem<#n, T> #none
             fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
             fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none

@@ -11,6 +11,7 @@
 //! | `gauss` | a chapter: the equations of a Gauss step |
 //! | `explanation` | chapters as text and as LaTeX |
 //! | `latex`, `name` | an expression, a symbol in LaTeX |
+//! | `unreadable` | what is no text of Rust at all |
 //! | `program` | the functions, operation by operation |
 
 mod discrete;
@@ -24,6 +25,7 @@ mod program;
 pub mod report;
 pub mod source;
 mod syntax;
+mod unreadable;
 
 pub use explanation::{Explanation, Line, Section};
 

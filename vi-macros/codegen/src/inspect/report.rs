@@ -3,6 +3,8 @@
 //! In: the text of a file and what is wrong in it. Out: per mistake the message, file:line:column, the line with carets
 //! under the token, and what to do.
 
+use super::unreadable::{self, Unreadable};
+use proc_macro2::LineColumn;
 use std::fmt::Write as _;
 
 /// All mistakes of a file, each a paragraph.
@@ -11,10 +13,22 @@ pub fn report(file: &str, text: &str, error: &syn::Error) -> String {
     error.into_iter().map(|error| paragraph(file, text, &error)).collect::<Vec<_>>().join("\n")
 }
 
+/// The mistake for which a text is none of Rust, as a paragraph: its place if it is known, else what the lexer says.
+#[must_use]
+pub fn unreadable(file: &str, text: &str, error: &syn::Error) -> String {
+    match unreadable::unreadable(text) {
+        Some(Unreadable { place, message }) => at(file, text, &message, [place, place]),
+        None => paragraph(file, text, error),
+    }
+}
+
 fn paragraph(file: &str, text: &str, error: &syn::Error) -> String {
-    let message = error.to_string();
-    let (wrong, helps) = message.split_once('\n').unwrap_or((&message, ""));
-    let (start, end) = (error.span().start(), error.span().end());
+    at(file, text, &error.to_string(), [error.span().start(), error.span().end()])
+}
+
+/// The message for a token from its start to its end.
+fn at(file: &str, text: &str, message: &str, [start, end]: [LineColumn; 2]) -> String {
+    let (wrong, helps) = message.split_once('\n').unwrap_or((message, ""));
     let line = text.lines().nth(start.line.saturating_sub(1)).unwrap_or_default();
     let margin = " ".repeat(start.line.to_string().len());
     // A token of several lines is marked to the end of its first.

@@ -6,7 +6,7 @@
 //! are of several sizes, so that an angle of 1e15 times a coordinate is known to its digits at one of them.
 
 use super::Coordinate;
-use crate::messages::{Message, error};
+use crate::messages::{Massless, Message, error};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Span;
 use std::collections::BTreeMap;
@@ -28,14 +28,13 @@ pub(super) fn check(pool: &mut Pool<Symbol>, coordinates: &[Coordinate], lagrang
     if empty.is_none() && !is_singular(pool, &mass, dimension) {
         return Ok(());
     }
-    let missing = empty.map(|row| coordinates[row].text());
-    let multiplies = empty.is_some_and(|row| is_multiplier(pool, lagrangian, row));
+    let missing = empty.map(|row| (coordinates[row].text(), massless(pool, lagrangian, row)));
     let span = empty.map_or(span, |row| coordinates[row].name.span());
-    Err(error(span, &Message::SingularMass { missing, multiplies }))
+    Err(error(span, &Message::SingularMass { missing }))
 }
 
-/// Whether a coordinate is one of Lagrange's multipliers: L is λ g(t, q) and terms without λ.
-fn is_multiplier(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> bool {
+/// How a coordinate stands in L whose row of M is zero. One of Lagrange's multipliers it is where L is λ g(t, q) and terms without λ.
+fn massless(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> Massless {
     let multiplier = Symbol::Continuous(Variable::Coordinate(row));
     let velocity = Symbol::Continuous(Variable::Velocity(row));
     let constraint = pool.derivative(lagrangian, &mut |pool, symbol| {
@@ -44,9 +43,13 @@ fn is_multiplier(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> bool 
     let of_state = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Coordinate(_)));
     let is_itself = |symbol: &Symbol| *symbol == multiplier;
     let moves = |symbol: &Symbol| *symbol == velocity;
-    pool.depends_on(constraint, &of_state)
-        && !pool.depends_on(constraint, &is_itself)
-        && !pool.depends_on(lagrangian, &moves)
+    if pool.depends_on(lagrangian, &moves) {
+        Massless::Linear
+    } else if pool.depends_on(constraint, &of_state) && !pool.depends_on(constraint, &is_itself) {
+        Massless::Multiplier
+    } else {
+        Massless::Absent
+    }
 }
 
 /// M, row by row.

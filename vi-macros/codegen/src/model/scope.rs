@@ -210,6 +210,9 @@ impl Scope {
         if name == "v" {
             return self.first_coordinate().map(|coordinate| Habit::Velocity { coordinate });
         }
+        if name.contains('·') {
+            return Some(Habit::ProductInName { product: text.replace('·', " * "), name: text });
+        }
         let functions = Function::ALL.into_iter().map(Function::name).chain(["sqrt"]);
         let arguments = functions.filter_map(|function| Some((function, name.strip_prefix(function)?)));
         let mut glued = arguments.filter(|(_, argument)| self.is_declared(argument));

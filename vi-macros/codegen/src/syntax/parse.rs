@@ -212,6 +212,9 @@ fn skip_clause(body: ParseStream) {
 }
 
 fn clause(input: ParseStream, system: &mut System) -> Result<()> {
+    if input.peek(Token![#]) && !input.peek2(syn::token::Bracket) {
+        return Err(error(input.span(), &Message::Habit(Habit::Comment)));
+    }
     let attributes = input.call(Attribute::parse_outer)?;
     let start = input.cursor();
     let Ok(word) = input.call(Ident::parse_any) else {
@@ -262,8 +265,10 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         }
         found => {
             let near = nearest(found, CLAUSES);
+            let is_coordinate = system.coordinates.iter().any(|coordinate| coordinate.name == word);
             let is_defined = input.peek(Token![=]) || input.peek(syn::token::Bracket);
-            return Err(error(word.span(), &Message::UnknownClause { found: found.to_owned(), near, is_defined }));
+            let found = found.to_owned();
+            return Err(error(word.span(), &Message::UnknownClause { found, near, is_defined, is_coordinate }));
         }
     }
     semicolon(input, start)
@@ -338,6 +343,9 @@ fn list(input: ParseStream, one: &mut dyn FnMut(ParseStream) -> Result<()>) -> R
         if input.peek(Token![;]) {
             break;
         }
+        if input.peek(syn::Lit) {
+            return Err(error(input.span(), &Message::Habit(Habit::DecimalComma)));
+        }
         one(input)?;
     }
     Ok(())
@@ -374,14 +382,14 @@ fn indices(input: ParseStream) -> Result<Option<Indices>> {
 
 /// `= 1`
 fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Result<Definition> {
-    equals(input, &name)?;
+    equals(input, &name, false)?;
     Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
 }
 
 /// The `=` behind a name.
-fn equals(input: ParseStream, name: &Ident) -> Result<()> {
+fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Result<()> {
     if !input.peek(Token![=]) {
-        return Err(unfitting::equals(input, name));
+        return Err(unfitting::equals(input, name, is_parameter));
     }
     input.parse::<Token![=]>().map(|_| ())
 }
@@ -390,7 +398,7 @@ fn equals(input: ParseStream, name: &Ident) -> Result<()> {
 fn parameter(input: ParseStream, attributes: &[Attribute], parameters: &mut Vec<Parameter>) -> Result<()> {
     let name = name(input)?;
     let length = length(input)?;
-    let read = equals(input, &name).and_then(|()| default(input));
+    let read = equals(input, &name, true).and_then(|()| default(input));
     let zero = || Default::Same(Expression { span: name.span(), kind: Kind::Number(Rational::zero()) });
     let (default, outcome) = match read {
         Ok(default) => (default, Ok(())),
@@ -433,6 +441,9 @@ fn name(input: ParseStream) -> Result<Ident> {
     let span = input.span();
     let name = input.call(Ident::parse_any).map_err(|_| error(span, &Message::Expected { what: "a name" }))?;
     let text = name.to_string();
+    if text == "mut" {
+        return Err(error(span, &Message::Habit(Habit::Mutable)));
+    }
     let is_keyword = syn::parse_str::<Ident>(&text).is_err();
     // `gen` is reserved since the edition of 2024; the tokens do not say of which edition they are.
     if is_keyword || text.starts_with("r#") || text == "gen" {

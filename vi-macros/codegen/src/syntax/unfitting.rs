@@ -23,6 +23,7 @@ pub(super) fn operand(input: ParseStream) -> Error {
         Some((word, _)) if word == "if" || word == "match" => Some(Habit::Condition),
         Some(_) => None,
         None if input.peek(Token![|]) => Some(Habit::Bars),
+        None if input.peek(syn::token::Brace) || input.peek(syn::token::Bracket) => Some(Habit::OtherBrackets),
         None => point()
             .and_then(|(_, behind)| behind.literal())
             .map(|(digits, _)| Habit::PointWithoutDigits { number: format!("0.{}", short(digits.to_string())) }),
@@ -44,6 +45,9 @@ pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) ->
             }
             '\'' => Some(Habit::Prime),
             '|' => Some(Habit::Bars),
+            '=' | '<' | '>' | '?' => Some(Habit::Condition),
+            '!' if input.peek(Token![!=]) => Some(Habit::Condition),
+            sign @ ('%' | '!') => Some(Habit::NoOperator { sign }),
             ':' if input.peek(Token![::]) => Some(Habit::Path),
             ':' => Some(Habit::Type),
             _ => None,
@@ -87,11 +91,25 @@ pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
 }
 
 /// Where the `=` of a definition is expected.
-pub(super) fn equals(input: ParseStream, name: &Ident) -> Error {
+pub(super) fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Error {
     if input.peek(Token![;]) || input.peek(Token![,]) || ends(input) {
-        return error(name.span(), &Message::Habit(Habit::MissingValue { name: name.to_string() }));
+        return error(name.span(), &Message::Habit(Habit::MissingValue { name: name.to_string(), is_parameter }));
     }
-    told(input.span(), input.peek(Token![:]).then_some(Habit::Type), "`=`")
+    let is_colon_equals = input.peek(Token![:]) && input.peek2(Token![=]);
+    let habit = if is_colon_equals {
+        Some(Habit::ColonEquals)
+    } else if input.peek(Token![:]) {
+        Some(Habit::Type)
+    } else if input.peek(syn::token::Paren) && name == "dot" {
+        Some(Habit::ForceWithoutCoordinate)
+    } else if input.peek(syn::token::Paren) {
+        Some(Habit::FunctionDefinition { name: name.to_string() })
+    } else if input.peek(Token![+=]) || input.peek(Token![-=]) {
+        Some(Habit::AddedForce)
+    } else {
+        None
+    };
+    told(input.span(), habit, "`=`")
 }
 
 /// Whether a clause begins here, by its word.
@@ -167,8 +185,9 @@ fn behind_point(behind: Cursor, previous: Option<&Previous>) -> (Option<Span>, O
         let number = short(format!("{digits}.0{text}{}", signed.unwrap_or_default()));
         return (Some(word.span()), Some(Habit::PointWithoutDigits { number }));
     }
-    let habit = behind.group(Delimiter::Parenthesis).map(|_| Habit::Method { name: text });
-    (habit.is_some().then(|| word.span()), habit)
+    let is_method = behind.group(Delimiter::Parenthesis).is_some();
+    let habit = if is_method { Habit::Method { name: text } } else { Habit::Field { name: text } };
+    (Some(word.span()), Some(habit))
 }
 
 /// Two operands side by side; what stands `behind` the name of the right one may belong to it.

@@ -1,0 +1,171 @@
+//! What is no text of Rust at all.
+//!
+//! In: a text that Rust's lexer refuses; the macro never sees such a system. Out: the first place that is wrong, and what to write there: a bracket
+//! without its partner, a sign of paper.
+
+use proc_macro2::LineColumn;
+
+/// A place that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Unreadable {
+    /// Where; the line from 1, the column from 0.
+    pub(super) place: LineColumn,
+    /// What is wrong, and behind a line end what to write.
+    pub(super) message: String,
+}
+
+/// The first place that is wrong; none where only the lexer knows.
+pub(super) fn unreadable(text: &str) -> Option<Unreadable> {
+    let mut open: Vec<(char, LineColumn)> = Vec::new();
+    let mut scanner = Scanner::new(text);
+    while let Some((place, letter)) = scanner.next() {
+        match letter {
+            '(' | '[' | '{' => open.push((letter, place)),
+            ')' | ']' | '}' => match open.pop() {
+                Some((opening, _)) if closing(opening) == letter => {}
+                Some((opening, opened)) => {
+                    let LineColumn { line, column } = opened;
+                    let wanted = closing(opening);
+                    let message = format!(
+                        "`{letter}` closes the `{opening}` of {line}:{}\nhelp: write `{wanted}` before it, or remove one",
+                        column + 1
+                    );
+                    return Some(Unreadable { place, message });
+                }
+                None => {
+                    let message = format!("`{letter}` closes nothing\nhelp: remove it, or open it before");
+                    return Some(Unreadable { place, message });
+                }
+            },
+            _ => {
+                if let Some(help) = sign(letter) {
+                    let message = format!("`{letter}` is no sign of the language\nhelp: {help}");
+                    return Some(Unreadable { place, message });
+                }
+            }
+        }
+    }
+    let (opening, place) = open.pop()?;
+    let wanted = closing(opening);
+    Some(Unreadable { place, message: format!("`{opening}` is not closed\nhelp: write `{wanted}`") })
+}
+
+fn closing(opening: char) -> char {
+    match opening {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// What is written for a sign of paper.
+fn sign(letter: char) -> Option<&'static str> {
+    let help = match letter {
+        '²' => "write `^2`",
+        '³' => "write `^3`",
+        '⁰'..='⁹' | '¹' => "write a power with `^`, as in `x^4`",
+        '₀'..='₉' => "write an index in its name, `x_1`, or of an array, `q[1]`",
+        '½' => "write `1/2`",
+        '¼' => "write `1/4`",
+        '√' => "write `sqrt(x)`",
+        '×' | '∙' | '⋅' | '•' => "write `*`",
+        '÷' => "write `/`",
+        '\u{2212}' | '–' | '—' => "write the hyphen `-`",
+        '∂' => "write `dot(x)` for a derivative by time; derivatives of `L` are taken for you",
+        '∑' => "write `sum(i in 0..8, …)`",
+        '\\' => "write names without a backslash: `theta`, or `θ`",
+        '“' | '”' | '’' | '‘' => "write no quotation marks",
+        '\u{a0}' => "write a plain space",
+        _ => return None,
+    };
+    Some(help)
+}
+
+/// The letters of a text outside its comments and its strings.
+struct Scanner<'a> {
+    letters: core::iter::Peekable<core::str::Chars<'a>>,
+    place: LineColumn,
+}
+
+impl<'a> Scanner<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { letters: text.chars().peekable(), place: LineColumn { line: 1, column: 0 } }
+    }
+
+    /// The next letter of the text.
+    fn letter(&mut self) -> Option<(LineColumn, char)> {
+        let letter = self.letters.next()?;
+        let place = self.place;
+        if letter == '\n' {
+            self.place = LineColumn { line: place.line + 1, column: 0 };
+        } else {
+            self.place.column += 1;
+        }
+        Some((place, letter))
+    }
+
+    /// Skips the letters up to and with the one at which `is_end` of it and the one before.
+    fn skip(&mut self, is_end: impl Fn(char, char) -> bool) {
+        let mut before = '\0';
+        while let Some((_, letter)) = self.letter() {
+            if is_end(before, letter) {
+                break;
+            }
+            // A backslash that is itself behind one masks nothing.
+            before = if before == '\\' && letter == '\\' { '\0' } else { letter };
+        }
+    }
+
+    /// Whether a character in quotes ends two letters further on.
+    fn is_character(&self) -> bool {
+        self.letters.clone().nth(1) == Some('\'')
+    }
+
+    /// The next letter outside comments and strings.
+    fn next(&mut self) -> Option<(LineColumn, char)> {
+        loop {
+            let (place, letter) = self.letter()?;
+            match (letter, self.letters.peek().copied()) {
+                ('/', Some('/')) => self.skip(|_, letter| letter == '\n'),
+                ('/', Some('*')) => self.skip(|before, letter| before == '*' && letter == '/'),
+                ('\'', _) if self.is_character() => {
+                    self.letter();
+                    self.letter();
+                }
+                ('"', _) => self.skip(|before, letter| letter == '"' && before != '\\'),
+                _ => return Some((place, letter)),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn told(text: &str, line: usize, column: usize, message: &str) {
+        let found = unreadable(text).expect("something is wrong");
+        assert_eq!((found.place.line, found.place.column + 1), (line, column), "{text}");
+        assert!(found.message.starts_with(message), "{}", found.message);
+    }
+
+    #[test]
+    fn brackets_are_told_where_they_stand() {
+        told("a {\n  (b + c;\n}", 3, 1, "`}` closes the `(` of 2:3\nhelp: write `)` before it");
+        told("a)", 1, 2, "`)` closes nothing");
+        told("a {\n  b[1];\n", 1, 3, "`{` is not closed");
+        told("// (\n/* ) */ \"}\\\"]\" [", 2, 16, "`[` is not closed");
+        assert_eq!(unreadable("a { b(c[1]) } // ²"), None);
+        assert_eq!(unreadable("a { '(' }"), None);
+    }
+
+    #[test]
+    fn signs_of_paper_are_told() {
+        told("L = m * x²;", 1, 10, "`²` is no sign of the language\nhelp: write `^2`");
+        for (text, help) in [("½ * x", "write `1/2`"), ("√(x)", "write `sqrt(x)`"), ("a − b", "write the hyphen `-`")]
+        {
+            assert!(unreadable(text).is_some_and(|found| found.message.ends_with(help)), "{text}");
+        }
+    }
+}
