@@ -6,6 +6,7 @@
 use crate::failure::Failure;
 use crate::machine::program;
 use crate::table::Table;
+use std::path::Path;
 use std::sync::OnceLock;
 use vi_runs::ready::{self, Entry};
 
@@ -46,8 +47,12 @@ pub(crate) fn entries() -> Vec<Entry> {
 
 /// The first system of one's own: what a command is about that names none.
 pub(crate) fn first_own() -> Result<Entry, Failure> {
-    let first = OWN.get().and_then(|own| (own.entries)().into_iter().next());
-    first.ok_or_else(|| Failure::Input(format!("name a system, as `{} list` does", program())))
+    own().ok_or_else(|| Failure::Input(format!("name a system, as `{} list` does", program())))
+}
+
+/// The first of one's own systems, where the program has one.
+pub(crate) fn own() -> Option<Entry> {
+    OWN.get().and_then(|own| (own.entries)().into_iter().next())
 }
 
 /// The entry of this name, or the first of one's own.
@@ -67,9 +72,13 @@ pub(crate) fn find(name: &str) -> Result<Entry, Failure> {
         .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|(one, _), (other, _)| one.total_cmp(other));
+    let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
     let hint = match near {
         Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
-        None if name.contains(['/', '\\', '.']) => "the name of a scene file ends in .toml".to_owned(),
+        None if extension == Some("rs") => "of a file of Rust `explain` and `expand` show the systems".to_owned(),
+        None if name.contains(['/', '\\', '.']) => {
+            "a scene is a file whose name ends in .toml, a declaration one in .rs".to_owned()
+        }
         None => format!("`{} list` names them all", program()),
     };
     Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
@@ -137,7 +146,9 @@ mod tests {
         );
         assert_eq!(
             message("folder/xyz.yml").as_deref(),
-            Some("there is no system `folder/xyz.yml`; the name of a scene file ends in .toml")
+            Some(
+                "there is no system `folder/xyz.yml`; a scene is a file whose name ends in .toml, a declaration one in .rs"
+            )
         );
         let listed = format!("there is no system `xyz`; `{} list` names them all", program());
         assert_eq!(message("xyz"), Some(listed));

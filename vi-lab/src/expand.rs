@@ -57,10 +57,8 @@ pub(crate) fn expand(arguments: &Arguments) -> Result<String, Failure> {
 pub(super) fn each(file: &Path, mut show: impl FnMut(TokenStream) -> syn::Result<String>) -> Result<String, Failure> {
     let name = file.display().to_string();
     let text = fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-    let declarations = source::declarations(&text).map_err(|error| {
-        let place = error.span().start();
-        Failure::Input(format!("{name}:{}:{}: {error}", place.line, place.column + 1))
-    })?;
+    let declarations = source::declarations(&text)
+        .map_err(|error| Failure::System { shown: String::new(), wrong: report::unreadable(&name, &text, &error) })?;
     if declarations.is_empty() {
         return Err(Failure::Input(format!("{name} declares no system with `lagrangian!`")));
     }

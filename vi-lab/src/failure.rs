@@ -82,11 +82,11 @@ impl Failure {
 
     /// A run that does not start from the initial state; an input with which no integrator can start is wrong input.
     pub(crate) fn start(error: StepError, plan: &Plan) -> Self {
-        let Plan { method, t, q, v, .. } = plan;
+        let Plan { t, q, v, .. } = plan;
         match error {
             StepError::InvalidInput { .. } => Self::Input(error.to_string()),
             _ => Self::Step {
-                advice: advice(&error, *method).map(str::to_owned),
+                advice: advice(&error, plan).map(str::to_owned),
                 error: Box::new(error),
                 before: format!("t = {}, q = {q:?}, v = {v:?}, the initial state", short(*t)),
             },
@@ -95,6 +95,9 @@ impl Failure {
 
     /// What the parser of the command line found, as one line.
     pub(crate) fn usage(error: &clap::Error) -> Self {
+        if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return Self::Input(format!("no command is given; `{} help` lists them", program()));
+        }
         let text = error.to_string();
         let first: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
         let line = first.join(" ");
@@ -139,8 +142,8 @@ fn suggestion(error: &clap::Error) -> Option<String> {
 }
 
 /// What the command line can do about a step that failed.
-pub(crate) fn advice(error: &StepError, method: Method) -> Option<&'static str> {
-    match (error, method) {
+pub(crate) fn advice(error: &StepError, plan: &Plan) -> Option<&'static str> {
+    match (error, plan.method) {
         (
             StepError::NoForwardStep { .. }
             | StepError::NoForwardGaussStep { .. }
@@ -153,9 +156,10 @@ pub(crate) fn advice(error: &StepError, method: Method) -> Option<&'static str> 
         (StepError::NotConverged { .. }, Method::Energy) => {
             Some("take shorter steps with --h, or fixed ones with --method fixed")
         }
-        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => {
-            Some("take shorter steps with --h or --dtau")
+        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) if plan.dtau.is_some() => {
+            Some("take shorter steps with --dtau")
         }
+        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => Some("take shorter steps with --h"),
         (StepError::TimeScale { .. }, _) => Some(
             "take shorter steps with --dtau, or steps in time with --h; or write a `time_scale` that is positive there",
         ),

@@ -14,7 +14,7 @@ pub(crate) fn count(text: &str) -> Result<u64, String> {
 }
 
 /// What a number of steps is.
-const COUNT: &str = "a whole number that is not negative, such as 1000 or 1e6";
+const COUNT: &str = "a whole number from 0 to 1.8e19, such as 1000 or 1e6";
 
 /// A number with a decimal point or an exponent as a count; what rounds to zero is none.
 fn whole(value: f64) -> Option<u64> {

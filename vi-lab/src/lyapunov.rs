@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "K", default_value_t = 2)]
     count: usize,
     /// Step [default: five times the system's]
-    #[arg(long, value_name = "H", value_parser = number)]
+    #[arg(long, value_name = "H", allow_negative_numbers = true, value_parser = number)]
     h: Option<f64>,
     /// Number of steps, such as 1e6
     #[arg(long, value_name = "N", default_value = "1e5", value_parser = count)]
@@ -79,7 +79,7 @@ pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Fa
     while taken < *steps {
         let part = next.min(*steps) - taken;
         exponents.advance(part).map_err(|error| Failure::Step {
-            advice: advice(&error, Method::Gauss).map(str::to_owned),
+            advice: advice(&error, &plan).map(str::to_owned),
             error: Box::new(error),
             before: format!("t = {}, after {taken} steps or more", short(exponents.t())),
         })?;

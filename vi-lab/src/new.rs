@@ -29,6 +29,9 @@ pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Fa
         let allowed = "letters, digits, - and _, the first a letter";
         return Err(Failure::Input(format!("`{}` is no name of a crate; it has {allowed}", folder.display())));
     }
+    if let Some(why) = taken(name) {
+        return Err(Failure::Input(format!("`{name}` {why}; choose another name")));
+    }
     if folder.exists() {
         return Err(Failure::Input(format!("{} is there already", folder.display())));
     }
@@ -58,6 +61,18 @@ fn is_crate_name(name: &str) -> bool {
         && letters.all(|letter| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_'))
 }
 
+/// Why a crate cannot have a name: Rust has the word, or another crate in the same build.
+fn taken(name: &str) -> Option<&'static str> {
+    let word = name.replace('-', "_");
+    if matches!(word.as_str(), "core" | "std" | "alloc" | "proc_macro" | "test") {
+        return Some("is a crate of Rust itself");
+    }
+    if syn::parse_str::<syn::Ident>(&word).is_err() {
+        return Some("is a word of Rust");
+    }
+    word.starts_with("vi_").then_some("may be a crate that this one depends on: their names begin with vi-")
+}
+
 /// The lines of the manifest that say where the libraries are: beside this command, where its source still stands, else by version.
 fn libraries() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("vi-core/Cargo.toml").is_file());
@@ -71,7 +86,17 @@ fn libraries() -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::is_crate_name;
+    use super::{is_crate_name, taken};
+
+    #[test]
+    fn names_of_rust_and_of_this_command_are_taken() {
+        assert!(
+            ["fn", "crate", "self", "async", "std", "core", "vi-core", "vi-lab"]
+                .into_iter()
+                .all(|name| taken(name).is_some())
+        );
+        assert!(["mine", "my-system_2", "via"].into_iter().all(|name| taken(name).is_none()));
+    }
 
     #[test]
     fn names_are_those_of_crates() {

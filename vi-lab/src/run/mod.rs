@@ -260,7 +260,7 @@ impl Course<'_> {
         }
         simulation.advance().map_err(|error| {
             let node = simulation.row();
-            let general = || advice(&error, self.request.plan.method).map(str::to_owned);
+            let general = || advice(&error, &self.request.plan).map(str::to_owned);
             let advice = ways_out::of(self.request, &error, &node).or_else(general);
             Failure::Step { error: Box::new(error), before: describe(&node, self.steps), advice }
         })?;

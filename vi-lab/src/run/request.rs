@@ -220,7 +220,7 @@ impl Request {
         plan.shift = options.shift.map(|wanted| shift(wanted, length, &plan)).transpose()?;
         let every = arguments.every.or(scene.every).unwrap_or(1);
         if every == 0 {
-            return Err(Failure::Input("every how many nodes one is written (--every) must be at least 1".to_owned()));
+            return Err(Failure::Input("--every must be at least 1: 1 writes every node, 10 every tenth".to_owned()));
         }
         let output = match &arguments.output {
             Some(path) => Output::at(path)?,
@@ -475,7 +475,7 @@ mod tests {
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
                 "the parameter `m` is set twice; give --set once for each",
             ),
-            (with(|a| a.every = Some(0)), "every how many nodes one is written (--every) must be at least 1"),
+            (with(|a| a.every = Some(0)), "--every must be at least 1: 1 writes every node, 10 every tenth"),
             (
                 with(|a| a.start = Some(Start::Points)),
                 "only energy-preserving steps have a --start; add --method energy, or leave it out",

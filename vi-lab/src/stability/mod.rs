@@ -1,7 +1,7 @@
 //! `vi-lab stability`: where methods fail, and what a user should do about it.
 //!
 //! In: a folder, and perhaps a system. Out: in the folder a page `index.html`, and for every map and chart an SVG and a CSV
-//! file. Without a system the page goes through the ways of failing one by one, the boundary that theory gives drawn over
+//! file. Without a system, and in a program that has none of its own, the page goes through the ways of failing one by one, the boundary that theory gives drawn over
 //! what the runs did; with one it maps how the runs of that system end. Colours and names distinguish
 //! a solver that finds no step from a motion that grows without bound.
 //!
@@ -45,7 +45,7 @@ const MAPS: u32 = 27;
 /// `vi-lab stability [SYSTEM]`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// System of the catalogue; without it, the whole page
+    /// System of the catalogue [default: the first system of this program's own; of a program without one, the page of all systems]
     system: Option<String>,
     /// Folder for the page, its figures (SVG) and their data (CSV)
     #[arg(long, value_name = "DIR", default_value = "stability")]
@@ -54,10 +54,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 149, value_parser = clap::value_parser!(u16).range(10..=596))]
     columns: u16,
     /// Horizontal axis of the system's maps: a coordinate, a velocity (v_x), a parameter, or h, as NAME=LOW:HIGH
-    #[arg(long, value_name = "NAME=LOW:HIGH", requires = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME=LOW:HIGH", allow_hyphen_values = true)]
     x: Option<String>,
     /// Vertical axis
-    #[arg(long, value_name = "NAME=LOW:HIGH", requires = "system", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NAME=LOW:HIGH", allow_hyphen_values = true)]
     y: Option<String>,
 }
 
@@ -67,9 +67,15 @@ pub(crate) struct Arguments {
 /// [`Failure::Input`] for a system or an axis that does not exist, [`Failure::File`] where a file cannot be written.
 pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     let machine = Machine::here();
-    let report = match &arguments.system {
-        Some(name) => {
-            let entry = catalogue::find(name)?;
+    let entry = match &arguments.system {
+        Some(name) => Some(catalogue::find(name)?),
+        None => catalogue::own(),
+    };
+    if entry.is_none() && (arguments.x.is_some() || arguments.y.is_some()) {
+        return Err(Failure::Input("--x and --y are axes of the map of one system: name it".to_owned()));
+    }
+    let report = match entry {
+        Some(entry) => {
             let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
             let title = format!("Where runs of the system {} end", catalogue::kebab(entry.system.name()));
             let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;

@@ -67,8 +67,9 @@ impl Format {
             Some("parquet") => Self::Parquet,
             #[cfg(not(feature = "parquet"))]
             Some("parquet") => {
-                let message =
-                    format!("`{shown}`: this command is built without Parquet; build vi-lab with --features parquet");
+                let message = format!(
+                    "`{shown}`: this command is built without Parquet; build vi-lab with its feature `parquet`"
+                );
                 return Err(Failure::Input(message));
             }
             _ => return Err(Failure::Input(format!("the output `{shown}` must end in .csv, .npy or .parquet"))),
