@@ -297,6 +297,7 @@ fn wrong_input_is_one_line_and_status_2() {
             "there is no folder `no-such-folder` for the output `no-such-folder/x.csv`; make it first",
         ),
         (&["run", "none.toml", "--steps", "1"], "none.toml: No such file or directory (os error 2)"),
+        (&[], "no command is given; `vi-lab help` lists them"),
         (
             &["run", "a/none.yml"],
             "there is no system `a/none.yml`; a scene is a file whose name ends in .toml, a declaration one in .rs",
