@@ -228,7 +228,7 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
 
 #[test]
 fn wrong_input_is_one_line_and_status_2() {
-    let cases: [(&[&str], &str); 31] = [
+    let cases: [(&[&str], &str); 32] = [
         (&["explain"], "name a system, as `vi-lab list` does"),
         (&["work-precision"], "name a system, as `vi-lab list` does"),
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
