@@ -21,9 +21,9 @@
 //!
 //! | file | part of a step |
 //! |---|---|
-//! | `stepper` | the step to the next node |
+//! | `stepper` | the step to the next node, of some length and of the right one |
 //! | `solver` | what it asks of a system |
-//! | `trial` | the stages of a step of some length, and its energy |
+//! | `trial` | a step of some length: its energy, and what its stages tell of others |
 //! | `root` | the length: by secants from the lengths before |
 //! | `search` | else the smallest length, by its bracket; or why there is none |
 //! | `fallback` | what is done then: an error, or fixed steps until a step exists again |

@@ -1,15 +1,19 @@
 //! One energy-preserving step.
 //!
-//! In: a run with the energy to preserve. Out: the step that preserves it, within the bounds, and the run after it. The system is erased
-//! ([`Solver`]).
+//! In: a run with the energy to preserve. Out: the step of some length from its node; the step that preserves the energy, within the bounds, and the
+//! run after it. The system is erased ([`Solver`]).
 
 use super::density::power;
 use super::run::Course;
 use super::solver::{NodeEnergy, Solver};
-use super::trial::Trial;
+use super::trial::{Trial, at};
 use crate::energy_preserving::interval::RATIO;
 use crate::error::StepError;
+use crate::gauss::stages::Stages;
+use crate::gauss::sweep::Convergence;
+use crate::newton::FLOOR;
 use crate::state::{Method, State};
+use nalgebra::SMatrix;
 
 /// A run on its way to the next node.
 pub(super) struct Stepper<'a, const N: usize, const S: usize> {
@@ -18,6 +22,61 @@ pub(super) struct Stepper<'a, const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Stepper<'_, N, S> {
+    /// The stages of the next step of length h, by those of the last one.
+    fn stages_for(&self, h: f64) -> Stages<N, S> {
+        let run = self.gauss.run();
+        let stages = &run.stages.data.0;
+        if run.convergence.has_begun() { at(stages, |c| 1.0 + c * (h / run.h)) } else { *stages }
+    }
+
+    /// The step of length h from the node, by the stages of the last one.
+    ///
+    /// # Errors
+    /// As [`Stepper::trial`].
+    pub(super) fn trial_of(&mut self, h: f64) -> Result<Trial<N, S>, StepError> {
+        self.trial(h, self.stages_for(h))
+    }
+
+    /// The step of length h from the node, by a guess of its stages.
+    ///
+    /// # Errors
+    /// Those of [`Gauss::step`](crate::Gauss::step).
+    pub(super) fn trial(&mut self, h: f64, stages: Stages<N, S>) -> Result<Trial<N, S>, StepError> {
+        let run = self.gauss.run_mut();
+        let kept = (run.h, run.stages, run.convergence);
+        run.h = h;
+        run.stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(stages));
+        // Where no sweep was before, stages are taken as they are, not carried further.
+        run.convergence = Convergence { sweeps: 0, ..run.convergence };
+        let solved = self.gauss.solved();
+        let run = self.gauss.run_mut();
+        (run.h, run.stages, run.convergence) = kept;
+        let after = solved?;
+        let node = &self.gauss.run().node;
+        let energies = self.gauss.energies(h, after.stages.data.0, node.energy);
+        let residual = energies.start - node.energy_low - power::<S>(h) * self.course.shift;
+        if !residual.is_finite() {
+            return Err(StepError::NonFinite { t: node.t, quantity: "energy", expression: None });
+        }
+        Ok(Trial { after, residual, work: energies.work, size: energies.size })
+    }
+
+    /// Whether the energy of a trial is the one to preserve as far as its arithmetic can tell, and tells the length.
+    #[cold]
+    pub(super) fn is_preserved(&self, trial: &Trial<N, S>) -> bool {
+        let base = self.gauss.run().node.energy;
+        let energies = self.gauss.bounded_energies(trial.h(), trial.after.stages.data.0, base);
+        let rounding = f64::EPSILON * energies.start.ulps();
+        trial.residual.abs() <= FLOOR * rounding && self.course.excess.abs() >= Self::least_excess(rounding)
+    }
+
+    /// The least `|H − E|` that tells a length, where energies are rounded by so much.
+    pub(super) fn least_excess(rounding: f64) -> f64 {
+        // The length is known to this part of itself, so that the numbers of its step are.
+        const PARTS: f64 = 1000.0;
+        PARTS * rounding / Self::SLOPE
+    }
+
     /// The next step, within the bounds.
     pub(super) fn found(&mut self) -> Result<Trial<N, S>, StepError> {
         let t = self.gauss.run().node.t;
