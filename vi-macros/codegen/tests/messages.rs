@@ -29,8 +29,18 @@ fn case(body: &str, message: &str) {
     println!("{text}\n    at `{token}`: {said}\n");
 }
 
+/// One case: a summand of L.
+fn says(summand: &str, message: &str) {
+    case(&format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;"), message);
+}
+
 /// The rest of a right system.
 const REST: &str = "coord x; L = dot(x)^2 / 2; discretize midpoint;";
+
+/// One case: a clause before the rest of a right system.
+fn clause(clause: &str, message: &str) {
+    case(&format!("{clause} {REST}"), message);
+}
 
 #[test]
 fn names() {
@@ -263,9 +273,6 @@ fn clauses() {
 /// Names that hold more than a name.
 #[test]
 fn velocities_functions_and_products_in_a_name() {
-    let lagrangian =
-        |summand: &str| format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;");
-    let says = |summand: &str, message: &str| case(&lagrangian(summand), message);
     says("«v»", "unknown name `v`\nhelp: write `dot(x)` for the velocity of `x`, or name it: `let v = dot(x);`");
     says("«dx»/2", "unknown name `dx`\nhelp: write `dot(x)`");
     says("x/«dt»", "unknown name `dt`\nhelp: write `dot(x)` for the derivative of `x` by time");
@@ -297,9 +304,6 @@ fn velocities_functions_and_products_in_a_name() {
 /// Operators, fields and brackets of other languages.
 #[test]
 fn other_operators_fields_and_brackets() {
-    let lagrangian =
-        |summand: &str| format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;");
-    let says = |summand: &str, message: &str| case(&lagrangian(summand), message);
     says("x.«y»", "`.y`: names have no fields\nhelp: write names alone");
     says("x.«dot»", "`.dot`: names have no fields\nhelp: write `dot(x)` for the velocity of `x`");
     for condition in ["x «>» 0", "x «=»= 1", "x «!»= 1", "x «<»= 1", "x «?» 1 : 2"] {
@@ -316,7 +320,6 @@ fn other_operators_fields_and_brackets() {
 /// Definitions as other languages write them.
 #[test]
 fn other_definitions() {
-    let clause = |clause: &str, message: &str| case(&format!("{clause} {REST}"), message);
     clause("const «c»;", "`c` has no value\nhelp: write `c = …`");
     clause("let «y»;", "`y` has no value\nhelp: write `y = …`");
     clause("let y «:»= x;", "a definition has `=`\nhelp: write `=` alone");
@@ -334,9 +337,6 @@ fn other_definitions() {
 /// Of Rust, of other languages and of paper.
 #[test]
 fn habits() {
-    let lagrangian =
-        |summand: &str| format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;");
-    let says = |summand: &str, message: &str| case(&lagrangian(summand), message);
     says("x.«sin»()", "`.sin(…)`: numbers have no methods\nhelp: write it as a function, `sin(…)`");
     says("2.0.«sqrt»()", "`.sqrt(…)`: numbers have no methods");
     says("(x + 1).«powi»(2)", "`.powi(…)`: numbers have no methods\nhelp: write `a^b`");
@@ -399,8 +399,6 @@ fn habits() {
     ] {
         says(&format!("«{function}»(x, 1)"), &format!("unknown function `{function}`\nhelp: {help}"));
     }
-
-    let clause = |clause: &str, message: &str| case(&format!("{clause} {REST}"), message);
     clause("param m«:» f64 = 1.0;", "types are not written\nhelp: write `param m = 1.0;`");
     clause("coord y«:» f64;", "types are not written");
     clause("param «m»;", "`m` has no value\nhelp: write `m = 1.0`: a `param` has a default");
