@@ -9,7 +9,7 @@ use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{FixedStep, Gauss, Lagrangian, State, StepError, gauss, lagrangian};
 use vi_systems::{
-    DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum,
+    DampedOscillator, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum,
 };
 
 lagrangian! {
@@ -333,6 +333,95 @@ fn a_linear_step_is_the_rational_function_of_its_order_however_stiff() {
     linear::<2>(400.0, 30.0);
 }
 
+lagrangian! {
+    /// Five damped oscillators, each three times as stiff as the one before, in coordinates that mix them.
+    struct Mixed {
+        const N = 5;
+        param m = 1.2, k = 3.4, c = 0.3;
+        coord q[N];
+        let x[i in 0..N] = sum(j in 0..N, q[j] / (1 + (i - j)^2));
+        let v[i in 0..N] = sum(j in 0..N, dot(q[j]) / (1 + (i - j)^2));
+        L = sum(i in 0..N, m * v[i]^2 / 2 - 3^i * k * x[i]^2 / 2);
+        force q[l in 0..N] = -sum(i in 0..N, c * v[i] / (1 + (i - l)^2));
+        discretize midpoint;
+    }
+}
+
+/// The largest distance of the steps of five mixed oscillators from those of each by itself, in parts of its energy.
+fn mixed<const S: usize>(h: f64) {
+    let system = Mixed::default();
+    let Mixed { m, k, c } = system;
+    let places = [0.0, 1.0, 2.0, 3.0, 4.0_f64];
+    let mix = vi_core::nalgebra::SMatrix::<f64, 5, 5>::from_fn(|i, j| 1.0 / (1.0 + (places[i] - places[j]).powi(2)));
+    let start = State::at(&system, 0.0, [0.3, -0.2, 0.5, 0.1, -0.4], [0.2, 0.1, -0.3, 0.4, 0.5]);
+    let mut run = Gauss::<_, 5, S>::new(system, start, h).expect("a valid start");
+    let mut worst = 0.0_f64;
+    for _ in 0..20 {
+        let before = run.state();
+        let after = run.step().unwrap_or_else(|error| panic!("h = {h}, {S} stages: {error}"));
+        // p = mixᵀ (m v).
+        let apart = |state: &State<5>| (mix * state.q, mix.transpose().try_inverse().expect("regular") * state.p);
+        let ((x, p), (x1, p1)) = (apart(&before), apart(&after));
+        for i in 0..5 {
+            let k = k * 3.0_f64.powi(i32::try_from(i).expect("a few"));
+            let step = pade::<S>(vi_core::nalgebra::SMatrix::<f64, 2, 2>::new(0.0, 1.0 / m, -k, -c / m) * h);
+            let exact = step * vi_core::SVector::<f64, 2>::new(x[i], p[i]);
+            let rate = (k / m).sqrt();
+            let size = x.amax().max(p.amax() / (m * rate));
+            worst = worst.max((x1[i] - exact[0]).abs().max((p1[i] - exact[1]).abs() / (m * rate)) / size);
+        }
+    }
+    println!("h = {h}, {S} stages: off by {worst:.1e}, {} iterations in the last step", run.iterations());
+    // The largest h ω is 15 h. Measured: 6.3e-16 of 1 + h ω.
+    assert!(worst < 1e-15 * (1.0 + 15.0 * h.abs()), "h = {h}, {S} stages: {worst:e}");
+}
+
+#[test]
+fn stiff_steps_of_long_systems_are_solved_side_by_side() {
+    for h in [0.2, 2.0, 5.0, -1.0] {
+        mixed::<1>(h);
+        mixed::<2>(h);
+        mixed::<5>(h);
+        mixed::<6>(h);
+    }
+}
+
+/// A chain at rest in its lowest mode.
+fn lowest_mode() -> ([f64; 16], [f64; 16]) {
+    let place = |i: usize| f64::from(u32::try_from(i + 1).expect("a few"));
+    (core::array::from_fn(|i| (place(i) * core::f64::consts::PI / 17.0).sin()), [0.0; 16])
+}
+
+/// What the slots of steps far beyond the reach of sweeps leave of the momenta of their ends.
+fn chain<const S: usize>(h: f64) {
+    let system = FpuChain::default();
+    let (q, v) = lowest_mode();
+    let start = State::at(&system, 0.0, q, v);
+    let mut run = Gauss::<_, 16, S>::new(system, start, h).expect("a valid start");
+    let mut worst = 0.0_f64;
+    let mut most = 0;
+    for _ in 0..20 {
+        let before = run.state();
+        let after = run.step().unwrap_or_else(|error| panic!("h = {h}, {S} stages: {error}"));
+        let slots = run.slots().expect("a step was taken");
+        let [minus, plus] = [-slots.d2_ld - before.p, slots.d4_ld - after.p];
+        worst = worst.max(minus.amax().max(plus.amax()));
+        most = most.max(run.iterations());
+    }
+    println!("h = {h}, {S} stages: momenta off by {worst:.1e}, at most {most} iterations");
+    // Measured: 3.6e-14, and 27.
+    assert!(worst < 5e-14 && most < 30, "h = {h}, {S} stages: {worst:e}, {most} iterations");
+}
+
+#[test]
+fn steps_of_a_chain_are_solved_where_its_fastest_modes_turn_twice() {
+    chain::<4>(3.2);
+    chain::<8>(3.2);
+    // The polynomials of the last step lead to where the cubic springs break.
+    chain::<12>(4.0);
+    chain::<8>(6.4);
+}
+
 #[test]
 fn angles_beyond_the_fast_sine_are_solved_too() {
     let system = DoublePendulum::default();
@@ -399,6 +488,7 @@ fn a_run_that_is_stored_goes_on_bit_for_bit() {
     resumes::<2, 3>(scenes::double_pendulum().system, ([0.5, -0.3], [0.2, 0.1]), 0.05, 200);
     // Stiff steps.
     resumes::<1, 4>(DampedOscillator::default(), ([0.7], [0.3]), 5.0, 30);
+    resumes::<16, 8>(FpuChain::default(), lowest_mode(), 2.3, 60);
     resumes::<1, 5>(HarmonicOscillator { m: 1.3, k: 0.7 }, ([0.7], [0.3]), 40.0, 200);
 }
 

@@ -15,6 +15,7 @@ pub(crate) const TOGETHER: usize = 4;
 pub(crate) type Varied<const W: usize = TOGETHER> = Dual<f64, Slopes<f64, W>>;
 
 /// How two vectors change with the coordinates and velocities that they are functions of: a column each.
+#[derive(Clone, Debug)]
 pub(crate) struct Jacobians<const N: usize> {
     /// By the coordinates, of each of the two.
     pub(crate) by_q: [SMatrix<f64, N, N>; 2],

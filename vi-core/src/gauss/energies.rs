@@ -74,7 +74,7 @@ impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
     #[inline(always)]
     fn new(system: &Rare<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
         let equations = general(system, node, h, stages);
-        Self { node, h, positions: equations.start(), velocities: equations.guess() }
+        Self { node, h, positions: equations.start(), velocities: equations.velocity() }
     }
 
     #[inline(always)]

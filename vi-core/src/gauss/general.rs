@@ -10,10 +10,10 @@
 //! A sweep evaluates F, L_v and M at (Q, V), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from F, and moves Q by the new V.
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
-use super::newton::Correctable;
+use super::newton::Newton;
 use super::points::{Form, Points};
 use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, times, weights};
-use super::sweep::{Equations, Increment};
+use super::sweep::{Equations, Increment, PATIENCE};
 use super::tableau::Tableau;
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -28,6 +28,8 @@ pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     h: f64,
     /// M, ready to solve with, where it is constant.
     inverse: Option<M::Inverse>,
+    /// The linearized equations, where sweeps do not contract.
+    newton: Option<&'a Newton<N, S>>,
     /// Velocities from which the positions follow.
     velocity: Stages<N, S>,
     /// Velocities and forces at which the equations were evaluated last.
@@ -42,21 +44,33 @@ where
     Y: Points<N, T>,
     M: Matrix<N, f64>,
 {
-    /// The equations of the step of length h from `node`, with the mass matrix, where it is constant, and a guess of the velocities at the stages.
+    /// The equations of the step of length h from `node`, with the mass matrix, where it is constant, and a guess of the velocities at the stages, or of
+    /// the forces there of a separable system.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, mass: Option<&M>, node: &'a Node<N>, h: f64, velocity: Stages<N, S>) -> Self {
+    pub(super) fn new(
+        system: &'a Y,
+        mass: Option<&M>,
+        node: &'a Node<N>,
+        h: f64,
+        guess: Stages<N, S>,
+        newton: Option<&'a Newton<N, S>>,
+    ) -> Self {
         let inverse = mass.map(Matrix::inverse);
-        Self { system, node, h, inverse, velocity, evaluated: velocity, force: [[0.0; S]; N], numbers: PhantomData }
+        let [velocity, force] = [guess; 2];
+        let mut equations =
+            Self { system, node, h, inverse, newton, velocity, evaluated: velocity, force, numbers: PhantomData };
+        if equations.system.form() == Form::Separable {
+            equations.velocity = equations.missing(&[[0.0; S]; N]);
+            if let Some(inverse) = &equations.inverse {
+                M::apply_to_rows(inverse, &mut equations.velocity);
+            }
+        }
+        equations
     }
 
-    /// The equations with the velocities that follow from a guess of the forces, which depend on the position alone.
-    pub(super) fn with_forces(system: &'a Y, mass: Option<&M>, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
-        let zeros = [[0.0; S]; N];
-        let mut equations = Self { force, ..Self::new(system, mass, node, h, zeros) };
-        let mut velocity = equations.missing(&zeros);
-        equations.solve(&mut velocity);
-        equations.velocity = velocity;
-        equations
+    /// The velocities at hand.
+    pub(super) fn velocity(&self) -> Stages<N, S> {
+        self.velocity
     }
 
     /// `low + Σ_j first_ij h b_j X_j` at the stages i.
@@ -197,7 +211,11 @@ where
     Y: Points<N, T>,
     M: Matrix<N, f64>,
 {
-    const PATIENCE: u32 = 5;
+    #[inline(always)]
+    fn patience(&self) -> u32 {
+        // After Newton's iteration there is no other way left.
+        if self.newton.is_some() { u32::MAX } else { PATIENCE }
+    }
 
     #[inline(always)]
     fn start(&self) -> Stages<N, S> {
@@ -206,9 +224,12 @@ where
 
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        // Of a known type the compiler sees one of the two.
+        // Of a known type the compiler sees one of the two forms.
         let varies = || self.system.form() == Form::VaryingMass;
-        if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
+        if let Some(newton) = self.newton {
+            let missing = self.evaluate(x);
+            self.correct(&newton.correction(&missing));
+        } else if const { Form::VaryingMass.is_known(Y::FORM) } || const { Y::FORM.is_none() } && varies() {
             self.sweep_varying(x);
         } else {
             self.sweep_constant(x);
@@ -233,7 +254,7 @@ where
 
     #[inline(always)]
     fn guess(&self) -> Stages<N, S> {
-        self.velocity
+        if self.system.form() == Form::Separable { self.force } else { self.velocity }
     }
 
     #[inline(always)]
@@ -244,24 +265,5 @@ where
     #[inline(always)]
     fn change_of_velocities(&self) -> f64 {
         change(&self.evaluated, &self.velocity, &SVector::zeros())
-    }
-}
-
-impl<Y, M, const N: usize, const S: usize> Correctable<N, S> for General<'_, f64, Y, M, N, S, false>
-where
-    Y: Points<N, f64>,
-    M: Matrix<N, f64>,
-{
-    fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        self.evaluate(x)
-    }
-
-    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
-        self.correct(correction);
-        self.positions()
-    }
-
-    fn corrected(&self) -> Stages<N, S> {
-        if self.system.form() == Form::Separable { self.force } else { self.velocity }
     }
 }

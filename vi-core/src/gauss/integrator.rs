@@ -64,12 +64,14 @@ where
         self.state().velocity(&system)?;
         self.system = system;
         self.run = self.run.with_other_parameters();
+        self.forget_linearization();
         self.failure = None;
         Ok(())
     }
 
     fn set_state(&mut self, state: State<N>) -> Result<(), StepError> {
         self.run = Run::new(&self.system, Node::new(state, 0.0), self.run.h)?;
+        self.forget_linearization();
         self.failure = None;
         Ok(())
     }

@@ -20,6 +20,7 @@
 //! | `sweep` | the solution, by sweeps over the stages until they no longer move |
 //! | `points` | a system as these equations see it, and as rare code does |
 //! | `newton` | else by simplified Newton iterations about the middle of the step |
+//! | `modes` | the basis in which these are small systems of equations |
 //! | `polynomial` | the motion between the nodes of a step |
 //! | `integrator` | what it shares with the other integrators |
 //! | `slots` | its discrete Lagrangian, with derivatives, forces and powers, for checks |
@@ -37,6 +38,7 @@ mod energies;
 pub mod energy;
 mod general;
 mod integrator;
+mod modes;
 mod newton;
 mod pair;
 mod points;
@@ -62,7 +64,7 @@ use energies::energies;
 use general::General;
 pub use integrator::Motion;
 use nalgebra::SMatrix;
-use newton::{Newton, Stiff};
+use newton::{Linearization, Newton};
 use points::{Form, Points, Rare};
 pub use polynomial::Polynomial;
 use separable::Separable;
@@ -83,7 +85,15 @@ pub struct Gauss<S, const N: usize, const STAGES: usize> {
 }
 
 /// Everything that a run of [`Gauss`] carries, to be stored and resumed bit for bit.
-pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Run<N, STAGES>>;
+pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Stored<N, STAGES>>;
+
+/// A run, and where the equations of its stiff steps are linearized.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Stored<const N: usize, const S: usize> {
+    run: Run<N, S>,
+    linearization: Option<Linearization<N>>,
+}
 
 /// What a run carries from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,7 +127,8 @@ where
 
     /// Everything that the run carries, and of which system with which parameters. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
-        checkpoint::Checkpoint::of(&self.system, self.run)
+        let linearization = self.newton.as_ref().and_then(|newton| newton.linearization());
+        checkpoint::Checkpoint::of(&self.system, Stored { run: self.run, linearization })
     }
 
     /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.
@@ -126,7 +137,7 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
     /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
-        let run = checkpoint.run_of(&system)?;
+        let Stored { run, linearization } = checkpoint.run_of(&system)?;
         check_step(run.h)?;
         let t = if run.node.t.is_finite() { run.node.t } else { 0.0 };
         run.node.check_finite(t)?;
@@ -134,7 +145,12 @@ where
         if !run.stages.iter().all(|entry| entry.is_finite()) {
             return Err(StepError::NonFinite { t, quantity: "last stages", expression: None });
         }
-        Ok(Self { system, instructions: Instructions::detected(), run, newton: None, failure: None })
+        let newton = match linearization {
+            None => None,
+            Some(at) if at.is_finite() => Some(Box::new(Newton::at(&Rare::of(&system), at))),
+            Some(_) => return Err(StepError::NonFinite { t, quantity: "point of linearization", expression: None }),
+        };
+        Ok(Self { system, instructions: Instructions::detected(), run, newton, failure: None })
     }
 
     /// Takes one step of the length `h` instead of the next one; the step of the run stays.
@@ -151,6 +167,7 @@ where
         let mut aside = Self { system: self.system, run: start, newton: None, ..*self };
         let state = aside.step()?;
         self.run = Run::new(&self.system, aside.run.node, self.run.h)?;
+        self.forget_linearization();
         Ok(state)
     }
 
@@ -179,21 +196,71 @@ where
         if !self.run.pause.is_over() {
             return self.solve_with_care(None);
         }
-        let swept = if S::SIDE_BY_SIDE {
-            self.instructions.run(Solve { system: &self.system, run: &self.run })
-        } else {
-            self.run.swept(&Rare::of(&self.system))
-        };
+        let swept = self.solved(&self.run, None);
         let run = self.run.after(&swept);
         if swept.is_at_floor() && run.node.is_finite() { Ok(run) } else { self.solve_with_care(Some(&swept)) }
+    }
+
+    /// The next step of a run by the instructions of the processor, by sweeps, else by Newton's iteration.
+    #[inline(always)]
+    fn solved(&self, run: &Run<N, STAGES>, newton: Option<&Newton<N, STAGES>>) -> Solved<N, STAGES> {
+        let Self { system, .. } = self;
+        if S::SIDE_BY_SIDE {
+            self.instructions.run(Solve { system, run, newton })
+        } else {
+            run.solved_plainly(&Rare::of(system), newton)
+        }
     }
 
     /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
     #[cold]
     fn solve_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<Run<N, STAGES>, StepError> {
-        let Self { system, run, newton, .. } = self;
-        let cared = run.with_care(&Rare::of(system), newton, swept);
-        cared.map_err(|unsettled| lost_force(system, &run.node, run.h).unwrap_or(unsettled))
+        if let Some(run) = swept.and_then(|swept| self.run.accepted(&Rare::of(&self.system), swept, None)) {
+            return Ok(run);
+        }
+        let mut newton = self.newton.take().unwrap_or_else(|| Box::new(Newton::new()));
+        let outcome = self.solved_by_newton(&mut newton);
+        match &outcome {
+            Ok(run) => newton.keep(run.convergence.sweeps),
+            // A run that is restarted here begins with a new one too.
+            Err(_) => newton.forget(),
+        }
+        self.newton = Some(newton);
+        outcome
+    }
+
+    /// Takes a new linearization for the next stiff step.
+    fn forget_linearization(&mut self) {
+        if let Some(newton) = &mut self.newton {
+            newton.forget();
+        }
+    }
+
+    /// The run after the next step by Newton's iteration: about the last linearization, else a new one, else from stages that are all like the node,
+    /// for the polynomials of the last step may lead far away.
+    fn solved_by_newton(&self, newton: &mut Newton<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
+        let Self { system, run, .. } = self;
+        if newton.linearization().is_some()
+            && let Ok(next) = self.solved_from(run, newton)
+        {
+            return Ok(next);
+        }
+        run.linearize(&Rare::of(system), newton);
+        let extrapolated = self.solved_from(run, newton);
+        if extrapolated.is_ok() || !run.convergence.has_begun() {
+            return extrapolated;
+        }
+        let Ok(constant) = Run::new(system, run.node, run.h) else { return extrapolated };
+        constant.linearize(&Rare::of(system), newton);
+        self.solved_from(&Run { pause: run.pause, ..constant }, newton).or(extrapolated)
+    }
+
+    /// The run after the next step of a run by Newton's iteration from its guess.
+    fn solved_from(&self, run: &Run<N, STAGES>, newton: &Newton<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
+        let solved = self.solved(run, Some(newton));
+        let unsettled = || solved.sweeps.convergence.unsettled(run.node.t, run.h, newton.stiffness());
+        let accepted = run.accepted(&Rare::of(&self.system), &solved, Some(newton));
+        accepted.ok_or_else(|| lost_force(&self.system, &run.node, run.h).unwrap_or_else(unsettled))
     }
 
     /// The state reached last.
@@ -272,62 +339,44 @@ impl<const N: usize, const S: usize> Run<N, S> {
         Self { node, before: self.node, stages, convergence, pause: Pause::NONE, h: self.h }
     }
 
-    /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
-    fn with_care(
-        &self,
-        system: &Rare<'_, N>,
-        newton: &mut Option<Box<Newton<N, S>>>,
-        swept: Option<&Solved<N, S>>,
-    ) -> Result<Self, StepError> {
-        if let Some(swept) = swept {
-            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
-            let plain;
-            let solved = if swept.sweeps.convergence.change.is_nan() {
-                plain = self.swept(system);
-                &plain
-            } else {
-                swept
-            };
-            let run = self.after(solved);
-            if run.node.is_finite() && self.is_solved(system, solved) {
-                return Ok(run);
-            }
-        }
-        let newton = newton.get_or_insert_with(|| Box::new(Newton::new(self.h)));
-        let solved = self.stiff(system, newton);
-        let run = self.after_newton(&solved);
-        if run.node.is_finite() && self.is_solved(system, &solved) {
-            return Ok(run);
-        }
-        Err(solved.sweeps.convergence.unsettled(self.node.t, self.h, newton.stiffness()))
+    /// The run after a step that sweeps, or Newton's iteration, solved to rounding; none where they did not.
+    fn accepted(&self, system: &Rare<'_, N>, solved: &Solved<N, S>, newton: Option<&Newton<N, S>>) -> Option<Self> {
+        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+        let plain;
+        let solved = if solved.sweeps.convergence.change.is_nan() {
+            plain = self.solved_plainly(system, newton);
+            &plain
+        } else {
+            solved
+        };
+        let pause = if newton.is_some() { self.pause.after_newton() } else { Pause::NONE };
+        let run = Self { pause, ..self.after(solved) };
+        (run.node.is_finite() && self.is_solved(system, solved)).then_some(run)
     }
 
-    /// The next step by sweeps in plain numbers. Not inlined: one copy serves all systems of N coordinates.
+    /// The next step in plain numbers. Not inlined: one copy serves all systems of N coordinates.
     #[inline(never)]
-    fn swept(&self, system: &Rare<'_, N>) -> Solved<N, S> {
-        solved::<f64, _, _, N, S, false>(system, system, self)
+    fn solved_plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
+        solved::<f64, _, _, N, S, false>(system, system, self, newton)
     }
 
-    /// The step by simplified Newton iterations about its middle.
-    fn stiff(&self, system: &Rare<'_, N>, newton: &mut Newton<N, S>) -> Solved<N, S> {
+    /// Linearizes the equations about the middle of the next step.
+    fn linearize(&self, system: &Rare<'_, N>, newton: &mut Newton<N, S>) {
         let equations = general(system, &self.node, self.h, self.guess::<false>());
         let middle = S / 2;
         let q = stage(&equations.start(), middle);
-        let v = stage(&equations.guess(), middle);
-        newton.set_step(self.h);
-        newton.linearize(system, self.node.t + 0.5 * self.h, &q, &v);
-        finished(Stiff::new(equations, newton), self)
+        let v = stage(&equations.velocity(), middle);
+        let t = self.node.t + 0.5 * self.h;
+        newton.linearize(system, Linearization { h: self.h, t, q, v, iterations: None });
     }
 
     /// Whether what the stages leave of their equations is rounding.
     fn is_solved(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> bool {
         let Solved { sweeps, velocities, .. } = solved;
-        solved.is_at_floor() || rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
-    }
-
-    /// The run after a step by Newton's iteration.
-    fn after_newton(&self, solved: &Solved<N, S>) -> Self {
-        Self { pause: self.pause.after_newton(), ..self.after(solved) }
+        if solved.is_at_floor() || sweeps.are_given_up {
+            return solved.is_at_floor();
+        }
+        rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
     }
 }
 
@@ -346,11 +395,7 @@ fn general<'a, const N: usize, const S: usize>(
     stages: Stages<N, S>,
 ) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
     let mass = constant_mass::<N, f64, _>(system, node);
-    if Points::<N, f64>::form(system) == Form::Separable {
-        General::with_forces(system, mass.as_ref(), node, h, stages)
-    } else {
-        General::new(system, mass.as_ref(), node, h, stages)
-    }
+    General::new(system, mass.as_ref(), node, h, stages, None)
 }
 
 /// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or a part of L or f is not
@@ -385,6 +430,7 @@ impl<const N: usize, const S: usize> Solved<N, S> {
 struct Solve<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     run: &'a Run<N, S>,
+    newton: Option<&'a Newton<N, S>>,
 }
 
 impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
@@ -392,21 +438,26 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Solved<N, S> {
+        let Self { system, run, newton } = self;
         if const { N > LOOPED && (FUSED || WIDE) } {
-            let system = self.system.convert::<Lanes<S, FUSED>>();
-            return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&system, self.system, self.run);
+            let lanes = system.convert::<Lanes<S, FUSED>>();
+            return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
         }
-        let system = self.system.convert::<Lane<FUSED>>();
-        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&system, self.system, self.run)
+        // A copy of Newton's iteration for short equations would not be much faster than the one for all systems of N coordinates.
+        if newton.is_some() {
+            return run.solved_plainly(&Rare::of(system), newton);
+        }
+        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&system.convert::<Lane<FUSED>>(), system, run, None)
     }
 }
 
-/// The next step of a run, the equations evaluated in the numbers T; `plain` is the same system in plain ones.
+/// The next step of a run, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By sweeps, else by Newton's iteration.
 #[inline(always)]
 fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
     plain: &P,
     run: &Run<N, S>,
+    newton: Option<&Newton<N, S>>,
 ) -> Solved<N, S>
 where
     T: AtStages<S>,
@@ -415,13 +466,15 @@ where
 {
     let Run { node, h, .. } = run;
     let guess = run.guess::<FUSED>();
-    // Of a known type the compiler sees one of the two.
-    if const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable {
+    // Of a known type the compiler sees one of the two. Newton's iteration corrects velocities: of stiff steps they are known better than forces.
+    let is_separable =
+        const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
+    if is_separable && newton.is_none() {
         let mass = mass(plain, node);
         finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, *h, guess), run)
     } else {
         let mass = constant_mass(plain, node);
-        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, *h, guess), run)
+        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, *h, guess, newton), run)
     }
 }
 

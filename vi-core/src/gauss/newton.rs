@@ -7,148 +7,207 @@
 //! δQ_i = h Σ_j a_ij δV_j        M δV_i + C δQ_i − h Σ_j a_ij (K δQ_j + B δV_j) = missing_i
 //! ```
 //!
-//! In the basis of Legendre's polynomials A is tridiagonal: 1/2 at its corner, `±ξ_k` beside the diagonal, `ξ_k = 1/(2 √(4k² − 1))`
-//! (Hairer and Wanner, *Solving Ordinary Differential Equations II*, IV.5). So S blocks of 2N × 2N follow from each other,
+//! At each eigenvalue λ of A ([`modes`](super::modes)) these are N equations, by a matrix that is inverted once for a linearization,
 //!
 //! ```text
-//! E = [I 0; C M]        G = [0 I; K B]        D_0 = E − (h/2) G        D_k = E + h² ξ_k² G D_{k−1}⁻¹ G
+//! (M + h λ (C − B) − h² λ² K) δV = missing
 //! ```
 //!
-//! where D_k⁻¹ exists for whatever oscillates or is damped, however stiff. It allocates once, when a run meets its first stiff step.
+//! all eigenvalues side by side. It exists for whatever oscillates or is damped, however stiff: there K and B have no positive eigenvalues, and λ has a
+//! positive real part. It allocates once, when a run meets its first stiff step.
 
-use super::points::{Points, Rare};
-use super::stages::Stages;
-use super::sweep::{Equations, Increment};
-use super::tableau::Tableau;
-use crate::derivatives::{Jacobians, Varied};
+use super::modes::{Modal, Spectrum};
+use super::points::Rare;
+use super::stages::{Stages, product};
+use crate::derivatives::Jacobians;
 use crate::linear::Pivoted;
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use vi_dispatch::{Instructions, Loop};
 
-/// The linearized equations of a step, factored.
+/// Where the equations of a step of length h are linearized.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Linearization<const N: usize> {
+    pub(super) h: f64,
+    pub(super) t: f64,
+    pub(super) q: SVector<f64, N>,
+    pub(super) v: SVector<f64, N>,
+    /// Iterations of the first step that was solved with it; none before.
+    pub(super) iterations: Option<u32>,
+}
+
+impl<const N: usize> Linearization<N> {
+    /// The linearization for the next step, after one of so many iterations; none where a new one pays.
+    fn after(self, iterations: u32) -> Option<Self> {
+        let first = self.iterations.unwrap_or(iterations);
+        (2 * iterations <= 3 * first).then_some(Self { iterations: Some(first), ..self })
+    }
+
+    /// Whether every number of it is finite.
+    pub(super) fn is_finite(&self) -> bool {
+        [self.h, self.t].iter().chain(&self.q).chain(&self.v).all(|number| number.is_finite())
+    }
+}
+
+/// The linearized equations of a step, solved.
 #[derive(Clone, Debug)]
 pub(super) struct Newton<const N: usize, const S: usize> {
-    h: f64,
-    /// E, and G.
-    left: DMatrix<f64>,
-    right: DMatrix<f64>,
-    /// The factors of D_k.
-    factors: Vec<Pivoted>,
-    /// Values of the normalized Legendre polynomials k at the nodes i: `basis[k][i]`.
-    basis: [[f64; S]; S],
-    /// One vector of 2N a polynomial, and room for two matrices.
-    modes: Vec<DVector<f64>>,
-    room: DMatrix<f64>,
-    block: DMatrix<f64>,
+    linearization: Option<Linearization<N>>,
+    instructions: Instructions,
+    spectrum: Spectrum<S>,
+    jacobians: Jacobians<N>,
+    /// The inverse of the matrix, by rows.
+    inverse: Vec<[Modal<S>; N]>,
 }
 
 impl<const N: usize, const S: usize> Newton<N, S> {
-    /// Room for the equations of steps of length h.
-    pub(super) fn new(h: f64) -> Self {
-        let square = DMatrix::zeros(2 * N, 2 * N);
-        Self {
-            h,
-            left: square.clone(),
-            right: square.clone(),
-            factors: vec![Pivoted::new(2 * N); S],
-            basis: basis(),
-            modes: vec![DVector::zeros(2 * N); S],
-            room: square.clone(),
-            block: square,
-        }
+    /// Room for the equations.
+    pub(super) fn new() -> Self {
+        let jacobians = Jacobians { by_q: [SMatrix::zeros(); 2], by_v: [SMatrix::zeros(); 2] };
+        let inverse = vec![[Modal::ZERO; N]; N];
+        let instructions = Instructions::detected();
+        Self { linearization: None, instructions, spectrum: Spectrum::new(), jacobians, inverse }
     }
 
-    /// Takes another length of a step; what is factored is that of the last one until the next linearization.
-    pub(super) fn set_step(&mut self, h: f64) {
-        self.h = h;
+    /// The equations of a system, linearized.
+    pub(super) fn at(system: &Rare<'_, N>, at: Linearization<N>) -> Self {
+        let mut newton = Self::new();
+        newton.linearize(system, at);
+        newton
     }
 
-    /// Linearizes the equations of a system at the point (t, q, v).
-    pub(super) fn linearize(&mut self, system: &Rare<'_, N>, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) {
-        let Jacobians { by_q: [c, k], by_v: [m, b] } = jacobians(system, t, q, v);
-        self.left.view_mut((N, 0), (N, N)).copy_from(&c);
-        self.left.view_mut((N, N), (N, N)).copy_from(&m);
-        self.right.view_mut((N, 0), (N, N)).copy_from(&k);
-        self.right.view_mut((N, N), (N, N)).copy_from(&b);
-        self.left.view_mut((0, 0), (N, N)).fill_with_identity();
-        self.right.view_mut((0, N), (N, N)).fill_with_identity();
-        for k in 0..S {
-            self.room.copy_from(&self.right);
-            match k.checked_sub(1) {
-                None => {
-                    self.room *= -0.5 * self.h;
-                    self.room += &self.left;
-                }
-                Some(before) => {
-                    let scale = (self.h * xi(k)).powi(2);
-                    for mut column in self.room.column_iter_mut() {
-                        self.factors[before].solve(column.as_mut_slice());
-                    }
-                    self.block.copy_from(&self.left);
-                    self.block.gemm(scale, &self.right, &self.room, 1.0);
-                    self.room.copy_from(&self.block);
-                }
+    /// Where the equations are linearized; none where the next step takes its own linearization.
+    pub(super) fn linearization(&self) -> Option<Linearization<N>> {
+        self.linearization
+    }
+
+    /// Takes a new linearization for the next step.
+    pub(super) fn forget(&mut self) {
+        self.linearization = None;
+    }
+
+    /// Keeps the linearization for the next step, after one that took so many iterations, or not.
+    pub(super) fn keep(&mut self, iterations: u32) {
+        self.linearization = self.linearization.and_then(|at| at.after(iterations));
+    }
+
+    /// Linearizes the equations of a system.
+    pub(super) fn linearize(&mut self, system: &Rare<'_, N>, at: Linearization<N>) {
+        let Linearization { h, t, q, v, .. } = &at;
+        self.jacobians = jacobians(system, *t, q, v);
+        let Jacobians { by_q: [c, k], by_v: [m, b] } = &self.jacobians;
+        let step = self.spectrum.eigenvalues * *h;
+        let square = step * step;
+        for row in 0..N {
+            for column in 0..N {
+                let at = (row, column);
+                self.inverse[row][column] = Modal::real(m[at]) + step * (c[at] - b[at]) + square * -k[at];
             }
-            self.factors[k].factor(&self.room);
         }
+        self.instructions.run(Invert { matrix: &mut self.inverse });
+        self.linearization = Some(at);
     }
 
     /// The corrections of the velocities that make up for what is missing in the momenta.
-    pub(super) fn correction(&mut self, missing: &Stages<N, S>) -> Stages<N, S> {
-        let b = const { &Tableau::<S>::VALUES.b };
-        for k in 0..S {
-            self.modes[k].fill(0.0);
-            for row in 0..N {
-                for i in 0..S {
-                    self.modes[k][row + N] += b[i] * self.basis[k][i] * missing[row][i];
-                }
-            }
-        }
-        self.solve();
-        let mut correction = [[0.0; S]; N];
-        for k in 0..S {
-            for row in 0..N {
-                for i in 0..S {
-                    correction[row][i] += self.basis[k][i] * self.modes[k][row + N];
-                }
-            }
-        }
-        correction
+    pub(super) fn correction(&self, missing: &Stages<N, S>) -> Stages<N, S> {
+        self.instructions.run(Correct { newton: self, missing })
     }
 
-    /// The block tridiagonal system, in place: forwards, then backwards.
-    fn solve(&mut self) {
-        for k in 0..S {
-            let (solved, rest) = self.modes.split_at_mut(k);
-            if let Some(before) = solved.last() {
-                rest[0].gemv(self.h * xi(k), &self.right, before, 1.0);
-            }
-            self.factors[k].solve(rest[0].as_mut_slice());
-        }
-        for k in (1..S).rev() {
-            // The row above waits for `h ξ_k D⁻¹ G` times this one.
-            let (above, below) = self.modes.split_at_mut(k);
-            let mut column = self.room.column_mut(0);
-            column.gemv(self.h * xi(k), &self.right, &below[0], 0.0);
-            self.factors[k - 1].solve(column.as_mut_slice());
-            above[k - 1] -= &column;
-        }
-    }
-
-    /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector.
+    /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector, `E = [I 0; C M]` and `G = [0 I; K B]`.
     pub(super) fn stiffness(&self) -> f64 {
-        let mut left = Pivoted::new(2 * N);
-        left.factor(&self.left);
+        let h = self.linearization.map_or(f64::NAN, |at| at.h);
+        let Jacobians { by_q: [c, k], by_v: [m, b] } = &self.jacobians;
+        let mut left = DMatrix::identity(2 * N, 2 * N);
+        left.view_mut((N, 0), (N, N)).copy_from(c);
+        left.view_mut((N, N), (N, N)).copy_from(m);
+        let mut right = DMatrix::zeros(2 * N, 2 * N);
+        right.view_mut((0, N), (N, N)).fill_with_identity();
+        right.view_mut((N, 0), (N, N)).copy_from(k);
+        right.view_mut((N, N), (N, N)).copy_from(b);
+        let mut factors = Pivoted::new(2 * N);
+        factors.factor(&left);
         let mut vector = DVector::from_element(2 * N, 1.0);
         let mut length = 0.0;
         for _ in 0..POWERS {
             let norm = vector.norm();
             vector /= norm;
-            vector = &self.right * &vector;
-            left.solve(vector.as_mut_slice());
+            vector = &right * &vector;
+            factors.solve(vector.as_mut_slice());
             length += vector.norm().ln();
         }
-        let stiffness = self.h.abs() * (length / f64::from(POWERS)).exp();
+        let stiffness = h.abs() * (length / f64::from(POWERS)).exp();
         if stiffness.is_nan() { f64::INFINITY } else { stiffness }
+    }
+}
+
+/// The inverse of a matrix, in its place, by elimination of rows and columns with partial pivoting; not finite where it is singular.
+struct Invert<'a, const N: usize, const S: usize> {
+    matrix: &'a mut [[Modal<S>; N]],
+}
+
+impl<const N: usize, const S: usize> Loop for Invert<'_, N, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        let Self { matrix } = self;
+        let mut exchanged = [0; N];
+        for k in 0..N {
+            let mut pivot = k;
+            for row in k + 1..N {
+                if matrix[row][k].is_larger(&matrix[pivot][k]) {
+                    pivot = row;
+                }
+            }
+            exchanged[k] = pivot;
+            matrix.swap(k, pivot);
+            let scale = matrix[k][k].recip();
+            matrix[k][k] = Modal::ONE;
+            let mut pivotal = [Modal::ZERO; N];
+            for column in 0..N {
+                pivotal[column].add_product::<FUSED>(&matrix[k][column], &scale);
+            }
+            matrix[k] = pivotal;
+            for row in (0..N).filter(|row| *row != k) {
+                let factor = matrix[row][k] * -1.0;
+                matrix[row][k] = Modal::ZERO;
+                for column in 0..N {
+                    matrix[row][column].add_product::<FUSED>(&factor, &pivotal[column]);
+                }
+            }
+        }
+        for k in (0..N).rev() {
+            for row in &mut *matrix {
+                row.swap(k, exchanged[k]);
+            }
+        }
+    }
+}
+
+/// The corrections of the velocities.
+struct Correct<'a, const N: usize, const S: usize> {
+    newton: &'a Newton<N, S>,
+    missing: &'a Stages<N, S>,
+}
+
+impl<const N: usize, const S: usize> Loop for Correct<'_, N, S> {
+    type Output = Stages<N, S>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Stages<N, S> {
+        let Newton { spectrum, inverse, .. } = self.newton;
+        let mut modes = [Modal::ZERO; N];
+        let mut exchanged = modes;
+        for k in 0..N {
+            modes[k] = Modal(product::<S, FUSED>(&spectrum.to, &self.missing[k], &[0.0; S]));
+            exchanged[k] = modes[k].exchanged();
+        }
+        let mut correction = [[0.0; S]; N];
+        for k in 0..N {
+            let solution = Modal::dot::<N, FUSED>(&inverse[k], &modes, &exchanged);
+            correction[k] = product::<S, FUSED>(&spectrum.from, &solution.0, &[0.0; S]);
+        }
+        correction
     }
 }
 
@@ -159,87 +218,8 @@ pub(super) fn jacobians<const N: usize>(
     q: &SVector<f64, N>,
     v: &SVector<f64, N>,
 ) -> Jacobians<N> {
-    let sides = |q: &SVector<Varied, N>, v: &SVector<Varied, N>| {
-        let point = system.at(Varied::fixed(t), q, v);
-        [point.momentum, point.force]
-    };
-    Jacobians::of(sides, q, v)
+    Jacobians::of(|q, v| system.varied(t, q, v), q, v)
 }
 
 /// Multiplications that estimate the stiffness.
 const POWERS: u32 = 16;
-
-/// `ξ_k = 1/(2 √(4k² − 1))`.
-#[allow(clippy::cast_precision_loss)]
-fn xi(k: usize) -> f64 {
-    0.5 / ((4 * k * k) as f64 - 1.0).sqrt()
-}
-
-/// The polynomials `√(2k + 1) P_k(2 c − 1)` at the nodes: orthonormal under the weights.
-#[allow(clippy::cast_precision_loss)]
-fn basis<const S: usize>() -> [[f64; S]; S] {
-    let mut basis = const { Tableau::<S>::VALUES.legendre };
-    for (k, row) in basis.iter_mut().enumerate() {
-        let norm = ((2 * k + 1) as f64).sqrt();
-        for value in row {
-            *value *= norm;
-        }
-    }
-    basis
-}
-
-/// Equations of the stages whose velocities can be corrected.
-pub(super) trait Correctable<const N: usize, const S: usize>: Equations<N, S> {
-    /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
-    fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S>;
-    /// Adds corrections to the velocities, and returns the positions that follow.
-    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S>;
-    /// What is extrapolated to the next step, where the velocities were corrected.
-    fn corrected(&self) -> Stages<N, S> {
-        self.guess()
-    }
-}
-
-/// The equations of the stages, corrected by simplified Newton iterations.
-pub(super) struct Stiff<'a, E, const N: usize, const S: usize> {
-    pub(super) equations: E,
-    newton: &'a mut Newton<N, S>,
-}
-
-impl<'a, E, const N: usize, const S: usize> Stiff<'a, E, N, S> {
-    /// Equations with their linearization.
-    pub(super) fn new(equations: E, newton: &'a mut Newton<N, S>) -> Self {
-        Self { equations, newton }
-    }
-}
-
-impl<E: Correctable<N, S>, const N: usize, const S: usize> Equations<N, S> for Stiff<'_, E, N, S> {
-    // There is no other way left.
-    const PATIENCE: u32 = u32::MAX;
-
-    fn start(&self) -> Stages<N, S> {
-        self.equations.start()
-    }
-
-    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        let missing = self.equations.missing(x);
-        let correction = self.newton.correction(&missing);
-        self.equations.follow(&correction)
-    }
-
-    fn increment(&self) -> Increment<N> {
-        self.equations.increment()
-    }
-
-    fn guess(&self) -> Stages<N, S> {
-        self.equations.corrected()
-    }
-
-    fn velocities(&self) -> Option<Stages<N, S>> {
-        self.equations.velocities()
-    }
-
-    fn change_of_velocities(&self) -> f64 {
-        self.equations.change_of_velocities()
-    }
-}

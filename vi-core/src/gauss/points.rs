@@ -75,7 +75,7 @@ type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
 trait Erased<const N: usize> {
     fn form(&self) -> Form;
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
-    fn varied(&self, t: Varied, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> AnyPoint<N, Varied>;
+    fn varied(&self, t: f64, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> [SVector<Varied, N>; 2];
     fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded>;
 }
 
@@ -88,8 +88,9 @@ impl<S: Convertible<N>, const N: usize> Erased<N> for S {
         dense(self, t, q, v)
     }
 
-    fn varied(&self, t: Varied, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> AnyPoint<N, Varied> {
-        dense(self, t, q, v)
+    fn varied(&self, t: f64, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> [SVector<Varied, N>; 2] {
+        let point = self.convert::<Varied>().point(Varied::fixed(t), q, v);
+        [point.momentum, point.force]
     }
 
     fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded> {
@@ -117,6 +118,11 @@ impl<'a, const N: usize> Rare<'a, N> {
     pub(super) fn of<S: Convertible<N>>(system: &'a S) -> Self {
         Self(system)
     }
+
+    /// L_v and L_q + f, where coordinates and velocities vary.
+    pub(super) fn varied(&self, t: f64, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> [SVector<Varied, N>; 2] {
+        self.0.varied(t, q, v)
+    }
 }
 
 macro_rules! rare {
@@ -137,4 +143,4 @@ macro_rules! rare {
     )*};
 }
 
-rare!(f64, plain; Varied, varied; Rounded, rounded);
+rare!(f64, plain; Rounded, rounded);

@@ -35,7 +35,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
     pub(super) fn of(system: &Rare<'_, N>, run: &Run<N, S>, start: State<N>) -> Self {
         let equations = general(system, &run.before, run.h, run.stages.data.0);
         let x = equations.start();
-        let velocity = equations.guess();
+        let velocity = equations.velocity();
         let mut force = [[0.0; S]; N];
         for i in 0..S {
             let t = time::<N, S, false, f64>(&run.before, run.h, i);

@@ -10,8 +10,8 @@
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
 use super::points::Points;
-use super::stages::{AtStages, Stages, gathered, product, scaled, scatter, times, weights};
-use super::sweep::{Equations, Increment};
+use super::stages::{AtStages, Stages, gathered, product, row_by_row, scaled, scatter, times, weights};
+use super::sweep::{Equations, Increment, PATIENCE};
 use super::tableau::Tableau;
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -66,6 +66,7 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
     /// The coordinate k, moved by the velocities that are its means from the node to the stages.
     #[inline(always)]
     fn moved(&self, k: usize, velocity: &[f64; S]) -> [f64; S] {
+        row_by_row();
         let mut row = [0.0; S];
         for i in 0..S {
             let displacement = Lane::<FUSED>::multiply_add(self.h, velocity[i], self.node.q_low[k]);
@@ -81,7 +82,10 @@ where
     Y: Points<N, T>,
     M: Matrix<N, f64>,
 {
-    const PATIENCE: u32 = 5;
+    #[inline(always)]
+    fn patience(&self) -> u32 {
+        PATIENCE
+    }
 
     #[inline(always)]
     fn start(&self) -> Stages<N, S> {

@@ -63,7 +63,7 @@ impl<const N: usize> Slots<N> {
         let rare = Rare::of(system);
         let equations = general(&rare, &run.before, run.h, run.stages.data.0);
         let x = equations.start();
-        let velocities = equations.guess();
+        let velocities = equations.velocity();
         let zeros = SVector::zeros();
         let mut slots = Self {
             ld: 0.0,

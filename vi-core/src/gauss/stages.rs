@@ -131,6 +131,7 @@ pub(super) fn product<const S: usize, const FUSED: bool>(
     x: &[f64; S],
     base: &[f64; S],
 ) -> [f64; S] {
+    row_by_row();
     let mut even = *base;
     let mut odd = [0.0; S];
     for j in 0..S {
@@ -143,6 +144,12 @@ pub(super) fn product<const S: usize, const FUSED: bool>(
         even[i] += odd[i];
     }
     even
+}
+
+/// Keeps the compiler from making vectors across the rows of a loop: it would gather their numbers from memory, one by one. Those of a row stand side by side.
+#[inline(always)]
+pub(super) fn row_by_row() {
+    core::hint::black_box(());
 }
 
 /// What the polynomials through the stages of a step are at those of the next one.

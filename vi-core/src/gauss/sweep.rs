@@ -20,6 +20,8 @@ use nalgebra::SVector;
 
 /// Sweeps that are tried.
 const SWEEPS: u32 = 60;
+/// Sweeps after which slow ones are given up, where there is another way.
+pub(super) const PATIENCE: u32 = 5;
 /// The contraction of slow sweeps.
 const SLOW: f64 = 0.5;
 /// Roundings of q from which a change is slow to vanish.
@@ -36,7 +38,7 @@ const NEGLIGIBLE: f64 = 1.0 / 1024.0;
 /// The equations of the stages of a step.
 pub(super) trait Equations<const N: usize, const S: usize> {
     /// Sweeps after which slow ones are given up.
-    const PATIENCE: u32;
+    fn patience(&self) -> u32;
     /// The positions that the guess of the step leads to.
     fn start(&self) -> Stages<N, S>;
     /// Evaluates the equations at the positions x, and returns those that follow from it.
@@ -156,9 +158,9 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         state.change = change;
         state.sweeps += 1;
         let is_solved = change <= FLOOR && (error <= NEGLIGIBLE || change == 0.0);
-        let is_slow = state.sweeps >= E::PATIENCE && state.contraction > SLOW && change > FAR;
+        let is_slow = state.sweeps >= equations.patience() && state.contraction > SLOW && change > FAR;
         if is_solved || stalls == STALLS || is_slow || state.sweeps == SWEEPS {
-            return Sweeps { convergence: state, positions: x };
+            return Sweeps { convergence: state, positions: x, are_given_up: is_slow };
         }
         error = state.contraction * without_rounding;
         x = y;
@@ -170,4 +172,6 @@ pub(super) struct Sweeps<const N: usize, const S: usize> {
     pub(super) convergence: Convergence,
     /// Positions at which it evaluated.
     pub(super) positions: Stages<N, S>,
+    /// Whether further sweeps would come closer, but slowly.
+    pub(super) are_given_up: bool,
 }

@@ -46,7 +46,7 @@ where
         let rare = Rare::of(system);
         let equations = general(&rare, before, h, run.stages.data.0);
         let positions = equations.start();
-        let velocities = equations.guess();
+        let velocities = equations.velocity();
         let stages: Vec<Stage<N>> = (0..STAGES)
             .map(|i| {
                 let t = time::<N, STAGES, false, f64>(before, h, i);

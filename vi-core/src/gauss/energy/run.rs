@@ -8,7 +8,7 @@ use crate::checkpoint;
 use crate::collocation::Collocation;
 use crate::energy_preserving::fallback::{Fallback, Phase, StepBounds, Switches, check_step};
 use crate::error::StepError;
-use crate::gauss::{self, Gauss};
+use crate::gauss::{self, Gauss, Stored};
 use crate::state::Method;
 use crate::stepping::{Convertible, FixedStepping};
 
@@ -158,7 +158,10 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
     /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
-        let (checkpoint, course) = checkpoint.split(|Run { gauss, course }| (gauss, course));
+        let (checkpoint, course) = checkpoint.split(|Run { gauss: run, course }| {
+            // Lengths differ from step to step, and each has its own linearization.
+            (Stored { run, linearization: None }, course)
+        });
         let gauss = Gauss::restart(system, checkpoint)?;
         course.check(gauss.run.node.t)?;
         Ok(Self { gauss, course, failure: None })

@@ -56,6 +56,8 @@ where
     }
 
     fn solved(&mut self) -> Result<Run<N, S>, StepError> {
+        // Lengths differ: a checkpoint stores no linearization.
+        self.forget_linearization();
         self.solve()
     }
 

@@ -12,9 +12,9 @@
 //! A sweep evaluates everything at (T, Q, V, E), corrects V by `M⁻¹ (P − L_v)`, where the momenta P follow from P', and moves T, Q and E
 //! by the new g, V and E'.
 
-use super::super::newton::{Correctable, Stiff};
+use super::super::newton::Newton;
 use super::super::stages::{Stages, change, constant_mass, product, scaled, set, stage, weights};
-use super::super::sweep::{Equations, Increment};
+use super::super::sweep::{Equations, Increment, PATIENCE};
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
@@ -49,6 +49,9 @@ where
     dtau: f64,
     /// M, where it is constant.
     mass: Option<Y::Mass>,
+    /// The motion by `h = g Δτ`, g that of the middle, linearized, where sweeps do not contract: what g changes by is left to the iteration, since
+    /// it is no faster than the motion that it follows.
+    newton: Option<&'a Newton<N, S>>,
     /// What positions, times and energies follow from.
     rates: Rates<N, S>,
     clock: Clock<S>,
@@ -68,13 +71,21 @@ where
 {
     /// The equations of the step of length Δτ from `node`, with a guess of the rates at its stages.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, node: &'a Node<N>, dtau: f64, rates: Rates<N, S>) -> Self {
+    pub(super) fn new(
+        system: &'a Y,
+        node: &'a Node<N>,
+        dtau: f64,
+        rates: Rates<N, S>,
+        newton: Option<&'a Newton<N, S>>,
+    ) -> Self {
         let mass = constant_mass(system, node);
         let clock = Clock { time: [node.t; S], energy: [node.energy; S] };
         let force = [[0.0; S]; N];
         let velocity = rates.velocity;
+        let energy_scale = 0.0;
+        let evaluated = clock;
         let mut equations =
-            Self { system, node, dtau, mass, rates, clock, velocity, evaluated: clock, force, energy_scale: 0.0 };
+            Self { system, node, dtau, mass, newton, rates, clock, velocity, evaluated, force, energy_scale };
         equations.advance_clock();
         equations
     }
@@ -222,6 +233,30 @@ where
         }
         sum
     }
+
+    /// What time and energy gain over the step, by the evaluation of the last sweep.
+    #[inline(always)]
+    pub(super) fn gains(&self) -> [f64; 2] {
+        [self.quadrature(&self.rates.g), self.quadrature(&self.rates.energy)]
+    }
+
+    /// The rates at hand: what is extrapolated to the next step.
+    #[inline(always)]
+    pub(super) fn rates(&self) -> Rates<N, S> {
+        self.rates
+    }
+
+    /// Velocities at which the last sweep evaluated.
+    #[inline(always)]
+    pub(super) fn velocity(&self) -> Stages<N, S> {
+        self.velocity
+    }
+
+    /// Times and energies at which the last sweep evaluated.
+    #[inline(always)]
+    pub(super) fn evaluated(&self) -> Clock<S> {
+        self.evaluated
+    }
 }
 
 impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Equations<N, S> for Scaled<'_, T, Y, N, S, FUSED>
@@ -229,7 +264,11 @@ where
     T: Real,
     Y: Collocation<N, T>,
 {
-    const PATIENCE: u32 = 5;
+    #[inline(always)]
+    fn patience(&self) -> u32 {
+        // After Newton's iteration there is no other way left.
+        if self.newton.is_some() { u32::MAX } else { PATIENCE }
+    }
 
     #[inline(always)]
     fn start(&self) -> Stages<N, S> {
@@ -238,7 +277,11 @@ where
 
     #[inline(always)]
     fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        let correction = if Y::CONSTANT_MASS { self.by_constant_mass(x) } else { self.by_varying_mass(x) };
+        let correction = match self.newton {
+            Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
+            None if Y::CONSTANT_MASS => self.by_constant_mass(x),
+            None => self.by_varying_mass(x),
+        };
         self.moved(&correction)
     }
 
@@ -275,71 +318,3 @@ where
 
 /// Roundings of a velocity that count as one of a position.
 const LIKE_A_POSITION: f64 = 16.0;
-
-/// Corrected by simplified Newton iterations on the motion by `h = g Δτ`, g that of the middle: what g changes by is left to the iteration,
-/// since it is no faster than the motion that it follows.
-impl<Y: Collocation<N>, const N: usize, const S: usize> Correctable<N, S> for Scaled<'_, f64, Y, N, S, false> {
-    fn missing(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
-        self.evaluate(x, |_, _| {})
-    }
-
-    fn follow(&mut self, correction: &Stages<N, S>) -> Stages<N, S> {
-        self.moved(correction)
-    }
-}
-
-/// The equations of a step with the clock of its stages.
-pub(super) trait Clocked<const N: usize, const S: usize>: Equations<N, S> {
-    /// What time and energy gain over the step, by the evaluation of the last sweep.
-    fn gains(&self) -> [f64; 2];
-    /// The rates at hand: what is extrapolated to the next step.
-    fn rates(&self) -> Rates<N, S>;
-    /// Velocities at which the last sweep evaluated.
-    fn velocity(&self) -> Stages<N, S>;
-    /// Times and energies at which the last sweep evaluated.
-    fn evaluated(&self) -> Clock<S>;
-}
-
-impl<T, Y, const N: usize, const S: usize, const FUSED: bool> Clocked<N, S> for Scaled<'_, T, Y, N, S, FUSED>
-where
-    T: Real,
-    Y: Collocation<N, T>,
-{
-    #[inline(always)]
-    fn gains(&self) -> [f64; 2] {
-        [self.quadrature(&self.rates.g), self.quadrature(&self.rates.energy)]
-    }
-
-    #[inline(always)]
-    fn rates(&self) -> Rates<N, S> {
-        self.rates
-    }
-
-    #[inline(always)]
-    fn velocity(&self) -> Stages<N, S> {
-        self.velocity
-    }
-
-    #[inline(always)]
-    fn evaluated(&self) -> Clock<S> {
-        self.evaluated
-    }
-}
-
-impl<E: Clocked<N, S> + Correctable<N, S>, const N: usize, const S: usize> Clocked<N, S> for Stiff<'_, E, N, S> {
-    fn gains(&self) -> [f64; 2] {
-        self.equations.gains()
-    }
-
-    fn rates(&self) -> Rates<N, S> {
-        self.equations.rates()
-    }
-
-    fn velocity(&self) -> Stages<N, S> {
-        self.equations.velocity()
-    }
-
-    fn evaluated(&self) -> Clock<S> {
-        self.equations.evaluated()
-    }
-}

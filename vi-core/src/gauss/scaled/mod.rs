@@ -32,10 +32,10 @@ mod rounding;
 mod run;
 
 use super::lost_force;
-use super::newton::{Newton, Stiff};
+use super::newton::{Linearization, Newton};
 use super::points::Rare;
 use super::stages::{Stages, stage};
-use super::sweep::{self, Increment, Sweeps};
+use super::sweep::{self, Equations, Increment, Sweeps};
 use crate::checkpoint;
 use crate::collocation::{Collocation, TimeScale};
 use crate::error::StepError;
@@ -43,7 +43,7 @@ use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
-use equations::{Clock, Clocked, Rates, Scaled};
+use equations::{Clock, Rates, Scaled};
 pub use path::Polynomial;
 pub use run::Run;
 use run::time_scale;
@@ -133,7 +133,7 @@ where
         let swept = if S::SIDE_BY_SIDE {
             self.instructions.run(Solve { system: &self.system, run: &self.run })
         } else {
-            solved::<f64, S, N, STAGES, false>(&self.system, &self.run)
+            solved_plainly(&self.system, &self.run, None)
         };
         let run = self.run.after(&swept);
         if swept.is_at_floor() && run.is_sound(&self.system) { Ok(run) } else { self.solve_with_care(Some(&swept)) }
@@ -147,7 +147,7 @@ where
             // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
             let plain;
             let solved = if swept.sweeps.convergence.change.is_nan() {
-                plain = solved::<f64, S, N, STAGES, false>(&self.system, &self.run);
+                plain = solved_plainly(&self.system, &self.run, None);
                 &plain
             } else {
                 swept
@@ -166,7 +166,8 @@ where
     fn is_solved(&self, solved: &Solved<N, STAGES>, after: &Run<N, STAGES>) -> bool {
         let Run { node, dtau, .. } = &self.run;
         let is_rounding = || rounding::are_solved(&self.system.convert::<Rounded>(), node, *dtau, solved);
-        after.is_sound(&self.system) && (solved.is_at_floor() || is_rounding())
+        let may_be_rounding = !solved.sweeps.are_given_up;
+        after.is_sound(&self.system) && (solved.is_at_floor() || may_be_rounding && is_rounding())
     }
 
     /// Why a step was not solved.
@@ -191,15 +192,15 @@ where
     fn solve_stiff(&mut self) -> Solved<N, STAGES> {
         let Self { system, run, newton, .. } = self;
         let rates = run.guess::<false>();
-        let equations = Scaled::<f64, S, N, STAGES, false>::new(system, &run.node, run.dtau, rates);
+        let equations = Scaled::<f64, S, N, STAGES, false>::new(system, &run.node, run.dtau, rates, None);
         let middle = STAGES / 2;
         let h = run.dtau * rates.g[middle];
-        let q = stage(&sweep::Equations::start(&equations), middle);
+        let q = stage(&equations.start(), middle);
         let v = stage(&rates.velocity, middle);
-        let newton = newton.get_or_insert_with(|| Box::new(Newton::new(h)));
-        newton.set_step(h);
-        newton.linearize(&Rare::of(system), run.node.t + 0.5 * h, &q, &v);
-        finished(Stiff::new(equations, newton), run)
+        let newton = newton.get_or_insert_with(|| Box::new(Newton::new()));
+        let t = run.node.t + 0.5 * h;
+        newton.linearize(&Rare::of(system), Linearization { h, t, q, v, iterations: None });
+        solved_plainly(system, run, Some(newton))
     }
 
     /// The state reached last.
@@ -282,23 +283,33 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N,
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Solved<N, S> {
         let system = self.system.convert::<Lane<FUSED>>();
-        solved::<Lane<FUSED>, _, N, S, FUSED>(&system, self.run)
+        solved::<Lane<FUSED>, _, N, S, FUSED>(&system, self.run, None)
     }
 }
 
-/// The next step of a run, the equations evaluated in the numbers T.
+/// The next step of a run in plain numbers. Not inlined: where vectors do not solve it, speed is no matter.
+#[inline(never)]
+fn solved_plainly<Y: Collocation<N>, const N: usize, const S: usize>(
+    system: &Y,
+    run: &Run<N, S>,
+    newton: Option<&Newton<N, S>>,
+) -> Solved<N, S> {
+    solved::<f64, Y, N, S, false>(system, run, newton)
+}
+
+/// The next step of a run, the equations evaluated in the numbers T; by sweeps, else by Newton's iteration.
 #[inline(always)]
-fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(system: &Y, run: &Run<N, S>) -> Solved<N, S>
+fn solved<T, Y, const N: usize, const S: usize, const FUSED: bool>(
+    system: &Y,
+    run: &Run<N, S>,
+    newton: Option<&Newton<N, S>>,
+) -> Solved<N, S>
 where
     T: Real,
     Y: Collocation<N, T>,
 {
     let rates = run.guess::<FUSED>();
-    finished(Scaled::<T, Y, N, S, FUSED>::new(system, &run.node, run.dtau, rates), run)
-}
-
-#[inline(always)]
-fn finished<const N: usize, const S: usize>(mut equations: impl Clocked<N, S>, run: &Run<N, S>) -> Solved<N, S> {
+    let mut equations = Scaled::<T, Y, N, S, FUSED>::new(system, &run.node, run.dtau, rates, newton);
     let sweeps = sweep::solve(&mut equations, &run.node.q, &run.convergence);
     Solved {
         increment: equations.increment(),

@@ -40,8 +40,9 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
         let rates = run.rates();
         // E is the one from which the step came to that of the node.
         let mut node = Node::new(start, run.node.energy);
-        node.energy -= Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates).quadrature(&rates.energy);
-        let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates);
+        node.energy -=
+            Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates, None).quadrature(&rates.energy);
+        let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates, None);
         let momentum = coefficients(&equations.momentum_rates());
         let position = coefficients(&rates.velocity.map(|row| scaled(&rates.g, &row)));
         Self { start, dtau: run.taken, time: coefficients(&[rates.g]), position, momentum }
