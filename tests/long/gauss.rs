@@ -423,6 +423,29 @@ fn steps_of_a_chain_are_solved_where_its_fastest_modes_turn_twice() {
 }
 
 #[test]
+fn stages_that_went_astray_are_not_taken_for_rounding() {
+    let system = DoublePendulum::default();
+    let start = State::at(&system, 0.0, [1.2, 0.5], [0.0, 0.0]);
+    let energy = start.energy(&system).expect("an energy");
+    for h in [0.2, 0.25, 0.4, 0.7, 2.0] {
+        let mut run = Gauss::<_, 2, 8>::new(system, start, h).expect("a valid start");
+        let mut worst = 0.0_f64;
+        for _ in 0..3000 {
+            match run.step() {
+                Ok(state) => worst = worst.max((state.energy(&system).expect("an energy") - energy).abs()),
+                Err(error) => {
+                    assert!(matches!(error, StepError::StagesUnsettled { .. }), "h = {h}: {error}");
+                    break;
+                }
+            }
+        }
+        println!("h = {h}: energy off by {worst:.1e} until t = {}", run.state().t);
+        // Measured: 6.1e-2, with h = 0.7. Far from the node the sine of an angle may be anything, and so may what stages leave.
+        assert!(worst < 0.1, "h = {h}: {worst:e}");
+    }
+}
+
+#[test]
 fn angles_beyond_the_fast_sine_are_solved_too() {
     let system = DoublePendulum::default();
     let turns = 40_000.0 * core::f64::consts::TAU;

@@ -69,6 +69,8 @@ fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
+/// Radians by which an angle may be wrong for its sine to have the most of its digits.
+const HARDLY_KNOWN: f64 = 1e-6;
 /// Half an ulp of 1.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
@@ -159,7 +161,11 @@ impl Real for Rounded {
     fn cos(self) -> Self {
         self.sin_cos().1
     }
+    /// Of an angle that is hardly known the bound is not a number, and nothing that it enters is a rounding: of stages that went astray anything would be.
     fn sin_cos(self) -> (Self, Self) {
+        if UNIT * self.error > HARDLY_KNOWN {
+            return [self.value.sin(), self.value.cos()].map(|value| Self { value, error: f64::NAN }).into();
+        }
         let (sine, cosine) = self.value.sin_cos();
         (self.function(sine, cosine), self.function(cosine, sine))
     }
