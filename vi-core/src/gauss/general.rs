@@ -12,8 +12,8 @@
 
 use super::newton::Newton;
 use super::points::{Form, Points};
-use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, times, weights};
-use super::sweep::{Equations, Increment, PATIENCE};
+use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, sum, times, weights};
+use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -212,9 +212,8 @@ where
     M: Matrix<N, f64>,
 {
     #[inline(always)]
-    fn patience(&self) -> u32 {
-        // After Newton's iteration there is no other way left.
-        if self.newton.is_some() { u32::MAX } else { PATIENCE }
+    fn has_another_way(&self) -> bool {
+        self.newton.is_none()
     }
 
     #[inline(always)]
@@ -243,11 +242,8 @@ where
         let weights = weights::<S>(self.h);
         let mut increment = Increment { velocity: SVector::zeros(), momentum: SVector::zeros() };
         for k in 0..N {
-            for i in 0..S {
-                let (moved, gained) = (&mut increment.velocity[k], &mut increment.momentum[k]);
-                *moved = Lane::<FUSED>::multiply_add(b[i], self.evaluated[k][i], *moved);
-                *gained = Lane::<FUSED>::multiply_add(weights[i], self.force[k][i], *gained);
-            }
+            increment.velocity[k] = sum(&scaled(b, &self.velocity[k]));
+            increment.momentum[k] = sum(&scaled(&weights, &self.force[k]));
         }
         increment
     }
@@ -262,8 +258,16 @@ where
         Some(self.evaluated)
     }
 
+    /// That of the velocities, from which positions follow.
     #[inline(always)]
-    fn change_of_velocities(&self) -> f64 {
-        change(&self.evaluated, &self.velocity, &SVector::zeros())
+    fn change(&self, _before: &Stages<N, S>, _after: &Stages<N, S>) -> f64 {
+        change(&self.evaluated, &self.velocity, &SVector::zeros()) * VELOCITY
+    }
+
+    /// After a sweep velocities are what its forces lead to, and these are off by as much as velocities are then. A correction by Newton's iteration leaves the
+    /// forces of stiff steps behind.
+    #[inline(always)]
+    fn passed_on(&self, contraction: f64) -> f64 {
+        if self.newton.is_some() { 1.0 } else { contraction }
     }
 }

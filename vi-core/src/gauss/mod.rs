@@ -180,50 +180,43 @@ where
         if let Some(failure) = self.failure {
             return Err(failure);
         }
-        // No `?`: with it a step copies the run once more. Measured: an eighth of a step of Kepler's problem.
-        match self.solve() {
-            Ok(run) => self.run = run,
-            Err(failure) => {
-                self.failure = Some(failure);
-                return Err(failure);
-            }
+        if let Err(failure) = self.advance() {
+            self.failure = Some(failure);
+            return Err(failure);
         }
         Ok(self.run.node.state())
     }
 
-    /// The run after the next step.
-    fn solve(&mut self) -> Result<Run<N, STAGES>, StepError> {
-        if !self.run.pause.is_over() {
-            return self.solve_with_care(None);
-        }
-        let swept = self.solved(&self.run, None);
-        let run = self.run.after(&swept);
-        if swept.is_at_floor() && run.node.is_finite() { Ok(run) } else { self.solve_with_care(Some(&swept)) }
-    }
-
-    /// The next step of a run by the instructions of the processor, by sweeps, else by Newton's iteration.
+    /// Moves the run to the next node, or leaves it.
     #[inline(always)]
-    fn solved(&self, run: &Run<N, STAGES>, newton: Option<&Newton<N, STAGES>>) -> Solved<N, STAGES> {
-        let Self { system, .. } = self;
-        if S::SIDE_BY_SIDE {
-            self.instructions.run(Solve { system, run, newton })
-        } else {
-            run.solved_plainly(&Rare::of(system), newton)
+    fn advance(&mut self) -> Result<(), StepError> {
+        if !self.run.pause.is_over() {
+            return self.advance_with_care(None);
         }
+        let Self { system, instructions, run, .. } = self;
+        let unsettled = if S::SIDE_BY_SIDE {
+            instructions.run(Solve { system, run, newton: None })
+        } else {
+            run.swept(run.solved_plainly(&Rare::of(system), None))
+        };
+        if unsettled.is_none() { Ok(()) } else { self.advance_with_care(unsettled.as_ref()) }
     }
 
-    /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on.
+    /// The same where sweeps do not bring a step to the rounding of its positions, or are not tried.
     #[cold]
-    fn solve_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<Run<N, STAGES>, StepError> {
+    fn advance_with_care(&mut self, swept: Option<&Solved<N, STAGES>>) -> Result<(), StepError> {
         if let Some(run) = swept.and_then(|swept| self.run.accepted(&Rare::of(&self.system), swept, None)) {
-            return Ok(run);
+            self.run = run;
+            return Ok(());
         }
         let mut newton = self.newton.take().unwrap_or_else(|| Box::new(Newton::new()));
-        let outcome = self.solved_by_newton(&mut newton);
-        match &outcome {
-            Ok(run) => newton.keep(run.convergence.sweeps),
+        let outcome = self.solved_by_newton(&mut newton).map(|run| {
+            newton.keep(run.convergence.sweeps);
+            self.run = run;
+        });
+        if outcome.is_err() {
             // A run that is restarted here begins with a new one too.
-            Err(_) => newton.forget(),
+            newton.forget();
         }
         self.newton = Some(newton);
         outcome
@@ -257,7 +250,10 @@ where
 
     /// The run after the next step of a run by Newton's iteration from its guess.
     fn solved_from(&self, run: &Run<N, STAGES>, newton: &Newton<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
-        let solved = self.solved(run, Some(newton));
+        let Self { system, instructions, .. } = self;
+        let in_lanes = || instructions.run(Solve { system, run: &mut run.clone(), newton: Some(newton) });
+        let solved = if S::SIDE_BY_SIDE { in_lanes() } else { None };
+        let solved = solved.unwrap_or_else(|| run.solved_plainly(&Rare::of(system), Some(newton)));
         let unsettled = || solved.sweeps.convergence.unsettled(run.node.t, run.h, newton.stiffness());
         let accepted = run.accepted(&Rare::of(&self.system), &solved, Some(newton));
         accepted.ok_or_else(|| lost_force(&self.system, &run.node, run.h).unwrap_or_else(unsettled))
@@ -278,7 +274,8 @@ where
         self.run.h
     }
 
-    /// What the stages of the last step leave of their equations, in roundings of the coordinates. Zero before the first step.
+    /// What the stages of the last step leave of their equations: in roundings of the coordinates where forces depend on them alone, else in sixteens of
+    /// roundings of the velocities. Zero before the first step.
     pub fn residual(&self) -> f64 {
         self.run.convergence.change
     }
@@ -329,28 +326,40 @@ impl<const N: usize, const S: usize> Run<N, S> {
         if self.convergence.has_begun() { extrapolated::<N, S, FUSED>(&self.stages.data.0) } else { self.stages.data.0 }
     }
 
-    /// The run after a step.
+    /// Moves to the end of a step, after which sweeps are tried or not.
     #[inline(always)]
-    fn after(&self, solved: &Solved<N, S>) -> Self {
-        let mut node = self.node;
-        node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
-        let convergence = solved.sweeps.convergence;
-        let stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
-        Self { node, before: self.node, stages, convergence, pause: Pause::NONE, h: self.h }
+    fn take(&mut self, solved: &Solved<N, S>, pause: Pause) {
+        self.before = self.node;
+        self.node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
+        self.stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
+        self.convergence = solved.sweeps.convergence;
+        self.pause = pause;
+    }
+
+    /// Moves to the end of a step that sweeps solved to the rounding of its positions; else what they led to.
+    #[inline(always)]
+    fn swept(&mut self, solved: Solved<N, S>) -> Option<Solved<N, S>> {
+        let Increment { velocity, momentum } = &solved.increment;
+        if solved.is_at_floor() && self.node.stays_finite(self.h, velocity, momentum) {
+            self.take(&solved, Pause::NONE);
+            return None;
+        }
+        Some(solved)
     }
 
     /// The run after a step that sweeps, or Newton's iteration, solved to rounding; none where they did not.
     fn accepted(&self, system: &Rare<'_, N>, solved: &Solved<N, S>, newton: Option<&Newton<N, S>>) -> Option<Self> {
         // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
         let plain;
-        let solved = if solved.sweeps.convergence.change.is_nan() {
+        let solved = if solved.increment.is_finite() {
+            solved
+        } else {
             plain = self.solved_plainly(system, newton);
             &plain
-        } else {
-            solved
         };
         let pause = if newton.is_some() { self.pause.after_newton() } else { Pause::NONE };
-        let run = Self { pause, ..self.after(solved) };
+        let mut run = *self;
+        run.take(solved, pause);
         (run.node.is_finite() && self.is_solved(system, solved)).then_some(run)
     }
 
@@ -426,28 +435,31 @@ impl<const N: usize, const S: usize> Solved<N, S> {
     }
 }
 
-/// The solution of the next step of a run, by the instructions of the processor.
+/// The next step of a run, by the instructions of the processor: taken where sweeps solve it, else what they lead to, or Newton's iteration; none where
+/// equations are so short that Newton's iteration is that of all systems.
 struct Solve<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
-    run: &'a Run<N, S>,
+    run: &'a mut Run<N, S>,
     newton: Option<&'a Newton<N, S>>,
 }
 
 impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
-    type Output = Solved<N, S>;
+    type Output = Option<Solved<N, S>>;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Solved<N, S> {
+    fn run<const FUSED: bool>(self) -> Option<Solved<N, S>> {
         let Self { system, run, newton } = self;
         if const { N > LOOPED && (FUSED || WIDE) } {
             let lanes = system.convert::<Lanes<S, FUSED>>();
-            return solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
+            let solved = solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
+            return if newton.is_some() { Some(solved) } else { run.swept(solved) };
         }
         // A copy of Newton's iteration for short equations would not be much faster than the one for all systems of N coordinates.
         if newton.is_some() {
-            return run.solved_plainly(&Rare::of(system), newton);
+            return None;
         }
-        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&system.convert::<Lane<FUSED>>(), system, run, None)
+        let lane = system.convert::<Lane<FUSED>>();
+        run.swept(solved::<Lane<FUSED>, _, _, N, S, FUSED>(&lane, system, run, None))
     }
 }
 
@@ -465,22 +477,24 @@ where
     P: Points<N, f64>,
 {
     let Run { node, h, .. } = run;
-    let guess = run.guess::<FUSED>();
     // Of a known type the compiler sees one of the two. Newton's iteration corrects velocities: of stiff steps they are known better than forces.
     let is_separable =
         const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
     if is_separable && newton.is_none() {
         let mass = mass(plain, node);
-        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, *h, guess), run)
+        let last = run.stages.data.0;
+        let are_last = run.convergence.has_begun();
+        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, *h, last, are_last), run)
     } else {
         let mass = constant_mass(plain, node);
+        let guess = run.guess::<FUSED>();
         finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, *h, guess, newton), run)
     }
 }
 
 #[inline(always)]
 fn finished<const N: usize, const S: usize>(mut equations: impl Equations<N, S>, run: &Run<N, S>) -> Solved<N, S> {
-    let sweeps = sweep::solve(&mut equations, &run.node.q, &run.convergence);
+    let sweeps = sweep::solve(&mut equations, &run.convergence);
     Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
 }
 

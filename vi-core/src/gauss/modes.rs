@@ -13,7 +13,7 @@
 //! eigenvectors are computed in twice the precision.
 
 use super::pair::Pair;
-use super::tableau::Tableau;
+use super::tableau::{Tableau, real};
 use crate::real::Lane;
 use core::ops::{Add, AddAssign, Mul};
 use nalgebra::{Complex, DMatrix};
@@ -226,7 +226,7 @@ fn eigenvector<const S: usize>(value: Twice) -> ([Twice; S], Twice) {
     for k in 1..S {
         let before = if k > 1 { divided(vector[k - 2], 2 * (2 * k - 3)) } else { HALF };
         let rest = difference(before, product(value, vector[k - 1]));
-        vector[k] = rest.map(|part| part.times(Pair::new(integer(2 * (2 * k + 1)))));
+        vector[k] = rest.map(|part| part.times(Pair::new(real(2 * (2 * k + 1)))));
         let term = divided(product(vector[k], vector[k]), 2 * k + 1);
         square = if k % 2 == 0 { [square[0].plus(term[0]), square[1].plus(term[1])] } else { difference(square, term) };
     }
@@ -242,7 +242,7 @@ fn difference(a: Twice, b: Twice) -> Twice {
 }
 
 fn divided(of: Twice, by: usize) -> Twice {
-    of.map(|part| part.over(Pair::new(integer(by))))
+    of.map(|part| part.over(Pair::new(real(by))))
 }
 
 fn rounded([re, im]: Twice) -> Complex<f64> {
@@ -254,16 +254,10 @@ fn sign(k: usize) -> f64 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// A small integer as a number.
-#[allow(clippy::cast_precision_loss)]
-fn integer(value: usize) -> f64 {
-    value as f64
-}
-
 /// Estimates of the eigenvalues that are not below the real axis, the real one last.
 fn estimates<const S: usize>() -> Vec<Complex<f64>> {
     // In the normalized polynomials A is antisymmetric but for its corner.
-    let beside = |k: usize| 0.5 / (integer(4 * k * k) - 1.0).sqrt();
+    let beside = |k: usize| 0.5 / (real(4 * k * k) - 1.0).sqrt();
     let mut matrix = DMatrix::zeros(S, S);
     matrix[(0, 0)] = 0.5;
     for k in 1..S {

@@ -3,15 +3,15 @@
 //! In: `q'' = M⁻¹ F(t, q)`, M constant. Out: forces at the stages, with `I_j = h b_j F_j` and the coefficients of the tableau
 //!
 //! ```text
-//! Q_i = q0 + h M⁻¹ (c_i p0 + Σ_j second_ij I_j)
+//! Q_i = q0 + h M⁻¹ (c_i p0 + Σ_j second_ij I_j)           at the start with ahead_ij and the forces of the last step
 //! q1  = q0 + h M⁻¹ (p0 + Σ_j (1 − c_j) I_j)                p1 = p0 + Σ_j I_j
 //! ```
 //!
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
 use super::points::Points;
-use super::stages::{AtStages, Stages, gathered, product, row_by_row, scaled, scatter, times, weights};
-use super::sweep::{Equations, Increment, PATIENCE};
+use super::stages::{AtStages, Stages, change, gathered, product, row_by_row, scaled, scatter, sum, times, weights};
+use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::linear::Matrix;
 use crate::node::Node;
@@ -26,35 +26,40 @@ pub(super) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S
     h: f64,
     /// M, ready to solve with.
     inverse: M::Inverse,
-    /// `c_i p0` at the stages.
+    /// `h c_i M⁻¹ p0` at the stages.
     drift: Stages<N, S>,
     force: Stages<N, S>,
+    /// Whether they are those of the step before.
+    are_last: bool,
     numbers: PhantomData<T>,
 }
 
 impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool>
     Separable<'a, T, Y, M, N, S, FUSED>
 {
-    /// The equations of the step of length h from `node`, with the mass matrix and a guess of the forces at the stages.
+    /// The equations of the step of length h from `node`, with the mass matrix and the forces at the stages of the last step, else a guess of them.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>) -> Self {
+    pub(super) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>, are_last: bool) -> Self {
         let c = const { &Tableau::<S>::VALUES.c };
+        let inverse = mass.inverse();
+        let velocity = M::apply(&inverse, &(node.p + node.p_low));
         let mut drift = [[0.0; S]; N];
         for k in 0..N {
-            let p0 = node.p[k] + node.p_low[k];
-            drift[k] = scaled(c, &[p0; S]);
+            let moved = h * velocity[k];
+            for i in 0..S {
+                drift[k][i] = Lane::<FUSED>::multiply_add(c[i], moved, node.q_low[k]);
+            }
         }
-        Self { system, node, h, inverse: mass.inverse(), drift, force, numbers: PhantomData }
+        Self { system, node, h, inverse, drift, force, are_last, numbers: PhantomData }
     }
 
-    /// What the forces at hand move.
+    /// What the forces at hand move, by the coefficients `second`, or `ahead` where they are those of the step before.
     #[inline(always)]
-    fn positions(&self) -> Stages<N, S> {
-        let second = const { &Tableau::<S>::VALUES.second };
+    fn positions(&self, coefficients: &[[f64; S]; S]) -> Stages<N, S> {
         let weights = weights(self.h);
         let mut x = [[0.0; S]; N];
         for k in 0..N {
-            x[k] = product::<S, FUSED>(second, &scaled(&weights, &self.force[k]), &self.drift[k]);
+            x[k] = product::<S, FUSED>(coefficients, &scaled(&weights, &self.force[k]), &[0.0; S]);
         }
         M::apply_to_rows(&self.inverse, &mut x);
         for k in 0..N {
@@ -63,13 +68,13 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
         x
     }
 
-    /// The coordinate k, moved by the velocities that are its means from the node to the stages.
+    /// The coordinate k, moved by the velocities that forces add to its mean from the node to the stages.
     #[inline(always)]
     fn moved(&self, k: usize, velocity: &[f64; S]) -> [f64; S] {
         row_by_row();
         let mut row = [0.0; S];
         for i in 0..S {
-            let displacement = Lane::<FUSED>::multiply_add(self.h, velocity[i], self.node.q_low[k]);
+            let displacement = Lane::<FUSED>::multiply_add(self.h, velocity[i], self.drift[k][i]);
             row[i] = self.node.q[k] + displacement;
         }
         row
@@ -83,13 +88,14 @@ where
     M: Matrix<N, f64>,
 {
     #[inline(always)]
-    fn patience(&self) -> u32 {
-        PATIENCE
+    fn has_another_way(&self) -> bool {
+        true
     }
 
     #[inline(always)]
     fn start(&self) -> Stages<N, S> {
-        self.positions()
+        let Tableau { second, ahead, .. } = const { &Tableau::<S>::VALUES };
+        self.positions(if self.are_last { ahead } else { second })
     }
 
     #[inline(always)]
@@ -100,7 +106,7 @@ where
             let point = self.system.at(T::of(&times, i), &gathered(x, i), &rest);
             scatter(&mut self.force, i, &point.force);
         }
-        self.positions()
+        self.positions(const { &Tableau::<S>::VALUES.second })
     }
 
     #[inline(always)]
@@ -111,12 +117,12 @@ where
         let mut mean = SVector::zeros();
         for k in 0..N {
             let impulses = scaled(&weights, &self.force[k]);
-            let mut ahead = self.node.p_low[k];
+            let mut ahead = [0.0; S];
             for i in 0..S {
-                momentum[k] += impulses[i];
-                ahead = Lane::<FUSED>::multiply_add(1.0 - c[i], impulses[i], ahead);
+                ahead[i] = (1.0 - c[i]) * impulses[i];
             }
-            mean[k] = self.node.p[k] + ahead;
+            momentum[k] = sum(&impulses);
+            mean[k] = self.node.p[k] + (self.node.p_low[k] + sum(&ahead));
         }
         Increment { velocity: M::apply(&self.inverse, &mean), momentum }
     }
@@ -132,7 +138,13 @@ where
     }
 
     #[inline(always)]
-    fn change_of_velocities(&self) -> f64 {
-        0.0
+    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
+        change(before, after, &self.node.q)
+    }
+
+    /// Momenta have h ω of it, the root of what a sweep leaves of it.
+    #[inline(always)]
+    fn passed_on(&self, _contraction: f64) -> f64 {
+        1.0
     }
 }

@@ -184,8 +184,8 @@ pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; 
     scaled
 }
 
-/// The largest change of an entry from `before` to `after`, in roundings of the largest of its row and of `start`. Not a number where one
-/// of the stages is not finite.
+/// The largest change of an entry from `before` to `after`, in roundings of the largest of its row and of `start`. Anything where a stage is
+/// not finite: then neither is the [`Increment`](super::sweep::Increment) of the step.
 #[inline(always)]
 pub(super) fn change<const N: usize, const S: usize>(
     before: &Stages<N, S>,
@@ -193,43 +193,49 @@ pub(super) fn change<const N: usize, const S: usize>(
     start: &SVector<f64, N>,
 ) -> f64 {
     let mut moved = [0.0; N];
-    let mut scale = [0.0; N];
-    let mut lost = [0.0; S];
     for k in 0..N {
+        row_by_row();
         let mut distance = [0.0; S];
         let mut length = [0.0; S];
         for i in 0..S {
             distance[i] = (after[k][i] - before[k][i]).abs();
             length[i] = after[k][i].abs();
-            // Zero, or not a number.
-            lost[i] += distance[i] * 0.0;
         }
-        moved[k] = maximum(&distance);
-        scale[k] = larger(maximum(&length), start[k].abs()) + f64::MIN_POSITIVE;
+        let scale = larger(maximum(&length), start[k].abs()) + f64::MIN_POSITIVE;
+        moved[k] = maximum(&distance) / (scale * f64::EPSILON);
     }
-    for k in 0..N {
-        moved[k] /= scale[k] * f64::EPSILON;
-    }
-    maximum(&moved) + lost.iter().sum::<f64>()
+    maximum(&moved)
 }
 
 /// The larger of two numbers.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The largest of W numbers that are not negative, each found from a pair: a sequence of comparisons would wait for one another.
+/// The largest of W numbers that are not negative.
 #[inline(always)]
 fn maximum<const W: usize>(of: &[f64; W]) -> f64 {
-    let mut largest = *of;
+    by_pairs(of, larger)
+}
+
+/// The sum of W numbers.
+#[inline(always)]
+pub(super) fn sum<const W: usize>(of: &[f64; W]) -> f64 {
+    by_pairs(of, |a, b| a + b)
+}
+
+/// One number from W, each from a pair: in a sequence they would wait for one another.
+#[inline(always)]
+fn by_pairs<const W: usize>(of: &[f64; W], one: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut left = *of;
     let mut length = W;
     while length > 1 {
         let half = length.div_ceil(2);
         for i in 0..length - half {
-            largest[i] = larger(largest[i], largest[i + half]);
+            left[i] = one(left[i], left[i + half]);
         }
         length = half;
     }
-    largest[0]
+    left[0]
 }

@@ -4,8 +4,8 @@
 //!
 //! ```text
 //! sweep      x' = what the equations give at the forces, masses and momenta of x
-//! accept x   where |x' − x| ≤ 4 ε |q| and |v' − v| ≤ 64 ε |v|, the largest on the way of each coordinate, and the sweeps before
-//!            left a thousandth of a rounding
+//! accept x   where |x' − x| ≤ 4 ε |q|, or |v' − v| ≤ 64 ε |v| where positions follow from velocities, the largest on the way of each
+//!            coordinate, and a step from x has a thousandth of a rounding of the error that sweeps before left
 //! ```
 //!
 //! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
@@ -13,7 +13,7 @@
 //! left after every step has a sign, and the energy would drift by it. Rounding hides that error in the change, so it is predicted: each
 //! sweep multiplies it by the contraction, which is measured as long as changes stand out of rounding.
 
-use super::stages::{Stages, change};
+use super::stages::Stages;
 use crate::error::StepError;
 use crate::newton::FLOOR;
 use nalgebra::SVector;
@@ -21,7 +21,7 @@ use nalgebra::SVector;
 /// Sweeps that are tried.
 const SWEEPS: u32 = 60;
 /// Sweeps after which slow ones are given up, where there is another way.
-pub(super) const PATIENCE: u32 = 5;
+const PATIENCE: u32 = 5;
 /// The contraction of slow sweeps.
 const SLOW: f64 = 0.5;
 /// Roundings of q from which a change is slow to vanish.
@@ -31,14 +31,14 @@ const NOISE: f64 = 64.0;
 /// Sweeps without a smaller change, after which no further one comes closer.
 const STALLS: u32 = 4;
 /// Part of a rounding of q that a rounding of v counts as: velocities are solved for by the mass matrix, and carry its condition.
-const VELOCITY: f64 = 1.0 / 16.0;
+pub(super) const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q that a step may leave of the error of its stages.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
 
 /// The equations of the stages of a step.
 pub(super) trait Equations<const N: usize, const S: usize> {
-    /// Sweeps after which slow ones are given up.
-    fn patience(&self) -> u32;
+    /// Whether there is another way to solve them, where sweeps are slow.
+    fn has_another_way(&self) -> bool;
     /// The positions that the guess of the step leads to.
     fn start(&self) -> Stages<N, S>;
     /// Evaluates the equations at the positions x, and returns those that follow from it.
@@ -49,8 +49,10 @@ pub(super) trait Equations<const N: usize, const S: usize> {
     fn guess(&self) -> Stages<N, S>;
     /// The velocities at which the last sweep evaluated; none where nothing depends on them.
     fn velocities(&self) -> Option<Stages<N, S>>;
-    /// The change of the velocities by the last sweep, in roundings of theirs.
-    fn change_of_velocities(&self) -> f64;
+    /// The change by the last sweep, which led from `before` to `after`, in roundings of the positions.
+    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64;
+    /// What of the error of the stages, relative, the increment has, where a sweep leaves `contraction` of it.
+    fn passed_on(&self, contraction: f64) -> f64;
 }
 
 /// What moves a step from its node to the next.
@@ -60,6 +62,13 @@ pub(super) struct Increment<const N: usize> {
     pub(super) velocity: SVector<f64, N>,
     /// `p1 − p0`.
     pub(super) momentum: SVector<f64, N>,
+}
+
+impl<const N: usize> Increment<N> {
+    /// Whether it leads anywhere; not where a stage was not finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.velocity.iter().chain(&self.momentum).all(|entry| entry.is_finite())
+    }
 }
 
 /// How long sweeps are not tried, since the last ones did not converge.
@@ -133,38 +142,48 @@ impl Convergence {
 #[inline(always)]
 pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
-    q0: &SVector<f64, N>,
     before: &Convergence,
 ) -> Sweeps<N, S> {
     let mut x = equations.start();
     let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
     // What x leaves, without the rounding of its change.
     let mut error = f64::INFINITY;
+    // What a step from x would have of it.
+    let mut left = f64::INFINITY;
     let mut least = f64::INFINITY;
     let mut stalls = 0;
-    loop {
+    let are_given_up = loop {
         let y = equations.sweep(&x);
-        let of_velocities = equations.change_of_velocities() * VELOCITY;
-        // Where one of them is not a number, neither is the sum.
-        let change = change(&x, &y, q0).max(of_velocities) + 0.0 * of_velocities;
-        let stands_out = change > FLOOR || state.change > NOISE;
-        // Of the first sweep the step before says nothing.
-        if stands_out && state.sweeps > 0 {
-            state.contraction = change / state.change;
-        }
-        let without_rounding = if stands_out { change } else { change.min(error) };
-        stalls = if change < least { 0 } else { stalls + 1 };
-        least = least.min(change);
+        let change = equations.change(&x, &y);
+        let last = state.change;
         state.change = change;
         state.sweeps += 1;
-        let is_solved = change <= FLOOR && (error <= NEGLIGIBLE || change == 0.0);
-        let is_slow = state.sweeps >= equations.patience() && state.contraction > SLOW && change > FAR;
-        if is_solved || stalls == STALLS || is_slow || state.sweeps == SWEEPS {
-            return Sweeps { convergence: state, positions: x, are_given_up: is_slow };
+        if change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0) {
+            break false;
         }
-        error = state.contraction * without_rounding;
+        let stands_out = change > FLOOR || last > NOISE;
+        // Of the first sweep the step before says nothing.
+        if stands_out && state.sweeps > 1 {
+            state.contraction = change / last;
+        }
+        error = state.contraction * if stands_out || change < error { change } else { error };
+        left = equations.passed_on(state.contraction) * error;
+        if change < least {
+            least = change;
+            stalls = 0;
+        } else {
+            stalls += 1;
+        }
+        let is_slow = || state.contraction > SLOW && change > FAR && equations.has_another_way();
+        if state.sweeps >= PATIENCE && is_slow() {
+            break true;
+        }
+        if stalls == STALLS || state.sweeps == SWEEPS {
+            break false;
+        }
         x = y;
-    }
+    };
+    Sweeps { convergence: state, positions: x, are_given_up }
 }
 
 /// The last of the sweeps of a step.

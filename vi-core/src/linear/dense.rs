@@ -48,8 +48,10 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     fn apply_to_rows<const S: usize>(inverse: &Self, rows: &mut [[T; S]; N]) {
         let known = *rows;
         for i in 0..N {
-            rows[i] = [T::zero(); S];
-            for j in 0..N {
+            for column in 0..S {
+                rows[i][column] = inverse[(i, 0)] * known[0][column];
+            }
+            for j in 1..N {
                 for column in 0..S {
                     rows[i][column] += inverse[(i, j)] * known[j][column];
                 }

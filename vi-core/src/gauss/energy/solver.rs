@@ -58,7 +58,10 @@ where
     fn solved(&mut self) -> Result<Run<N, S>, StepError> {
         // Lengths differ: a checkpoint stores no linearization.
         self.forget_linearization();
-        self.solve()
+        let before = self.run;
+        let outcome = self.advance();
+        let after = core::mem::replace(&mut self.run, before);
+        outcome.map(|()| after)
     }
 
     fn energies(&self, h: f64, stages: Stages<N, S>, base: f64) -> Energies {

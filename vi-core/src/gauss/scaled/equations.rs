@@ -14,7 +14,7 @@
 
 use super::super::newton::Newton;
 use super::super::stages::{Stages, change, constant_mass, product, scaled, set, stage, weights};
-use super::super::sweep::{Equations, Increment, PATIENCE};
+use super::super::sweep::{Equations, Increment, VELOCITY};
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
 use crate::linear::Matrix;
@@ -265,9 +265,8 @@ where
     Y: Collocation<N, T>,
 {
     #[inline(always)]
-    fn patience(&self) -> u32 {
-        // After Newton's iteration there is no other way left.
-        if self.newton.is_some() { u32::MAX } else { PATIENCE }
+    fn has_another_way(&self) -> bool {
+        self.newton.is_none()
     }
 
     #[inline(always)]
@@ -305,16 +304,18 @@ where
         Some(self.velocity)
     }
 
-    /// With those of times, which count as positions, and of energies.
+    /// With those of velocities, of times, which count as positions, and of energies.
     #[inline(always)]
-    fn change_of_velocities(&self) -> f64 {
+    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
         let Clock { time, energy } = self.evaluated;
         let velocity = change(&self.velocity, &self.rates.velocity, &SVector::zeros());
-        let time = change(&[time], &[self.clock.time], &SVector::from([self.node.t])) * LIKE_A_POSITION;
+        let time = change(&[time], &[self.clock.time], &SVector::from([self.node.t]));
         let energy = change(&[energy], &[self.clock.energy], &SVector::from([self.energy_scale]));
-        velocity.max(time).max(energy) + 0.0 * (velocity + time + energy)
+        change(before, after, &self.node.q).max(time).max(velocity.max(energy) * VELOCITY)
+    }
+
+    #[inline(always)]
+    fn passed_on(&self, _contraction: f64) -> f64 {
+        1.0
     }
 }
-
-/// Roundings of a velocity that count as one of a position.
-const LIKE_A_POSITION: f64 = 16.0;

@@ -146,11 +146,11 @@ where
         if let Some(swept) = swept {
             // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
             let plain;
-            let solved = if swept.sweeps.convergence.change.is_nan() {
+            let solved = if swept.increment.is_finite() {
+                swept
+            } else {
                 plain = solved_plainly(&self.system, &self.run, None);
                 &plain
-            } else {
-                swept
             };
             let run = self.run.after(solved);
             if self.is_solved(solved, &run) {
@@ -310,7 +310,7 @@ where
 {
     let rates = run.guess::<FUSED>();
     let mut equations = Scaled::<T, Y, N, S, FUSED>::new(system, &run.node, run.dtau, rates, newton);
-    let sweeps = sweep::solve(&mut equations, &run.node.q, &run.convergence);
+    let sweeps = sweep::solve(&mut equations, &run.convergence);
     Solved {
         increment: equations.increment(),
         gains: equations.gains(),
