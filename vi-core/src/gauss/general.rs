@@ -258,10 +258,11 @@ where
         Some(self.evaluated)
     }
 
-    /// That of the velocities, from which positions follow.
+    /// That of the velocities, from which positions follow; of stiff steps that of the positions too, which move their forces much.
     #[inline(always)]
-    fn change(&self, _before: &Stages<N, S>, _after: &Stages<N, S>) -> f64 {
-        change(&self.evaluated, &self.velocity, &SVector::zeros()) * VELOCITY
+    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
+        let of_velocities = change(&self.evaluated, &self.velocity, &SVector::zeros()) * VELOCITY;
+        if self.newton.is_some() { change(before, after, &self.node.q).max(of_velocities) } else { of_velocities }
     }
 
     /// After a sweep velocities are what its forces lead to, and these are off by as much as velocities are then. A correction by Newton's iteration leaves the
