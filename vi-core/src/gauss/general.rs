@@ -60,10 +60,9 @@ where
         let mut equations =
             Self { system, node, h, inverse, newton, velocity, evaluated: velocity, force, numbers: PhantomData };
         if equations.system.form() == Form::Separable {
-            equations.velocity = equations.missing(&[[0.0; S]; N]);
-            if let Some(inverse) = &equations.inverse {
-                M::apply_to_rows(inverse, &mut equations.velocity);
-            }
+            let mut velocity = equations.missing(&[[0.0; S]; N]);
+            equations.solve(&mut velocity);
+            equations.velocity = velocity;
         }
         equations
     }

@@ -194,10 +194,12 @@ where
             return self.advance_with_care(None);
         }
         let Self { system, instructions, run, .. } = self;
-        let unsettled = if S::SIDE_BY_SIDE {
-            instructions.run(Solve { system, run, newton: None })
-        } else {
+        let unsettled = if !S::SIDE_BY_SIDE {
             run.swept(run.solved_plainly(&Rare::of(system), None))
+        } else if const { N > LOOPED } {
+            long_step(*instructions, Solve { system, run, newton: None })
+        } else {
+            instructions.run(Solve { system, run, newton: None })
         };
         if unsettled.is_none() { Ok(()) } else { self.advance_with_care(unsettled.as_ref()) }
     }
@@ -251,9 +253,14 @@ where
     /// The run after the next step of a run by Newton's iteration from its guess.
     fn solved_from(&self, run: &Run<N, STAGES>, newton: &Newton<N, STAGES>) -> Result<Run<N, STAGES>, StepError> {
         let Self { system, instructions, .. } = self;
-        let in_lanes = || instructions.run(Solve { system, run: &mut run.clone(), newton: Some(newton) });
-        let solved = if S::SIDE_BY_SIDE { in_lanes() } else { None };
-        let solved = solved.unwrap_or_else(|| run.solved_plainly(&Rare::of(system), Some(newton)));
+        // Where sweeps have equations of their own, or short ones, a copy of Newton's iteration is not worth its build: one serves all systems of N
+        // coordinates.
+        let side_by_side = if S::SIDE_BY_SIDE && const { N > LOOPED && !S::SEPARABLE } {
+            long_step(*instructions, Solve { system, run: &mut run.clone(), newton: Some(newton) })
+        } else {
+            None
+        };
+        let solved = side_by_side.unwrap_or_else(|| run.solved_plainly(&Rare::of(system), Some(newton)));
         let unsettled = || solved.sweeps.convergence.unsettled(run.node.t, run.h, newton.stiffness());
         let accepted = run.accepted(&Rare::of(&self.system), &solved, Some(newton));
         accepted.ok_or_else(|| lost_force(&self.system, &run.node, run.h).unwrap_or_else(unsettled))
@@ -435,8 +442,8 @@ impl<const N: usize, const S: usize> Solved<N, S> {
     }
 }
 
-/// The next step of a run, by the instructions of the processor: taken where sweeps solve it, else what they lead to, or Newton's iteration; none where
-/// equations are so short that Newton's iteration is that of all systems.
+/// The next step of a run, by the instructions of the processor: taken where sweeps solve it, else what they, or Newton's iteration, lead to. None, and
+/// nothing taken, where Newton's iteration is that of all systems.
 struct Solve<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     run: &'a mut Run<N, S>,
@@ -451,16 +458,28 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
         let Self { system, run, newton } = self;
         if const { N > LOOPED && (FUSED || WIDE) } {
             let lanes = system.convert::<Lanes<S, FUSED>>();
+            let newton = if const { Y::SEPARABLE } { None } else { newton };
             let solved = solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
             return if newton.is_some() { Some(solved) } else { run.swept(solved) };
         }
-        // A copy of Newton's iteration for short equations would not be much faster than the one for all systems of N coordinates.
         if newton.is_some() {
             return None;
         }
         let lane = system.convert::<Lane<FUSED>>();
         run.swept(solved::<Lane<FUSED>, _, _, N, S, FUSED>(&lane, system, run, None))
     }
+}
+
+/// The next step of a run, its equations long. Not inlined: sweeps and Newton's iteration take one copy for each set of instructions.
+#[inline(never)]
+fn long_step<Y, const N: usize, const S: usize>(
+    instructions: Instructions,
+    step: Solve<'_, Y, N, S>,
+) -> Option<Solved<N, S>>
+where
+    Y: Collocation<N> + Convertible<N>,
+{
+    instructions.run(step)
 }
 
 /// The next step of a run, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By sweeps, else by Newton's iteration.

@@ -16,6 +16,7 @@
 //! all eigenvalues side by side. It exists for whatever oscillates or is damped, however stiff: there K and B have no positive eigenvalues, and λ has a
 //! positive real part. It allocates once, when a run meets its first stiff step.
 
+use super::LOOPED;
 use super::modes::{Modal, Spectrum};
 use super::points::Rare;
 use super::stages::{Stages, product};
@@ -104,13 +105,13 @@ impl<const N: usize, const S: usize> Newton<N, S> {
                 self.inverse[row][column] = Modal::real(m[at]) + step * (c[at] - b[at]) + square * -k[at];
             }
         }
-        self.instructions.run(Invert { matrix: &mut self.inverse });
+        by_width::<N, _>(self.instructions, Invert { matrix: &mut self.inverse });
         self.linearization = Some(at);
     }
 
     /// The corrections of the velocities that make up for what is missing in the momenta.
     pub(super) fn correction(&self, missing: &Stages<N, S>) -> Stages<N, S> {
-        self.instructions.run(Correct { newton: self, missing })
+        by_width::<N, _>(self.instructions, Correct { newton: self, missing })
     }
 
     /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector, `E = [I 0; C M]` and `G = [0 I; K B]`.
@@ -138,6 +139,11 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         let stiffness = h.abs() * (length / f64::from(POWERS)).exp();
         if stiffness.is_nan() { f64::INFINITY } else { stiffness }
     }
+}
+
+/// A loop over the rows of N coordinates, by the instructions of the processor where there are many.
+fn by_width<const N: usize, L: Loop>(instructions: Instructions, of: L) -> L::Output {
+    if const { N > LOOPED } { instructions.run(of) } else { of.run::<{ cfg!(target_feature = "fma") }>() }
 }
 
 /// The inverse of a matrix, in its place, by elimination of rows and columns with partial pivoting; not finite where it is singular.

@@ -142,7 +142,7 @@ where
         change(before, after, &self.node.q)
     }
 
-    /// Momenta have h ω of it, the root of what a sweep leaves of it.
+    /// Momenta have h ω of it: not much less than all, where a sweep leaves (h ω)².
     #[inline(always)]
     fn passed_on(&self, _contraction: f64) -> f64 {
         1.0

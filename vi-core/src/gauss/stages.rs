@@ -209,7 +209,7 @@ pub(super) fn change<const N: usize, const S: usize>(
 
 /// The larger of two numbers.
 #[inline(always)]
-pub(super) fn larger(a: f64, b: f64) -> f64 {
+fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
