@@ -13,6 +13,12 @@ pub trait Loop {
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
+/// Runs a loop by what every processor of this architecture has: one copy, where a loop is not worth more.
+#[inline]
+pub fn by_baseline<L: Loop>(of: L) -> L::Output {
+    of.run::<{ cfg!(target_feature = "fma") }>()
+}
+
 /// The vector instructions that a loop is run by. There is no way to one that the processor does not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instructions(Set);
@@ -68,7 +74,7 @@ impl Instructions {
             of.run::<true>()
         }
         match self.0 {
-            Set::Baseline => of.run::<{ cfg!(target_feature = "fma") }>(),
+            Set::Baseline => by_baseline(of),
             // SAFETY: `Instructions::detected` saw that the processor has these instructions.
             #[cfg(target_arch = "x86_64")]
             Set::Avx2 => unsafe { avx2(of) },

@@ -69,7 +69,7 @@ use points::{Form, Points, Rare};
 pub use polynomial::Polynomial;
 use separable::Separable;
 pub use slots::Slots;
-use stages::{AtStages, Stages, constant_mass, extrapolated, mass, stage};
+use stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
 use sweep::{Convergence, Equations, Increment, Pause, Sweeps};
 use vi_dispatch::{Instructions, Loop};
 
@@ -389,15 +389,10 @@ impl<const N: usize, const S: usize> Run<N, S> {
     /// Whether what the stages leave of their equations is rounding.
     fn is_solved(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> bool {
         let Solved { sweeps, velocities, .. } = solved;
-        if solved.is_at_floor() || sweeps.are_given_up {
-            return solved.is_at_floor();
-        }
-        rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
+        let are_rounding = || rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref());
+        solved.is_at_floor() || !sweeps.are_given_up && are_rounding()
     }
 }
-
-/// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
-const LOOPED: usize = 3;
 
 /// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
 /// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
@@ -458,6 +453,7 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
         let Self { system, run, newton } = self;
         if const { N > LOOPED && (FUSED || WIDE) } {
             let lanes = system.convert::<Lanes<S, FUSED>>();
+            // Separable systems are not asked for Newton's iteration here: the compiler need not build it.
             let newton = if const { Y::SEPARABLE } { None } else { newton };
             let solved = solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
             return if newton.is_some() { Some(solved) } else { run.swept(solved) };

@@ -16,14 +16,13 @@
 //! all eigenvalues side by side. It exists for whatever oscillates or is damped, however stiff: there K and B have no positive eigenvalues, and λ has a
 //! positive real part. It allocates once, when a run meets its first stiff step.
 
-use super::LOOPED;
 use super::modes::{Modal, Spectrum};
 use super::points::Rare;
-use super::stages::{Stages, product};
+use super::stages::{LOOPED, Stages, product};
 use crate::derivatives::Jacobians;
 use crate::linear::Pivoted;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
-use vi_dispatch::{Instructions, Loop};
+use vi_dispatch::{Instructions, Loop, by_baseline};
 
 /// Where the equations of a step of length h are linearized.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +142,7 @@ impl<const N: usize, const S: usize> Newton<N, S> {
 
 /// A loop over the rows of N coordinates, by the instructions of the processor where there are many.
 fn by_width<const N: usize, L: Loop>(instructions: Instructions, of: L) -> L::Output {
-    if const { N > LOOPED } { instructions.run(of) } else { of.run::<{ cfg!(target_feature = "fma") }>() }
+    if const { N > LOOPED } { instructions.run(of) } else { by_baseline(of) }
 }
 
 /// The inverse of a matrix, in its place, by elimination of rows and columns with partial pivoting; not finite where it is singular.

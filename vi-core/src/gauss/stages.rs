@@ -12,6 +12,9 @@ use nalgebra::SVector;
 /// N vectors of S stages.
 pub(super) type Stages<const N: usize, const S: usize> = [[f64; S]; N];
 
+/// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
+pub(super) const LOOPED: usize = 3;
+
 /// A number by which stages are evaluated: one at a time, or all at once.
 pub(super) trait AtStages<const S: usize>: Real {
     /// Evaluations of all stages.

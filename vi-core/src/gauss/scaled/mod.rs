@@ -166,8 +166,7 @@ where
     fn is_solved(&self, solved: &Solved<N, STAGES>, after: &Run<N, STAGES>) -> bool {
         let Run { node, dtau, .. } = &self.run;
         let is_rounding = || rounding::are_solved(&self.system.convert::<Rounded>(), node, *dtau, solved);
-        let may_be_rounding = !solved.sweeps.are_given_up;
-        after.is_sound(&self.system) && (solved.is_at_floor() || may_be_rounding && is_rounding())
+        after.is_sound(&self.system) && (solved.is_at_floor() || !solved.sweeps.are_given_up && is_rounding())
     }
 
     /// Why a step was not solved.
