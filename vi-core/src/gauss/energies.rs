@@ -9,7 +9,7 @@
 //!
 //! less a number that is close to them: energies of stages differ from it by little, exactly, so that no sum of large terms is rounded.
 
-use super::general;
+use super::general::equations;
 use super::points::Rare;
 use super::stages::Stages;
 use super::sweep::Equations;
@@ -73,7 +73,7 @@ struct Interval<'a, const N: usize, const S: usize> {
 impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
     #[inline(always)]
     fn new(system: &Rare<'_, N>, node: &'a Node<N>, h: f64, stages: Stages<N, S>) -> Self {
-        let equations = general(system, node, h, stages);
+        let equations = equations(system, node, h, stages);
         Self { node, h, positions: equations.start(), velocities: equations.velocity() }
     }
 

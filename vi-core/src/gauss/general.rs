@@ -11,8 +11,8 @@
 //! It solves for V at once where L is quadratic in v. What V still changes is what is left of the equations: Q follows from V.
 
 use super::newton::Newton;
-use super::points::{Form, Points};
-use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, sum, times, weights};
+use super::points::{Form, Points, Rare};
+use super::stages::{AtStages, Stages, change, constant_mass, gathered, product, scaled, scatter, sum, times, weights};
 use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
 use crate::linear::Matrix;
@@ -36,6 +36,17 @@ pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     evaluated: Stages<N, S>,
     force: Stages<N, S>,
     numbers: PhantomData<T>,
+}
+
+/// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
+pub(super) fn equations<'a, const N: usize, const S: usize>(
+    system: &'a Rare<'a, N>,
+    node: &'a Node<N>,
+    h: f64,
+    stages: Stages<N, S>,
+) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
+    let mass = constant_mass::<N, f64, _>(system, node);
+    General::new(system, mass.as_ref(), node, h, stages, None)
 }
 
 impl<'a, T, Y, M, const N: usize, const S: usize, const FUSED: bool> General<'a, T, Y, M, N, S, FUSED>

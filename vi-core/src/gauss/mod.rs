@@ -18,6 +18,7 @@
 //! | `stages` | numbers of all stages side by side |
 //! | `separable`, `general` | the equations of the stages: forces of the position alone, and any system |
 //! | `sweep` | the solution, by sweeps over the stages until they no longer move |
+//! | `run`, `solve` | what is carried from step to step, and its step by the instructions of the processor |
 //! | `points` | a system as these equations see it, and as rare code does |
 //! | `newton` | else by simplified Newton iterations about the middle of the step |
 //! | `modes` | the basis in which these are small systems of equations |
@@ -44,9 +45,11 @@ mod pair;
 mod points;
 mod polynomial;
 mod rounding;
+mod run;
 pub mod scaled;
 mod separable;
 mod slots;
+mod solve;
 mod stages;
 mod sweep;
 mod tableau;
@@ -57,21 +60,18 @@ use crate::collocation::Collocation;
 use crate::error::StepError;
 use crate::fixed_step::check_step;
 use crate::node::Node;
-use crate::real::{Lane, Lanes};
 use crate::state::State;
 use crate::stepping::{Convertible, FixedStepping};
 use energies::energies;
-use general::General;
 pub use integrator::Motion;
-use nalgebra::SMatrix;
-use newton::{Linearization, Newton};
-use points::{Form, Points, Rare};
+use newton::Newton;
+use points::Rare;
 pub use polynomial::Polynomial;
-use separable::Separable;
+pub use run::{Checkpoint, Run, Stored};
 pub use slots::Slots;
-use stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
-use sweep::{Convergence, Equations, Increment, Pause, Sweeps};
-use vi_dispatch::{Instructions, Loop};
+use solve::{Solve, Solved, long_step, lost_force};
+use stages::LOOPED;
+use vi_dispatch::Instructions;
 
 /// Fixed steps of order 2 STAGES; see the [module](self).
 #[derive(Clone, Debug)]
@@ -82,32 +82,6 @@ pub struct Gauss<S, const N: usize, const STAGES: usize> {
     /// Made where the first step needs it.
     newton: Option<Box<Newton<N, STAGES>>>,
     failure: Option<StepError>,
-}
-
-/// Everything that a run of [`Gauss`] carries, to be stored and resumed bit for bit.
-pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Stored<N, STAGES>>;
-
-/// A run, and where the equations of its stiff steps are linearized.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Stored<const N: usize, const S: usize> {
-    run: Run<N, S>,
-    linearization: Option<Linearization<N>>,
-}
-
-/// What a run carries from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Run<const N: usize, const S: usize> {
-    node: Node<N>,
-    /// The node before the last step.
-    before: Node<N>,
-    h: f64,
-    /// Velocities at the stages of the last step, forces there of a separable system: a column a coordinate. Before the first
-    /// step those of the node.
-    stages: SMatrix<f64, S, N>,
-    convergence: Convergence,
-    pause: Pause,
 }
 
 impl<S, const N: usize, const STAGES: usize> Gauss<S, N, STAGES>
@@ -306,211 +280,6 @@ where
     pub fn iterations(&self) -> u32 {
         self.run.convergence.sweeps
     }
-}
-
-impl<const N: usize, const S: usize> Run<N, S> {
-    /// A run that begins at a node, the stages of its first step guessed constant.
-    fn new<Y: Collocation<N>>(system: &Y, node: Node<N>, h: f64) -> Result<Self, StepError> {
-        let flow = node.state().flow(system)?;
-        let start = if Y::SEPARABLE { flow.force } else { flow.v };
-        let stages = SMatrix::from_fn(|_, k| start[k]);
-        Ok(Self { node, before: node, h, stages, convergence: Convergence::NONE, pause: Pause::NONE })
-    }
-
-    /// Whether the step is known that led to the node: its stages mean nothing by other parameters.
-    fn has_step(&self) -> bool {
-        self.convergence.has_begun() && self.before != self.node
-    }
-
-    /// The run of a system with other parameters, for which the stages are a guess and no more.
-    fn with_other_parameters(self) -> Self {
-        Self { before: self.node, ..self }
-    }
-
-    /// Velocities at the stages of the next step, or forces there: the polynomials of the last one, further on.
-    #[inline(always)]
-    fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
-        if self.convergence.has_begun() { extrapolated::<N, S, FUSED>(&self.stages.data.0) } else { self.stages.data.0 }
-    }
-
-    /// Moves to the end of a step, after which sweeps are tried or not.
-    #[inline(always)]
-    fn take(&mut self, solved: &Solved<N, S>, pause: Pause) {
-        self.before = self.node;
-        self.node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
-        self.stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
-        self.convergence = solved.sweeps.convergence;
-        self.pause = pause;
-    }
-
-    /// Moves to the end of a step that sweeps solved to the rounding of its positions; else what they led to.
-    #[inline(always)]
-    fn swept(&mut self, solved: Solved<N, S>) -> Option<Solved<N, S>> {
-        let Increment { velocity, momentum } = &solved.increment;
-        if solved.is_at_floor() && self.node.stays_finite(self.h, velocity, momentum) {
-            self.take(&solved, Pause::NONE);
-            return None;
-        }
-        Some(solved)
-    }
-
-    /// The run after a step that sweeps, or Newton's iteration, solved to rounding; none where they did not.
-    fn accepted(&self, system: &Rare<'_, N>, solved: &Solved<N, S>, newton: Option<&Newton<N, S>>) -> Option<Self> {
-        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
-        let plain;
-        let solved = if solved.increment.is_finite() {
-            solved
-        } else {
-            plain = self.solved_plainly(system, newton);
-            &plain
-        };
-        let pause = if newton.is_some() { self.pause.after_newton() } else { Pause::NONE };
-        let mut run = *self;
-        run.take(solved, pause);
-        (run.node.is_finite() && self.is_solved(system, solved)).then_some(run)
-    }
-
-    /// The next step in plain numbers. Not inlined: one copy serves all systems of N coordinates.
-    #[inline(never)]
-    fn solved_plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
-        solved::<f64, _, _, N, S, false>(system, system, self, newton)
-    }
-
-    /// Linearizes the equations about the middle of the next step.
-    fn linearize(&self, system: &Rare<'_, N>, newton: &mut Newton<N, S>) {
-        let equations = general(system, &self.node, self.h, self.guess::<false>());
-        let middle = S / 2;
-        let q = stage(&equations.start(), middle);
-        let v = stage(&equations.velocity(), middle);
-        let t = self.node.t + 0.5 * self.h;
-        newton.linearize(system, Linearization { h: self.h, t, q, v, iterations: None });
-    }
-
-    /// Whether what the stages leave of their equations is rounding.
-    fn is_solved(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> bool {
-        let Solved { sweeps, velocities, .. } = solved;
-        let are_rounding = || rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref());
-        solved.is_at_floor() || !sweeps.are_given_up && are_rounding()
-    }
-}
-
-/// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
-/// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
-const WIDE: bool = !cfg!(target_arch = "x86_64");
-
-/// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
-fn general<'a, const N: usize, const S: usize>(
-    system: &'a Rare<'a, N>,
-    node: &'a Node<N>,
-    h: f64,
-    stages: Stages<N, S>,
-) -> General<'a, f64, Rare<'a, N>, SMatrix<f64, N, N>, N, S, false> {
-    let mass = constant_mass::<N, f64, _>(system, node);
-    General::new(system, mass.as_ref(), node, h, stages, None)
-}
-
-/// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or a part of L or f is not
-/// finite, which the system names. None where they can.
-#[cold]
-fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
-    let v = match node.state().velocity(system) {
-        Ok(v) => v,
-        Err(failure) => return Some(failure),
-    };
-    let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
-    let explained = lost.explained(system, node, h, &v);
-    matches!(explained, StepError::NonFinite { expression: Some(_), .. }).then_some(explained)
-}
-
-/// A solved step.
-struct Solved<const N: usize, const S: usize> {
-    increment: Increment<N>,
-    stages: Stages<N, S>,
-    velocities: Option<Stages<N, S>>,
-    sweeps: Sweeps<N, S>,
-}
-
-impl<const N: usize, const S: usize> Solved<N, S> {
-    /// Whether the stages are at the rounding of their positions.
-    fn is_at_floor(&self) -> bool {
-        self.sweeps.convergence.is_at_floor()
-    }
-}
-
-/// The next step of a run, by the instructions of the processor: taken where sweeps solve it, else what they, or Newton's iteration, lead to. None, and
-/// nothing taken, where Newton's iteration is that of all systems.
-struct Solve<'a, Y, const N: usize, const S: usize> {
-    system: &'a Y,
-    run: &'a mut Run<N, S>,
-    newton: Option<&'a Newton<N, S>>,
-}
-
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
-    type Output = Option<Solved<N, S>>;
-
-    #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Option<Solved<N, S>> {
-        let Self { system, run, newton } = self;
-        if const { N > LOOPED && (FUSED || WIDE) } {
-            let lanes = system.convert::<Lanes<S, FUSED>>();
-            // Separable systems are not asked for Newton's iteration here: the compiler need not build it.
-            let newton = if const { Y::SEPARABLE } { None } else { newton };
-            let solved = solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
-            return if newton.is_some() { Some(solved) } else { run.swept(solved) };
-        }
-        if newton.is_some() {
-            return None;
-        }
-        let lane = system.convert::<Lane<FUSED>>();
-        run.swept(solved::<Lane<FUSED>, _, _, N, S, FUSED>(&lane, system, run, None))
-    }
-}
-
-/// The next step of a run, its equations long. Not inlined: sweeps and Newton's iteration take one copy for each set of instructions.
-#[inline(never)]
-fn long_step<Y, const N: usize, const S: usize>(
-    instructions: Instructions,
-    step: Solve<'_, Y, N, S>,
-) -> Option<Solved<N, S>>
-where
-    Y: Collocation<N> + Convertible<N>,
-{
-    instructions.run(step)
-}
-
-/// The next step of a run, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By sweeps, else by Newton's iteration.
-#[inline(always)]
-fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
-    system: &Y,
-    plain: &P,
-    run: &Run<N, S>,
-    newton: Option<&Newton<N, S>>,
-) -> Solved<N, S>
-where
-    T: AtStages<S>,
-    Y: Points<N, T>,
-    P: Points<N, f64>,
-{
-    let Run { node, h, .. } = run;
-    // Of a known type the compiler sees one of the two. Newton's iteration corrects velocities: of stiff steps they are known better than forces.
-    let is_separable =
-        const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
-    if is_separable && newton.is_none() {
-        let mass = mass(plain, node);
-        let last = run.stages.data.0;
-        let are_last = run.convergence.has_begun();
-        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, *h, last, are_last), run)
-    } else {
-        let mass = constant_mass(plain, node);
-        let guess = run.guess::<FUSED>();
-        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, *h, guess, newton), run)
-    }
-}
-
-#[inline(always)]
-fn finished<const N: usize, const S: usize>(mut equations: impl Equations<N, S>, run: &Run<N, S>) -> Solved<N, S> {
-    let sweeps = sweep::solve(&mut equations, &run.convergence);
-    Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
 }
 
 impl<S, const N: usize, const STAGES: usize> Iterator for Gauss<S, N, STAGES>

@@ -10,11 +10,12 @@
 //! and the same of p with the forces. Of order S + 1 in the step, and of order 2S at its ends (Hairer, Lubich, Wanner, *Geometric Numerical Integration*,
 //! II.1.2 and II.1.3).
 
+use super::general::equations;
 use super::points::{Points, Rare};
+use super::run::Run;
 use super::stages::{Stages, set, stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
-use super::{Run, general};
 use crate::integrator::Path;
 use crate::state::State;
 use nalgebra::SVector;
@@ -33,7 +34,7 @@ pub struct Polynomial<const N: usize, const S: usize> {
 impl<const N: usize, const S: usize> Polynomial<N, S> {
     /// The motion over the last step of a run, which began at `start`.
     pub(super) fn of(system: &Rare<'_, N>, run: &Run<N, S>, start: State<N>) -> Self {
-        let equations = general(system, &run.before, run.h, run.stages.data.0);
+        let equations = equations(system, &run.before, run.h, run.stages.data.0);
         let x = equations.start();
         let velocity = equations.velocity();
         let mut force = [[0.0; S]; N];

@@ -17,11 +17,12 @@
 //! Where a force acts the sums alone are determined: how they part into slot and force is a convention, since the stages depend on f
 //! (Marsden and West, *Discrete mechanics and variational integrators*, section 3.2).
 
+use super::general::equations;
 use super::points::Rare;
+use super::run::Run;
 use super::stages::{stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
-use super::{Run, general};
 use crate::collocation::Collocation;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
@@ -61,7 +62,7 @@ impl<const N: usize> Slots<N> {
     pub(super) fn of<Y: Collocation<N> + Convertible<N>, const S: usize>(system: &Y, run: &Run<N, S>) -> Self {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
         let rare = Rare::of(system);
-        let equations = general(&rare, &run.before, run.h, run.stages.data.0);
+        let equations = equations(&rare, &run.before, run.h, run.stages.data.0);
         let x = equations.start();
         let velocities = equations.velocity();
         let zeros = SVector::zeros();

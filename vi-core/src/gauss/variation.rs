@@ -9,12 +9,13 @@
 //!
 //! one matrix of S N rows, factored once for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
+use super::Gauss;
+use super::general::equations;
 use super::newton::jacobians;
 use super::points::Rare;
 use super::stages::{stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
-use super::{Gauss, general};
 use crate::collocation::Collocation;
 use crate::derivatives::{Changes, Differentiable, Jacobians, TOGETHER, Variation, changes};
 use crate::error::StepError;
@@ -44,7 +45,7 @@ where
         let h = run.h;
         let singular = StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" };
         let rare = Rare::of(system);
-        let equations = general(&rare, before, h, run.stages.data.0);
+        let equations = equations(&rare, before, h, run.stages.data.0);
         let positions = equations.start();
         let velocities = equations.velocity();
         let stages: Vec<Stage<N>> = (0..STAGES)
