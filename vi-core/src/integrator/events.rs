@@ -68,50 +68,39 @@ pub struct Crossing<const N: usize> {
 /// The events of a run; see [`Integrator::events`].
 ///
 /// An item is a [`Crossing`], or the error of the step that fails: then the run is at its last good node, and the iterator ends.
-#[derive(Debug)]
-pub struct Events<'a, I, const N: usize> {
-    run: &'a mut I,
+pub struct Events<'a, const N: usize> {
+    run: Box<dyn Searched<N> + 'a>,
     wanted: &'a [Event<'a, N>],
     until: f64,
     /// Whether each function was positive, where that is known.
     signs: Vec<Option<bool>>,
-    /// The run after the step that is searched, and what was found in it: the last first.
-    ahead: Option<I>,
+    /// What was found in the step that was searched: the last first.
     found: Vec<Crossing<N>>,
     is_over: bool,
 }
 
-impl<'a, I: Integrator<N>, const N: usize> Events<'a, I, N> {
-    pub(super) fn new(run: &'a mut I, wanted: &'a [Event<'a, N>], until: f64) -> Self {
-        let signs = vec![None; wanted.len()];
-        Self { run, wanted, until, signs, ahead: None, found: Vec::new(), is_over: false }
+impl<'a, const N: usize> Events<'a, N> {
+    pub(super) fn new(run: &'a mut impl Integrator<N>, wanted: &'a [Event<'a, N>], until: f64) -> Self {
+        let run = Box::new(Ahead { run, ahead: None });
+        Self { run, wanted, until, signs: vec![None; wanted.len()], found: Vec::new(), is_over: false }
     }
 
     /// The next event, or none before the end.
     fn advance(&mut self) -> Result<Option<Crossing<N>>, StepError> {
         self.run.check_ahead(self.until)?;
-        let direction = self.run.h().signum();
         while self.found.is_empty() {
-            if let Some(ahead) = self.ahead.take() {
-                if ahead.time_to(self.until) * direction < 0.0 {
-                    self.run.end_at(self.until)?;
-                } else {
-                    *self.run = ahead;
-                }
-            }
-            if self.run.time_to(self.until) == 0.0 {
-                self.run.set_time(self.until);
+            let is_at_end = self.run.take(self.until)?;
+            if is_at_end {
                 return Ok(None);
             }
-            let ahead = self.run.after_a_step()?;
-            self.search(&ahead)?;
-            self.ahead = Some(ahead);
+            let step = self.run.look_ahead(self.until)?;
+            self.found = step.crossings(&*self.run, self.wanted, &mut self.signs)?;
         }
         Ok(self.found.pop())
     }
 }
 
-impl<I: Integrator<N>, const N: usize> Iterator for Events<'_, I, N> {
+impl<const N: usize> Iterator for Events<'_, N> {
     type Item = Result<Crossing<N>, StepError>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -124,25 +113,84 @@ impl<I: Integrator<N>, const N: usize> Iterator for Events<'_, I, N> {
     }
 }
 
-impl<I: Integrator<N>, const N: usize> Events<'_, I, N> {
-    /// Finds the events of the step that leads from the run to `ahead`.
-    fn search(&mut self, ahead: &I) -> Result<(), StepError> {
-        let run = &*self.run;
-        let start = run.state();
-        let path = ahead.path(&start)?.since_start();
-        let h = run.time_to(ahead.t()) + ahead.node().t_low;
-        let left = run.time_to(self.until);
-        let is_last = ahead.time_to(self.until) * h.signum() <= 0.0;
-        let until = self.until;
-        let reached = |event: &Event<'_, N>, length: f64, until: f64| reached(run, event, length, until);
-        let step = Step { t: start.t, h, left, is_last, until, path: &path, reached: &reached };
-        self.found = step.crossings(self.wanted, &mut self.signs)?;
-        Ok(())
+impl<const N: usize> fmt::Debug for Events<'_, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Events").field("until", &self.until).field("found", &self.found).finish_non_exhaustive()
     }
 }
 
-/// A step that is searched. Its integrator is erased, so that the search is compiled once, and not for each integrator of each system.
-struct Step<'a, const N: usize> {
+/// A run that is searched, its integrator erased: so the search is compiled once, and not for each integrator of each system.
+trait Searched<const N: usize> {
+    /// Whether the run can go on to the time `until`.
+    fn check_ahead(&self, until: f64) -> Result<(), StepError>;
+    /// Takes the step that was looked at, which ends at `until` where it led beyond. Whether the run is there.
+    fn take(&mut self, until: f64) -> Result<bool, StepError>;
+    /// The step after the node of the run.
+    fn look_ahead(&mut self, until: f64) -> Result<Step<N>, StepError>;
+    /// The end of the step of a length, or of the one that ends at `until` if that is shorter.
+    fn reached(&self, length: f64, until: f64) -> Result<Reached<N>, StepError>;
+}
+
+/// A run, and the run after its next step.
+struct Ahead<'a, I> {
+    run: &'a mut I,
+    ahead: Option<I>,
+}
+
+impl<I: Integrator<N>, const N: usize> Searched<N> for Ahead<'_, I> {
+    fn check_ahead(&self, until: f64) -> Result<(), StepError> {
+        self.run.check_ahead(until)
+    }
+
+    fn take(&mut self, until: f64) -> Result<bool, StepError> {
+        if let Some(ahead) = self.ahead.take() {
+            let is_beyond = ahead.time_to(until) * self.run.h().signum() < 0.0;
+            if is_beyond {
+                self.run.end_at(until)?;
+            } else {
+                *self.run = ahead;
+            }
+        }
+        let is_at_end = self.run.time_to(until) == 0.0;
+        if is_at_end {
+            self.run.set_time(until);
+        }
+        Ok(is_at_end)
+    }
+
+    fn look_ahead(&mut self, until: f64) -> Result<Step<N>, StepError> {
+        let start = self.run.state();
+        let ahead = self.ahead.insert(self.run.after_a_step()?);
+        let path = Box::new(ahead.path(&start)?.since_start());
+        let h = self.run.time_to(ahead.t()) + ahead.node().t_low;
+        let left = self.run.time_to(until);
+        let is_last = ahead.time_to(until) * h.signum() <= 0.0;
+        Ok(Step { t: start.t, h, left, is_last, until, path })
+    }
+
+    fn reached(&self, length: f64, until: f64) -> Result<Reached<N>, StepError> {
+        let mut aside = self.run.clone();
+        let left = self.run.time_to(until);
+        let length = if length.abs() < left.abs() { length } else { left };
+        if length.to_bits() == left.to_bits() {
+            aside.end_at(until)?;
+        } else if length.is_normal() {
+            // A length below the smallest of a step is none.
+            aside.step_of(length)?;
+        }
+        Ok(Reached { length, state: aside.state(), v: aside.velocity()? })
+    }
+}
+
+/// The end of a step from the node before an event.
+struct Reached<const N: usize> {
+    length: f64,
+    state: State<N>,
+    v: SVector<f64, N>,
+}
+
+/// A step that is searched.
+struct Step<const N: usize> {
     /// Time of the node before it.
     t: f64,
     h: f64,
@@ -151,14 +199,17 @@ struct Step<'a, const N: usize> {
     is_last: bool,
     until: f64,
     /// The motion over it, by the time since its start.
-    path: &'a dyn Path<N>,
-    /// The end of a step of a length, or of the one that ends at a time if that is shorter.
-    reached: &'a dyn Fn(&Event<'_, N>, f64, f64) -> Result<Reached<N>, StepError>,
+    path: Box<dyn Path<N>>,
 }
 
-impl<const N: usize> Step<'_, N> {
+impl<const N: usize> Step<N> {
     /// The crossings of it, the last first; `signs` go on to its end.
-    fn crossings(&self, wanted: &[Event<'_, N>], signs: &mut [Option<bool>]) -> Result<Vec<Crossing<N>>, StepError> {
+    fn crossings(
+        &self,
+        run: &dyn Searched<N>,
+        wanted: &[Event<'_, N>],
+        signs: &mut [Option<bool>],
+    ) -> Result<Vec<Crossing<N>>, StepError> {
         let &Self { h, left, .. } = self;
         let mut found = Vec::new();
         for (index, (event, sign)) in wanted.iter().zip(signs).enumerate() {
@@ -168,8 +219,8 @@ impl<const N: usize> Step<'_, N> {
                 event.value(&State { t: self.t + passed, ..state }, &self.path.velocity(passed))
             };
             let by_steps: &dyn Fn(f64) -> Result<Sample, StepError> = &|part| {
-                let value = (self.reached)(event, part * h, f64::INFINITY.copysign(h))?.value;
-                Ok(Sample { part, value })
+                let Reached { state, v, .. } = run.reached(part * h, f64::INFINITY.copysign(h))?;
+                Ok(Sample { part, value: event.value(&state, &v)? })
             };
             // Where a search begins and ends, signs are those of steps: velocities of a path are off there, and the search before or after has another path.
             if sign.is_none() {
@@ -186,7 +237,9 @@ impl<const N: usize> Step<'_, N> {
                 *sign = Some(change.is_rising);
                 let length = part * h;
                 if event.admits(change.is_rising) && (length - left) * h.signum() <= START * h.abs() {
-                    let Reached { state, v, length, .. } = (self.reached)(event, length, self.until)?;
+                    let Reached { state, v, length } = run.reached(length, self.until)?;
+                    // Where it is not finite there is no event.
+                    event.value(&state, &v)?;
                     found.push(Crossing { event: index, is_rising: change.is_rising, state, v, length });
                 }
             }
@@ -212,34 +265,4 @@ impl<const N: usize> Event<'_, N> {
             Direction::Both => true,
         }
     }
-}
-
-/// The end of a step from the node before an event.
-struct Reached<const N: usize> {
-    length: f64,
-    state: State<N>,
-    v: SVector<f64, N>,
-    value: f64,
-}
-
-/// The end of the step of a length, or of the one that ends at `until` if that is shorter.
-fn reached<I: Integrator<N>, const N: usize>(
-    run: &I,
-    event: &Event<'_, N>,
-    length: f64,
-    until: f64,
-) -> Result<Reached<N>, StepError> {
-    let mut aside = run.clone();
-    let left = run.time_to(until);
-    let length = if length.abs() < left.abs() { length } else { left };
-    if length.to_bits() == left.to_bits() {
-        aside.end_at(until)?;
-    } else if length.is_normal() {
-        // A length below the smallest of a step is none.
-        aside.step_of(length)?;
-    }
-    let state = aside.state();
-    let v = aside.velocity()?;
-    let value = event.value(&state, &v)?;
-    Ok(Reached { length, state, v, value })
 }

@@ -81,7 +81,7 @@ pub trait Integrator<const N: usize>: Clone {
     /// The system that moves.
     type System: Lagrangian<N> + Copy;
     /// The motion between the nodes of a step.
-    type Path: Path<N>;
+    type Path: Path<N> + 'static;
     /// Everything that a run carries, with the name and the parameters of the system.
     type Checkpoint;
 
@@ -219,7 +219,7 @@ pub trait Integrator<const N: usize>: Clone {
 
     /// The events up to the time `until`, in their order: an iterator, which takes steps as it needs them. The run keeps its own steps, but for the last, which ends
     /// at `until`.
-    fn events<'a>(&'a mut self, events: &'a [Event<'a, N>], until: f64) -> Events<'a, Self, N> {
+    fn events<'a>(&'a mut self, events: &'a [Event<'a, N>], until: f64) -> Events<'a, N> {
         Events::new(self, events, until)
     }
 
