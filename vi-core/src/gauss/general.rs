@@ -12,9 +12,12 @@
 
 use super::newton::Newton;
 use super::points::{Form, Points, Rare};
-use super::stages::{AtStages, Stages, change, constant_mass, gathered, product, scaled, scatter, sum, times, weights};
+use super::stages::{
+    AtStages, Stages, change, constant_mass, gathered, maximum, product, scaled, scatter, sum, times, weights,
+};
 use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
+use crate::collocation::Point;
 use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::Lane;
@@ -35,6 +38,9 @@ pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     /// Velocities and forces at which the equations were evaluated last.
     evaluated: Stages<N, S>,
     force: Stages<N, S>,
+    /// The largest `Σ_l |M⁻¹_kl P_l|` of the stages, where the mass matrix varies: where velocities are less, these terms cancel, and leave their rounding.
+    /// Zero where M is constant, and where it is not finite.
+    terms: SVector<f64, N>,
     numbers: PhantomData<T>,
 }
 
@@ -68,8 +74,19 @@ where
     ) -> Self {
         let inverse = mass.map(Matrix::inverse);
         let [velocity, force] = [guess; 2];
-        let mut equations =
-            Self { system, node, h, inverse, newton, velocity, evaluated: velocity, force, numbers: PhantomData };
+        let terms = SVector::zeros();
+        let mut equations = Self {
+            system,
+            node,
+            h,
+            inverse,
+            newton,
+            velocity,
+            evaluated: velocity,
+            force,
+            terms,
+            numbers: PhantomData,
+        };
         if equations.system.form() == Form::Separable {
             let mut velocity = equations.missing(&[[0.0; S]; N]);
             equations.solve(&mut velocity);
@@ -127,7 +144,7 @@ where
         }
     }
 
-    /// Evaluates the equations at a stage, writes L_q + f and L_v, and returns the mass matrix.
+    /// Evaluates the equations at a stage, and writes L_q + f and L_v.
     #[inline(always)]
     fn evaluate_stage(
         &self,
@@ -136,12 +153,12 @@ where
         velocity: &Stages<N, S>,
         force: &mut Stages<N, S>,
         momentum: &mut Stages<N, S>,
-    ) -> Y::Mass {
+    ) -> Point<N, T, Y::Mass> {
         let t = T::of(&times::<N, S, FUSED>(self.node, self.h), i);
         let point = self.system.at(t, &gathered(x, i), &gathered(velocity, i));
         scatter(force, i, &point.force);
         scatter(momentum, i, &point.momentum);
-        point.mass
+        point
     }
 
     /// Evaluates the equations at the positions x, and returns what is missing in the momenta.
@@ -168,17 +185,25 @@ where
         let mut force = [[0.0; S]; N];
         let mut momentum = [[0.0; S]; N];
         let mut inverse = [[[0.0; S]; N]; N];
+        let mut terms = [[0.0; S]; N];
         for i in 0..T::EVALUATIONS {
-            let mass = self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
-            let columns = mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
+            let point = self.evaluate_stage(i, &x, &velocity, &mut force, &mut momentum);
+            let columns = point.mass.solve_unchecked(&SMatrix::<T, N, N>::identity());
             for k in 0..N {
+                let mut sum = T::zero();
                 for l in 0..N {
                     columns[(k, l)].put(&mut inverse[k][l], i);
+                    sum += (columns[(k, l)] * point.momentum[l]).abs();
                 }
+                sum.put(&mut terms[k], i);
             }
         }
         self.evaluated = velocity;
         self.force = force;
+        for k in 0..N {
+            let largest = maximum(&terms[k]);
+            self.terms[k] = if largest < f64::INFINITY { largest } else { 0.0 };
+        }
         (self.missing(&momentum), inverse)
     }
 
@@ -268,10 +293,10 @@ where
         Some(self.evaluated)
     }
 
-    /// That of the velocities, from which positions follow; of stiff steps that of the positions too, which move their forces much.
+    /// That of the velocities, in roundings of what they are the sums of, from which positions follow; of stiff steps that of the positions too, which move their forces much.
     #[inline(always)]
     fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
-        let of_velocities = change(&self.evaluated, &self.velocity, &SVector::zeros()) * VELOCITY;
+        let of_velocities = change(&self.evaluated, &self.velocity, &self.terms) * VELOCITY;
         if self.newton.is_some() { change(before, after, &self.node.q).max(of_velocities) } else { of_velocities }
     }
 

@@ -256,7 +256,7 @@ where
     }
 
     /// What the stages of the last step leave of their equations: in roundings of the coordinates where forces depend on them alone, else in sixteens of
-    /// roundings of the velocities. Zero before the first step.
+    /// roundings of the velocities, or of the terms of `M⁻¹ p` where M varies. Zero before the first step.
     pub fn residual(&self) -> f64 {
         self.run.convergence.change
     }

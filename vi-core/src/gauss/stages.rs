@@ -218,7 +218,7 @@ fn larger(a: f64, b: f64) -> f64 {
 
 /// The largest of W numbers that are not negative.
 #[inline(always)]
-fn maximum<const W: usize>(of: &[f64; W]) -> f64 {
+pub(super) fn maximum<const W: usize>(of: &[f64; W]) -> f64 {
     by_pairs(of, larger)
 }
 

@@ -4,8 +4,8 @@
 //!
 //! ```text
 //! sweep      x' = what the equations give at the forces, masses and momenta of x
-//! accept x   where |x' − x| ≤ 4 ε |q|, or |v' − v| ≤ 64 ε |v| where positions follow from velocities, the largest on the way of each
-//!            coordinate, and a step from x has a thousandth of a rounding of the error that sweeps before left
+//! accept x   where |x' − x| ≤ 4 ε |q|, or |v' − v| ≤ 64 ε Σ |M⁻¹ p| where positions follow from velocities, the largest on the way of
+//!            each coordinate, and a step from x has a thousandth of a rounding of the error that sweeps before left
 //! ```
 //!
 //! The change from x to x' is what x leaves of its equations: it is measured at the very x whose forces the step uses.
@@ -30,7 +30,7 @@ const FAR: f64 = 1e3;
 const NOISE: f64 = 64.0;
 /// Sweeps without a smaller change, after which no further one comes closer.
 const STALLS: u32 = 4;
-/// Part of a rounding of q that a rounding of v counts as: velocities are solved for by the mass matrix, and carry its condition.
+/// Part of a rounding of q that a rounding of the terms of v counts as: velocities are solved for by the mass matrix.
 pub(super) const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q that a step may leave of the error of its stages.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
@@ -108,7 +108,7 @@ impl Pause {
 pub(super) struct Convergence {
     /// How many there were.
     pub(super) sweeps: u32,
-    /// The last change, in roundings of q, or in sixteens of those of v.
+    /// The last change, in roundings of q, or in sixteens of those of the terms of v.
     pub(super) change: f64,
     /// The ratio of a change to the one before, the last that stood out of rounding.
     pub(super) contraction: f64,
