@@ -1,7 +1,5 @@
 //! The macro `lagrangian!`: a mechanical system becomes its variational integrators at build time.
 
-mod file;
-
 use proc_macro::TokenStream;
 
 /// Turns a mechanical system into its variational integrators.
@@ -13,5 +11,5 @@ use proc_macro::TokenStream;
 /// Where the variable `VI_EXPAND_DIR` is set while building, the expansion is written into that folder too.
 #[proc_macro]
 pub fn lagrangian(input: TokenStream) -> TokenStream {
-    file::expand(input.into()).into()
+    vi_codegen::file::expand(input.into()).into()
 }

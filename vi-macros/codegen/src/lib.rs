@@ -13,6 +13,7 @@
 mod derived;
 pub mod discrete;
 pub mod emit;
+pub mod file;
 pub mod found;
 mod habits;
 #[cfg(feature = "inspect")]

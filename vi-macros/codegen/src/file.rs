@@ -3,22 +3,24 @@
 //! In: the tokens of a `lagrangian!`. Out: its expansion, and a line that makes cargo build again when the variable
 //! changes. A system with mistakes is not written; a file that cannot be written is a compile error with the reason.
 
+use crate::pretty;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::env;
 use std::path::Path;
 
 /// Expands a system, and writes the expansion where it is wanted.
-pub(crate) fn expand(tokens: TokenStream) -> TokenStream {
+#[must_use]
+pub fn expand(tokens: TokenStream) -> TokenStream {
     let folder = env::var_os("VI_EXPAND_DIR").filter(|folder| !folder.is_empty());
     expand_into(tokens, folder.as_ref().map(Path::new))
 }
 
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
     // A system with mistakes is its errors, and no file.
-    let (items, error) = match vi_codegen::compile(tokens) {
+    let (items, error) = match crate::compile(tokens) {
         Ok(derivations) => {
-            let items = vi_codegen::items(&derivations);
+            let items = crate::items(&derivations);
             let name = derivations.own.model.name.to_string();
             let written = folder.map_or(Ok(()), |folder| write(&name, items.clone(), folder));
             (items, written.err().map(|reason| quote!(::core::compile_error! { #reason })))
@@ -33,8 +35,8 @@ fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
 }
 
 fn write(name: &str, items: TokenStream, folder: &Path) -> Result<(), String> {
-    let text = vi_codegen::pretty::text(items).map_err(|error| error.to_string())?;
-    match vi_codegen::pretty::write(folder, name, &text) {
+    let text = pretty::text(items).map_err(|error| error.to_string())?;
+    match pretty::write(folder, name, &text) {
         Ok(_) => Ok(()),
         Err(error) => Err(format!(
             "cannot write the expansion of `{name}` into `{}`: {error}\n\
