@@ -14,7 +14,7 @@ import heyoka as hy
 import numpy as np
 
 REPETITIONS = 15
-TOLERANCES = [10.0**-k for k in range(3, 17)]
+TOLERANCES = [10.0 ** (-0.5 * k) for k in range(6, 33)]
 STEPS = 4000  # usual steps of the command, up to the end of a run
 PARTS = 256  # of the time, at whose ends the largest numbers are looked for
 

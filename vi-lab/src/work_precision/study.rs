@@ -16,12 +16,12 @@ use vi_runs::system::System;
 
 /// Usual steps up to the end of the runs whose errors are measured.
 const STEPS: f64 = 4000.0;
-/// Steps of a ladder run from this many times the usual length, in powers of √2, to the [`finest`].
-const COARSEST: i32 = 6;
+/// Steps of a ladder run from so many doublings of the usual one to the [`finest`].
+const COARSEST: i32 = 3;
 /// How often each run is timed.
 const ROUNDS: u32 = 7;
-/// Tolerances of DOP853, as powers of ten.
-const TOLERANCES: core::ops::RangeInclusive<i32> = -14..=-3;
+/// Tolerances of DOP853, as powers of √10: by each its steps change by a seventh.
+const TOLERANCES: core::ops::RangeInclusive<i32> = -28..=-6;
 
 /// What was found.
 #[derive(Clone, Debug)]
@@ -78,21 +78,28 @@ impl Findings {
     }
 }
 
-/// Finest step of a ladder, as a power of √2 below the usual one: steps of many degrees of freedom take long.
+/// Halvings of the usual step to the finest one of a ladder: steps of many degrees of freedom take long.
 fn finest(coordinates: usize, quick: bool) -> i32 {
     let doublings = i32::try_from(coordinates.ilog2()).unwrap_or(0);
-    if quick { 2 } else { (10 - 2 * doublings).max(2) }
+    if quick { 1 } else { (5 - doublings).max(1) }
+}
+
+/// Rungs of a ladder from one step to half of it. Errors of Gauss steps change by up to 60 000 there: with two rungs the least time of an error would be off by
+/// two fifths.
+fn rungs(method: Method) -> i32 {
+    if matches!(method, Method::Gauss(_)) { 4 } else { 2 }
 }
 
 /// The settings of a method, coarse to fine. Methods that divide a step into parts take as much longer ones.
 fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
     if method == Method::Rival {
-        return TOLERANCES.rev().map(|power| 10_f64.powi(power)).collect();
+        return TOLERANCES.rev().map(|power| 10_f64.powf(0.5 * f64::from(power))).collect();
     }
     #[allow(clippy::cast_precision_loss)] // at most 32
     let parts = method.parts() as f64;
-    (-COARSEST..=finest)
-        .map(|power| until / (STEPS * core::f64::consts::SQRT_2.powi(power) / parts).round().max(1.0))
+    let rungs = rungs(method);
+    (-COARSEST * rungs..=finest * rungs)
+        .map(|rung| until / (STEPS * (f64::from(rung) / f64::from(rungs)).exp2() / parts).round().max(1.0))
         .collect()
 }
 
@@ -135,10 +142,10 @@ pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> R
 
 /// Runs that [`findings`] makes, for a bar.
 pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
-    let ladder = u64::try_from(COARSEST + finest(entry.q.len(), quick) + 1).unwrap_or(1);
+    let finest = finest(entry.q.len(), quick);
+    let settings: usize = Method::ALL.into_iter().map(|method| settings(method, entry.h, finest).len()).sum();
     let rounds = if quick { 1 } else { u64::from(ROUNDS) };
-    let methods = Method::ALL.len() as u64;
-    (1 + rounds) * ((methods - 1) * ladder + 12) + methods + 2
+    (1 + rounds) * settings as u64 + Method::ALL.len() as u64 + 2
 }
 
 /// Error and evaluations of one run; its times are still to be taken.
@@ -172,17 +179,19 @@ fn time(system: &dyn System, start: &PhasePoint, end: f64, runs: &mut [Run], rou
     }
 }
 
-/// The order at which errors fall with the step: the slope over the finest steps whose error stands well above `floor`;
-/// none where fewer than three do.
+/// The order at which errors fall with the step: the slope over the finest steps whose error stands well above `floor`, those up to [`FITTED`] times the finest of them;
+/// none where fewer than four are.
 pub(super) fn fitted_order(points: impl Iterator<Item = (f64, Point)>, floor: f64) -> Option<f64> {
     let clear: Vec<(f64, f64)> =
         points.map(|(h, point)| (h, point.error)).filter(|(_, error)| (30.0 * floor..1e-2).contains(error)).collect();
-    let finest = clear.get(clear.len().checked_sub(FITTED)?..)?;
-    Some(order(finest))
+    let &(finest, _) = clear.last()?;
+    let first = clear.iter().position(|&(h, _)| h <= FITTED * finest)?;
+    let fitted = &clear[first..];
+    (fitted.len() >= 4).then(|| order(fitted))
 }
 
-/// Points that an order is fitted to: a factor of 2.8 in the step.
-const FITTED: usize = 4;
+/// Steps over which an order is fitted, the longest one over the shortest: three rungs of two to a doubling, which are 2.83 but for the whole number of steps.
+const FITTED: f64 = 2.9;
 
 #[cfg(test)]
 mod tests {
