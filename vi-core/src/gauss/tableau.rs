@@ -54,27 +54,19 @@ impl<const S: usize> Tableau<S> {
         let mut b = [Pair::ZERO; S];
         let mut i = 0;
         while i < S {
-            x[i] = node(S, i);
+            // The nodes lie as mirror images about the middle.
+            x[i] = if 2 * i < S { node(S, i) } else { Pair::ZERO.minus(x[S - 1 - i]) };
             c[i] = Pair::ONE.plus(x[i]).times(HALF);
             b[i] = weight(S, x[i]);
             i += 1;
         }
-        let mut first = [[Pair::ZERO; S]; S];
-        let mut next = [[Pair::ZERO; S]; S];
-        let mut j = 0;
-        while j < S {
-            i = 0;
-            while i < S {
-                first[j][i] = integral(S, x[i], x[j]);
-                next[j][i] = basis(S, x[i].plus(Pair::new(2.0)), x[j]);
-                i += 1;
-            }
-            j += 1;
-        }
+        let legendre = polynomials(&x);
+        let first = sums(&legendre, &integrals(&x, &legendre), S);
+        let next = sums(&legendre, &beyond(&x), DEGREE + 1);
         let second = product(&first, &b, &first);
         let ahead = product(&second, &b, &next);
         let rounded = Self::rounded(&c, &b, &first, &second);
-        Self { next: weighted(&next, &b), ahead: nearest(&ahead), legendre: polynomials(&x), ..rounded }
+        Self { next: nearest(&scaled(&next, &b)), ahead: nearest(&ahead), legendre: nearest(&legendre), ..rounded }
     }
 
     /// Rounded so that the conditions of the [module](self) hold exactly: sums and differences of multiples of 2⁻⁵³ below 1 are exact.
@@ -104,15 +96,15 @@ impl<const S: usize> Tableau<S> {
 
 const HALF: Pair = Pair::new(0.5);
 
-/// The polynomials P_k, k = 0 … S − 1, at the nodes.
-const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[f64; S]; S] {
-    let mut values = [[0.0; S]; S];
+/// The polynomials P_k, k = 0 … S − 1, at x: a row each.
+const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
+    let mut values = [[Pair::ZERO; S]; S];
     let mut i = 0;
     while i < S {
         let mut last = [Pair::ONE, x[i]];
         let mut k = 0;
         while k < S {
-            values[k][i] = last[0].high;
+            values[k][i] = last[0];
             last = [last[1], following(k + 1, x[i], last)];
             k += 1;
         }
@@ -121,17 +113,75 @@ const fn polynomials<const S: usize>(x: &[Pair; S]) -> [[f64; S]; S] {
     values
 }
 
+/// `(2k + 1) ∫_0^c P_k = (P_{k+1} − P_{k−1})/2` up to each node x of c, from the polynomials there: a row each.
+const fn integrals<const S: usize>(x: &[Pair; S], legendre: &[[Pair; S]; S]) -> [[Pair; S]; S] {
+    let mut integrals = [[Pair::ZERO; S]; S];
+    let mut i = 0;
+    while i < S {
+        integrals[0][i] = Pair::ONE.plus(x[i]).times(HALF);
+        let mut k = 1;
+        while k < S {
+            let before = legendre[k - 1][i];
+            let after = following(k, x[i], [before, legendre[k][i]]);
+            integrals[k][i] = after.minus(before).times(HALF);
+            k += 1;
+        }
+        i += 1;
+    }
+    integrals
+}
+
+/// `(2k + 1) P_k` at the nodes of the next step: a row each.
+const fn beyond<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
+    let mut next = *x;
+    let mut i = 0;
+    while i < S {
+        next[i] = x[i].plus(Pair::new(2.0));
+        i += 1;
+    }
+    let mut values = polynomials(&next);
+    let mut k = 0;
+    while k < S {
+        i = 0;
+        while i < S {
+            values[k][i] = Pair::new(real(2 * k + 1)).times(values[k][i]);
+            i += 1;
+        }
+        k += 1;
+    }
+    values
+}
+
+/// `Σ_k P_k(x_j) rows_ki`, of so many k: with `(2k + 1) P_k` for a row it is `l_j / b_j`, without its terms of higher degrees, and its integral with the integral of that.
+const fn sums<const S: usize>(legendre: &[[Pair; S]; S], rows: &[[Pair; S]; S], terms: usize) -> [[Pair; S]; S] {
+    let mut sums = [[Pair::ZERO; S]; S];
+    let mut j = 0;
+    while j < S {
+        let mut i = 0;
+        while i < S {
+            let mut k = 0;
+            while k < S && k < terms {
+                sums[j][i] = sums[j][i].plus(legendre[k][j].times(rows[k][i]));
+                k += 1;
+            }
+            i += 1;
+        }
+        j += 1;
+    }
+    sums
+}
+
 /// `Σ_k left_ik b_k right_kj`: `(A²)_ij / b_j` where both are `a_ij / b_j`.
 const fn product<const S: usize>(left: &[[Pair; S]; S], b: &[Pair; S], right: &[[Pair; S]; S]) -> [[Pair; S]; S] {
     let mut product = [[Pair::ZERO; S]; S];
+    let left = scaled(left, b);
     let mut j = 0;
     while j < S {
         let mut i = 0;
         while i < S {
             let mut k = 0;
             while k < S {
-                let term = left[k][i].times(b[k]).times(right[j][k]);
-                product[j][i] = product[j][i].plus(term);
+                product[j][i] = product[j][i].plus(left[k][i].times(right[j][k]));
                 k += 1;
             }
             i += 1;
@@ -141,19 +191,19 @@ const fn product<const S: usize>(left: &[[Pair; S]; S], b: &[Pair; S], right: &[
     product
 }
 
-/// `b_j matrix_ij`, rounded.
-const fn weighted<const S: usize>(matrix: &[[Pair; S]; S], b: &[Pair; S]) -> [[f64; S]; S] {
-    let mut weighted = *matrix;
+/// `b_j matrix_ij`.
+const fn scaled<const S: usize>(matrix: &[[Pair; S]; S], b: &[Pair; S]) -> [[Pair; S]; S] {
+    let mut scaled = *matrix;
     let mut j = 0;
     while j < S {
         let mut i = 0;
         while i < S {
-            weighted[j][i] = b[j].times(matrix[j][i]);
+            scaled[j][i] = matrix[j][i].times(b[j]);
             i += 1;
         }
         j += 1;
     }
-    nearest(&weighted)
+    scaled
 }
 
 /// A matrix, rounded.
@@ -188,7 +238,7 @@ const fn node(s: usize, i: usize) -> Pair {
     let mut x = Pair::new(-cosine(angle));
     let mut k = 0;
     // The distance is squared each time: 1e-3 at the start.
-    while k < 6 {
+    while k < 5 {
         let (value, slope) = legendre(s, x);
         x = x.minus(value.over(slope));
         k += 1;
@@ -220,37 +270,6 @@ const fn following(k: usize, x: Pair, last: [Pair; 2]) -> Pair {
     let first = Pair::new(real(2 * k + 1)).times(x.times(last[1]));
     let second = Pair::new(real(k)).times(last[0]);
     first.minus(second).over(Pair::new(real(k + 1)))
-}
-
-/// `(1/b_j) ∫_0^c l_j` at the node x of c, of node y of l_j: `c + Σ_k P_k(y) (P_{k+1}(x) − P_{k−1}(x)) / 2`, k = 1 … s − 1.
-const fn integral(s: usize, x: Pair, y: Pair) -> Pair {
-    let mut sum = Pair::ONE.plus(x).times(HALF);
-    let mut at_x = [Pair::ONE, x];
-    let mut at_y = [Pair::ONE, y];
-    let mut k = 1;
-    while k < s {
-        let after = following(k, x, at_x);
-        sum = sum.plus(at_y[1].times(after.minus(at_x[0])).times(HALF));
-        at_x = [at_x[1], after];
-        at_y = [at_y[1], following(k, y, at_y)];
-        k += 1;
-    }
-    sum
-}
-
-/// `l_j / b_j` at x, of node y of l_j, without its terms beyond [`DEGREE`]: `Σ_k (2k + 1) P_k(y) P_k(x)`, k = 0 … s − 1.
-const fn basis(s: usize, x: Pair, y: Pair) -> Pair {
-    let mut sum = Pair::ONE;
-    let mut at_x = [Pair::ONE, x];
-    let mut at_y = [Pair::ONE, y];
-    let mut k = 1;
-    while k < s && k <= DEGREE {
-        sum = sum.plus(Pair::new(real(2 * k + 1)).times(at_y[1].times(at_x[1])));
-        at_x = [at_x[1], following(k, x, at_x)];
-        at_y = [at_y[1], following(k, y, at_y)];
-        k += 1;
-    }
-    sum
 }
 
 /// cos x for x in (0, π), by its power series: an estimate, so its roundings do not matter.
