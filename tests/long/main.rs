@@ -5,6 +5,7 @@ mod energy_preserving_gauss;
 mod failures;
 mod gauss;
 mod gauss_slots;
+mod gauss_stiff;
 mod hunt;
 mod invariants;
 mod iterations;
