@@ -61,10 +61,11 @@ impl<const S: usize> Tableau<S> {
             i += 1;
         }
         let legendre = polynomials(&x);
-        let first = sums(&legendre, &integrals(&x, &legendre), S);
-        let next = sums(&legendre, &beyond(&x), DEGREE + 1);
-        let second = product(&first, &b, &first);
-        let ahead = product(&second, &b, &next);
+        let at_nodes = transposed(&legendre);
+        let first = product(&integrals(&x, &legendre), &at_nodes, S);
+        let next = product(&beyond(&x), &at_nodes, DEGREE + 1);
+        let second = product(&scaled(&first, &b), &first, S);
+        let ahead = product(&scaled(&second, &b), &next, S);
         let rounded = Self::rounded(&c, &b, &first, &second);
         Self { next: nearest(&scaled(&next, &b)), ahead: nearest(&ahead), legendre: nearest(&legendre), ..rounded }
     }
@@ -152,35 +153,16 @@ const fn beyond<const S: usize>(x: &[Pair; S]) -> [[Pair; S]; S] {
     values
 }
 
-/// `Σ_k P_k(x_j) rows_ki`, of so many k: with `(2k + 1) P_k` for a row it is `l_j / b_j`, without its terms of higher degrees, and its integral with the integral of that.
-const fn sums<const S: usize>(legendre: &[[Pair; S]; S], rows: &[[Pair; S]; S], terms: usize) -> [[Pair; S]; S] {
-    let mut sums = [[Pair::ZERO; S]; S];
+/// `Σ_k left_ki right_jk`, of so many k. Of `(2k + 1) P_k` and P_k(x_j) it is `l_j / b_j`, without its terms of higher degrees; of the integrals of these the
+/// integral of that; of `b_k a_ik / b_k` and `a_kj / b_j` it is `(A²)_ij / b_j`.
+const fn product<const S: usize>(left: &[[Pair; S]; S], right: &[[Pair; S]; S], terms: usize) -> [[Pair; S]; S] {
+    let mut product = [[Pair::ZERO; S]; S];
     let mut j = 0;
     while j < S {
         let mut i = 0;
         while i < S {
             let mut k = 0;
             while k < S && k < terms {
-                sums[j][i] = sums[j][i].plus(legendre[k][j].times(rows[k][i]));
-                k += 1;
-            }
-            i += 1;
-        }
-        j += 1;
-    }
-    sums
-}
-
-/// `Σ_k left_ik b_k right_kj`: `(A²)_ij / b_j` where both are `a_ij / b_j`.
-const fn product<const S: usize>(left: &[[Pair; S]; S], b: &[Pair; S], right: &[[Pair; S]; S]) -> [[Pair; S]; S] {
-    let mut product = [[Pair::ZERO; S]; S];
-    let left = scaled(left, b);
-    let mut j = 0;
-    while j < S {
-        let mut i = 0;
-        while i < S {
-            let mut k = 0;
-            while k < S {
                 product[j][i] = product[j][i].plus(left[k][i].times(right[j][k]));
                 k += 1;
             }
@@ -189,6 +171,21 @@ const fn product<const S: usize>(left: &[[Pair; S]; S], b: &[Pair; S], right: &[
         j += 1;
     }
     product
+}
+
+/// Rows as columns.
+const fn transposed<const S: usize>(matrix: &[[Pair; S]; S]) -> [[Pair; S]; S] {
+    let mut transposed = *matrix;
+    let mut j = 0;
+    while j < S {
+        let mut i = 0;
+        while i < S {
+            transposed[j][i] = matrix[i][j];
+            i += 1;
+        }
+        j += 1;
+    }
+    transposed
 }
 
 /// `b_j matrix_ij`.

@@ -87,7 +87,6 @@ impl<'a, const N: usize> Events<'a, N> {
 
     /// The next event, or none before the end.
     fn advance(&mut self) -> Result<Option<Crossing<N>>, StepError> {
-        self.run.check_ahead(self.until)?;
         while self.found.is_empty() {
             let is_at_end = self.run.take(self.until)?;
             if is_at_end {
@@ -121,8 +120,6 @@ impl<const N: usize> fmt::Debug for Events<'_, N> {
 
 /// A run that is searched, its integrator erased: so the search is compiled once, and not for each integrator of each system.
 trait Searched<const N: usize> {
-    /// Whether the run can go on to the time `until`.
-    fn check_ahead(&self, until: f64) -> Result<(), StepError>;
     /// Takes the step that was looked at, which ends at `until` where it led beyond. Whether the run is there.
     fn take(&mut self, until: f64) -> Result<bool, StepError>;
     /// The step after the node of the run.
@@ -138,11 +135,8 @@ struct Ahead<'a, I> {
 }
 
 impl<I: Integrator<N>, const N: usize> Searched<N> for Ahead<'_, I> {
-    fn check_ahead(&self, until: f64) -> Result<(), StepError> {
-        self.run.check_ahead(until)
-    }
-
     fn take(&mut self, until: f64) -> Result<bool, StepError> {
+        self.run.check_ahead(until)?;
         if let Some(ahead) = self.ahead.take() {
             let is_beyond = ahead.time_to(until) * self.run.h().signum() < 0.0;
             if is_beyond {

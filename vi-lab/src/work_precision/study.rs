@@ -143,7 +143,7 @@ pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> R
 /// Runs that [`findings`] makes, for a bar.
 pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
     let finest = finest(entry.q.len(), quick);
-    let settings: usize = Method::ALL.into_iter().map(|method| settings(method, entry.h, finest).len()).sum();
+    let settings: usize = Method::ALL.into_iter().map(|method| settings(method, STEPS * entry.h, finest).len()).sum();
     let rounds = if quick { 1 } else { u64::from(ROUNDS) };
     (1 + rounds) * settings as u64 + Method::ALL.len() as u64 + 2
 }
