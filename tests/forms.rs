@@ -7,7 +7,8 @@ use vi_core::linear::Matrix;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::stepping::{
-    EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumEquation, MomentumResidual, Rounding,
+    EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumDerivatives,
+    MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{
     DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, SVector, State, StepError, lagrangian,
@@ -182,6 +183,16 @@ fn dense<const N: usize>(equation: MomentumEquation<N, f64, impl Matrix<N, f64>>
     MomentumEquation { residual: equation.residual, jacobian: equation.jacobian.dense() }
 }
 
+type DenseDerivatives<const N: usize> = MomentumDerivatives<SMatrix<f64, N, N>, SMatrix<f64, N, N>>;
+
+fn dense_derivatives<const N: usize>(
+    derivatives: MomentumDerivatives<impl Matrix<N, f64>, impl Matrix<N, f64>>,
+) -> DenseDerivatives<N> {
+    let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = derivatives;
+    let [residual_dq, increment_dq, increment_dv] = [residual_dq, increment_dq, increment_dv].map(|of| of.dense());
+    MomentumDerivatives { residual_dq, residual_dv: residual_dv.dense(), increment_dq, increment_dv }
+}
+
 fn dense_in_both<const N: usize>(system: ExtendedSystem<N, f64, impl Matrix<N, f64>>) -> ExtendedSystem<N> {
     let ExtendedSystem { momentum, residual_dh, energy_residual, energy_dv, energy_dh } = system;
     ExtendedSystem { momentum: dense(momentum), residual_dh, energy_residual, energy_dv, energy_dh }
@@ -189,6 +200,7 @@ fn dense_in_both<const N: usize>(system: ExtendedSystem<N, f64, impl Matrix<N, f
 
 impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
     type Jacobian = SMatrix<f64, N, N>;
+    type StepMatrix = SMatrix<f64, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
 
     fn momentum_equation(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumEquation<N> {
@@ -197,6 +209,10 @@ impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
 
     fn momentum_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumResidual<N> {
         self.0.momentum_residual(node, h, v)
+    }
+
+    fn momentum_derivatives(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> DenseDerivatives<N> {
+        dense_derivatives(self.0.momentum_derivatives(node, h, v))
     }
 
     fn momentum_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> SVector<f64, N> {
@@ -215,6 +231,26 @@ impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
 
     fn extended_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedResidual<N> {
         self.0.extended_residual(node, h, v)
+    }
+
+    fn extended_derivatives(
+        &self,
+        node: &Node<N>,
+        h: f64,
+        v: &SVector<f64, N>,
+    ) -> ExtendedDerivatives<N, f64, SMatrix<f64, N, N>, SMatrix<f64, N, N>> {
+        let derivatives = self.0.extended_derivatives(node, h, v);
+        ExtendedDerivatives {
+            momentum: dense_derivatives(derivatives.momentum),
+            residual_dh: derivatives.residual_dh,
+            increment_dh: derivatives.increment_dh,
+            energy_dq: derivatives.energy_dq,
+            energy_dv: derivatives.energy_dv,
+            energy_dh: derivatives.energy_dh,
+            energy_increment_dq: derivatives.energy_increment_dq,
+            energy_increment_dv: derivatives.energy_increment_dv,
+            energy_increment_dh: derivatives.energy_increment_dh,
+        }
     }
 
     fn extended_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {

@@ -51,9 +51,10 @@ const _: () = {
     use ::core::convert::{identity as h, identity as x0, identity as x1};
     use ::core::convert::{identity as x_mid, identity as node, identity as x0_low};
     use ::core::convert::{identity as p0_x, identity as p0_x_low, identity as s1};
-    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s2};
+    use ::core::convert::{identity as s2, identity as energy0, identity as energy0_low};
     use ::core::convert::{identity as s3, identity as s4, identity as s5};
-    use ::core::convert::{identity as s6, identity as systems, identity as rows};
+    use ::core::convert::{identity as s6, identity as s7, identity as s8};
+    use ::core::convert::{identity as s9, identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for DampedOscillator<f64> {
@@ -267,6 +268,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<1, T>
     for DampedOscillator<T> {
         type Mass = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
+        type PointMatrix = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = false;
 
@@ -288,6 +290,25 @@ const _: () = {
                 momentum: ::vi_core::SVector::from([self.m * x_dot]),
                 force: ::vi_core::SVector::from([-(self.c * x_dot + self.k * x)]),
                 mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[self.m]),
+            }
+        }
+
+        /// M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.
+        ///
+        /// 2 operations.
+        #[inline(always)]
+        fn point_derivatives(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+            let real = T::real;
+            ::vi_core::collocation::PointDerivatives {
+                momentum_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(&[real(0.0)]),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[self.m]),
+                force_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(&[-self.k]),
+                force_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(&[-self.c]),
             }
         }
 
@@ -451,6 +472,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<1, T>
     for DampedOscillator<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
+        type StepMatrix = ::vi_core::nalgebra::SMatrix<T, 1, 1>;
         const CONSTANT_JACOBIAN: bool = true;
         const CLOSED_FORM: bool = true;
         const INLINED: bool = true;
@@ -517,6 +539,31 @@ const _: () = {
                 increment: ::vi_core::SVector::from([
                     -((self.k * x_mid + self.c * x_dot) * h),
                 ]),
+            }
+        }
+
+        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        ///
+        /// 11 operations.
+        #[inline(always)]
+        fn momentum_derivatives(
+            &self,
+            node: &::vi_core::node::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
+            let real = T::real;
+            let s1 = self.k * h;
+            let s2 = s1 * real(0.5);
+            ::vi_core::stepping::MomentumDerivatives {
+                residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s2]),
+                residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[self.m + (self.c * real(0.5) + s1 * real(0.25)) * h],
+                ),
+                increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(&[-s1]),
+                increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[(-self.c - s2) * h],
+                ),
             }
         }
 
@@ -650,6 +697,57 @@ const _: () = {
                     ]),
                     energy: -(s2 * s3),
                 },
+            }
+        }
+
+        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        ///
+        /// 37 operations.
+        #[inline(always)]
+        fn extended_derivatives(
+            &self,
+            node: &::vi_core::node::Node<1, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::vi_core::stepping::ExtendedDerivatives<
+            1,
+            T,
+            Self::Jacobian,
+            Self::StepMatrix,
+        > {
+            let [x0]: [T; 1] = node.q.into();
+            let [x0_low]: [T; 1] = node.q_low.into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let real = T::real;
+            let x_mid = x0 + (h * real(0.5) * x_dot + x0_low);
+            let s1 = self.k * h;
+            let s2 = s1 * real(0.25);
+            let s3 = x_dot * x_dot;
+            let s4 = s1 * real(0.5);
+            let s5 = self.k * x_mid;
+            let s6 = self.c * x_dot;
+            let s7 = s5 * real(0.5) + s6 * real(0.5);
+            let s8 = s2 * x_dot;
+            let s9 = s4 * x_dot;
+            ::vi_core::stepping::ExtendedDerivatives {
+                momentum: ::vi_core::stepping::MomentumDerivatives {
+                    residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s4]),
+                    residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[self.m + (self.c * real(0.5) + s2) * h],
+                    ),
+                    increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(&[-s1]),
+                    increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[(-self.c - s4) * h],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s7 + s8]),
+                increment_dh: ::vi_core::SVector::from([-(s5 + s6) - s9]),
+                energy_dq: ::vi_core::SVector::from([s5 - s9]),
+                energy_dv: ::vi_core::SVector::from([s7 - s8]),
+                energy_dh: -(self.k * s3 * real(0.25)),
+                energy_increment_dq: ::vi_core::SVector::from([real(0.0)]),
+                energy_increment_dv: ::vi_core::SVector::from([-(s6 * (h * real(2.0)))]),
+                energy_increment_dh: -(self.c * s3),
             }
         }
 

@@ -82,19 +82,17 @@ const _: () = {
 
     use ::core::convert::{identity as sin6, identity as cos6, identity as s16};
     use ::core::convert::{identity as s17, identity as s18, identity as s19};
-    use ::core::convert::{
-        identity as energy0, identity as energy0_low, identity as sin8,
-    };
-
-    use ::core::convert::{identity as cos8, identity as sin9, identity as cos9};
-    use ::core::convert::{identity as s20, identity as s21, identity as s22};
+    use ::core::convert::{identity as s20, identity as s21, identity as energy0};
+    use ::core::convert::{identity as energy0_low, identity as sin8, identity as cos8};
+    use ::core::convert::{identity as sin9, identity as cos9, identity as s22};
     use ::core::convert::{identity as s23, identity as s24, identity as s25};
     use ::core::convert::{identity as s26, identity as s27, identity as s28};
     use ::core::convert::{identity as s29, identity as s30, identity as s31};
     use ::core::convert::{identity as s32, identity as s33, identity as s34};
     use ::core::convert::{identity as s35, identity as s36, identity as s37};
     use ::core::convert::{identity as s38, identity as s39, identity as sin7};
-    use ::core::convert::{identity as cos7, identity as systems, identity as rows};
+    use ::core::convert::{identity as cos7, identity as s40, identity as s41};
+    use ::core::convert::{identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for DoublePendulum<f64> {
@@ -376,6 +374,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
     for DoublePendulum<T> {
         type Mass = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
+        type PointMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = false;
         const SEPARABLE: bool = false;
 
@@ -414,6 +413,51 @@ const _: () = {
                     s10 - self.m2 * self.l2 * self.g * sin3,
                 ]),
                 mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s5, s7, s7, s8]),
+            }
+        }
+
+        /// M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.
+        ///
+        /// 36 operations.
+        #[inline(always)]
+        fn point_derivatives(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let [θ1, θ2]: [T; 2] = (*q).into();
+            let s1 = self.m1 + self.m2;
+            let [(sin2, cos2), (sin3, cos3)] = T::sin_cos_each([θ1, θ2]);
+            let s4 = cos2 * cos3 + sin2 * sin3;
+            let s5 = self.m2 * self.l1 * self.l2;
+            let s6 = s5 * θ1_dot;
+            let s7 = s6 * θ2_dot * s4;
+            let s8 = s5 * s4;
+            let s9 = sin2 * cos3 - cos2 * sin3;
+            let s10 = s5 * θ2_dot * s9;
+            let s11 = -s10;
+            let s12 = s6 * s9;
+            let s13 = -s12;
+            ::vi_core::collocation::PointDerivatives {
+                momentum_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[s11, s10, s13, s12],
+                ),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[self.l1 * self.l1 * s1, s8, s8, self.m2 * (self.l2 * self.l2)],
+                ),
+                force_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[
+                        -(s7 + self.l1 * self.g * s1 * cos2),
+                        s7,
+                        s7,
+                        -(s7 + self.m2 * self.l2 * self.g * cos3),
+                    ],
+                ),
+                force_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[s11, s13, s10, s12],
+                ),
             }
         }
 
@@ -628,6 +672,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>
     for DoublePendulum<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
+        type StepMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
@@ -738,6 +783,68 @@ const _: () = {
                     p0_θ2.abs() + s3.abs() + s11.abs() + s19 * (s18 + s15.abs()),
                 ]),
                 increment: ::vi_core::SVector::from([-(h * s14), h * s16]),
+            }
+        }
+
+        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        ///
+        /// 79 operations.
+        #[inline(always)]
+        fn momentum_derivatives(
+            &self,
+            node: &::vi_core::node::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let s2 = self.m1 + self.m2;
+            let [(sin3, cos3), (sin4, cos4)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s5 = cos3 * cos4 + sin3 * sin4;
+            let s6 = self.m2 * self.l1 * self.l2;
+            let s7 = s6 * θ1_dot;
+            let s8 = s7 * θ2_dot * s5;
+            let s9 = sin3 * cos4 - cos3 * sin4;
+            let s10 = s8 + self.l1 * self.g * s2 * cos3;
+            let s11 = h * h * real(0.25);
+            let s12 = s7 * s9;
+            let s13 = s6 * s5;
+            let s14 = s6 * θ2_dot * s9;
+            let s15 = s6 * real(0.5) * (θ1_dot + θ2_dot) * s9;
+            let s16 = s8 * (h * real(0.25));
+            let s17 = s8 + self.m2 * self.l2 * self.g * cos4;
+            let s18 = s1 * s10;
+            let s19 = s8 * h;
+            let s20 = s8 * s1;
+            let s21 = s1 * s17;
+            ::vi_core::stepping::MomentumDerivatives {
+                residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[s18 - s14, s14 - s20, -s12 - s20, s12 + s21],
+                ),
+                residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[
+                        s2 * (self.l1 * self.l1) + s11 * s10,
+                        s13 + (s15 - s16) * h,
+                        s13 - (s15 + s16) * h,
+                        self.m2 * (self.l2 * self.l2) + s11 * s17,
+                    ],
+                ),
+                increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[-(h * s10), s19, s19, -(h * s17)],
+                ),
+                increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[
+                        (-s14 - s18) * h,
+                        (s20 - s12) * h,
+                        (s14 + s20) * h,
+                        (s12 - s21) * h,
+                    ],
+                ),
             }
         }
 
@@ -948,6 +1055,104 @@ const _: () = {
                     momentum: ::vi_core::SVector::from([-(h * s20), h * s22]),
                     energy: real(0.0),
                 },
+            }
+        }
+
+        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        ///
+        /// 141 operations.
+        #[inline(always)]
+        fn extended_derivatives(
+            &self,
+            node: &::vi_core::node::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::stepping::ExtendedDerivatives<
+            2,
+            T,
+            Self::Jacobian,
+            Self::StepMatrix,
+        > {
+            let [θ1_0, θ2_0]: [T; 2] = node.q.into();
+            let [θ1_0_low, θ2_0_low]: [T; 2] = node.q_low.into();
+            let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let θ1_mid = θ1_0 + (s1 * θ1_dot + θ1_0_low);
+            let θ2_mid = θ2_0 + (s1 * θ2_dot + θ2_0_low);
+            let s2 = self.m1 + self.m2;
+            let [(sin3, cos3), (sin4, cos4)] = T::sin_cos_each([θ1_mid, θ2_mid]);
+            let s5 = cos3 * cos4 + sin3 * sin4;
+            let s6 = self.m2 * self.l1 * self.l2;
+            let s7 = s6 * θ1_dot;
+            let s8 = s7 * θ2_dot;
+            let s9 = s8 * s5;
+            let s10 = self.l1 * self.g * s2;
+            let s11 = self.m2 * self.l2 * self.g;
+            let s12 = sin3 * cos4 - cos3 * sin4;
+            let s13 = s8 * s12;
+            let s14 = s10 * sin3;
+            let s15 = s11 * sin4;
+            let s16 = s9 + s10 * cos3;
+            let s17 = h * h * real(0.25);
+            let s18 = s7 * s12;
+            let s19 = s6 * s5;
+            let s20 = s6 * θ2_dot * s12;
+            let s21 = s6 * real(0.5);
+            let s22 = s21 * (θ1_dot + θ2_dot) * s12;
+            let s23 = s9 * (h * real(0.25));
+            let s24 = s9 + s11 * cos4;
+            let s25 = θ2_dot * θ2_dot;
+            let s26 = s14 * real(0.5) + s6 * s25 * s12 * real(0.5);
+            let s27 = θ1_dot * s16;
+            let s28 = s6 * real(0.25);
+            let s29 = (s28 * θ1_dot * s25 * s5 - s27 * real(0.25)) * h;
+            let s30 = θ1_dot * θ1_dot;
+            let s31 = s6 * s30;
+            let s32 = s15 * real(0.5) - s31 * s12 * real(0.5);
+            let s33 = θ2_dot * s24;
+            let s34 = (s28 * s30 * θ2_dot * s5 - s33 * real(0.25)) * h;
+            let s35 = s1 * s16;
+            let s36 = s9 * h;
+            let s37 = s9 * s1;
+            let s38 = s1 * s24;
+            let s39 = s13 + s14;
+            let s40 = (s21 * θ1_dot * s25 * s5 - s27 * real(0.5)) * h;
+            let s41 = (s21 * s30 * θ2_dot * s5 - s33 * real(0.5)) * h;
+            ::vi_core::stepping::ExtendedDerivatives {
+                momentum: ::vi_core::stepping::MomentumDerivatives {
+                    residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[s35 - s20, s20 - s37, -s18 - s37, s18 + s38],
+                    ),
+                    residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[
+                            s2 * (self.l1 * self.l1) + s17 * s16,
+                            s19 + (s22 - s23) * h,
+                            s19 - (s22 + s23) * h,
+                            self.m2 * (self.l2 * self.l2) + s17 * s24,
+                        ],
+                    ),
+                    increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[-(h * s16), s36, s36, -(h * s24)],
+                    ),
+                    increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[
+                            (-s20 - s35) * h,
+                            (s37 - s18) * h,
+                            (s20 + s37) * h,
+                            (s18 - s38) * h,
+                        ],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s26 - s29, s32 - s34]),
+                increment_dh: ::vi_core::SVector::from([s40 - s39, s13 - s15 + s41]),
+                energy_dq: ::vi_core::SVector::from([s39 + s40, s15 - s13 + s41]),
+                energy_dv: ::vi_core::SVector::from([s26 + s29, s32 + s34]),
+                energy_dh: s31 * s25 * s5 * real(0.5) - s30 * s16 * real(0.25)
+                    - s25 * s24 * real(0.25),
+                energy_increment_dq: ::vi_core::SVector::from([real(0.0), real(0.0)]),
+                energy_increment_dv: ::vi_core::SVector::from([real(0.0), real(0.0)]),
+                energy_increment_dh: real(0.0),
             }
         }
 

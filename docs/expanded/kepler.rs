@@ -52,11 +52,14 @@ const _: () = {
     use ::core::convert::{identity as y_mid, identity as node, identity as x0_low};
     use ::core::convert::{identity as y0_low, identity as p0_x, identity as p0_y};
     use ::core::convert::{identity as p0_x_low, identity as p0_y_low, identity as s13};
-    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s14};
-    use ::core::convert::{identity as s15, identity as s16, identity as s17};
-    use ::core::convert::{identity as s18, identity as s19, identity as s20};
+    use ::core::convert::{identity as s14, identity as s15, identity as s16};
+    use ::core::convert::{identity as s17, identity as s18, identity as s19};
+    use ::core::convert::{identity as s20, identity as energy0, identity as energy0_low};
     use ::core::convert::{identity as s21, identity as s22, identity as s23};
-    use ::core::convert::{identity as s24, identity as s25, identity as systems};
+    use ::core::convert::{identity as s24, identity as s25, identity as s26};
+    use ::core::convert::{identity as s27, identity as s28, identity as s29};
+    use ::core::convert::{identity as s30, identity as s31, identity as s32};
+    use ::core::convert::{identity as s33, identity as s34, identity as systems};
     use ::core::convert::identity as rows;
     use ::core::primitive::{bool, f64, str, usize};
 
@@ -297,6 +300,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
     for Kepler<T> {
         type Mass = ::vi_core::linear::Banded<2, 1, T>;
+        type PointMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
         const SCALES_TIME: bool = true;
@@ -330,6 +334,48 @@ const _: () = {
                 mass: ::vi_core::linear::Banded {
                     rows: [[real(1.0)], [real(1.0)]],
                 },
+            }
+        }
+
+        /// M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.
+        ///
+        /// 21 operations.
+        #[inline(always)]
+        fn point_derivatives(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+            let [x, y]: [T; 2] = (*q).into();
+            let real = T::real;
+            let s1 = x * x;
+            let s2 = y * y;
+            let s3 = s1 + s2;
+            let s4 = s3.recip();
+            let s5 = s4 * s4;
+            let s6 = s3.sqrt();
+            let s7 = s5 * s6;
+            let s8 = s5 * s4 * s6;
+            let s9 = self.mu * x * y * s8 * real(3.0);
+            ::vi_core::collocation::PointDerivatives {
+                momentum_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[real(0.0), real(0.0), real(0.0), real(0.0)],
+                ),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[real(1.0), real(0.0), real(0.0), real(1.0)],
+                ),
+                force_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[
+                        (s1 * s8 * real(3.0) - s7) * self.mu,
+                        s9,
+                        s9,
+                        (s2 * s8 * real(3.0) - s7) * self.mu,
+                    ],
+                ),
+                force_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[real(0.0), real(0.0), real(0.0), real(0.0)],
+                ),
             }
         }
 
@@ -553,6 +599,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>
     for Kepler<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
+        type StepMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
@@ -645,6 +692,58 @@ const _: () = {
                     y_dot.abs() + p0_y.abs() + s7.abs() * real(0.5),
                 ]),
                 increment: ::vi_core::SVector::from([-s6, -s7]),
+            }
+        }
+
+        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        ///
+        /// 58 operations.
+        #[inline(always)]
+        fn momentum_derivatives(
+            &self,
+            node: &::vi_core::node::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid;
+            let s3 = y_mid * y_mid;
+            let s4 = s2 + s3;
+            let s5 = s4.recip();
+            let s6 = s5 * s5;
+            let s7 = s4.sqrt();
+            let s8 = s6 * s7;
+            let s9 = s6 * s5 * s7;
+            let s10 = s2 * s9 * real(3.0) - s8;
+            let s11 = self.mu * (h * h);
+            let s12 = s11 * real(0.25);
+            let s13 = -(s11 * real(0.75) * x_mid * y_mid * s9);
+            let s14 = s3 * s9 * real(3.0) - s8;
+            let s15 = self.mu * h;
+            let s16 = s15 * real(0.5);
+            let s17 = s15 * real(3.0) * x_mid * y_mid * s9;
+            let s18 = -(s15 * real(1.5) * x_mid * y_mid * s9);
+            let s19 = s11 * real(0.5);
+            let s20 = s11 * real(1.5) * x_mid * y_mid * s9;
+            ::vi_core::stepping::MomentumDerivatives {
+                residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[-(s16 * s10), s18, s18, -(s16 * s14)],
+                ),
+                residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[real(1.0) - s12 * s10, s13, s13, real(1.0) - s12 * s14],
+                ),
+                increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[s15 * s10, s17, s17, s15 * s14],
+                ),
+                increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[s19 * s10, s20, s20, s19 * s14],
+                ),
             }
         }
 
@@ -808,6 +907,88 @@ const _: () = {
                     momentum: ::vi_core::SVector::from([-s8, -s9]),
                     energy: real(0.0),
                 },
+            }
+        }
+
+        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        ///
+        /// 115 operations.
+        #[inline(always)]
+        fn extended_derivatives(
+            &self,
+            node: &::vi_core::node::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::stepping::ExtendedDerivatives<
+            2,
+            T,
+            Self::Jacobian,
+            Self::StepMatrix,
+        > {
+            let [x0, y0]: [T; 2] = node.q.into();
+            let [x0_low, y0_low]: [T; 2] = node.q_low.into();
+            let [x_dot, y_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let x_mid = x0 + (s1 * x_dot + x0_low);
+            let y_mid = y0 + (s1 * y_dot + y0_low);
+            let s2 = x_mid * x_mid;
+            let s3 = y_mid * y_mid;
+            let s4 = s2 + s3;
+            let s5 = s4.recip();
+            let s6 = s5 * s5;
+            let s7 = s4.sqrt();
+            let s8 = s6 * s7;
+            let s9 = self.mu * x_mid * s8;
+            let s10 = self.mu * y_mid * s8;
+            let s11 = s6 * s5 * s7;
+            let s12 = s2 * s11 * real(3.0) - s8;
+            let s13 = self.mu * (h * h);
+            let s14 = s13 * real(0.25);
+            let s15 = -(s13 * real(0.75) * x_mid * y_mid * s11);
+            let s16 = s3 * s11 * real(3.0) - s8;
+            let s17 = self.mu * h;
+            let s18 = s9 * real(0.5);
+            let s19 = self.mu * real(0.75);
+            let s20 = self.mu * real(0.25);
+            let s21 = s20 * x_dot * s12;
+            let s22 = (s19 * y_dot * x_mid * y_mid * s11 + s21) * h;
+            let s23 = s10 * real(0.5);
+            let s24 = (s19 * x_dot * x_mid * y_mid * s11 + s20 * y_dot * s16) * h;
+            let s25 = self.mu * real(1.5);
+            let s26 = s25 * y_dot * x_mid * y_mid * s11;
+            let s27 = s17 * real(0.5);
+            let s28 = s17 * real(3.0) * x_mid * y_mid * s11;
+            let s29 = -(s17 * real(1.5) * x_mid * y_mid * s11);
+            let s30 = s13 * real(0.5);
+            let s31 = s13 * real(1.5) * x_mid * y_mid * s11;
+            let s32 = self.mu * real(0.5);
+            let s33 = (s26 + s32 * x_dot * s12) * h;
+            let s34 = (s25 * x_dot * x_mid * y_mid * s11 + s32 * y_dot * s16) * h;
+            ::vi_core::stepping::ExtendedDerivatives {
+                momentum: ::vi_core::stepping::MomentumDerivatives {
+                    residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[-(s27 * s12), s29, s29, -(s27 * s16)],
+                    ),
+                    residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[real(1.0) - s14 * s12, s15, s15, real(1.0) - s14 * s16],
+                    ),
+                    increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[s17 * s12, s28, s28, s17 * s16],
+                    ),
+                    increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[s30 * s12, s31, s31, s30 * s16],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([s18 - s22, s23 - s24]),
+                increment_dh: ::vi_core::SVector::from([s33 - s9, s34 - s10]),
+                energy_dq: ::vi_core::SVector::from([s9 + s33, s10 + s34]),
+                energy_dv: ::vi_core::SVector::from([s18 + s22, s23 + s24]),
+                energy_dh: self.mu * (y_dot * y_dot) * s16 * real(0.25)
+                    + (s26 + s21) * x_dot,
+                energy_increment_dq: ::vi_core::SVector::from([real(0.0), real(0.0)]),
+                energy_increment_dv: ::vi_core::SVector::from([real(0.0), real(0.0)]),
+                energy_increment_dh: real(0.0),
             }
         }
 

@@ -6,6 +6,8 @@
 //! momentum   L_v(t, q, v)          mass   M = L_vv(t, q, v)          force   L_q + f          power   dE/dt = f·v − L_t
 //! ```
 //!
+//! and, where a motion is differentiated or Newton's iteration solves a step, how they change with q and v ([`PointDerivatives`]).
+//!
 //! A system with the clause `time_scale = g;` gives g of the time transformation `dt = g(t, q) dτ` besides ([`TimeScale`]).
 //!
 //! The velocity that belongs to p follows by `v + M⁻¹ (p − L_v(v))`, at once where L is quadratic in v, else again and again.
@@ -19,6 +21,8 @@ use nalgebra::SVector;
 pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> {
     /// The form of M, by its zero pattern.
     type Mass: Matrix<N, T>;
+    /// The form of [`PointDerivatives`], by the zero pattern of all of its matrices.
+    type PointMatrix: Matrix<N, T>;
     /// Whether M is a constant of the parameters.
     const CONSTANT_MASS: bool;
     /// Whether `L_v = M v` with constant M, and neither L_q nor f depends on v: then `q'' = M⁻¹ (L_q + f)` is all there is.
@@ -28,6 +32,8 @@ pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> {
 
     /// The equations at a point.
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, Self::Mass>;
+    /// How the equations change at a point.
+    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<Self::PointMatrix>;
     /// What the motion gains of energy by time: `f·v − L_t`.
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T;
     /// All that a step in scaled time takes at a point, from one evaluation; g = 1 for a system without a time scale.
@@ -63,6 +69,19 @@ pub struct Point<const N: usize, T, M> {
     pub force: SVector<T, N>,
     /// `M = L_vv`.
     pub mass: M,
+}
+
+/// How the equations of motion change at a point (t, q, v): row i, column j is the derivative of entry i by coordinate or velocity j.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointDerivatives<D> {
+    /// `∂L_v/∂q`.
+    pub momentum_dq: D,
+    /// `∂L_v/∂v = L_vv`.
+    pub mass: D,
+    /// `∂(L_q + f)/∂q`.
+    pub force_dq: D,
+    /// `∂(L_q + f)/∂v`.
+    pub force_dv: D,
 }
 
 /// The equations of motion at a point (t, q, v), with what scales the time there.

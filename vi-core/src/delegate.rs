@@ -2,7 +2,7 @@
 //! are calls.
 
 use crate::called::Called;
-use crate::collocation::{Collocation, Point, ScaledPoint, TimeScale};
+use crate::collocation::{Collocation, Point, PointDerivatives, ScaledPoint, TimeScale};
 use crate::discrete::DiscreteLagrangian;
 use crate::error::StepError;
 use crate::lagrangian::{Flow, Lagrangian, Parameters};
@@ -11,8 +11,8 @@ use crate::real::Real;
 use crate::rules::{By, Own, Rule};
 use crate::state::Interval;
 use crate::stepping::{
-    Batch, Convertible, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumEquation,
-    MomentumResidual, Rounding,
+    Batch, Convertible, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
+    MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
 use nalgebra::SVector;
 
@@ -78,6 +78,7 @@ macro_rules! collocation {
     ($wrapper:ty, #[$attribute:meta] $(, $rule:ident)?) => {
         impl<const N: usize, T: Real, S: Collocation<N, T>$(, $rule: Rule)?> Collocation<N, T> for $wrapper {
             type Mass = S::Mass;
+            type PointMatrix = S::PointMatrix;
             const CONSTANT_MASS: bool = S::CONSTANT_MASS;
             const SEPARABLE: bool = S::SEPARABLE;
             const SCALES_TIME: bool = S::SCALES_TIME;
@@ -85,6 +86,16 @@ macro_rules! collocation {
             #[$attribute]
             fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
                 S::point(self, t, q, v)
+            }
+
+            #[$attribute]
+            fn point_derivatives(
+                &self,
+                t: T,
+                q: &SVector<T, N>,
+                v: &SVector<T, N>,
+            ) -> PointDerivatives<S::PointMatrix> {
+                S::point_derivatives(self, t, q, v)
             }
 
             #[inline]
@@ -161,6 +172,7 @@ macro_rules! stepping {
             for $wrapper
         {
             type Jacobian = S::Jacobian;
+            type StepMatrix = S::StepMatrix;
             const RULE: Option<&'static str> = $name;
             const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
             const CLOSED_FORM: bool = S::CLOSED_FORM;
@@ -179,6 +191,16 @@ macro_rules! stepping {
             #[$attribute]
             fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T> {
                 <S as FixedStepping<N, T, $of_rule>>::momentum_residual(self, node, h, v)
+            }
+
+            #[$attribute]
+            fn momentum_derivatives(
+                &self,
+                node: &Node<N, T>,
+                h: T,
+                v: &SVector<T, N>,
+            ) -> MomentumDerivatives<S::Jacobian, S::StepMatrix> {
+                <S as FixedStepping<N, T, $of_rule>>::momentum_derivatives(self, node, h, v)
             }
 
             fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N> {
@@ -201,6 +223,16 @@ macro_rules! stepping {
             #[$attribute]
             fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T> {
                 <S as EnergyStepping<N, T, $of_rule>>::extended_residual(self, node, h, v)
+            }
+
+            #[$attribute]
+            fn extended_derivatives(
+                &self,
+                node: &Node<N, T>,
+                h: T,
+                v: &SVector<T, N>,
+            ) -> ExtendedDerivatives<N, T, S::Jacobian, S::StepMatrix> {
+                <S as EnergyStepping<N, T, $of_rule>>::extended_derivatives(self, node, h, v)
             }
 
             fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {

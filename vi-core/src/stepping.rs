@@ -24,6 +24,8 @@ use nalgebra::{SMatrix, SVector};
 pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
     /// The form of A, by its zero pattern.
     type Jacobian: Matrix<N, T>;
+    /// The form of the other matrices of [`MomentumDerivatives`], by the zero pattern of all of them.
+    type StepMatrix: Matrix<N, T>;
     /// Name of the rule, where it is not the one that the system is declared with: a checkpoint is of one rule.
     const RULE: Option<&'static str> = None;
     /// Whether A depends on parameters and h only: the equation is linear, and A is inverted once per run.
@@ -40,6 +42,13 @@ pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T, Self::Jacobian>;
     /// The residual of that equation, and what the momenta gain over the step.
     fn momentum_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumResidual<N, T>;
+    /// How that residual, and what the momenta gain, change with the coordinates of the node and with v.
+    fn momentum_derivatives(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> MomentumDerivatives<Self::Jacobian, Self::StepMatrix>;
     /// What the rounding of that residual is measured in, by running error analysis: a residual of `ε` times this is one rounding.
     fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N>;
     /// Discrete energy `E1 = −D3 L_d − g_d⁺` at the end of the step; what momentum and energy the node has does not matter.
@@ -61,6 +70,13 @@ pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, Self::Jacobian>;
     /// The residuals of both, and what momentum and energy gain over the step.
     fn extended_residual(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedResidual<N, T>;
+    /// How both residuals, and what momentum and energy gain, change with the coordinates of the node and with (v, h).
+    fn extended_derivatives(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> ExtendedDerivatives<N, T, Self::Jacobian, Self::StepMatrix>;
     /// What the rounding of both residuals is measured in, by running error analysis.
     fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T>;
 }
@@ -146,6 +162,42 @@ pub struct ExtendedResidual<const N: usize, T = f64> {
     pub energy_scale: T,
     /// `p1 − p0` and `E1 − E0`.
     pub increment: Increment<N, T>,
+}
+
+/// How the momentum equation changes: row i, column j is the derivative of entry i by coordinate or velocity j.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentumDerivatives<J, D> {
+    /// `∂r/∂q0`.
+    pub residual_dq: D,
+    /// `A = ∂r/∂v`.
+    pub residual_dv: J,
+    /// `∂(p1 − p0)/∂q0`.
+    pub increment_dq: D,
+    /// `∂(p1 − p0)/∂v`.
+    pub increment_dv: D,
+}
+
+/// How both equations change. With p0 and E0 they change by `∂r/∂p0 = −1`, `∂e/∂E0 = −1`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExtendedDerivatives<const N: usize, T, J, D> {
+    /// The momentum row, and `p1 − p0`.
+    pub momentum: MomentumDerivatives<J, D>,
+    /// `∂r/∂h`.
+    pub residual_dh: SVector<T, N>,
+    /// `∂(p1 − p0)/∂h`.
+    pub increment_dh: SVector<T, N>,
+    /// `∂e/∂q0 − v·∂r/∂q0`, e the energy row.
+    pub energy_dq: SVector<T, N>,
+    /// `(∂e/∂v − v·A)/h`.
+    pub energy_dv: SVector<T, N>,
+    /// `(∂e/∂h − v·∂r/∂h)/h`.
+    pub energy_dh: T,
+    /// `∂(E1 − E0)/∂q0`.
+    pub energy_increment_dq: SVector<T, N>,
+    /// `∂(E1 − E0)/∂v`.
+    pub energy_increment_dv: SVector<T, N>,
+    /// `∂(E1 − E0)/∂h`.
+    pub energy_increment_dh: T,
 }
 
 /// What rounding moves the residuals at a trial `(v, h)` by at most, in ulps of 1: a residual of `ε` times this is one rounding.

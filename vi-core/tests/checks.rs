@@ -99,6 +99,9 @@ fn wrong_derivatives_are_seen() {
         trips(SphericalPendulum::default(), &PENDULUM, fault, check::derivatives);
         trips(Duffing::default(), &DUFFING, fault, check::derivatives);
     }
+    // That of the last coordinate of the spherical pendulum is zero: it is cyclic.
+    trips(Duffing::default(), &DUFFING, Fault::PointDerivatives, check::derivatives);
+    trips(Duffing::default(), &DUFFING, Fault::MomentumDerivatives, check::derivatives);
 }
 
 #[test]
@@ -126,6 +129,7 @@ fn wrong_energy_equations_are_seen() {
     let faults = [
         Fault::Jacobian,
         Fault::ResidualDh,
+        Fault::ExtendedDerivatives,
         Fault::EnergyResidual,
         Fault::EnergyDh,
         Fault::EnergyGain,

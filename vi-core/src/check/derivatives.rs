@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! p = ∂L/∂v      E = v·p − L      d/dt ∂L/∂v = L_q + f      D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)
-//! A = ∂r/∂v
+//! A = ∂r/∂v      ∂r/∂q0      ∂(p1 − p0)/∂q0      ∂(p1 − p0)/∂v
+//! ∂L_v/∂q        ∂L_v/∂v = M      ∂(L_q + f)/∂q      ∂(L_q + f)/∂v
 //! ```
 //!
-//! Left: what the system says. Right: L, and the residual r of a step, differentiated operation by operation.
+//! Left: what the system says. Right: L, and the residual r and the increment p1 − p0 of a step, differentiated operation by operation.
 //! Rounding: both sides are evaluated in numbers that carry the bound of theirs (`bounded`), and may differ by the sum of
 //! the two bounds. h is that of the samples, a part of the system's own time scale: the place's h does not enter.
 
@@ -14,8 +15,10 @@ use super::comparison::Comparison;
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::subject::{Checked, Place};
+use crate::collocation::Collocation;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
+use crate::node::Node;
 use crate::real::dual::Dual;
 use crate::real::dual::{along, lift, slopes, unit};
 use crate::stepping::FixedStepping;
@@ -25,17 +28,19 @@ use nalgebra::SVector;
 pub(super) type First = Dual<Bounded>;
 type Second = Dual<First>;
 
-/// Momentum, energy, acceleration, step density, and the Jacobian of a fixed step, against dual numbers.
+/// Momentum, energy, acceleration, step density, and how the equations at a point and those of a fixed step change, against dual numbers.
 ///
 /// # Errors
-/// The first number that differs; [`CheckFailure::Vacuous`] where momentum, energy or the Jacobian is zero throughout.
+/// The first number that differs; [`CheckFailure::Vacuous`] where momentum, energy, the mass matrix or the Jacobian is zero throughout.
 pub fn derivatives<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "derivatives");
     for sample in samples(system, place, &check)? {
         continuous(&sample, &mut check)?;
+        point(&sample, &mut check)?;
         jacobian(&sample, &mut check)?;
+        step(&sample, &mut check)?;
     }
-    check.finish(&["momentum", "energy", "residual_dv"])
+    check.finish(&["momentum", "energy", "mass", "residual_dv"])
 }
 
 /// `∂L/∂q`, its rate and that of `∂L/∂t` along the motion (1, v, a), by second-order dual numbers.
@@ -83,6 +88,52 @@ fn continuous<const N: usize, S: Checked<N>>(
     let found = system.step_density(*t, q, v).map_err(|error| check.step(error))?;
     let bound = bounded.step_density(time, &place, &velocity).map_err(|error| check.step(error))?;
     check.number("step density", bound.of(found), density)
+}
+
+/// The columns of a matrix against slopes along each direction.
+pub(super) fn columns<const N: usize>(
+    check: &mut Comparison,
+    what: &'static str,
+    (found, bounds): (&impl Matrix<N, f64>, &impl Matrix<N, Bounded>),
+    wanted: impl Fn(usize) -> SVector<Bounded, N>,
+) -> Result<(), CheckFailure> {
+    (0..N).try_for_each(|j| {
+        let entries = SVector::from_fn(|i, _| bounds.entry(i, j).of(found.entry(i, j)));
+        check.vector(what, &entries, &wanted(j))
+    })
+}
+
+fn point<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
+    let Sample { system, t, q, v, .. } = sample;
+    let (bounded, dual) = (system.convert::<Bounded>(), system.convert::<First>());
+    let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
+    let found = system.convert::<f64>().point_derivatives(*t, q, v);
+    let again = bounded.point_derivatives(time, &place, &velocity);
+    let by_q = |j: usize| dual.point(Dual::fixed(time), &along(&place, &unit(j)), &lift(&velocity));
+    let by_v = |j: usize| dual.point(Dual::fixed(time), &lift(&place), &along(&velocity, &unit(j)));
+    columns(check, "momentum_dq", (&found.momentum_dq, &again.momentum_dq), |j| slopes(&by_q(j).momentum))?;
+    columns(check, "mass", (&found.mass, &again.mass), |j| slopes(&by_v(j).momentum))?;
+    columns(check, "force_dq", (&found.force_dq, &again.force_dq), |j| slopes(&by_q(j).force))?;
+    columns(check, "force_dv", (&found.force_dv, &again.force_dv), |j| slopes(&by_v(j).force))
+}
+
+fn step<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
+    let Sample { system, v, h, .. } = sample;
+    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
+    let known = node.map(Bounded::exact);
+    let lifted = known.map(Dual::fixed);
+    let (step, velocity) = (Bounded::exact(*h), exact(v));
+    let found = system.momentum_derivatives(&node, *h, v);
+    let again = bounded.momentum_derivatives(&known, step, &velocity);
+    let by_q = |j: usize| {
+        let node = Node { q: along(&known.q, &unit(j)), ..lifted };
+        dual.momentum_residual(&node, Dual::fixed(step), &lift(&velocity))
+    };
+    let by_v = |j: usize| dual.momentum_residual(&lifted, Dual::fixed(step), &along(&velocity, &unit(j)));
+    columns(check, "residual_dq", (&found.residual_dq, &again.residual_dq), |j| slopes(&by_q(j).residual))?;
+    columns(check, "residual_dv", (&found.residual_dv, &again.residual_dv), |j| slopes(&by_v(j).residual))?;
+    columns(check, "increment_dq", (&found.increment_dq, &again.increment_dq), |j| slopes(&by_q(j).increment))?;
+    columns(check, "increment_dv", (&found.increment_dv, &again.increment_dv), |j| slopes(&by_v(j).increment))
 }
 
 fn jacobian<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {

@@ -5,20 +5,21 @@
 //! ∂r/∂h      (∂e/∂v − v·A)/h = (∂c/∂v + r)/h      (∂e/∂h − v·∂r/∂h)/h = (∂c/∂h)/h
 //! ```
 //!
-//! Left: what the system says. Right: the slots, and r and c differentiated operation by operation. What it says of r, A and p1 − p0
+//! and how both rows, p1 − p0 and E1 − E0 change with q0, v and h. Left: what the system says. Right: the slots, and r and c differentiated operation by operation. What it says of r, A and p1 − p0
 //! must be what it says of them for a fixed step. Rounding: as in `derivatives`, that of both sides, carried along.
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
-use super::derivatives::{First, enough};
+use super::derivatives::{First, columns, enough};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::steps::ends;
 use super::subject::{EnergyChecked, Place};
 use crate::discrete::DiscreteLagrangian;
 use crate::linear::Matrix;
+use crate::node::Node;
 use crate::real::dual::{Dual, along, lift, slopes, unit};
-use crate::stepping::{EnergyStepping, FixedStepping};
+use crate::stepping::{EnergyStepping, ExtendedResidual, FixedStepping};
 use nalgebra::SVector;
 
 /// The energy row of a step and its increments against the slots, its derivatives against dual numbers, its momentum rows against
@@ -34,6 +35,7 @@ pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
     for sample in samples(system, place, &check)? {
         rows(&sample, &mut check)?;
         jacobian(&sample, &mut check)?;
+        derivatives(&sample, &mut check)?;
     }
     check.finish(&["energy residual", "momentum rows"])
 }
@@ -90,4 +92,51 @@ fn jacobian<const N: usize, S: EnergyChecked<N>>(
     let residual_dh = vector_of(&found.residual_dh, &again.residual_dh);
     check.vector("residual_dh", &residual_dh, &slopes(&column.momentum.residual))?;
     check.number("energy_dh", again.energy_dh.of(found.energy_dh), column.energy_residual.slope / step)
+}
+
+/// What the system says where a motion is differentiated.
+fn derivatives<const N: usize, S: EnergyChecked<N>>(
+    sample: &Sample<S, N>,
+    check: &mut Comparison,
+) -> Result<(), CheckFailure> {
+    let Sample { system, v, h, .. } = sample;
+    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
+    let known = node.map(Bounded::exact);
+    let lifted = known.map(Dual::fixed);
+    let (step, velocity) = (Bounded::exact(*h), exact(v));
+    let found = system.extended_derivatives(&node, *h, v);
+    let again = bounded.extended_derivatives(&known, step, &velocity);
+    let row = bounded.extended_residual(&known, step, &velocity).residual;
+    let by_q = |j: usize| {
+        let node = Node { q: along(&known.q, &unit(j)), ..lifted };
+        dual.extended_residual(&node, Dual::fixed(step), &lift(&velocity))
+    };
+    let by_v = |j: usize| dual.extended_residual(&lifted, Dual::fixed(step), &along(&velocity, &unit(j)));
+    let by_h = dual.extended_residual(&lifted, Dual::variable(step), &lift(&velocity));
+    let (of, bounds) = (&found.momentum, &again.momentum);
+    columns(check, "residual_dq", (&of.residual_dq, &bounds.residual_dq), |j| slopes(&by_q(j).residual))?;
+    columns(check, "residual_dv", (&of.residual_dv, &bounds.residual_dv), |j| slopes(&by_v(j).residual))?;
+    let increment_dq = |j: usize| slopes(&by_q(j).increment.momentum);
+    columns(check, "increment_dq", (&of.increment_dq, &bounds.increment_dq), increment_dq)?;
+    let increment_dv = |j: usize| slopes(&by_v(j).increment.momentum);
+    columns(check, "increment_dv", (&of.increment_dv, &bounds.increment_dv), increment_dv)?;
+    check.vector("residual_dh", &vector_of(&found.residual_dh, &again.residual_dh), &slopes(&by_h.residual))?;
+    let increment_dh = vector_of(&found.increment_dh, &again.increment_dh);
+    check.vector("increment_dh", &increment_dh, &slopes(&by_h.increment.momentum))?;
+    let entries = |of: fn(ExtendedResidual<N, First>) -> First| {
+        let by = |along: &dyn Fn(usize) -> ExtendedResidual<N, First>| SVector::from_fn(|j, _| of(along(j)).slope);
+        [by(&by_q), by(&by_v)]
+    };
+    let [energy_dq, change] = entries(|row| row.energy_residual);
+    check.vector("energy_dq", &vector_of(&found.energy_dq, &again.energy_dq), &energy_dq)?;
+    let energy_dv = (change + row).map(|entry| entry / step);
+    check.vector("energy_dv", &vector_of(&found.energy_dv, &again.energy_dv), &energy_dv)?;
+    check.number("energy_dh", again.energy_dh.of(found.energy_dh), by_h.energy_residual.slope / step)?;
+    let [increment_dq, increment_dv] = entries(|row| row.increment.energy);
+    let of_energy = vector_of(&found.energy_increment_dq, &again.energy_increment_dq);
+    check.vector("energy_increment_dq", &of_energy, &increment_dq)?;
+    let of_energy = vector_of(&found.energy_increment_dv, &again.energy_increment_dv);
+    check.vector("energy_increment_dv", &of_energy, &increment_dv)?;
+    let of_energy = again.energy_increment_dh.of(found.energy_increment_dh);
+    check.number("energy_increment_dh", of_energy, by_h.increment.energy.slope)
 }

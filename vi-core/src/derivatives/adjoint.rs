@@ -108,7 +108,9 @@ where
     if I::KEEPS_ENERGY {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
     }
+    let of_state = directions.len();
     directions.extend(objective.parameters().iter().filter_map(|name| Variation::of_parameter::<I::System>(name)));
+    let are_varied = directions.len() > of_state;
     let mut variations = directions.clone();
     let mut parameters = Vec::new();
     let mut inherited = vec![0.0; directions.len()];
@@ -123,7 +125,7 @@ where
             variations.clone_from_slice(&directions);
             after.vary(before.node(), &mut variations)?;
             let mut changes: Vec<f64> = variations.iter().map(|variation| slope.of(variation)).collect();
-            if I::KEEPS_ENERGY {
+            if I::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
                 let state = before.state();
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
                 let lost = changes_of_energy(before.system(), &state, &directions)?;
@@ -168,6 +170,11 @@ fn between<I: Differentiable<N>, const N: usize>(
         runs.push(run.clone());
     }
     Ok(runs)
+}
+
+/// Whether two systems have the same parameters: then a run that goes from one to the other keeps its energy.
+fn have_equal_parameters<S: Lagrangian<N>, const N: usize>(one: &S, other: &S) -> bool {
+    (0..S::PARAMETERS.len()).all(|index| one.parameter(index).to_bits() == other.parameter(index).to_bits())
 }
 
 /// What H at a state changes by in each direction: `v·δp − δL`, v fixed.

@@ -1,20 +1,20 @@
 //! Variations of one step, for each integrator; those of a Gauss step stand with its stages (`gauss/variation.rs`).
 //!
 //! In: an integrator after a step, the node at which the step began, variations of that node. Out: those of the node reached. The unknowns of the step are at
-//! hand. Of a few coordinates the equations are linearized in all of them, by one or two evaluations in dual numbers that serve every direction; else they are evaluated
-//! along the directions, twice for each pair: with the unknowns held, and as they vary.
+//! hand, and its system says how the equations change with them and with the coordinates of the node. How they change with the time and with parameters dual numbers
+//! say, where one of the directions asks for it.
 
-use super::variation::{Jacobians, TOGETHER, Variation, Varied, changes};
+use super::variation::{TOGETHER, Variation, Varied};
 use crate::composition::Composition;
 use crate::energy_preserving::{EnergyPreserving, Fallback};
 use crate::error::StepError;
 use crate::fixed_step::FixedStep;
 use crate::integrator::Integrator;
-use crate::linear;
+use crate::linear::{self, Matrix};
 use crate::node::Node;
 use crate::real::{Dual, Real, Slopes};
-use crate::stepping::{Convertible, EnergyStepping, ExtendedSystem, FixedStepping, MomentumResidual};
-use nalgebra::{RowSVector, SMatrix, SVector};
+use crate::stepping::{Convertible, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives};
+use nalgebra::{SMatrix, SVector};
 
 /// An integrator whose steps have derivatives.
 pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> {
@@ -35,15 +35,17 @@ fn singular(t: f64) -> StepError {
     StepError::Singular { t, matrix: "derivative of the equations of a step" }
 }
 
-/// Directions that one long evaluation follows: the slopes that a register of every processor holds.
-const PAIR: usize = 2;
-
 /// A number that varies in W directions, its value a number that may vary itself.
 type Along<T, const W: usize> = Dual<T, Slopes<T, W>>;
 
 /// How fast each entry changes: a column a direction.
 fn slopes<T: Real, const N: usize, const W: usize>(of: &SVector<Along<T, W>, N>) -> SMatrix<T, N, W> {
     SMatrix::from_fn(|row, direction| of[row].slope.0[direction])
+}
+
+/// How fast each entry changes in one of the directions.
+fn slope_along<const N: usize, const W: usize>(direction: usize, of: &SVector<Varied<W>, N>) -> SVector<f64, N> {
+    of.map(|entry| entry.slope.0[direction])
 }
 
 /// A vector that changes by so much in each direction.
@@ -81,9 +83,17 @@ where
     Ok(node)
 }
 
+/// The x with `A x = rhs`, from the inverse of A; where that lost a pivot, from A.
+fn solved<A: Matrix<N, f64>, const N: usize>(
+    matrix: &A,
+    inverse: &A::Inverse,
+    rhs: &SVector<f64, N>,
+) -> Option<SVector<f64, N>> {
+    let x = A::apply(inverse, rhs);
+    if x.iter().all(|entry| entry.is_finite()) { Some(x) } else { linear::solve(matrix, rhs) }
+}
+
 /// Turns variations of a node into those of the node after the momentum step `(v, h)`.
-///
-/// Up to [`TOGETHER`] coordinates one or two evaluations give the derivatives by all of them and by v; beyond, two along the directions take less.
 fn vary<S, const N: usize>(
     system: &S,
     node: &Node<N>,
@@ -94,35 +104,24 @@ fn vary<S, const N: usize>(
 where
     S: FixedStepping<N> + Convertible<N>,
 {
-    if const { N > TOGETHER } {
-        for variations in variations.chunks_mut(PAIR) {
-            let varied = Variation::system::<_, PAIR>(variations, system);
-            let node = momentum_step(system, &varied, Variation::node(variations, node), h, v)?;
-            Variation::take(variations, &node);
-        }
-        return Ok(());
-    }
-    let fixed = node.map(Varied::fixed);
-    let still = system.convert::<Varied>();
-    let sides = |q: &SVector<Varied, N>, v: &SVector<Varied, N>| {
-        let MomentumResidual { residual, increment, .. } =
-            still.momentum_residual(&Node { q: *q, ..fixed }, Dual::fixed(h), v);
-        [residual, increment]
-    };
-    let Jacobians { by_q, by_v } = Jacobians::of(sides, &node.q, v);
+    let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } =
+        system.momentum_derivatives(node, h, v);
+    let inverse = residual_dv.inverse();
     for variations in variations.chunks_mut(TOGETHER) {
         let explicit = Variation::varying_system(variations, system).map(|varied| {
-            let node = Node { t: Variation::number(variations, node.t, |variation| variation.t), ..fixed };
-            let MomentumResidual { residual, increment, .. } =
-                varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed));
-            changes(&[residual, increment])
+            let node = Variation::in_time(variations, node);
+            varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
         });
         for (direction, variation) in variations.iter_mut().enumerate() {
-            let [residual, increment] = explicit.map_or([SVector::zeros(); 2], |changes| changes[direction]);
-            let residual = residual + by_q[0] * variation.q - variation.p;
-            let of_v = -linear::solve(&by_v[0], &residual).ok_or_else(|| singular(node.t))?;
-            variation.p += increment + by_q[1] * variation.q + by_v[1] * of_v;
+            let mut residual = residual_dq.multiply(&variation.q) - variation.p;
+            let mut increment = increment_dq.multiply(&variation.q);
+            if let Some(explicit) = &explicit {
+                residual += slope_along(direction, &explicit.residual);
+                increment += slope_along(direction, &explicit.increment);
+            }
+            let of_v = -solved(&residual_dv, &inverse, &residual).ok_or_else(|| singular(node.t))?;
             variation.q += of_v * h;
+            variation.p += increment + increment_dv.multiply(&of_v);
         }
     }
     Ok(())
@@ -209,7 +208,7 @@ where
 impl<S, const N: usize> Differentiable<N> for EnergyPreserving<S, N>
 where
     S: EnergyStepping<N> + Convertible<N>,
-    S::In<Dual<f64, Slopes<f64, PAIR>>>: EnergyStepping<N, Dual<f64, Slopes<f64, PAIR>>>,
+    S::In<Varied>: EnergyStepping<N, Varied>,
 {
     const KEEPS_ENERGY: bool = true;
 
@@ -222,28 +221,49 @@ where
         }
         let h = self.h();
         let v = self.v();
-        let ExtendedSystem { momentum, residual_dh, energy_dv, energy_dh, .. } =
-            self.system().extended_system(before, h, &v);
-        let along_h = linear::solve(&momentum.jacobian, &residual_dh).ok_or_else(|| singular(before.t))?;
+        let ExtendedDerivatives {
+            momentum: MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv },
+            residual_dh,
+            increment_dh,
+            energy_dq,
+            energy_dv,
+            energy_dh,
+            energy_increment_dq,
+            energy_increment_dv,
+            energy_increment_dh,
+        } = self.system().extended_derivatives(before, h, &v);
+        let inverse = residual_dv.inverse();
+        let along_h = solved(&residual_dv, &inverse, &residual_dh).ok_or_else(|| singular(before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
-        for variations in variations.chunks_mut(PAIR) {
-            let system = Variation::system::<_, PAIR>(variations, self.system());
-            let mut node = Variation::node(variations, before);
-            let still = system.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed));
-            let of_residual =
-                linear::solve(&momentum.jacobian, &slopes(&still.residual)).ok_or_else(|| singular(before.t))?;
-            let of_energy = still.energy_residual.slope.0.map(|slope| slope / h);
-            let change_of_h = (energy_dv.transpose() * of_residual - RowSVector::from(of_energy)) / schur;
-            if !change_of_h.iter().all(|change| change.is_finite()) {
-                return Err(singular(before.t));
+        for variations in variations.chunks_mut(TOGETHER) {
+            let explicit = Variation::varying_system(variations, self.system()).map(|varied| {
+                let node = Variation::in_time(variations, before);
+                varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
+            });
+            for (direction, variation) in variations.iter_mut().enumerate() {
+                let mut residual = residual_dq.multiply(&variation.q) - variation.p;
+                let mut energy = energy_dq.dot(&variation.q) + v.dot(&variation.p) - variation.energy;
+                let mut momentum_gain = increment_dq.multiply(&variation.q);
+                let mut energy_gain = energy_increment_dq.dot(&variation.q);
+                if let Some(explicit) = &explicit {
+                    residual += slope_along(direction, &explicit.residual);
+                    energy += explicit.energy_residual.slope.0[direction];
+                    momentum_gain += slope_along(direction, &explicit.increment.momentum);
+                    energy_gain += explicit.increment.energy.slope.0[direction];
+                }
+                let of_residual = solved(&residual_dv, &inverse, &residual).ok_or_else(|| singular(before.t))?;
+                let of_h = (energy_dv.dot(&of_residual) - energy / h) / schur;
+                if !of_h.is_finite() {
+                    return Err(singular(before.t));
+                }
+                let of_v = -of_residual - along_h * of_h;
+                variation.t += of_h;
+                variation.q += of_v * h + v * of_h;
+                variation.p += momentum_gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
+                if !S::AUTONOMOUS || S::FORCED {
+                    variation.energy += energy_gain + energy_increment_dv.dot(&of_v) + energy_increment_dh * of_h;
+                }
             }
-            let change_of_v = -of_residual - along_h * change_of_h;
-            let h = Dual { value: h, slope: Slopes(core::array::from_fn(|direction| change_of_h[direction])) };
-            let v = varied(&v, &change_of_v);
-            let increment = system.extended_residual(&node, h, &v).increment;
-            node.advance(h, &v, &increment.momentum);
-            node.add_energy(increment.energy);
-            Variation::take(variations, &node);
         }
         Ok(())
     }

@@ -6,61 +6,13 @@ use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
 use crate::real::{Dual, Slopes};
 use crate::stepping::Convertible;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// Directions that one evaluation follows.
 pub(crate) const TOGETHER: usize = 4;
 
 /// A number that varies in W directions.
 pub(crate) type Varied<const W: usize = TOGETHER> = Dual<f64, Slopes<f64, W>>;
-
-/// How two vectors change with the coordinates and velocities that they are functions of: a column each.
-#[derive(Clone, Debug)]
-pub(crate) struct Jacobians<const N: usize> {
-    /// By the coordinates, of each of the two.
-    pub(crate) by_q: [SMatrix<f64, N, N>; 2],
-    /// By the velocities.
-    pub(crate) by_v: [SMatrix<f64, N, N>; 2],
-}
-
-impl<const N: usize> Jacobians<N> {
-    /// Those of a function at (q, v), by one evaluation for [`TOGETHER`] columns.
-    #[inline]
-    pub(crate) fn of(
-        function: impl Fn(&SVector<Varied, N>, &SVector<Varied, N>) -> [SVector<Varied, N>; 2],
-        q: &SVector<f64, N>,
-        v: &SVector<f64, N>,
-    ) -> Self {
-        let zeros = [SMatrix::zeros(); 2];
-        let mut jacobians = Self { by_q: zeros, by_v: zeros };
-        for first in (0..2 * N).step_by(TOGETHER) {
-            let columns = first..(first + TOGETHER).min(2 * N);
-            let mut q = q.map(Varied::fixed);
-            let mut v = v.map(Varied::fixed);
-            for (direction, column) in columns.clone().enumerate() {
-                let moved = if column < N { &mut q[column] } else { &mut v[column - N] };
-                moved.slope.0[direction] = 1.0;
-            }
-            let slopes = changes(&function(&q, &v));
-            for (along, column) in slopes.iter().zip(columns) {
-                let by = if column < N { &mut jacobians.by_q } else { &mut jacobians.by_v };
-                for (matrix, slope) in by.iter_mut().zip(along) {
-                    matrix.set_column(column % N, slope);
-                }
-            }
-        }
-        jacobians
-    }
-}
-
-/// What two vectors change by in each of [`TOGETHER`] directions.
-pub(crate) type Changes<const N: usize> = [[SVector<f64, N>; 2]; TOGETHER];
-
-/// What two vectors change by, a row a direction.
-pub(crate) fn changes<const N: usize>(of: &[SVector<Varied, N>; 2]) -> Changes<N> {
-    let along = |direction: usize| of.map(|vector| vector.map(|entry| entry.slope.0[direction]));
-    core::array::from_fn(along)
-}
 
 /// How fast a node and the parameters of its system change in one direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,6 +106,12 @@ impl<const N: usize> Variation<N> {
         varied
     }
 
+    /// The node, its time varied in each of the directions.
+    pub(super) fn in_time<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
+        let t = Self::number(variations, node.t, |variation| variation.t);
+        Node { t, ..node.map(Varied::<W>::fixed) }
+    }
+
     /// The node, varied in each of the directions.
     pub(super) fn node<const W: usize>(variations: &[Self], node: &Node<N>) -> Node<N, Varied<W>> {
         let mut varied = node.map(Varied::<W>::fixed);
@@ -166,19 +124,5 @@ impl<const N: usize> Variation<N> {
             }
         }
         varied
-    }
-
-    /// Takes the variations of a node; those of the parameters stay.
-    pub(super) fn take<const W: usize>(variations: &mut [Self], node: &Node<N, Varied<W>>) {
-        for (direction, variation) in variations.iter_mut().enumerate() {
-            // Both parts of a sum vary.
-            let whole = |number: Varied<W>, low: Varied<W>| number.slope.0[direction] + low.slope.0[direction];
-            variation.t = whole(node.t, node.t_low);
-            variation.energy = whole(node.energy, node.energy_low);
-            for k in 0..N {
-                variation.q[k] = whole(node.q[k], node.q_low[k]);
-                variation.p[k] = whole(node.p[k], node.p_low[k]);
-            }
-        }
     }
 }

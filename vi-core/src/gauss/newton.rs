@@ -17,9 +17,8 @@
 //! positive real part. It allocates once, when a run meets its first stiff step.
 
 use super::modes::{Modal, Spectrum};
-use super::points::Rare;
+use super::points::{AnyDerivatives, Rare};
 use super::stages::{LOOPED, Stages, product};
-use crate::derivatives::Jacobians;
 use crate::linear::Pivoted;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use vi_dispatch::{Instructions, Loop, by_baseline};
@@ -55,7 +54,7 @@ pub(super) struct Newton<const N: usize, const S: usize> {
     linearization: Option<Linearization<N>>,
     instructions: Instructions,
     spectrum: Spectrum<S>,
-    jacobians: Jacobians<N>,
+    derivatives: AnyDerivatives<N>,
     /// The inverse of the matrix, by rows.
     inverse: Vec<[Modal<S>; N]>,
 }
@@ -63,10 +62,11 @@ pub(super) struct Newton<const N: usize, const S: usize> {
 impl<const N: usize, const S: usize> Newton<N, S> {
     /// Room for the equations.
     pub(super) fn new() -> Self {
-        let jacobians = Jacobians { by_q: [SMatrix::zeros(); 2], by_v: [SMatrix::zeros(); 2] };
+        let zeros = SMatrix::zeros();
+        let derivatives = AnyDerivatives { momentum_dq: zeros, mass: zeros, force_dq: zeros, force_dv: zeros };
         let inverse = vec![[Modal::ZERO; N]; N];
         let instructions = Instructions::detected();
-        Self { linearization: None, instructions, spectrum: Spectrum::new(), jacobians, inverse }
+        Self { linearization: None, instructions, spectrum: Spectrum::new(), derivatives, inverse }
     }
 
     /// The equations of a system, linearized.
@@ -94,8 +94,8 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     /// Linearizes the equations of a system.
     pub(super) fn linearize(&mut self, system: &Rare<'_, N>, at: Linearization<N>) {
         let Linearization { h, t, q, v, .. } = &at;
-        self.jacobians = jacobians(system, *t, q, v);
-        let Jacobians { by_q: [c, k], by_v: [m, b] } = &self.jacobians;
+        self.derivatives = system.derivatives(*t, q, v);
+        let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
         let step = self.spectrum.eigenvalues * *h;
         let square = step * step;
         for row in 0..N {
@@ -116,7 +116,7 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector, `E = [I 0; C M]` and `G = [0 I; K B]`.
     pub(super) fn stiffness(&self) -> f64 {
         let h = self.linearization.map_or(f64::NAN, |at| at.h);
-        let Jacobians { by_q: [c, k], by_v: [m, b] } = &self.jacobians;
+        let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
         let mut left = DMatrix::identity(2 * N, 2 * N);
         left.view_mut((N, 0), (N, N)).copy_from(c);
         left.view_mut((N, N), (N, N)).copy_from(m);
@@ -214,16 +214,6 @@ impl<const N: usize, const S: usize> Loop for Correct<'_, N, S> {
         }
         correction
     }
-}
-
-/// How `L_v` and `L_q + f` change at the point (t, q, v).
-pub(super) fn jacobians<const N: usize>(
-    system: &Rare<'_, N>,
-    t: f64,
-    q: &SVector<f64, N>,
-    v: &SVector<f64, N>,
-) -> Jacobians<N> {
-    Jacobians::of(|q, v| system.varied(t, q, v), q, v)
 }
 
 /// Multiplications that estimate the stiffness.

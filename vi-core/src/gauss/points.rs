@@ -4,8 +4,7 @@
 //! a pointer. Rare code, where sweeps do not settle or something is measured once a step, takes the latter: it is compiled once for
 //! each number of coordinates and stages, however many systems a program has. Three fifths of the code of a step are rare.
 
-use crate::collocation::{Collocation, Point};
-use crate::derivatives::Varied;
+use crate::collocation::{Collocation, Point, PointDerivatives};
 use crate::linear::Matrix;
 use crate::real::{Real, Rounded};
 use crate::stepping::Convertible;
@@ -71,11 +70,14 @@ impl<Y: Collocation<N, T>, const N: usize, T: Real> Points<N, T> for Y {
 /// A point with the mass matrix as one of any system.
 type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
 
+/// How the equations of any system change at a point.
+pub(super) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N, N>>;
+
 /// A system in the numbers of rare code.
 trait Erased<const N: usize> {
     fn form(&self) -> Form;
     fn plain(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyPoint<N, f64>;
-    fn varied(&self, t: f64, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> [SVector<Varied, N>; 2];
+    fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N>;
     fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded>;
 }
 
@@ -88,9 +90,15 @@ impl<S: Convertible<N>, const N: usize> Erased<N> for S {
         dense(self, t, q, v)
     }
 
-    fn varied(&self, t: f64, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> [SVector<Varied, N>; 2] {
-        let point = self.convert::<Varied>().point(Varied::fixed(t), q, v);
-        [point.momentum, point.force]
+    fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N> {
+        let PointDerivatives { momentum_dq, mass, force_dq, force_dv } =
+            self.convert::<f64>().point_derivatives(t, q, v);
+        PointDerivatives {
+            momentum_dq: momentum_dq.dense(),
+            mass: mass.dense(),
+            force_dq: force_dq.dense(),
+            force_dv: force_dv.dense(),
+        }
     }
 
     fn rounded(&self, t: Rounded, q: &SVector<Rounded, N>, v: &SVector<Rounded, N>) -> AnyPoint<N, Rounded> {
@@ -119,9 +127,9 @@ impl<'a, const N: usize> Rare<'a, N> {
         Self(system)
     }
 
-    /// L_v and L_q + f, where coordinates and velocities vary.
-    pub(super) fn varied(&self, t: f64, q: &SVector<Varied, N>, v: &SVector<Varied, N>) -> [SVector<Varied, N>; 2] {
-        self.0.varied(t, q, v)
+    /// How L_v and L_q + f change.
+    pub(super) fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N> {
+        self.0.derivatives(t, q, v)
     }
 }
 

@@ -103,7 +103,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
 
 /// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
 /// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
-const WIDE: bool = !cfg!(target_arch = "x86_64");
+pub(super) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
 /// The next step of a run, by the instructions of the processor: taken where sweeps solve it, else what they, or Newton's iteration, lead to. None, and
 /// nothing taken, where Newton's iteration is that of all systems.

@@ -7,127 +7,391 @@
 //! C_i δQ_i + M_i δV_i + m_i = δp0 + h Σ_j a_ij δF_j        δQ_i = δq0 + h Σ_j a_ij δV_j        δF_j = K_j δQ_j + B_j δV_j + f_j
 //! ```
 //!
-//! one matrix of S N rows, factored once for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
+//! S N equations with the same matrix for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
 use super::Gauss;
 use super::general::equations;
-use super::newton::jacobians;
 use super::points::Rare;
-use super::stages::{stage, time};
+use super::solve::WIDE;
+use super::stages::{
+    AtStages, LOOPED, Stages, gathered, maximum, product, row_by_row, scaled, stage, sum, times, weights,
+};
 use super::sweep::Equations;
 use super::tableau::Tableau;
-use crate::collocation::Collocation;
-use crate::derivatives::{Changes, Differentiable, Jacobians, TOGETHER, Variation, changes};
+use crate::collocation::{Collocation, PointDerivatives};
+use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
-use crate::linear::Pivoted;
+use crate::linear::Matrix;
 use crate::node::Node;
-use crate::real::Dual;
+use crate::real::{Dual, Lane, Lanes};
 use crate::stepping::{Convertible, FixedStepping};
-use nalgebra::{DMatrix, DVector, SVector};
-
-/// A stage of a solved step.
-struct Stage<const N: usize> {
-    t: f64,
-    q: SVector<f64, N>,
-    v: SVector<f64, N>,
-    jacobians: Jacobians<N>,
-}
+use nalgebra::SVector;
+use vi_dispatch::Loop;
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<N> for Gauss<S, N, STAGES>
 where
     S: Collocation<N> + Convertible<N> + FixedStepping<N>,
 {
-    /// Allocates: the linearized equations of all stages are one matrix.
+    /// Allocates: the equations of all stages are one matrix.
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Tableau { b, first, .. } = const { &Tableau::<STAGES>::VALUES };
-        let Self { system, run, .. } = self;
-        let h = run.h;
-        let singular = StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" };
+        let Self { system, instructions, run, .. } = self;
         let rare = Rare::of(system);
-        let equations = equations(&rare, before, h, run.stages.data.0);
-        let positions = equations.start();
-        let velocities = equations.velocity();
-        let stages: Vec<Stage<N>> = (0..STAGES)
-            .map(|i| {
-                let t = time::<N, STAGES, false, f64>(before, h, i);
-                let [q, v] = [stage(&positions, i), stage(&velocities, i)];
-                Stage { t, q, v, jacobians: jacobians(&rare, t, &q, &v) }
-            })
-            .collect();
-        // h a_ij
-        let mut weights = [[0.0; STAGES]; STAGES];
-        for i in 0..STAGES {
-            for j in 0..STAGES {
-                weights[i][j] = h * b[j] * first[j][i];
-            }
-        }
-        let mut matrix = DMatrix::zeros(N * STAGES, N * STAGES);
-        for i in 0..STAGES {
-            for j in 0..STAGES {
-                let mut block = (stages[i].jacobians.by_q[0] - stages[j].jacobians.by_v[1]) * weights[i][j];
-                for k in 0..STAGES {
-                    block -= stages[k].jacobians.by_q[1] * (weights[i][k] * weights[k][j]);
-                }
-                if i == j {
-                    block += stages[i].jacobians.by_v[0];
-                }
-                matrix.view_mut((N * i, N * j), (N, N)).copy_from(&block);
-            }
-        }
-        let mut factors = Pivoted::new(N * STAGES);
-        factors.factor(&matrix);
-        let mut change = DVector::zeros(N * STAGES);
+        let equations = equations(&rare, before, run.h, run.stages.data.0);
+        let at = Solution {
+            times: times::<N, STAGES, false>(before, run.h),
+            positions: equations.start(),
+            velocities: equations.velocity(),
+        };
+        let side_by_side = S::SIDE_BY_SIDE.then(|| instructions.run(Differentiate { system, at: &at }));
+        let derivatives =
+            side_by_side.filter(Derivatives::are_finite).unwrap_or_else(|| Derivatives::one_by_one(&rare, &at));
         for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = explicit(system, &stages, variations);
-            for (direction, variation) in variations.iter_mut().enumerate() {
-                let mut of_momentum = [SVector::<f64, N>::zeros(); STAGES];
-                let mut of_force = of_momentum;
-                for (i, stage) in stages.iter().enumerate() {
-                    let [momentum, force] = explicit.as_ref().map_or([SVector::zeros(); 2], |of| of[i][direction]);
-                    of_momentum[i] = momentum + stage.jacobians.by_q[0] * variation.q;
-                    of_force[i] = force + stage.jacobians.by_q[1] * variation.q;
-                }
-                for i in 0..STAGES {
-                    let mut row = variation.p - of_momentum[i];
-                    for j in 0..STAGES {
-                        row += of_force[j] * weights[i][j];
-                    }
-                    change.rows_mut(N * i, N).copy_from(&row);
-                }
-                factors.solve(change.as_mut_slice());
-                if !change.iter().all(|entry| entry.is_finite()) {
-                    return Err(singular);
-                }
-                let of_velocity = |j: usize| SVector::<f64, N>::from_fn(|k, _| change[N * j + k]);
-                for j in 0..STAGES {
-                    let mut moved = SVector::zeros();
-                    for k in 0..STAGES {
-                        moved += of_velocity(k) * weights[j][k];
-                    }
-                    let force = of_force[j]
-                        + stages[j].jacobians.by_q[1] * moved
-                        + stages[j].jacobians.by_v[1] * of_velocity(j);
-                    variation.q += of_velocity(j) * (h * b[j]);
-                    variation.p += force * (h * b[j]);
-                }
+            let explicit = explicit(system, &at, variations);
+            let are_found = instructions.run(Vary { derivatives: &derivatives, h: run.h, explicit, variations });
+            if !are_found {
+                return Err(StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" });
             }
         }
         Ok(())
     }
 }
 
-/// What `L_v` and `L_q + f` change by with the time and the parameters, a row a stage; none where neither varies in any direction.
-fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize>(
+/// The stages of a solved step.
+struct Solution<const N: usize, const S: usize> {
+    times: [f64; S],
+    positions: Stages<N, S>,
+    velocities: Stages<N, S>,
+}
+
+/// How L_v and F change at the stages: the rows of C, M, K and B, one after the other. Entry (k, l) of a matrix is the derivative of component k by coordinate or
+/// velocity l, a row of stages. Not an array: those of long systems are too large for the stack of a thread.
+struct Derivatives<const N: usize, const S: usize>(Vec<Stages<N, S>>);
+
+impl<const N: usize, const S: usize> Derivatives<N, S> {
+    /// C, M, K and B.
+    #[inline(always)]
+    fn matrices(&self) -> [&[Stages<N, S>; N]; 4] {
+        let matrices = self.0.as_chunks::<N>().0;
+        [&matrices[0], &matrices[1], &matrices[2], &matrices[3]]
+    }
+
+    /// Those of stages that are evaluated in the numbers T.
+    #[inline(always)]
+    fn by_numbers<T: AtStages<S>, Y: Collocation<N, T>>(system: &Y, at: &Solution<N, S>) -> Self {
+        if const { N <= LOOPED } {
+            // An array overlaps nothing, so far as the compiler knows: it makes vectors of the loop over the stages.
+            let mut matrices = [[[[0.0; S]; N]; N]; 4];
+            put_all(&mut matrices, system, at);
+            return Self(matrices.as_flattened().to_vec());
+        }
+        let mut rows = vec![[[0.0; S]; N]; 4 * N];
+        put_all(rows.as_chunks_mut::<N>().0, system, at);
+        Self(rows)
+    }
+
+    /// Those of every stage by itself, in plain numbers, which have sines and cosines of every angle.
+    fn one_by_one(system: &Rare<'_, N>, at: &Solution<N, S>) -> Self {
+        let mut rows = vec![[[0.0; S]; N]; 4 * N];
+        for i in 0..S {
+            let of_stage = system.derivatives(at.times[i], &stage(&at.positions, i), &stage(&at.velocities, i));
+            put::<_, f64, N, S>(rows.as_chunks_mut::<N>().0, i, &of_stage);
+        }
+        Self(rows)
+    }
+
+    /// Whether every number is finite.
+    fn are_finite(&self) -> bool {
+        self.0.as_flattened().as_flattened().iter().all(|entry| entry.is_finite())
+    }
+}
+
+/// Sets the matrices of all evaluations.
+#[inline(always)]
+fn put_all<const N: usize, const S: usize, T: AtStages<S>, Y: Collocation<N, T>>(
+    matrices: &mut [[Stages<N, S>; N]],
+    system: &Y,
+    at: &Solution<N, S>,
+) {
+    for i in 0..T::EVALUATIONS {
+        let [q, v] = [&at.positions, &at.velocities].map(|stages| gathered(stages, i));
+        put(matrices, i, &system.point_derivatives(T::of(&at.times, i), &q, &v));
+    }
+}
+
+/// Sets the matrices C, M, K and B of an evaluation.
+#[inline(always)]
+fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
+    matrices: &mut [[Stages<N, S>; N]],
+    evaluation: usize,
+    derivatives: &PointDerivatives<D>,
+) {
+    let PointDerivatives { momentum_dq, mass, force_dq, force_dv } = derivatives;
+    for (rows, matrix) in matrices.iter_mut().zip([momentum_dq, mass, force_dq, force_dv]) {
+        for k in 0..N {
+            for l in 0..N {
+                matrix.entry(k, l).put(&mut rows[k][l], evaluation);
+            }
+        }
+    }
+}
+
+/// The derivatives of all stages, by the instructions of the processor.
+struct Differentiate<'a, Y, const N: usize, const S: usize> {
+    system: &'a Y,
+    at: &'a Solution<N, S>,
+}
+
+/// Bytes up to which a matrix is evaluated at all stages at once: a thread has a stack of two million.
+const SIDE_BY_SIDE: usize = 1 << 16;
+
+impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'_, Y, N, S> {
+    type Output = Derivatives<N, S>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Derivatives<N, S> {
+        let Self { system, at } = self;
+        let bytes = const { size_of::<<Y::In<Lanes<S, FUSED>> as Collocation<N, Lanes<S, FUSED>>>::PointMatrix>() };
+        if const { N > LOOPED && (FUSED || WIDE) } && bytes <= SIDE_BY_SIDE {
+            Derivatives::by_numbers::<Lanes<S, FUSED>, _>(&system.convert(), at)
+        } else {
+            Derivatives::by_numbers::<Lane<FUSED>, _>(&system.convert(), at)
+        }
+    }
+}
+
+/// What `L_v` and `L_q + f` change by with the time and the parameters, in each direction.
+type Explicit<const N: usize, const S: usize> = [[Stages<N, S>; 2]; TOGETHER];
+
+/// Those at the stages; none where neither varies in any direction.
+fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usize>(
     system: &S,
-    stages: &[Stage<N>],
+    at: &Solution<N, STAGES>,
     variations: &[Variation<N>],
-) -> Option<Vec<Changes<N>>> {
+) -> Option<Explicit<N, STAGES>> {
     let varied = Variation::varying_system(variations, system)?;
-    let at = |stage: &Stage<N>| {
-        let t = Variation::number(variations, stage.t, |variation| variation.t);
-        let point = varied.point(t, &stage.q.map(Dual::fixed), &stage.v.map(Dual::fixed));
-        changes(&[point.momentum, point.force])
-    };
-    Some(stages.iter().map(at).collect())
+    let mut explicit = [[[[0.0; STAGES]; N]; 2]; TOGETHER];
+    for i in 0..STAGES {
+        let t: Varied = Variation::number(variations, at.times[i], |variation| variation.t);
+        let [q, v] = [&at.positions, &at.velocities].map(|of| stage::<N, STAGES, f64>(of, i).map(Dual::fixed));
+        let point = varied.point(t, &q, &v);
+        for (direction, changes) in explicit.iter_mut().enumerate() {
+            for k in 0..N {
+                changes[0][k][i] = point.momentum[k].slope.0[direction];
+                changes[1][k][i] = point.force[k].slope.0[direction];
+            }
+        }
+    }
+    Some(explicit)
+}
+
+/// Turns variations of the node at which a step began into those of the node reached; false, and anything in them, where the equations do not determine them.
+struct Vary<'a, const N: usize, const S: usize> {
+    derivatives: &'a Derivatives<N, S>,
+    h: f64,
+    explicit: Option<Explicit<N, S>>,
+    variations: &'a mut [Variation<N>],
+}
+
+impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> bool {
+        let Self { derivatives, h, explicit, variations } = self;
+        let weights = weights::<S>(h);
+        let mut equations = Vec::with_capacity(N * S + TOGETHER);
+        derivatives.columns::<FUSED>(&weights, &mut equations);
+        let [momentum_dq, _, force_dq, force_dv] = derivatives.matrices();
+        // What forces change by where the velocities of the stages do not.
+        let mut forces = [[[0.0; S]; N]; TOGETHER];
+        for (direction, variation) in variations.iter().enumerate() {
+            let [mut momentum, mut force] = explicit.as_ref().map_or([[[0.0; S]; N]; 2], |of| of[direction]);
+            add_products::<N, S, FUSED>(&mut momentum, momentum_dq, &constant(&variation.q));
+            add_products::<N, S, FUSED>(&mut force, force_dq, &constant(&variation.q));
+            equations.push(missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights));
+            forces[direction] = force;
+        }
+        let are_finite = eliminate::<N, S, FUSED>(&mut equations);
+        for (direction, variation) in variations.iter_mut().enumerate() {
+            let velocities = &equations[N * S + direction];
+            let force = &mut forces[direction];
+            add_products::<N, S, FUSED>(force, force_dq, &integrals::<N, S, FUSED>(velocities, &weights));
+            add_products::<N, S, FUSED>(force, force_dv, velocities);
+            for k in 0..N {
+                variation.q[k] += sum(&scaled(&weights, &velocities[k]));
+                variation.p[k] += sum(&scaled(&weights, &force[k]));
+            }
+        }
+        are_finite
+    }
+}
+
+impl<const N: usize, const S: usize> Derivatives<N, S> {
+    /// The columns of the matrix: entry i of column j is `δ_ij M_i + h a_ij (C_i − B_j) − h² Σ_m a_im a_mj K_m`.
+    #[inline(always)]
+    fn columns<const FUSED: bool>(&self, weights: &[f64; S], columns: &mut Vec<Stages<N, S>>) {
+        let first = const { &Tableau::<S>::VALUES.first };
+        let [momentum_dq, mass, force_dq, force_dv] = self.matrices();
+        for l in 0..N {
+            for j in 0..S {
+                // h a_ij
+                let mut along = [0.0; S];
+                for i in 0..S {
+                    along[i] = weights[j] * first[j][i];
+                }
+                let mut column = [[0.0; S]; N];
+                for k in 0..N {
+                    row_by_row();
+                    let of_force = force_dv[k][l][j];
+                    let mut curved = [0.0; S];
+                    for m in 0..S {
+                        curved[m] = weights[m] * along[m] * force_dq[k][l][m];
+                    }
+                    let mut entries = [0.0; S];
+                    for i in 0..S {
+                        entries[i] = along[i] * (of_force - momentum_dq[k][l][i]);
+                    }
+                    entries = product::<S, FUSED>(first, &curved, &entries);
+                    for i in 0..S {
+                        column[k][i] = -entries[i];
+                    }
+                    column[k][j] += mass[k][l][j];
+                }
+                columns.push(column);
+            }
+        }
+    }
+}
+
+/// The same vector at every stage.
+#[inline(always)]
+fn constant<const N: usize, const S: usize>(vector: &SVector<f64, N>) -> Stages<N, S> {
+    let mut stages = [[0.0; S]; N];
+    for k in 0..N {
+        stages[k] = [vector[k]; S];
+    }
+    stages
+}
+
+/// Adds `matrix_i x_i` at the stages i.
+#[inline(always)]
+fn add_products<const N: usize, const S: usize, const FUSED: bool>(
+    to: &mut Stages<N, S>,
+    matrix: &[Stages<N, S>; N],
+    x: &Stages<N, S>,
+) {
+    for k in 0..N {
+        for l in 0..N {
+            for i in 0..S {
+                to[k][i] = Lane::<FUSED>::multiply_add(matrix[k][l][i], x[l][i], to[k][i]);
+            }
+        }
+    }
+}
+
+/// `h Σ_j a_ij x_j` at the stages i.
+#[inline(always)]
+fn integrals<const N: usize, const S: usize, const FUSED: bool>(x: &Stages<N, S>, weights: &[f64; S]) -> Stages<N, S> {
+    let first = const { &Tableau::<S>::VALUES.first };
+    let mut integrals = [[0.0; S]; N];
+    for k in 0..N {
+        integrals[k] = product::<S, FUSED>(first, &scaled(weights, &x[k]), &[0.0; S]);
+    }
+    integrals
+}
+
+/// What the momenta that follow from the forces change by beyond L_v: the right side of the equations.
+#[inline(always)]
+fn missing<const N: usize, const S: usize, const FUSED: bool>(
+    p: &SVector<f64, N>,
+    momentum: &Stages<N, S>,
+    force: &Stages<N, S>,
+    weights: &[f64; S],
+) -> Stages<N, S> {
+    let mut missing = integrals::<N, S, FUSED>(force, weights);
+    for k in 0..N {
+        for i in 0..S {
+            missing[k][i] += p[k] - momentum[k][i];
+        }
+    }
+    missing
+}
+
+/// The entry of a column of the diagonal is its pivot unless another is so many times larger.
+const FAVOURED: f64 = 4.0;
+
+/// Solves equations whose columns come first, then their right sides, which become the solutions: elimination of every row but the pivot's, with partial pivoting.
+/// Whether all solutions are finite: not where the matrix is singular.
+#[inline(always)]
+fn eliminate<const N: usize, const S: usize, const FUSED: bool>(equations: &mut [Stages<N, S>]) -> bool {
+    // 1 for rows that have no pivot yet, else 0.
+    let mut free = [[1.0; S]; N];
+    let mut pivots = [[(0, 0); S]; N];
+    let mut scales = [[0.0; S]; N];
+    for l in 0..N {
+        for j in 0..S {
+            let (done, rest) = equations.split_at_mut(l * S + j + 1);
+            let Some(column) = done.last() else { return false };
+            let Some((row, at)) = pivot(column, &free, (l, j)) else { return false };
+            let scale = column[row][at].recip();
+            free[row][at] = 0.0;
+            pivots[l][j] = (row, at);
+            scales[l][j] = scale;
+            let mut factors = [[0.0; S]; N];
+            for k in 0..N {
+                for i in 0..S {
+                    factors[k][i] = -column[k][i] * scale;
+                }
+            }
+            factors[row][at] = 0.0;
+            for other in rest {
+                let pivotal = other[row][at];
+                // A copy overlaps nothing, so far as the compiler knows: it makes vectors of the loop.
+                let mut eliminated = *other;
+                for k in 0..N {
+                    for i in 0..S {
+                        eliminated[k][i] = Lane::<FUSED>::multiply_add(factors[k][i], pivotal, eliminated[k][i]);
+                    }
+                }
+                *other = eliminated;
+            }
+        }
+    }
+    let mut are_finite = true;
+    for right in equations.iter_mut().skip(N * S) {
+        let eliminated = *right;
+        for l in 0..N {
+            for j in 0..S {
+                let (row, at) = pivots[l][j];
+                right[l][j] = eliminated[row][at] * scales[l][j];
+                are_finite &= right[l][j].is_finite();
+            }
+        }
+    }
+    are_finite
+}
+
+/// The place of the pivot of a column; none where the rows that are left have nothing in it.
+#[inline(always)]
+fn pivot<const N: usize, const S: usize>(
+    column: &Stages<N, S>,
+    free: &Stages<N, S>,
+    diagonal: (usize, usize),
+) -> Option<(usize, usize)> {
+    let mut sizes = [[0.0; S]; N];
+    let mut largest = [0.0; N];
+    for k in 0..N {
+        for i in 0..S {
+            sizes[k][i] = column[k][i].abs() * free[k][i];
+        }
+        largest[k] = maximum(&sizes[k]);
+    }
+    let (l, j) = diagonal;
+    let largest = maximum(&largest);
+    if largest > 0.0 && FAVOURED * sizes[l][j] >= largest {
+        return Some(diagonal);
+    }
+    let place = sizes.as_flattened().iter().position(|size| *size > 0.0 && *size >= largest)?;
+    Some((place / S, place % S))
 }

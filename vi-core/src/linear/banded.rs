@@ -92,10 +92,17 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
         }
     }
 
-    fn dense(&self) -> SMatrix<T, N, N> {
-        SMatrix::from_fn(|i, j| {
-            let place = (j + Self::WIDTH).checked_sub(i);
-            place.and_then(|place| self.rows[i].get(place)).copied().unwrap_or_else(T::zero)
+    #[inline]
+    fn entry(&self, row: usize, column: usize) -> T {
+        let place = (column + Self::WIDTH).checked_sub(row);
+        place.and_then(|place| self.rows[row].get(place)).copied().unwrap_or_else(T::zero)
+    }
+
+    #[inline]
+    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        SVector::from_fn(|row, _| {
+            let columns = row.saturating_sub(Self::WIDTH)..N.min(row + Self::WIDTH + 1);
+            columns.fold(T::zero(), |sum, column| sum + self.rows[row][column + Self::WIDTH - row] * x[column])
         })
     }
 }

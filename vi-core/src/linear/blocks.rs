@@ -69,15 +69,22 @@ impl<const N: usize, const B: usize, T: Real> Matrix<N, T> for Blocks<N, B, T> {
         inverse.each(rhs, |index, part| inverse.block(inverse.members[index]) * part)
     }
 
-    fn dense(&self) -> SMatrix<T, N, N> {
-        let mut dense = SMatrix::zeros();
+    fn entry(&self, row: usize, column: usize) -> T {
+        let block = self.members.iter().find(|members| members.contains(&row));
+        let place = block.and_then(|members| members.iter().position(|member| *member == column));
+        place.map_or_else(T::zero, |place| self.rows[row][place])
+    }
+
+    #[inline]
+    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        let mut product = SVector::zeros();
         for members in self.members {
-            for i in *members {
-                for (place, j) in members.iter().enumerate() {
-                    dense[(*i, *j)] = self.rows[*i][place];
+            for row in *members {
+                for (place, column) in members.iter().enumerate() {
+                    product[*row] += self.rows[*row][place] * x[*column];
                 }
             }
         }
-        dense
+        product
     }
 }

@@ -60,6 +60,16 @@ impl<const N: usize, T: Real> Matrix<N, T> for SMatrix<T, N, N> {
     }
 
     #[inline(always)]
+    fn entry(&self, row: usize, column: usize) -> T {
+        self[(row, column)]
+    }
+
+    #[inline(always)]
+    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        self * x
+    }
+
+    #[inline(always)]
     fn dense(&self) -> Self {
         *self
     }

@@ -65,8 +65,15 @@ pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
             }
         }
     }
+    /// The entry of a row and a column.
+    fn entry(&self, row: usize, column: usize) -> T;
+    /// `A x`.
+    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N>;
     /// A with its zeros.
-    fn dense(&self) -> SMatrix<T, N, N>;
+    #[inline]
+    fn dense(&self) -> SMatrix<T, N, N> {
+        SMatrix::from_fn(|row, column| self.entry(row, column))
+    }
 }
 
 /// The X with `matrix · X = rhs`; `None` where it is not finite. Where elimination without pivoting loses a matrix that is

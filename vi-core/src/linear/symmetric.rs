@@ -87,6 +87,16 @@ impl<const N: usize, T: Real> Matrix<N, T> for Symmetric<N, T> {
     }
 
     #[inline]
+    fn entry(&self, row: usize, column: usize) -> T {
+        self.0[(row, column)]
+    }
+
+    #[inline]
+    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        self.0 * x
+    }
+
+    #[inline]
     fn dense(&self) -> SMatrix<T, N, N> {
         self.0
     }

@@ -228,17 +228,30 @@ impl<const N: usize, T: Real> Matrix<N, T> for Tridiagonal<N, T> {
         x
     }
 
-    fn dense(&self) -> SMatrix<T, N, N> {
-        SMatrix::from_fn(|i, j| {
-            if i == j {
-                self.diagonal[i]
-            } else if i == j + 1 {
-                self.lower[i]
-            } else if j == i + 1 {
-                self.upper[i]
-            } else {
-                T::zero()
+    #[inline]
+    fn entry(&self, row: usize, column: usize) -> T {
+        if row == column {
+            self.diagonal[row]
+        } else if row == column + 1 {
+            self.lower[row]
+        } else if column == row + 1 {
+            self.upper[row]
+        } else {
+            T::zero()
+        }
+    }
+
+    #[inline]
+    fn multiply(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        SVector::from_fn(|row, _| {
+            let mut sum = self.diagonal[row] * x[row];
+            if row > 0 {
+                sum += self.lower[row] * x[row - 1];
             }
+            if row + 1 < N {
+                sum += self.upper[row] * x[row + 1];
+            }
+            sum
         })
     }
 }

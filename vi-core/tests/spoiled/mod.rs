@@ -1,15 +1,15 @@
 //! A right system with one function spoiled, as a wrong generator would print it: in every kind of number. Each file uses its
 //! part of the faults.
 
-use vi_core::collocation::{Collocation, Point};
+use vi_core::collocation::{Collocation, Point, PointDerivatives};
 use vi_core::lagrangian::{Flow, Parameters};
 use vi_core::linear::Matrix;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::Real;
 use vi_core::stepping::{
-    Convertible, EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, MomentumEquation,
-    MomentumResidual, Rounding,
+    Convertible, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, Increment,
+    MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
 
@@ -55,6 +55,12 @@ pub(crate) enum Fault {
     Rounding,
     /// The last entry of the Jacobian is a part in a million too large.
     Jacobian,
+    /// The last entry of how L_q + f changes with q is a part in a million too large.
+    PointDerivatives,
+    /// The last entry of how p1 − p0 changes with v is a part in a million too large.
+    MomentumDerivatives,
+    /// The derivative of p1 − p0 by h has the wrong sign.
+    ExtendedDerivatives,
     /// ∂r/∂h has the wrong sign.
     ResidualDh,
     /// The energy residual lacks the energy of the node.
@@ -145,11 +151,20 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
 
 impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoiled<S> {
     type Mass = S::Mass;
+    type PointMatrix = SMatrix<T, N, N>;
     const CONSTANT_MASS: bool = S::CONSTANT_MASS;
     const SEPARABLE: bool = S::SEPARABLE;
 
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
         self.system.point(t, q, v)
+    }
+    fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<SMatrix<T, N, N>> {
+        let PointDerivatives { momentum_dq, mass, force_dq, force_dv } = self.system.point_derivatives(t, q, v);
+        let [momentum_dq, mass, mut force_dq, force_dv] = [momentum_dq, mass, force_dq, force_dv].map(|of| of.dense());
+        if self.fault == Fault::PointDerivatives {
+            force_dq[(N - 1, N - 1)] *= T::real(1.0 + 1e-6);
+        }
+        PointDerivatives { momentum_dq, mass, force_dq, force_dv }
     }
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
         self.system.power(t, q, v)
@@ -187,6 +202,22 @@ impl<const N: usize, T: Real, S: DiscreteLagrangian<N, T>> DiscreteLagrangian<N,
 }
 
 impl<S> Spoiled<S> {
+    fn spoil_derivatives<const N: usize, T: Real>(
+        &self,
+        right: MomentumDerivatives<S::Jacobian, S::StepMatrix>,
+    ) -> MomentumDerivatives<SMatrix<T, N, N>, SMatrix<T, N, N>>
+    where
+        S: FixedStepping<N, T>,
+    {
+        let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = right;
+        let [residual_dq, increment_dq, mut increment_dv] =
+            [residual_dq, increment_dq, increment_dv].map(|of| of.dense());
+        if self.fault == Fault::MomentumDerivatives {
+            increment_dv[(N - 1, N - 1)] *= T::real(1.0 + 1e-6);
+        }
+        MomentumDerivatives { residual_dq, residual_dv: residual_dv.dense(), increment_dq, increment_dv }
+    }
+
     fn spoil_momentum<const N: usize, T: Real>(
         &self,
         right: MomentumEquation<N, T, S::Jacobian>,
@@ -246,6 +277,7 @@ impl<S> Spoiled<S> {
 
 impl<const N: usize, T: Real, S: FixedStepping<N, T>> FixedStepping<N, T> for Spoiled<S> {
     type Jacobian = SMatrix<T, N, N>;
+    type StepMatrix = SMatrix<T, N, N>;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
 
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
@@ -259,6 +291,14 @@ impl<const N: usize, T: Real, S: FixedStepping<N, T>> FixedStepping<N, T> for Sp
             scale: right.scale,
             increment: self.spoil_increment(increment, node, h, v).momentum,
         }
+    }
+    fn momentum_derivatives(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> MomentumDerivatives<SMatrix<T, N, N>, SMatrix<T, N, N>> {
+        self.spoil_derivatives(self.system.momentum_derivatives(node, h, v))
     }
     fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N> {
         let right = self.system.momentum_rounding(node, h, v);
@@ -298,6 +338,29 @@ impl<const N: usize, T: Real, S: EnergyStepping<N, T>> EnergyStepping<N, T> for 
             energy_scale: right.energy_scale,
             increment: self.spoil_increment(right.increment, node, h, v),
         }
+    }
+    fn extended_derivatives(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> ExtendedDerivatives<N, T, SMatrix<T, N, N>, SMatrix<T, N, N>> {
+        let right = self.system.extended_derivatives(node, h, v);
+        let found = ExtendedDerivatives {
+            momentum: self.spoil_derivatives(right.momentum),
+            residual_dh: right.residual_dh,
+            increment_dh: right.increment_dh,
+            energy_dq: right.energy_dq,
+            energy_dv: right.energy_dv,
+            energy_dh: right.energy_dh,
+            energy_increment_dq: right.energy_increment_dq,
+            energy_increment_dv: right.energy_increment_dv,
+            energy_increment_dh: right.energy_increment_dh,
+        };
+        self.unless(Fault::ExtendedDerivatives, found, |wrong| ExtendedDerivatives {
+            increment_dh: -wrong.increment_dh,
+            ..wrong
+        })
     }
     fn extended_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> Rounding<N, T> {
         let right = self.system.extended_rounding(node, h, v);

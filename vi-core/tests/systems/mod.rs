@@ -17,8 +17,8 @@ use vi_core::node::Node;
 use vi_core::real::Real;
 use vi_core::real::Rounded;
 use vi_core::stepping::{
-    EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, Increment, MomentumEquation, MomentumResidual,
-    Rounding,
+    EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, Increment,
+    MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, support};
 
@@ -285,6 +285,7 @@ impl<const N: usize, T: Real, P: Potential<N, T>> DiscreteLagrangian<N, T> for U
 
 impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> FixedStepping<N, T> for UnitMass<P> {
     type Jacobian = SMatrix<T, N, N>;
+    type StepMatrix = SMatrix<T, N, N>;
     const CONSTANT_JACOBIAN: bool = false;
 
     fn momentum_equation(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> MomentumEquation<N, T> {
@@ -302,6 +303,24 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> FixedS
         let both = self.extended_residual(node, h, v);
         let ExtendedResidual { residual, scale, increment, .. } = both;
         MomentumResidual { residual, scale, increment: increment.momentum }
+    }
+
+    fn momentum_derivatives(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> MomentumDerivatives<SMatrix<T, N, N>, SMatrix<T, N, N>> {
+        let (t, q) = node.midpoint(h, v);
+        let fields = self.0.fields(t, &q, v);
+        let half = h * T::real(0.5);
+        let slope = fields.force_q - fields.hessian;
+        MomentumDerivatives {
+            residual_dq: -slope * half,
+            residual_dv: self.momentum_equation(node, h, v).jacobian,
+            increment_dq: slope * h,
+            increment_dv: (slope * half + fields.force_v) * h,
+        }
     }
 
     fn momentum_rounding(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> SVector<T, N> {
@@ -356,6 +375,34 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Energy
                 momentum: (fields.force - fields.gradient) * h,
                 energy: h * (fields.potential_t + fields.force.dot(v)),
             },
+        }
+    }
+
+    fn extended_derivatives(
+        &self,
+        node: &Node<N, T>,
+        h: T,
+        v: &SVector<T, N>,
+    ) -> ExtendedDerivatives<N, T, SMatrix<T, N, N>, SMatrix<T, N, N>> {
+        let ExtendedSystem { residual_dh, energy_dv, energy_dh, .. } = self.extended_system(node, h, v);
+        let (t, q) = node.midpoint(h, v);
+        let fields = self.0.fields(t, &q, v);
+        let half = h * T::real(0.5);
+        let forward = (fields.force_t - fields.gradient_t + (fields.force_q - fields.hessian) * v) * half;
+        // E1 − E0 = h (V_t + f·v)
+        let power = fields.potential_t + fields.force.dot(v);
+        let power_dq = fields.gradient_t + fields.force_q.transpose() * v;
+        let power_dt = fields.potential_tt + fields.force_t.dot(v);
+        ExtendedDerivatives {
+            momentum: self.momentum_derivatives(node, h, v),
+            residual_dh,
+            increment_dh: fields.force - fields.gradient + forward,
+            energy_dq: fields.gradient - (fields.gradient_t + fields.hessian * v) * half,
+            energy_dv,
+            energy_dh,
+            energy_increment_dq: power_dq * h,
+            energy_increment_dv: (power_dq * half + fields.force + fields.force_v.transpose() * v) * h,
+            energy_increment_dh: power + (power_dt + power_dq.dot(v)) * half,
         }
     }
 

@@ -7,7 +7,8 @@ use core::cell::Cell;
 use vi_core::lagrangian::Flow;
 use vi_core::node::Node;
 use vi_core::stepping::{
-    EnergyStepping, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumEquation, MomentumResidual, Rounding,
+    EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, MomentumDerivatives,
+    MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
 
@@ -111,6 +112,7 @@ impl<S: DiscreteLagrangian<N>, const N: usize> DiscreteLagrangian<N> for Countin
 
 impl<S: FixedStepping<N>, const N: usize> FixedStepping<N> for Counting<'_, S> {
     type Jacobian = S::Jacobian;
+    type StepMatrix = S::StepMatrix;
     const CONSTANT_JACOBIAN: bool = S::CONSTANT_JACOBIAN;
     const CLOSED_FORM: bool = S::CLOSED_FORM;
     const INLINED: bool = S::INLINED;
@@ -121,6 +123,15 @@ impl<S: FixedStepping<N>, const N: usize> FixedStepping<N> for Counting<'_, S> {
 
     fn momentum_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> MomentumResidual<N> {
         self.counted().momentum_residual(node, h, v)
+    }
+
+    fn momentum_derivatives(
+        &self,
+        node: &Node<N>,
+        h: f64,
+        v: &SVector<f64, N>,
+    ) -> MomentumDerivatives<S::Jacobian, S::StepMatrix> {
+        self.system.momentum_derivatives(node, h, v)
     }
 
     fn momentum_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> SVector<f64, N> {
@@ -139,6 +150,15 @@ impl<S: EnergyStepping<N>, const N: usize> EnergyStepping<N> for Counting<'_, S>
 
     fn extended_residual(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedResidual<N> {
         self.counted().extended_residual(node, h, v)
+    }
+
+    fn extended_derivatives(
+        &self,
+        node: &Node<N>,
+        h: f64,
+        v: &SVector<f64, N>,
+    ) -> ExtendedDerivatives<N, f64, S::Jacobian, S::StepMatrix> {
+        self.system.extended_derivatives(node, h, v)
     }
 
     fn extended_rounding(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> Rounding<N> {

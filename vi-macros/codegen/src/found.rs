@@ -55,6 +55,10 @@ pub struct Findings {
     pub pattern: Pattern,
     /// A is its own transpose.
     pub symmetric: bool,
+    /// Where the derivatives of L_v and L_q + f by q and v have entries other than zero, all together.
+    pub point_derivatives: Pattern,
+    /// Where the derivatives of the momentum row by q, and of p1 − p0 by q and v, have entries other than zero, all together.
+    pub step_derivatives: Pattern,
     /// The momentum row and what the momenta gain are linear in what changes from step to step, their coefficients free of it.
     pub affine: bool,
 }
@@ -101,15 +105,40 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
         jacobian: jacobian.map_or(Dependence::Unknown, |(function, rows)| dependence(function, rows)),
         pattern: jacobian.map_or(Pattern::Dense, |(function, rows)| filled(function, rows)),
         symmetric: jacobian.is_some_and(|(_, rows)| symmetric(rows)),
+        point_derivatives: filled_together(
+            program.function(FunctionId::PointDerivatives),
+            &[Output::Mass, Output::MomentumDq, Output::ForceDq, Output::ForceDv],
+        ),
+        step_derivatives: filled_together(
+            program.function(FunctionId::MomentumDerivatives),
+            &[Output::ResidualDq, Output::MomentumIncrementDq, Output::MomentumIncrementDv],
+        ),
         affine: program.function(FunctionId::MomentumResidual).is_some_and(affine),
     }
 }
 
 /// The pattern of a matrix among the results of a function.
 fn filled(function: &Function, rows: &[Vec<OperationId>]) -> Pattern {
+    pattern::pattern(&entries(function, rows))
+}
+
+/// Which entries of a matrix are other than zero.
+fn entries(function: &Function, rows: &[Vec<OperationId>]) -> Vec<Vec<bool>> {
     let zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
-    let entries: Vec<Vec<bool>> = rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect();
-    pattern::pattern(&entries)
+    rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect()
+}
+
+/// The pattern that holds each of these matrices among the results of a function.
+fn filled_together(function: Option<&Function>, outputs: &[Output]) -> Pattern {
+    let Some(function) = function else { return Pattern::Dense };
+    let mut matrices = outputs.iter().map(|output| entries(function, function.results.matrix(*output)));
+    let mut all = matrices.next().unwrap_or_default();
+    for matrix in matrices {
+        for (entry, other) in all.iter_mut().flatten().zip(matrix.into_iter().flatten()) {
+            *entry |= other;
+        }
+    }
+    pattern::pattern(&all)
 }
 
 /// Whether a function has no kink and no jump.

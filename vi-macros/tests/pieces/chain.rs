@@ -69,59 +69,59 @@ const _: () = {
     use ::core::convert::{identity as sum, identity as p, identity as at_rest};
     use ::core::convert::{identity as velocity, identity as force, identity as power};
     use ::core::convert::{identity as values, identity as value, identity as text};
-    use ::core::convert::{identity as cos9, identity as cos10, identity as interval};
-    use ::core::convert::{identity as t0, identity as t1, identity as h};
-    use ::core::convert::{identity as q_0_0, identity as q_1_0, identity as q_2_0};
-    use ::core::convert::{identity as q_3_0, identity as q_4_0, identity as q_5_0};
-    use ::core::convert::{identity as q_6_0, identity as q_7_0, identity as q_8_0};
-    use ::core::convert::{identity as q_9_0, identity as q_0_1, identity as q_1_1};
-    use ::core::convert::{identity as q_2_1, identity as q_3_1, identity as q_4_1};
-    use ::core::convert::{identity as q_5_1, identity as q_6_1, identity as q_7_1};
-    use ::core::convert::{identity as q_8_1, identity as q_9_1, identity as t_mid};
-    use ::core::convert::{identity as q_0_mid, identity as q_1_mid, identity as q_2_mid};
-    use ::core::convert::{identity as q_3_mid, identity as q_4_mid, identity as q_5_mid};
-    use ::core::convert::{identity as q_6_mid, identity as q_7_mid, identity as q_8_mid};
-    use ::core::convert::{identity as q_9_mid, identity as s21, identity as sin30};
-    use ::core::convert::{identity as cos32, identity as cos33, identity as cos34};
-    use ::core::convert::{identity as cos35, identity as cos36, identity as cos37};
-    use ::core::convert::{identity as cos38, identity as cos39, identity as cos40};
-    use ::core::convert::{identity as s41, identity as s42, identity as s43};
-    use ::core::convert::{identity as s44, identity as sin22, identity as sin23};
-    use ::core::convert::{identity as sin28, identity as sin29, identity as sin27};
-    use ::core::convert::{identity as node, identity as t0_low, identity as q_0_0_low};
+    use ::core::convert::{identity as s36, identity as s37, identity as s38};
+    use ::core::convert::{identity as s39, identity as s40, identity as cos9};
+    use ::core::convert::{identity as cos10, identity as interval, identity as t0};
+    use ::core::convert::{identity as t1, identity as h, identity as q_0_0};
+    use ::core::convert::{identity as q_1_0, identity as q_2_0, identity as q_3_0};
+    use ::core::convert::{identity as q_4_0, identity as q_5_0, identity as q_6_0};
+    use ::core::convert::{identity as q_7_0, identity as q_8_0, identity as q_9_0};
+    use ::core::convert::{identity as q_0_1, identity as q_1_1, identity as q_2_1};
+    use ::core::convert::{identity as q_3_1, identity as q_4_1, identity as q_5_1};
+    use ::core::convert::{identity as q_6_1, identity as q_7_1, identity as q_8_1};
+    use ::core::convert::{identity as q_9_1, identity as t_mid, identity as q_0_mid};
+    use ::core::convert::{identity as q_1_mid, identity as q_2_mid, identity as q_3_mid};
+    use ::core::convert::{identity as q_4_mid, identity as q_5_mid, identity as q_6_mid};
+    use ::core::convert::{identity as q_7_mid, identity as q_8_mid, identity as q_9_mid};
+    use ::core::convert::{identity as s21, identity as sin30, identity as cos32};
+    use ::core::convert::{identity as cos33, identity as cos34, identity as cos35};
+    use ::core::convert::{identity as cos36, identity as cos37, identity as cos38};
+    use ::core::convert::{identity as cos39, identity as cos40, identity as s41};
+    use ::core::convert::{identity as s42, identity as s43, identity as s44};
+    use ::core::convert::{identity as sin22, identity as sin23, identity as sin28};
+    use ::core::convert::{identity as sin29, identity as sin27, identity as node};
     use ::core::convert::{
-        identity as q_1_0_low, identity as q_2_0_low, identity as q_3_0_low,
+        identity as t0_low, identity as q_0_0_low, identity as q_1_0_low,
     };
 
     use ::core::convert::{
-        identity as q_4_0_low, identity as q_5_0_low, identity as q_6_0_low,
+        identity as q_2_0_low, identity as q_3_0_low, identity as q_4_0_low,
     };
 
     use ::core::convert::{
-        identity as q_7_0_low, identity as q_8_0_low, identity as q_9_0_low,
-    };
-
-    use ::core::convert::{identity as p0_q_0, identity as p0_q_1, identity as p0_q_2};
-    use ::core::convert::{identity as p0_q_3, identity as p0_q_4, identity as p0_q_5};
-    use ::core::convert::{identity as p0_q_6, identity as p0_q_7, identity as p0_q_8};
-    use ::core::convert::{
-        identity as p0_q_9, identity as p0_q_0_low, identity as p0_q_1_low,
+        identity as q_5_0_low, identity as q_6_0_low, identity as q_7_0_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_2_low, identity as p0_q_3_low, identity as p0_q_4_low,
+        identity as q_8_0_low, identity as q_9_0_low, identity as p0_q_0,
+    };
+
+    use ::core::convert::{identity as p0_q_1, identity as p0_q_2, identity as p0_q_3};
+    use ::core::convert::{identity as p0_q_4, identity as p0_q_5, identity as p0_q_6};
+    use ::core::convert::{identity as p0_q_7, identity as p0_q_8, identity as p0_q_9};
+    use ::core::convert::{
+        identity as p0_q_0_low, identity as p0_q_1_low, identity as p0_q_2_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_5_low, identity as p0_q_6_low, identity as p0_q_7_low,
+        identity as p0_q_3_low, identity as p0_q_4_low, identity as p0_q_5_low,
     };
 
     use ::core::convert::{
-        identity as p0_q_8_low, identity as p0_q_9_low, identity as sin14,
+        identity as p0_q_6_low, identity as p0_q_7_low, identity as p0_q_8_low,
     };
 
-    use ::core::convert::{identity as cos14, identity as s36, identity as s37};
-    use ::core::convert::{identity as s38, identity as s39, identity as s40};
+    use ::core::convert::{identity as p0_q_9_low, identity as sin14, identity as cos14};
     use ::core::convert::{identity as s45, identity as s46, identity as s47};
     use ::core::convert::{identity as s48, identity as s49, identity as s50};
     use ::core::convert::{identity as s51, identity as s52, identity as s53};
@@ -129,12 +129,30 @@ const _: () = {
     use ::core::convert::{identity as s57, identity as s58, identity as s59};
     use ::core::convert::{identity as q0, identity as q0_low, identity as p0};
     use ::core::convert::{identity as p0_low, identity as q_mid, identity as entries};
+    use ::core::convert::{identity as s60, identity as s61, identity as s62};
+    use ::core::convert::{identity as s63, identity as s64, identity as s65};
+    use ::core::convert::{identity as s66, identity as s67, identity as s68};
+    use ::core::convert::{identity as s69, identity as s70, identity as s71};
     use ::core::convert::{identity as sin31, identity as cos41, identity as energy0};
-    use ::core::convert::{identity as energy0_low, identity as sin2, identity as s60};
-    use ::core::convert::{identity as s61, identity as s62, identity as s63};
-    use ::core::convert::{identity as s64, identity as s65, identity as s66};
-    use ::core::convert::{identity as s67, identity as s68, identity as s69};
-    use ::core::convert::{identity as s70, identity as systems, identity as rows};
+    use ::core::convert::{identity as energy0_low, identity as sin2, identity as s72};
+    use ::core::convert::{identity as s73, identity as s74, identity as s75};
+    use ::core::convert::{identity as s76, identity as s77, identity as s78};
+    use ::core::convert::{identity as s79, identity as s80, identity as s81};
+    use ::core::convert::{identity as s82, identity as s83, identity as s84};
+    use ::core::convert::{identity as s85, identity as s86, identity as s87};
+    use ::core::convert::{identity as s88, identity as s89, identity as s90};
+    use ::core::convert::{identity as s91, identity as s92, identity as s93};
+    use ::core::convert::{identity as s94, identity as s95, identity as s96};
+    use ::core::convert::{identity as s97, identity as s98, identity as s99};
+    use ::core::convert::{identity as s100, identity as s101, identity as s102};
+    use ::core::convert::{identity as s103, identity as s104, identity as s105};
+    use ::core::convert::{identity as s106, identity as s107, identity as s108};
+    use ::core::convert::{identity as s109, identity as s110, identity as s111};
+    use ::core::convert::{identity as s112, identity as s113, identity as s114};
+    use ::core::convert::{identity as s115, identity as s116, identity as s117};
+    use ::core::convert::{identity as s118, identity as s119, identity as s120};
+    use ::core::convert::{identity as s121, identity as s122, identity as s123};
+    use ::core::convert::{identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Chain<f64> {
@@ -724,6 +742,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<10, T>
     for Chain<T> {
         type Mass = ::vi_core::linear::Banded<10, 1, T>;
+        type PointMatrix = ::vi_core::linear::Tridiagonal<10, T>;
         const CONSTANT_MASS: bool = true;
         const SEPARABLE: bool = true;
 
@@ -835,6 +854,199 @@ const _: () = {
                         [self.m],
                         [self.m],
                         [self.m],
+                    ],
+                },
+            }
+        }
+
+        /// M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.
+        ///
+        /// 123 operations.
+        #[inline(always)]
+        fn point_derivatives(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 10>,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+            let [q_0, q_1, q_2, q_3, q_4, q_5, q_6, q_7, q_8, q_9]: [T; 10] = (*q)
+                .into();
+            let real = T::real;
+            let s1 = q_1 - q_0;
+            let s2 = q_2 - q_1;
+            let s3 = q_3 - q_2;
+            let s4 = q_4 - q_3;
+            let s5 = q_5 - q_4;
+            let s6 = q_6 - q_5;
+            let s7 = q_7 - q_6;
+            let s8 = q_8 - q_7;
+            let s9 = q_9 - q_8;
+            let [(sin10, _), (sin11, cos11), (sin12, cos12), (sin13, cos13)] = T::sin_cos_each([
+                t,
+                q_0,
+                q_1,
+                q_2,
+            ]);
+            let s14 = sin10 * real(0.3333333333333333) + real(1.0);
+            let [(sin15, cos15), (sin16, cos16), (sin17, cos17), (sin18, cos18)] = T::sin_cos_each([
+                q_3,
+                q_4,
+                q_5,
+                q_6,
+            ]);
+            let [(sin19, cos19), (sin20, cos20), (_, cos21)] = T::sin_cos_each([
+                q_7,
+                q_8,
+                q_9,
+            ]);
+            let s22 = s1 * s1;
+            let s23 = self.k * s22 * real(3.0);
+            let s24 = s2 * s2;
+            let s25 = self.k * s24 * real(3.0);
+            let s26 = s3 * s3;
+            let s27 = self.k * s26 * real(3.0);
+            let s28 = s4 * s4;
+            let s29 = self.k * s28 * real(3.0);
+            let s30 = s5 * s5;
+            let s31 = self.k * s30 * real(3.0);
+            let s32 = s6 * s6;
+            let s33 = self.k * s32 * real(3.0);
+            let s34 = s7 * s7;
+            let s35 = self.k * s34 * real(3.0);
+            let s36 = s8 * s8;
+            let s37 = self.k * s36 * real(3.0);
+            let s38 = s9 * s9;
+            let s39 = self.k * s38 * real(3.0);
+            let s40 = self.k * real(3.0);
+            ::vi_core::collocation::PointDerivatives {
+                momentum_dq: ::vi_core::linear::Tridiagonal {
+                    lower: [
+                        T::real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                    ],
+                    diagonal: [
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                    ],
+                    upper: [
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        T::real(0.0),
+                    ],
+                },
+                mass: ::vi_core::linear::Tridiagonal {
+                    lower: [
+                        T::real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                    ],
+                    diagonal: [
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                        self.m,
+                    ],
+                    upper: [
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        T::real(0.0),
+                    ],
+                },
+                force_dq: ::vi_core::linear::Tridiagonal {
+                    lower: [T::real(0.0), s23, s25, s27, s29, s31, s33, s35, s37, s39],
+                    diagonal: [
+                        -(s23 + s14 * cos11 + self.k * sin11),
+                        -(s40 * (s22 + s24) + s14 * cos12 + self.k * sin12),
+                        -(s40 * (s24 + s26) + s14 * cos13 + self.k * sin13),
+                        -(s40 * (s26 + s28) + s14 * cos15 + self.k * sin15),
+                        -(s40 * (s28 + s30) + s14 * cos16 + self.k * sin16),
+                        -(s40 * (s30 + s32) + s14 * cos17 + self.k * sin17),
+                        -(s40 * (s32 + s34) + s14 * cos18 + self.k * sin18),
+                        -(s40 * (s34 + s36) + s14 * cos19 + self.k * sin19),
+                        -(s40 * (s36 + s38) + s14 * cos20 + self.k * sin20),
+                        -(s39 + s14 * cos21),
+                    ],
+                    upper: [s23, s25, s27, s29, s31, s33, s35, s37, s39, T::real(0.0)],
+                },
+                force_dv: ::vi_core::linear::Tridiagonal {
+                    lower: [
+                        T::real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                    ],
+                    diagonal: [
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                    ],
+                    upper: [
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        real(0.0),
+                        T::real(0.0),
                     ],
                 },
             }
@@ -1593,6 +1805,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<10, T>
     for Chain<T> {
         type Jacobian = ::vi_core::linear::Tridiagonal<10, T>;
+        type StepMatrix = ::vi_core::linear::Tridiagonal<10, T>;
         const CONSTANT_JACOBIAN: bool = false;
 
         /// `residual_q[0] = L_v_q[0] - h*L_q[0]/2 - h*f_q[0]/2 - p0_q[0]_low - p0_q[0]`
@@ -1913,6 +2126,190 @@ const _: () = {
                     entries[9] = -(h * s26);
                     entries
                 }),
+            }
+        }
+
+        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        ///
+        /// 326 operations.
+        #[inline(never)]
+        fn momentum_derivatives(
+            &self,
+            node: &::vi_core::node::Node<10, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
+            let t0 = node.t;
+            let t0_low = node.t_low;
+            let q0 = &node.q.data.0[0];
+            let q0_low = &node.q_low.data.0[0];
+            let v = &(*v).data.0[0];
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let t_mid = t0 + (s1 + t0_low);
+            let s2 = t_mid.sin() * real(0.3333333333333333) + real(1.0);
+            let s3 = h * h;
+            let s4 = self.k * s3;
+            let s5 = s3 * real(0.25);
+            let s6 = s4 * real(0.25);
+            let s7 = s3 * real(0.75);
+            let s8 = self.k * real(3.0);
+            let s9 = s4 * real(0.75);
+            let s10 = self.k * h;
+            let s11 = s10 * real(0.5);
+            let s12 = h * real(3.0);
+            let s13 = h * real(1.5);
+            let s14 = s10 * real(3.0);
+            let s15 = s10 * real(1.5);
+            let s16 = s3 * real(0.5);
+            let s17 = s4 * real(0.5);
+            let s18 = s3 * real(1.5);
+            let s19 = s4 * real(1.5);
+            let mut q_mid = [real(0.0); 10];
+            for i in 0..10 {
+                q_mid[i] = q0[i] + (s1 * v[i] + q0_low[i]);
+            }
+            let mut s20 = [(real(0.0), real(0.0)); 10];
+            for i in 0..10 {
+                s20[i] = q_mid[i].sin_cos();
+            }
+            let mut s21 = [real(0.0); 9];
+            for i in 0..9 {
+                s21[i] = (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i]);
+            }
+            let mut s22 = [real(0.0); 10];
+            for i in 0..10 {
+                s22[i] = s2 * s20[i].1;
+            }
+            let mut s23 = [real(0.0); 9];
+            for i in 0..9 {
+                s23[i] = s6 * s20[i].0;
+            }
+            let mut s24 = [real(0.0); 8];
+            for i in 0..8 {
+                s24[i] = s8 * (s21[i] + s21[i + 1]) + s22[i + 1];
+            }
+            let mut s25 = [real(0.0); 8];
+            for i in 0..8 {
+                s25[i] = self.m + (s23[i + 1] + s5 * s24[i]);
+            }
+            let mut s26 = [real(0.0); 9];
+            for i in 0..9 {
+                s26[i] = s10 * s20[i].0;
+            }
+            let mut s27 = [real(0.0); 9];
+            for i in 0..9 {
+                s27[i] = s11 * s20[i].0;
+            }
+            let mut s28 = [real(0.0); 8];
+            for i in 0..8 {
+                s28[i] = s27[i + 1] + s1 * s24[i];
+            }
+            let mut s29 = [real(0.0); 8];
+            for i in 0..8 {
+                s29[i] = -(h * s24[i]) - s26[i + 1];
+            }
+            let mut s30 = [real(0.0); 9];
+            for i in 0..9 {
+                s30[i] = s17 * s20[i].0;
+            }
+            let mut s31 = [real(0.0); 8];
+            for i in 0..8 {
+                s31[i] = -(s16 * s24[i]) - s30[i + 1];
+            }
+            let s32 = self.k * s21[0];
+            let s33 = s32 * real(3.0) + s22[0];
+            let s34 = -(s32 * s7);
+            let s35 = -(s9 * s21[1]);
+            let s36 = -(s9 * s21[2]);
+            let s37 = -(s9 * s21[3]);
+            let s38 = -(s9 * s21[4]);
+            let s39 = -(s9 * s21[5]);
+            let s40 = -(s9 * s21[6]);
+            let s41 = -(s9 * s21[7]);
+            let s42 = self.k * s21[8];
+            let s43 = -(s42 * s7);
+            let s44 = s42 * real(3.0) + s22[9];
+            let s45 = s32 * s12;
+            let s46 = -(s32 * s13);
+            let s47 = s14 * s21[1];
+            let s48 = -(s15 * s21[1]);
+            let s49 = s14 * s21[2];
+            let s50 = -(s15 * s21[2]);
+            let s51 = s14 * s21[3];
+            let s52 = -(s15 * s21[3]);
+            let s53 = s14 * s21[4];
+            let s54 = -(s15 * s21[4]);
+            let s55 = s14 * s21[5];
+            let s56 = -(s15 * s21[5]);
+            let s57 = s14 * s21[6];
+            let s58 = -(s15 * s21[6]);
+            let s59 = s14 * s21[7];
+            let s60 = -(s15 * s21[7]);
+            let s61 = s42 * s12;
+            let s62 = -(s42 * s13);
+            let s63 = s32 * s18;
+            let s64 = s19 * s21[1];
+            let s65 = s19 * s21[2];
+            let s66 = s19 * s21[3];
+            let s67 = s19 * s21[4];
+            let s68 = s19 * s21[5];
+            let s69 = s19 * s21[6];
+            let s70 = s19 * s21[7];
+            let s71 = s42 * s18;
+            ::vi_core::stepping::MomentumDerivatives {
+                residual_dq: ::vi_core::linear::Tridiagonal {
+                    lower: [T::real(0.0), s46, s48, s50, s52, s54, s56, s58, s60, s62],
+                    diagonal: {
+                        let mut entries = [T::real(0.0); 10];
+                        entries[0] = s27[0] + s1 * s33;
+                        for i in 0..8 {
+                            entries[i + 1] = s28[i];
+                        }
+                        entries[9] = s1 * s44;
+                        entries
+                    },
+                    upper: [s46, s48, s50, s52, s54, s56, s58, s60, s62, T::real(0.0)],
+                },
+                residual_dv: ::vi_core::linear::Tridiagonal {
+                    lower: [T::real(0.0), s34, s35, s36, s37, s38, s39, s40, s41, s43],
+                    diagonal: {
+                        let mut entries = [T::real(0.0); 10];
+                        entries[0] = self.m + (s23[0] + s5 * s33);
+                        for i in 0..8 {
+                            entries[i + 1] = s25[i];
+                        }
+                        entries[9] = self.m + s5 * s44;
+                        entries
+                    },
+                    upper: [s34, s35, s36, s37, s38, s39, s40, s41, s43, T::real(0.0)],
+                },
+                increment_dq: ::vi_core::linear::Tridiagonal {
+                    lower: [T::real(0.0), s45, s47, s49, s51, s53, s55, s57, s59, s61],
+                    diagonal: {
+                        let mut entries = [T::real(0.0); 10];
+                        entries[0] = -(h * s33) - s26[0];
+                        for i in 0..8 {
+                            entries[i + 1] = s29[i];
+                        }
+                        entries[9] = -(h * s44);
+                        entries
+                    },
+                    upper: [s45, s47, s49, s51, s53, s55, s57, s59, s61, T::real(0.0)],
+                },
+                increment_dv: ::vi_core::linear::Tridiagonal {
+                    lower: [T::real(0.0), s63, s64, s65, s66, s67, s68, s69, s70, s71],
+                    diagonal: {
+                        let mut entries = [T::real(0.0); 10];
+                        entries[0] = -(s16 * s33) - s30[0];
+                        for i in 0..8 {
+                            entries[i + 1] = s31[i];
+                        }
+                        entries[9] = -(s16 * s44);
+                        entries
+                    },
+                    upper: [s63, s64, s65, s66, s67, s68, s69, s70, s71, T::real(0.0)],
+                },
             }
         }
 
@@ -2510,6 +2907,486 @@ const _: () = {
                     }),
                     energy: ((1..9).fold(s25[0], |sum, i| sum + s25[i]) - s41) * h,
                 },
+            }
+        }
+
+        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        ///
+        /// 1004 operations.
+        #[inline(never)]
+        fn extended_derivatives(
+            &self,
+            node: &::vi_core::node::Node<10, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 10>,
+        ) -> ::vi_core::stepping::ExtendedDerivatives<
+            10,
+            T,
+            Self::Jacobian,
+            Self::StepMatrix,
+        > {
+            let t0 = node.t;
+            let t0_low = node.t_low;
+            let q0 = &node.q.data.0[0];
+            let q0_low = &node.q_low.data.0[0];
+            let v = &(*v).data.0[0];
+            let real = T::real;
+            let s1 = h * real(0.5);
+            let t_mid = t0 + (s1 + t0_low);
+            let (sin2, cos2) = t_mid.sin_cos();
+            let s3 = sin2 * real(0.3333333333333333) + real(1.0);
+            let s4 = h * h;
+            let s5 = self.k * s4;
+            let s6 = s4 * real(0.25);
+            let s7 = s5 * real(0.25);
+            let s8 = s4 * real(0.75);
+            let s9 = self.k * real(3.0);
+            let s10 = s5 * real(0.75);
+            let s11 = self.k * h;
+            let s12 = self.k * real(0.75);
+            let s13 = self.k * real(0.25);
+            let s14 = self.k * real(0.5);
+            let s15 = self.k * real(1.5);
+            let s16 = s11 * real(0.5);
+            let s17 = h * real(3.0);
+            let s18 = h * real(1.5);
+            let s19 = s11 * real(3.0);
+            let s20 = s11 * real(1.5);
+            let s21 = s4 * real(0.5);
+            let s22 = s5 * real(0.5);
+            let s23 = s4 * real(1.5);
+            let s24 = s5 * real(1.5);
+            let s25 = cos2 * real(0.3333333333333333);
+            let s26 = cos2 * real(0.16666666666666666);
+            let mut q_mid = [real(0.0); 10];
+            for i in 0..10 {
+                q_mid[i] = q0[i] + (s1 * v[i] + q0_low[i]);
+            }
+            let mut s27 = [(real(0.0), real(0.0)); 10];
+            for i in 0..10 {
+                s27[i] = q_mid[i].sin_cos();
+            }
+            let mut s28 = [real(0.0); 9];
+            for i in 0..9 {
+                s28[i] = (q_mid[i + 1] - q_mid[i]) * (q_mid[i + 1] - q_mid[i]);
+            }
+            let mut s29 = [real(0.0); 9];
+            for i in 0..9 {
+                s29[i] = s28[i] * (q_mid[i + 1] - q_mid[i]);
+            }
+            let mut s30 = [real(0.0); 10];
+            for i in 0..10 {
+                s30[i] = s3 * s27[i].0;
+            }
+            let mut s31 = [real(0.0); 9];
+            for i in 0..9 {
+                s31[i] = self.k * s27[i].1;
+            }
+            let mut s32 = [real(0.0); 9];
+            for i in 0..9 {
+                s32[i] = self.k * v[i] * s27[i].1;
+            }
+            let mut s33 = [real(0.0); 10];
+            for i in 0..10 {
+                s33[i] = s3 * s27[i].1;
+            }
+            let mut s34 = [real(0.0); 9];
+            for i in 0..9 {
+                s34[i] = s7 * s27[i].0;
+            }
+            let mut s35 = [real(0.0); 8];
+            for i in 0..8 {
+                s35[i] = s9 * (s28[i] + s28[i + 1]) + s33[i + 1];
+            }
+            let mut s36 = [real(0.0); 8];
+            for i in 0..8 {
+                s36[i] = self.m + (s34[i + 1] + s6 * s35[i]);
+            }
+            let mut s37 = [real(0.0); 10];
+            for i in 0..10 {
+                s37[i] = s30[i] * real(0.5);
+            }
+            let mut s38 = [real(0.0); 9];
+            for i in 0..9 {
+                s38[i] = s31[i] * real(0.5);
+            }
+            let mut s39 = [real(0.0); 10];
+            for i in 0..10 {
+                s39[i] = cos2 * s27[i].0;
+            }
+            let mut s40 = [real(0.0); 10];
+            for i in 0..10 {
+                s40[i] = s39[i] * real(0.08333333333333333);
+            }
+            let mut s41 = [real(0.0); 9];
+            for i in 0..9 {
+                s41[i] = s12 * v[i + 1] * s28[i];
+            }
+            let mut s42 = [real(0.0); 9];
+            for i in 0..9 {
+                s42[i] = s40[i] + s13 * v[i] * s27[i].0;
+            }
+            let mut s43 = [real(0.0); 8];
+            for i in 0..8 {
+                s43[i] = s14 * (s29[i] - s29[i + 1]) + s37[i + 1] - s38[i + 1];
+            }
+            let mut s44 = [real(0.0); 9];
+            for i in 0..9 {
+                s44[i] = s12 * v[i] * s28[i];
+            }
+            let mut s45 = [real(0.0); 8];
+            for i in 0..8 {
+                s45[i] = v[i + 1] * s35[i] * real(0.25);
+            }
+            let mut s46 = [real(0.0); 8];
+            for i in 0..8 {
+                s46[i] = s43[i] + (s42[i + 1] - s44[i] - s41[i + 1] + s45[i]) * h;
+            }
+            let mut s47 = [real(0.0); 8];
+            for i in 0..8 {
+                s47[i] = s43[i] + (s44[i] + s41[i + 1] - s45[i] - s40[i + 1]) * h;
+            }
+            let mut s48 = [real(0.0); 10];
+            for i in 0..10 {
+                s48[i] = v[i] * v[i];
+            }
+            let mut s49 = [real(0.0); 10];
+            for i in 0..10 {
+                s49[i] = v[i] * s27[i].0;
+            }
+            let mut s50 = [real(0.0); 9];
+            for i in 0..9 {
+                s50[i] = s15 * v[i] * s28[i];
+            }
+            let mut s51 = [real(0.0); 9];
+            for i in 0..9 {
+                s51[i] = s15 * v[i + 1] * s28[i];
+            }
+            let mut s52 = [real(0.0); 8];
+            for i in 0..8 {
+                s52[i] = s50[i] + s51[i + 1];
+            }
+            let mut s53 = [real(0.0); 9];
+            for i in 0..9 {
+                s53[i] = s11 * s27[i].0;
+            }
+            let mut s54 = [real(0.0); 9];
+            for i in 0..9 {
+                s54[i] = s16 * s27[i].0;
+            }
+            let mut s55 = [real(0.0); 8];
+            for i in 0..8 {
+                s55[i] = s54[i + 1] + s1 * s35[i];
+            }
+            let mut s56 = [real(0.0); 8];
+            for i in 0..8 {
+                s56[i] = -(h * s35[i]) - s53[i + 1];
+            }
+            let mut s57 = [real(0.0); 9];
+            for i in 0..9 {
+                s57[i] = s22 * s27[i].0;
+            }
+            let mut s58 = [real(0.0); 8];
+            for i in 0..8 {
+                s58[i] = -(s21 * s35[i]) - s57[i + 1];
+            }
+            let mut s59 = [real(0.0); 10];
+            for i in 0..10 {
+                s59[i] = s39[i] * real(0.16666666666666666);
+            }
+            let mut s60 = [real(0.0); 8];
+            for i in 0..8 {
+                s60[i] = self.k * (s29[i] - s29[i + 1]);
+            }
+            let mut s61 = [real(0.0); 8];
+            for i in 0..8 {
+                s61[i] = s52[i] - v[i + 1] * s35[i] * real(0.5) - s59[i + 1];
+            }
+            let mut s62 = [real(0.0); 8];
+            for i in 0..8 {
+                s62[i] = s60[i] + s30[i + 1] + s61[i] * h;
+            }
+            let mut s63 = [real(0.0); 9];
+            for i in 0..9 {
+                s63[i] = s14 * v[i] * s27[i].0;
+            }
+            let mut s64 = [real(0.0); 8];
+            for i in 0..8 {
+                s64[i] = s31[i + 1] - s60[i] - s30[i + 1] + (s61[i] - s63[i + 1]) * h;
+            }
+            let mut s65 = [real(0.0); 9];
+            for i in 0..9 {
+                s65[i] = (s25 - self.k * v[i]) * s27[i].0 * h;
+            }
+            let mut s66 = [real(0.0); 9];
+            for i in 0..9 {
+                s66[i] = (s31[i] + (s26 - self.k * v[i] * real(0.5)) * s27[i].0 * h) * h;
+            }
+            let mut s67 = [real(0.0); 9];
+            for i in 0..9 {
+                s67[i] = s14 * s48[i] * s27[i].0;
+            }
+            let s68 = (1..10).fold(s27[0].1, |sum, i| sum + s27[i].1);
+            let s69 = self.k * s29[0];
+            let s70 = self.k * s29[8];
+            let s71 = self.k * s28[0];
+            let s72 = s71 * real(3.0) + s33[0];
+            let s73 = -(s71 * s8);
+            let s74 = -(s10 * s28[1]);
+            let s75 = -(s10 * s28[2]);
+            let s76 = -(s10 * s28[3]);
+            let s77 = -(s10 * s28[4]);
+            let s78 = -(s10 * s28[5]);
+            let s79 = -(s10 * s28[6]);
+            let s80 = -(s10 * s28[7]);
+            let s81 = self.k * s28[8];
+            let s82 = -(s81 * s8);
+            let s83 = s81 * real(3.0) + s33[9];
+            let s84 = s37[0] - s69 * real(0.5) - s38[0];
+            let s85 = v[0] * s72;
+            let s86 = s85 * real(0.25);
+            let s87 = s70 * real(0.5) + s37[9];
+            let s88 = v[9] * s83;
+            let s89 = s88 * real(0.25);
+            let s90 = sin2 * s68;
+            let s91 = (1..10).fold(s49[0], |sum, i| sum + s49[i]) * cos2
+                * real(0.16666666666666666);
+            let s92 = -(s48[0] * s72) - s48[2] * s35[1] - s48[4] * s35[3]
+                - s48[6] * s35[5] - s48[9] * s83 - s90 * real(0.3333333333333333);
+            let s93 = s92 * real(0.25) + (s51[8] - s45[7]) * v[8]
+                + (s52[6] - s45[6]) * v[7] + (s52[4] - s45[4]) * v[5]
+                + (s52[2] - s45[2]) * v[3];
+            let s94 = s71 * s17;
+            let s95 = -(s71 * s18);
+            let s96 = s19 * s28[1];
+            let s97 = -(s20 * s28[1]);
+            let s98 = s19 * s28[2];
+            let s99 = -(s20 * s28[2]);
+            let s100 = s19 * s28[3];
+            let s101 = -(s20 * s28[3]);
+            let s102 = s19 * s28[4];
+            let s103 = -(s20 * s28[4]);
+            let s104 = s19 * s28[5];
+            let s105 = -(s20 * s28[5]);
+            let s106 = s19 * s28[6];
+            let s107 = -(s20 * s28[6]);
+            let s108 = s19 * s28[7];
+            let s109 = -(s20 * s28[7]);
+            let s110 = s81 * s17;
+            let s111 = -(s81 * s18);
+            let s112 = s71 * s23;
+            let s113 = s24 * s28[1];
+            let s114 = s24 * s28[2];
+            let s115 = s24 * s28[3];
+            let s116 = s24 * s28[4];
+            let s117 = s24 * s28[5];
+            let s118 = s24 * s28[6];
+            let s119 = s24 * s28[7];
+            let s120 = s81 * s23;
+            let s121 = s51[0] - s85 * real(0.5) - s59[0];
+            let s122 = s70 + s30[9];
+            let s123 = (s50[8] - s88 * real(0.5) - s59[9]) * h;
+            ::vi_core::stepping::ExtendedDerivatives {
+                momentum: ::vi_core::stepping::MomentumDerivatives {
+                    residual_dq: ::vi_core::linear::Tridiagonal {
+                        lower: [
+                            T::real(0.0),
+                            s95,
+                            s97,
+                            s99,
+                            s101,
+                            s103,
+                            s105,
+                            s107,
+                            s109,
+                            s111,
+                        ],
+                        diagonal: {
+                            let mut entries = [T::real(0.0); 10];
+                            entries[0] = s54[0] + s1 * s72;
+                            for i in 0..8 {
+                                entries[i + 1] = s55[i];
+                            }
+                            entries[9] = s1 * s83;
+                            entries
+                        },
+                        upper: [
+                            s95,
+                            s97,
+                            s99,
+                            s101,
+                            s103,
+                            s105,
+                            s107,
+                            s109,
+                            s111,
+                            T::real(0.0),
+                        ],
+                    },
+                    residual_dv: ::vi_core::linear::Tridiagonal {
+                        lower: [
+                            T::real(0.0),
+                            s73,
+                            s74,
+                            s75,
+                            s76,
+                            s77,
+                            s78,
+                            s79,
+                            s80,
+                            s82,
+                        ],
+                        diagonal: {
+                            let mut entries = [T::real(0.0); 10];
+                            entries[0] = self.m + (s34[0] + s6 * s72);
+                            for i in 0..8 {
+                                entries[i + 1] = s36[i];
+                            }
+                            entries[9] = self.m + s6 * s83;
+                            entries
+                        },
+                        upper: [
+                            s73,
+                            s74,
+                            s75,
+                            s76,
+                            s77,
+                            s78,
+                            s79,
+                            s80,
+                            s82,
+                            T::real(0.0),
+                        ],
+                    },
+                    increment_dq: ::vi_core::linear::Tridiagonal {
+                        lower: [
+                            T::real(0.0),
+                            s94,
+                            s96,
+                            s98,
+                            s100,
+                            s102,
+                            s104,
+                            s106,
+                            s108,
+                            s110,
+                        ],
+                        diagonal: {
+                            let mut entries = [T::real(0.0); 10];
+                            entries[0] = -(h * s72) - s53[0];
+                            for i in 0..8 {
+                                entries[i + 1] = s56[i];
+                            }
+                            entries[9] = -(h * s83);
+                            entries
+                        },
+                        upper: [
+                            s94,
+                            s96,
+                            s98,
+                            s100,
+                            s102,
+                            s104,
+                            s106,
+                            s108,
+                            s110,
+                            T::real(0.0),
+                        ],
+                    },
+                    increment_dv: ::vi_core::linear::Tridiagonal {
+                        lower: [
+                            T::real(0.0),
+                            s112,
+                            s113,
+                            s114,
+                            s115,
+                            s116,
+                            s117,
+                            s118,
+                            s119,
+                            s120,
+                        ],
+                        diagonal: {
+                            let mut entries = [T::real(0.0); 10];
+                            entries[0] = -(s21 * s72) - s57[0];
+                            for i in 0..8 {
+                                entries[i + 1] = s58[i];
+                            }
+                            entries[9] = -(s21 * s83);
+                            entries
+                        },
+                        upper: [
+                            s112,
+                            s113,
+                            s114,
+                            s115,
+                            s116,
+                            s117,
+                            s118,
+                            s119,
+                            s120,
+                            T::real(0.0),
+                        ],
+                    },
+                },
+                residual_dh: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s84 + (s42[0] - s41[0] + s86) * h;
+                    for i in 0..8 {
+                        entries[i + 1] = s46[i];
+                    }
+                    entries[9] = s87 + (s40[9] - s44[8] + s89) * h;
+                    entries
+                }),
+                increment_dh: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s69 + s31[0] - s30[0] + (s121 - s63[0]) * h;
+                    for i in 0..8 {
+                        entries[i + 1] = s64[i];
+                    }
+                    entries[9] = s123 - s122;
+                    entries
+                }),
+                energy_dq: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s30[0] - s69 + s121 * h;
+                    for i in 0..8 {
+                        entries[i + 1] = s62[i];
+                    }
+                    entries[9] = s122 + s123;
+                    entries
+                }),
+                energy_dv: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    entries[0] = s84 + (s41[0] - s86 - s40[0]) * h;
+                    for i in 0..8 {
+                        entries[i + 1] = s47[i];
+                    }
+                    entries[9] = s87 + (s44[8] - s89 - s40[9]) * h;
+                    entries
+                }),
+                energy_dh: s93 + (s52[0] - s45[0]) * v[1] - s91,
+                energy_increment_dq: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    for i in 0..9 {
+                        entries[i] = s65[i];
+                    }
+                    entries[9] = s39[9] * (h * real(0.3333333333333333));
+                    entries
+                }),
+                energy_increment_dv: ::vi_core::SVector::from({
+                    let mut entries = [T::real(0.0); 10];
+                    for i in 0..9 {
+                        entries[i] = s66[i];
+                    }
+                    entries[9] = s39[9] * (s4 * real(0.16666666666666666));
+                    entries
+                }),
+                energy_increment_dh: (1..9).fold(s32[0], |sum, i| sum + s32[i])
+                    - s68 * cos2 * real(0.3333333333333333)
+                    + ((0..9)
+                        .fold(s90 * real(0.16666666666666666), |sum, i| sum - s67[i])
+                        + s91) * h,
             }
         }
 

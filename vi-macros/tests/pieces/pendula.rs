@@ -65,20 +65,28 @@ const _: () = {
     use ::core::convert::{identity as s20, identity as s21, identity as s22};
     use ::core::convert::{identity as s23, identity as s2, identity as sin5};
     use ::core::convert::{identity as s24, identity as s25, identity as s26};
-    use ::core::convert::{identity as s27, identity as cos5, identity as energy0};
-    use ::core::convert::{identity as energy0_low, identity as s28, identity as s29};
-    use ::core::convert::{identity as s30, identity as s31, identity as s32};
-    use ::core::convert::{identity as s33, identity as s34, identity as s35};
-    use ::core::convert::{identity as s36, identity as s37, identity as s38};
-    use ::core::convert::{identity as s39, identity as s40, identity as s41};
-    use ::core::convert::{identity as s42, identity as s43, identity as s44};
-    use ::core::convert::{identity as s45, identity as s46, identity as s47};
-    use ::core::convert::{identity as s48, identity as s49, identity as s50};
-    use ::core::convert::{identity as s51, identity as s52, identity as s53};
-    use ::core::convert::{identity as s54, identity as s55, identity as s3};
+    use ::core::convert::{identity as s27, identity as s3, identity as cos5};
     use ::core::convert::{identity as sin6, identity as cos6, identity as sin7};
+    use ::core::convert::{identity as s28, identity as s29, identity as s30};
+    use ::core::convert::{identity as s31, identity as s32, identity as s33};
+    use ::core::convert::{identity as s34, identity as s35, identity as s36};
+    use ::core::convert::{identity as energy0, identity as energy0_low, identity as s37};
+    use ::core::convert::{identity as s38, identity as s39, identity as s40};
+    use ::core::convert::{identity as s41, identity as s42, identity as s43};
+    use ::core::convert::{identity as s44, identity as s45, identity as s46};
+    use ::core::convert::{identity as s47, identity as s48, identity as s49};
+    use ::core::convert::{identity as s50, identity as s51, identity as s52};
+    use ::core::convert::{identity as s53, identity as s54, identity as s55};
     use ::core::convert::{identity as cos7, identity as sin8, identity as cos8};
-    use ::core::convert::{identity as systems, identity as rows};
+    use ::core::convert::{identity as s56, identity as s57, identity as s58};
+    use ::core::convert::{identity as s59, identity as s60, identity as s61};
+    use ::core::convert::{identity as s62, identity as s63, identity as s64};
+    use ::core::convert::{identity as s65, identity as s66, identity as s67};
+    use ::core::convert::{identity as s68, identity as s69, identity as s70};
+    use ::core::convert::{identity as s71, identity as s72, identity as s73};
+    use ::core::convert::{identity as s74, identity as s75, identity as s76};
+    use ::core::convert::{identity as s77, identity as s78, identity as s79};
+    use ::core::convert::{identity as s80, identity as systems, identity as rows};
     use ::core::primitive::{bool, f64, str, usize};
 
     impl ::core::default::Default for Pendula<f64> {
@@ -417,6 +425,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<2, T>
     for Pendula<T> {
         type Mass = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
+        type PointMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_MASS: bool = false;
         const SEPARABLE: bool = false;
 
@@ -454,6 +463,43 @@ const _: () = {
                     s9 - s5 * sin2 + (q_0_dot * s8 * real(0.25) - self.b) * q_1_dot,
                 ]),
                 mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s6, s7, s7, s6]),
+            }
+        }
+
+        /// M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.
+        ///
+        /// 34 operations.
+        #[inline(always)]
+        fn point_derivatives(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 2>,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+            let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+            let [q_0, q_1]: [T; 2] = (*q).into();
+            let real = T::real;
+            let [(sin1, cos1), (sin2, cos2), (sin3, _)] = T::sin_cos_each([q_0, q_1, t]);
+            let s4 = cos1 * cos2 + sin1 * sin2;
+            let s5 = sin3 * real(0.3333333333333333) + real(1.0);
+            let s6 = self.m * real(2.0);
+            let s7 = s4 * real(0.25);
+            let s8 = sin1 * cos2 - cos1 * sin2;
+            let s9 = q_1_dot * s8 * real(0.25);
+            let s10 = self.k + q_0_dot * q_1_dot * s4 * real(0.25);
+            let s11 = q_0_dot * s8 * real(0.25);
+            let s12 = -s11;
+            ::vi_core::collocation::PointDerivatives {
+                momentum_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[-s9, s9, s12, s11],
+                ),
+                mass: ::vi_core::nalgebra::SMatrix::from_row_slice(&[s6, s7, s7, s6]),
+                force_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[-(s10 + s5 * cos1), s10, s10, -(s10 + s5 * cos2)],
+                ),
+                force_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[-(self.b + s9), s12, s9, s11 - self.b],
+                ),
             }
         }
 
@@ -811,6 +857,7 @@ const _: () = {
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<2, T>
     for Pendula<T> {
         type Jacobian = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
+        type StepMatrix = ::vi_core::nalgebra::SMatrix<T, 2, 2>;
         const CONSTANT_JACOBIAN: bool = false;
         const INLINED: bool = true;
 
@@ -1122,6 +1169,159 @@ const _: () = {
                 residual: ::vi_core::SVector::from([values[0], values[1]]),
                 scale: ::vi_core::SVector::from([values[2], values[3]]),
                 increment: ::vi_core::SVector::from([values[4], values[5]]),
+            }
+        }
+
+        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        ///
+        /// 80 operations.
+        #[inline(never)]
+        fn momentum_derivatives(
+            &self,
+            node: &::vi_core::node::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> {
+            let t0 = node.t;
+            let t0_low = node.t_low;
+            let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+            let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+            let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            /// Part 1 of `momentum_derivatives`: 36 operations.
+            #[inline(never)]
+            fn momentum_derivatives_part_1<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 25],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let t0 = inputs[0];
+                let q_0_0 = inputs[1];
+                let q_1_0 = inputs[2];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let t0_low = inputs[6];
+                let q_0_0_low = inputs[7];
+                let q_1_0_low = inputs[8];
+                let s1 = h * real(0.5);
+                let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+                let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+                let t_mid = t0 + (s1 + t0_low);
+                let s2 = system.m * real(2.0);
+                let s3 = system.b * real(0.5);
+                let s4 = h * real(0.25);
+                let [(sin5, cos5), (sin6, cos6), (sin7, _)] = T::sin_cos_each([
+                    q_0_mid,
+                    q_1_mid,
+                    t_mid,
+                ]);
+                let s8 = cos5 * cos6 + sin5 * sin6;
+                let s9 = system.k + q_0_dot * q_1_dot * s8 * real(0.25);
+                let s10 = sin7 * real(0.3333333333333333) + real(1.0);
+                let s11 = s9 + s10 * cos5;
+                let s12 = s2 + (s3 + s4 * s11) * h;
+                let s13 = s8 * real(0.25);
+                let s14 = sin5 * cos6 - cos5 * sin6;
+                values[15] = s1;
+                values[16] = cos6;
+                values[17] = s10;
+                values[18] = s14;
+                values[19] = s9;
+                values[20] = s11;
+                values[21] = s2;
+                values[22] = s3;
+                values[23] = s4;
+                values[0] = s12;
+                values[24] = s13;
+            }
+            /// Part 2 of `momentum_derivatives`: 44 operations.
+            #[inline(never)]
+            fn momentum_derivatives_part_2<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 25],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let s1 = values[15];
+                let cos6 = values[16];
+                let s10 = values[17];
+                let s14 = values[18];
+                let s9 = values[19];
+                let s11 = values[20];
+                let s2 = values[21];
+                let s3 = values[22];
+                let s4 = values[23];
+                let s13 = values[24];
+                let s15 = (q_0_dot + q_1_dot) * s14 * real(0.125);
+                let s16 = s4 * s9;
+                let s17 = s13 - (s15 + s16) * h;
+                let s18 = s1 * s11;
+                let s19 = q_1_dot * s14 * real(0.25);
+                let s20 = s18 - s19;
+                let s21 = q_0_dot * s14 * real(0.25);
+                let s22 = s1 * s9;
+                let s23 = -s21 - s22;
+                let s24 = -(h * s11);
+                let s25 = h * s9;
+                let s26 = (-(system.b + s19) - s18) * h;
+                let s27 = (s19 + s22) * h;
+                let s28 = s13 + (s15 - s16) * h;
+                let s29 = s9 + s10 * cos6;
+                let s30 = s2 + (s3 + s4 * s29) * h;
+                let s31 = s19 - s22;
+                let s32 = s1 * s29;
+                let s33 = s21 + s32;
+                let s34 = -(h * s29);
+                let s35 = (s22 - s21) * h;
+                let s36 = (s21 - system.b - s32) * h;
+                values[1] = s28;
+                values[2] = s17;
+                values[3] = s30;
+                values[8] = s24;
+                values[4] = s20;
+                values[9] = s25;
+                values[5] = s31;
+                values[6] = s23;
+                values[10] = s34;
+                values[7] = s33;
+                values[11] = s26;
+                values[12] = s35;
+                values[13] = s27;
+                values[14] = s36;
+            }
+            let system = self;
+            let inputs = [
+                t0,
+                q_0_0,
+                q_1_0,
+                h,
+                q_0_dot,
+                q_1_dot,
+                t0_low,
+                q_0_0_low,
+                q_1_0_low,
+            ];
+            let mut values = [T::real(0.0); 25];
+            momentum_derivatives_part_1(system, &inputs, &mut values);
+            momentum_derivatives_part_2(system, &inputs, &mut values);
+            ::vi_core::stepping::MomentumDerivatives {
+                residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[values[4], values[5], values[6], values[7]],
+                ),
+                residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[values[0], values[1], values[2], values[3]],
+                ),
+                increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[values[8], values[9], values[9], values[10]],
+                ),
+                increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                    &[values[11], values[12], values[13], values[14]],
+                ),
             }
         }
 
@@ -1840,6 +2040,364 @@ const _: () = {
                     momentum: ::vi_core::SVector::from([values[6], values[7]]),
                     energy: values[8],
                 },
+            }
+        }
+
+        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        ///
+        /// 190 operations.
+        #[inline(never)]
+        fn extended_derivatives(
+            &self,
+            node: &::vi_core::node::Node<2, T>,
+            h: T,
+            v: &::vi_core::SVector<T, 2>,
+        ) -> ::vi_core::stepping::ExtendedDerivatives<
+            2,
+            T,
+            Self::Jacobian,
+            Self::StepMatrix,
+        > {
+            let t0 = node.t;
+            let t0_low = node.t_low;
+            let [q_0_0, q_1_0]: [T; 2] = node.q.into();
+            let [q_0_0_low, q_1_0_low]: [T; 2] = node.q_low.into();
+            let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
+            let real = T::real;
+            /// Part 1 of `extended_derivatives`: 26 operations.
+            #[inline(never)]
+            fn extended_derivatives_part_1<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 71],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let t0 = inputs[0];
+                let q_0_0 = inputs[1];
+                let q_1_0 = inputs[2];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let t0_low = inputs[6];
+                let q_0_0_low = inputs[7];
+                let q_1_0_low = inputs[8];
+                let s1 = h * real(0.5);
+                let q_0_mid = q_0_0 + (s1 * q_0_dot + q_0_0_low);
+                let q_1_mid = q_1_0 + (s1 * q_1_dot + q_1_0_low);
+                let t_mid = t0 + (s1 + t0_low);
+                let s2 = system.m * real(2.0);
+                let s3 = system.b * real(0.5);
+                let s4 = h * real(0.25);
+                let s5 = q_0_dot * q_1_dot;
+                let [(sin6, cos6), (sin7, cos7), (sin8, cos8)] = T::sin_cos_each([
+                    q_0_mid,
+                    q_1_mid,
+                    t_mid,
+                ]);
+                let s9 = cos6 + cos7;
+                let s10 = cos6 * cos7 + sin6 * sin7;
+                let s11 = system.k + s5 * s10 * real(0.25);
+                values[29] = s1;
+                values[30] = q_0_mid;
+                values[31] = q_1_mid;
+                values[32] = cos6;
+                values[33] = cos7;
+                values[34] = sin6;
+                values[35] = sin7;
+                values[36] = s10;
+                values[37] = s5;
+                values[38] = sin8;
+                values[40] = s9;
+                values[41] = cos8;
+                values[47] = s11;
+                values[49] = s2;
+                values[50] = s3;
+                values[51] = s4;
+            }
+            /// Part 2 of `extended_derivatives`: 40 operations.
+            #[inline(never)]
+            fn extended_derivatives_part_2<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 71],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let s1 = values[29];
+                let q_0_mid = values[30];
+                let q_1_mid = values[31];
+                let cos6 = values[32];
+                let cos7 = values[33];
+                let sin6 = values[34];
+                let sin7 = values[35];
+                let s10 = values[36];
+                let sin8 = values[38];
+                let s9 = values[40];
+                let s11 = values[47];
+                let s2 = values[49];
+                let s3 = values[50];
+                let s4 = values[51];
+                let s12 = sin8 * s9;
+                let s13 = sin8 * real(0.3333333333333333) + real(1.0);
+                let s14 = s11 + s13 * cos6;
+                let s15 = s2 + (s3 + s4 * s14) * h;
+                let s16 = s10 * real(0.25);
+                let s17 = sin6 * cos7 - cos6 * sin7;
+                let s18 = (q_0_dot + q_1_dot) * s17 * real(0.125);
+                let s19 = s4 * s11;
+                let s20 = s16 - (s18 + s19) * h;
+                let s21 = s1 * s14;
+                let s22 = q_1_dot * s17 * real(0.25);
+                let s23 = s21 - s22;
+                let s24 = q_0_dot * s17 * real(0.25);
+                let s25 = s1 * s11;
+                let s26 = -s24 - s25;
+                let s27 = -(h * s14);
+                let s28 = h * s11;
+                let s29 = system.b + s22;
+                let s30 = (-s29 - s21) * h;
+                let s31 = (s22 + s25) * h;
+                let s32 = system.k * (q_0_mid - q_1_mid);
+                values[39] = s13;
+                values[42] = s17;
+                values[43] = s32;
+                values[48] = s14;
+                values[0] = s15;
+                values[52] = s16;
+                values[53] = s18;
+                values[54] = s19;
+                values[2] = s20;
+                values[62] = s12;
+                values[8] = s27;
+                values[63] = s22;
+                values[4] = s23;
+                values[9] = s28;
+                values[64] = s25;
+                values[65] = s24;
+                values[6] = s26;
+                values[66] = s29;
+                values[11] = s30;
+                values[13] = s31;
+            }
+            /// Part 3 of `extended_derivatives`: 50 operations.
+            #[inline(never)]
+            fn extended_derivatives_part_3<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 71],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let s1 = values[29];
+                let cos7 = values[33];
+                let sin6 = values[34];
+                let s5 = values[37];
+                let s13 = values[39];
+                let cos8 = values[41];
+                let s17 = values[42];
+                let s32 = values[43];
+                let s11 = values[47];
+                let s14 = values[48];
+                let s2 = values[49];
+                let s3 = values[50];
+                let s4 = values[51];
+                let s16 = values[52];
+                let s18 = values[53];
+                let s19 = values[54];
+                let s29 = values[66];
+                let s33 = s32 * real(0.5);
+                let s34 = s13 * sin6;
+                let s35 = system.b * q_0_dot;
+                let s36 = q_1_dot * q_1_dot;
+                let s37 = s33 + s34 * real(0.5) + s35 * real(0.5)
+                    + s36 * s17 * real(0.125);
+                let s38 = sin6 * cos8;
+                let s39 = s38 * real(0.3333333333333333);
+                let s40 = q_0_dot * s14;
+                let s41 = q_1_dot * s11;
+                let s42 = s37 + s4 * (s39 + s40 - s41);
+                let s43 = s5 * s17 * real(0.25);
+                let s44 = s41 - s40 - s39;
+                let s45 = s1 * s44;
+                let s46 = s43 + s32 + s34 + s45;
+                let s47 = s37 + s4 * s44;
+                let s48 = -(s29 * q_0_dot) - (s32 + s34) + s45;
+                let s49 = h * real(0.3333333333333333);
+                let s50 = s38 * s49;
+                let s51 = h * real(0.16666666666666666);
+                let s52 = (s38 * s51 - s35 * real(2.0)) * h;
+                let s53 = s16 + (s18 - s19) * h;
+                let s54 = s11 + s13 * cos7;
+                let s55 = s2 + (s3 + s4 * s54) * h;
+                values[46] = s36;
+                values[1] = s53;
+                values[55] = s54;
+                values[3] = s55;
+                values[56] = s33;
+                values[57] = s38;
+                values[58] = s40;
+                values[59] = s41;
+                values[15] = s42;
+                values[19] = s47;
+                values[68] = s43;
+                values[17] = s46;
+                values[22] = s48;
+                values[69] = s49;
+                values[24] = s50;
+                values[70] = s51;
+                values[26] = s52;
+            }
+            /// Part 4 of `extended_derivatives`: 36 operations.
+            #[inline(never)]
+            fn extended_derivatives_part_4<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 71],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let s1 = values[29];
+                let sin6 = values[34];
+                let sin7 = values[35];
+                let s13 = values[39];
+                let s9 = values[40];
+                let cos8 = values[41];
+                let s17 = values[42];
+                let s36 = values[46];
+                let s54 = values[55];
+                let s33 = values[56];
+                let s12 = values[62];
+                let s22 = values[63];
+                let s25 = values[64];
+                let s24 = values[65];
+                let s56 = s22 - s25;
+                let s57 = s1 * s54;
+                let s58 = s24 + s57;
+                let s59 = -(h * s54);
+                let s60 = (s25 - s24) * h;
+                let s61 = s24 - system.b;
+                let s62 = (s61 - s57) * h;
+                let s63 = s13 * sin7;
+                let s64 = system.b * q_1_dot;
+                let s65 = q_0_dot * q_0_dot;
+                let s66 = (s12 * real(0.16666666666666666)
+                    + (q_0_dot * sin6 + q_1_dot * sin7) * cos8
+                        * real(0.16666666666666666)) * h
+                    - (s9 * cos8 * real(0.3333333333333333) + system.b * s65
+                        + system.b * s36);
+                let s67 = s63 * real(0.5) + s64 * real(0.5) - s33
+                    - s65 * s17 * real(0.125);
+                let s68 = sin7 * cos8;
+                values[44] = s63;
+                values[45] = s64;
+                values[60] = s67;
+                values[61] = s68;
+                values[5] = s56;
+                values[10] = s59;
+                values[7] = s58;
+                values[12] = s60;
+                values[67] = s61;
+                values[14] = s62;
+                values[28] = s66;
+            }
+            /// Part 5 of `extended_derivatives`: 38 operations.
+            #[inline(never)]
+            fn extended_derivatives_part_5<T: ::vi_core::real::Real>(
+                system: &Pendula<T>,
+                inputs: &[T; 9],
+                values: &mut [T; 71],
+            ) {
+                let real = T::real;
+                let h = inputs[3];
+                let q_0_dot = inputs[4];
+                let q_1_dot = inputs[5];
+                let s1 = values[29];
+                let s32 = values[43];
+                let s63 = values[44];
+                let s64 = values[45];
+                let s11 = values[47];
+                let s4 = values[51];
+                let s54 = values[55];
+                let s38 = values[57];
+                let s40 = values[58];
+                let s41 = values[59];
+                let s67 = values[60];
+                let s68 = values[61];
+                let s12 = values[62];
+                let s61 = values[67];
+                let s43 = values[68];
+                let s49 = values[69];
+                let s51 = values[70];
+                let s69 = s68 * real(0.3333333333333333);
+                let s70 = q_0_dot * s11;
+                let s71 = q_1_dot * s54;
+                let s72 = (-(s71 * real(0.25)) - s68 * real(0.16666666666666666))
+                    * q_1_dot - s12 * real(0.08333333333333333)
+                    + (s41 * real(0.5) - s40 * real(0.25)
+                        - s38 * real(0.16666666666666666)) * q_0_dot;
+                let s73 = s67 + s4 * (s69 - s70 + s71);
+                let s74 = s70 - s71 - s69;
+                let s75 = s1 * s74;
+                let s76 = s63 - s43 - s32 + s75;
+                let s77 = s67 + s4 * s74;
+                let s78 = s32 - s63 + s61 * q_1_dot + s75;
+                let s79 = s68 * s49;
+                let s80 = (s68 * s51 - s64 * real(2.0)) * h;
+                values[16] = s73;
+                values[20] = s77;
+                values[21] = s72;
+                values[18] = s76;
+                values[23] = s78;
+                values[25] = s79;
+                values[27] = s80;
+            }
+            let system = self;
+            let inputs = [
+                t0,
+                q_0_0,
+                q_1_0,
+                h,
+                q_0_dot,
+                q_1_dot,
+                t0_low,
+                q_0_0_low,
+                q_1_0_low,
+            ];
+            let mut values = [T::real(0.0); 71];
+            extended_derivatives_part_1(system, &inputs, &mut values);
+            extended_derivatives_part_2(system, &inputs, &mut values);
+            extended_derivatives_part_3(system, &inputs, &mut values);
+            extended_derivatives_part_4(system, &inputs, &mut values);
+            extended_derivatives_part_5(system, &inputs, &mut values);
+            ::vi_core::stepping::ExtendedDerivatives {
+                momentum: ::vi_core::stepping::MomentumDerivatives {
+                    residual_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[values[4], values[5], values[6], values[7]],
+                    ),
+                    residual_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[values[0], values[1], values[2], values[3]],
+                    ),
+                    increment_dq: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[values[8], values[9], values[9], values[10]],
+                    ),
+                    increment_dv: ::vi_core::nalgebra::SMatrix::from_row_slice(
+                        &[values[11], values[12], values[13], values[14]],
+                    ),
+                },
+                residual_dh: ::vi_core::SVector::from([values[15], values[16]]),
+                increment_dh: ::vi_core::SVector::from([values[22], values[23]]),
+                energy_dq: ::vi_core::SVector::from([values[17], values[18]]),
+                energy_dv: ::vi_core::SVector::from([values[19], values[20]]),
+                energy_dh: values[21],
+                energy_increment_dq: ::vi_core::SVector::from([values[24], values[25]]),
+                energy_increment_dv: ::vi_core::SVector::from([values[26], values[27]]),
+                energy_increment_dh: values[28],
             }
         }
 

@@ -54,7 +54,7 @@ pub(super) fn blocks<const N: usize, const B: usize>(
 }
 
 /// How far the solutions by a form of `a` are from those of `a` by elimination with pivoting, for one and for two
-/// right-hand sides, and by the inverse for one and for two side by side.
+/// right-hand sides, and by the inverse for one and for two side by side; and its product with a vector from nalgebra's.
 fn off<const N: usize, F: Matrix<N, f64>>(a: &SMatrix<f64, N, N>, form: &F, seed: &mut u32) -> f64 {
     assert_eq!(form.dense(), *a);
     let two = SMatrix::<f64, N, 2>::from_fn(|_, _| next(seed));
@@ -70,7 +70,9 @@ fn off<const N: usize, F: Matrix<N, f64>>(a: &SMatrix<f64, N, N>, form: &F, seed
     F::apply_to_rows(&form.inverse(), &mut rows);
     let by_rows = SMatrix::<f64, N, 2>::from_fn(|i, k| rows[i][k]);
     let by_rows = (by_rows - wanted).amax();
-    [(by_two - wanted).amax(), (by_inverse - wanted.column(1)).amax(), by_rows, defect].into_iter().fold(0.0, f64::max)
+    let product = (form.multiply(&one) - a * one).amax();
+    let solved = [(by_two - wanted).amax(), (by_inverse - wanted.column(1)).amax(), by_rows, defect];
+    solved.into_iter().fold(product, f64::max)
 }
 
 /// The worst of many matrices, each made into a form.

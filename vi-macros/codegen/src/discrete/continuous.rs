@@ -6,6 +6,7 @@
 //! momentum p = L_v          energy = v·L_v − L          mass M = L_vv
 //! M a = L_q + f − L_vt − L_vq v        dp/dt = L_q + f        dE/dt = −L_t + f·v
 //! D = a·(L_q + f) − v·d/dt(L_q) − d/dt(L_t)             step density
+//! ∂L_v/∂q        ∂(L_q + f)/∂q        ∂(L_q + f)/∂v
 //! g, ∂g/∂q, ∂g/∂t                                       time scale, dt = g dτ
 //! ```
 
@@ -48,6 +49,16 @@ pub struct Continuous {
     pub autonomous: bool,
     /// Per coordinate: it does not appear in L and has no force.
     pub cyclic: Vec<bool>,
+}
+
+/// How L_v and L_q + f change with q and v, row by row; how L_v changes with v is M.
+pub struct PointDerivatives {
+    /// ∂L_v/∂q.
+    pub momentum_dq: Vec<Vec<Expr>>,
+    /// ∂(L_q + f)/∂q.
+    pub force_dq: Vec<Vec<Expr>>,
+    /// ∂(L_q + f)/∂v.
+    pub force_dv: Vec<Vec<Expr>>,
 }
 
 /// The time scale of the transformation dt = g(t, q) dτ.
@@ -140,6 +151,36 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
         time_scale: model.time_scale.map(|g| time_scale(pool, g, dimension)),
         autonomous: autonomous && !forced_time,
     })
+}
+
+/// Derives how L_v and L_q + f change.
+pub(super) fn point_derivatives(
+    pool: &mut Pool<Symbol>,
+    fields: &mut Fields,
+    dimension: usize,
+) -> Result<PointDerivatives, TooLarge> {
+    let zero = pool.zero();
+    let none = vec![vec![zero; dimension]; dimension];
+    let mut found = PointDerivatives { momentum_dq: none.clone(), force_dq: none.clone(), force_dv: none };
+    for i in 0..dimension {
+        bounded(pool)?;
+        let (own_velocity, own_coordinate) = (Variable::Velocity(i), Variable::Coordinate(i));
+        let of_momentum = fields.variables(pool, own_velocity);
+        let of_slope = fields.variables(pool, own_coordinate);
+        for j in 0..dimension {
+            let (coordinate, velocity) = (Variable::Coordinate(j), Variable::Velocity(j));
+            if of_momentum.contains(&coordinate) {
+                found.momentum_dq[i][j] = fields.lagrangian(pool, &[own_velocity, coordinate]);
+            }
+            for (matrix, by) in [(&mut found.force_dq, coordinate), (&mut found.force_dv, velocity)] {
+                let of_lagrangian =
+                    if of_slope.contains(&by) { fields.lagrangian(pool, &[own_coordinate, by]) } else { zero };
+                let of_force = fields.force(pool, i, by);
+                matrix[i][j] = pool.add(of_lagrangian, of_force);
+            }
+        }
+    }
+    Ok(found)
 }
 
 fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {

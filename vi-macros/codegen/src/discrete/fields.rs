@@ -108,6 +108,11 @@ impl Fields {
         self.defined(pool, Quantity::Lagrangian, &derivatives).expr
     }
 
+    /// A partial derivative of the force of a coordinate in `(t, q, v)`.
+    pub(super) fn force(&mut self, pool: &mut Pool<Symbol>, coordinate: usize, by: Variable) -> Expr {
+        self.defined(pool, Quantity::Force(coordinate), &[by]).expr
+    }
+
     /// On what a first partial derivative of L depends, but parameters.
     pub(super) fn variables(&mut self, pool: &mut Pool<Symbol>, by: Variable) -> Variables {
         self.defined(pool, Quantity::Lagrangian, &[by]).variables.clone()

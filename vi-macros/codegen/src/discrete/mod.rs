@@ -13,7 +13,7 @@ mod slots;
 mod step;
 pub mod system;
 
-pub use continuous::{Continuous, TimeScale};
+pub use continuous::{Continuous, PointDerivatives, TimeScale};
 pub use fields::Fields;
 pub use slots::Slots;
 pub use step::Equations;
@@ -28,6 +28,8 @@ pub struct DiscreteSystem {
     pub rule: Option<&'static NamedRule>,
     /// The continuous functions: momentum, mass matrix, …
     pub continuous: Continuous,
+    /// How the continuous equations change with coordinates and velocities.
+    pub point_derivatives: PointDerivatives,
     /// Partial derivatives of L and f, as far as they were asked for.
     pub fields: Fields,
     /// L_d, its slot derivatives, discrete forces and powers.

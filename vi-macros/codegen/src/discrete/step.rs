@@ -9,6 +9,8 @@
 //! A = ∂r/∂v    ∂r/∂h    (∂e/∂v − v·A)/h    (∂e/∂h − v·∂r/∂h)/h
 //! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      E1 = −D3 L_d − g_d⁺
 //! ```
+//!
+//! and for the derivatives of a motion `∂r/∂q0`, `∂e/∂q0 − v·∂r/∂q0`, and how p1 − p0 and E1 − E0 change with q0, v and h.
 
 use super::fields::{Arguments, Changes, Fields, Variables, changes};
 use super::slots::Slots;
@@ -40,6 +42,22 @@ pub struct Equations {
     pub energy_increment: Expr,
     /// E1.
     pub discrete_energy: Expr,
+    /// ∂r/∂q0, row by row.
+    pub residual_dq: Vec<Vec<Expr>>,
+    /// ∂e/∂q0 − v·∂r/∂q0.
+    pub energy_dq: Vec<Expr>,
+    /// ∂(p1 − p0)/∂q0, row by row.
+    pub momentum_increment_dq: Vec<Vec<Expr>>,
+    /// ∂(p1 − p0)/∂v, row by row.
+    pub momentum_increment_dv: Vec<Vec<Expr>>,
+    /// ∂(p1 − p0)/∂h.
+    pub momentum_increment_dh: Vec<Expr>,
+    /// ∂(E1 − E0)/∂q0.
+    pub energy_increment_dq: Vec<Expr>,
+    /// ∂(E1 − E0)/∂v.
+    pub energy_increment_dv: Vec<Expr>,
+    /// ∂(E1 − E0)/∂h.
+    pub energy_increment_dh: Expr,
 }
 
 /// Derives the equations of a step.
@@ -64,31 +82,59 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
 
     let discrete_energy = negative_sum(pool, &[slots.d3_ld, slots.forces.gd_plus])?;
 
-    let rows = residual.iter().chain([&energy]);
-    let rows = rows.map(|row| Row::new(pool, fields, *row, points.len())).collect::<Vec<_>>();
+    let in_rows_of = |expr: &Expr| Row::new(pool, fields, *expr, points.len());
+    let rows: Vec<Row> = residual.iter().chain([&energy]).map(in_rows_of).collect();
     let arguments = Arguments::of(pool, &points);
-    let mut residual_dv = vec![Vec::with_capacity(dimension); dimension];
+    let mut by_velocities = Vec::with_capacity(dimension);
     let mut energy_dv = Vec::with_capacity(dimension);
     for j in 0..dimension {
         let column = by_unknown(pool, fields, &arguments, &rows, &Symbol::StepVelocity(j))?;
-        energy_dv.push(over_step(pool, column.energy, &velocities, &column.residual)?);
-        residual_dv.iter_mut().zip(column.residual).for_each(|(row, entry)| row.push(entry));
+        energy_dv.push(over_step(pool, column.energy, &velocities, &column.momentum)?);
+        by_velocities.push(column);
     }
-    let column = by_unknown(pool, fields, &arguments, &rows, &Symbol::Step)?;
-    let energy_dh = over_step(pool, column.energy, &velocities, &column.residual)?;
+    let by_step = by_unknown(pool, fields, &arguments, &rows, &Symbol::Step)?;
+    let energy_dh = over_step(pool, by_step.energy, &velocities, &by_step.momentum)?;
+
+    let mut by_coordinates = Vec::with_capacity(dimension);
+    let mut energy_dq = Vec::with_capacity(dimension);
+    for j in 0..dimension {
+        let column = by_unknown(pool, fields, &arguments, &rows, &Symbol::Q0(j))?;
+        energy_dq.push(combined(pool, column.energy, &velocities, &column.momentum)?);
+        by_coordinates.push(column);
+    }
+    let in_rows_of = |expr: &Expr| Row::new(pool, fields, *expr, points.len());
+    let increments: Vec<Row> = momentum_increment.iter().chain([&energy_increment]).map(in_rows_of).collect();
+    let mut gain = |pool: &mut Pool<Symbol>, by: Symbol| by_unknown(pool, fields, &arguments, &increments, &by);
+    let gain_by_coordinates = (0..dimension).map(|j| gain(pool, Symbol::Q0(j))).collect::<Result<Vec<Column>, _>>()?;
+    let gain_by_velocities =
+        (0..dimension).map(|j| gain(pool, Symbol::StepVelocity(j))).collect::<Result<Vec<Column>, _>>()?;
+    let gain_by_step = gain(pool, Symbol::Step)?;
 
     Ok(Equations {
         points,
         residual,
-        residual_dv,
-        residual_dh: column.residual,
+        residual_dv: in_rows(&by_velocities),
+        residual_dh: by_step.momentum,
         energy_residual,
         energy_dv,
         energy_dh,
         momentum_increment,
         energy_increment,
         discrete_energy,
+        residual_dq: in_rows(&by_coordinates),
+        energy_dq,
+        momentum_increment_dq: in_rows(&gain_by_coordinates),
+        momentum_increment_dv: in_rows(&gain_by_velocities),
+        momentum_increment_dh: gain_by_step.momentum,
+        energy_increment_dq: gain_by_coordinates.iter().map(|column| column.energy).collect(),
+        energy_increment_dv: gain_by_velocities.iter().map(|column| column.energy).collect(),
+        energy_increment_dh: gain_by_step.energy,
     })
+}
+
+/// The rows of momentum of a matrix, from its columns.
+fn in_rows(columns: &[Column]) -> Vec<Vec<Expr>> {
+    (0..columns.len()).map(|row| columns.iter().map(|column| column.momentum[row]).collect()).collect()
 }
 
 /// A carried quantity: the number and its low part.
@@ -144,9 +190,9 @@ fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr
         .collect()
 }
 
-/// The derivatives of both rows by one unknown.
+/// The derivatives of rows of momentum, and of one of energy, by one of the unknowns or of the coordinates.
 struct Column {
-    residual: Vec<Expr>,
+    momentum: Vec<Expr>,
     energy: Expr,
 }
 
@@ -187,14 +233,14 @@ fn by_unknown(
         if symbol == unknown { pool.one() } else { pool.zero() }
     };
     let changes = changes(pool, arguments, &direct);
-    let mut residual = Vec::with_capacity(rows.len());
+    let mut momentum = Vec::with_capacity(rows.len());
     for row in rows {
         let varies = row.varies(unknown, &changes);
         let slope = if varies { fields.derivative(pool, row.expr, &direct, &changes) } else { pool.zero() };
-        residual.push(pool.expand(slope)?);
+        momentum.push(pool.expand(slope)?);
     }
-    let energy = residual.pop().unwrap_or(pool.zero());
-    Ok(Column { residual, energy })
+    let energy = momentum.pop().unwrap_or(pool.zero());
+    Ok(Column { momentum, energy })
 }
 
 /// `row − v·column`, multiplied out.

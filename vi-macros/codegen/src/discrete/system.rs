@@ -28,8 +28,9 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
     bounded(pool).map_err(too_large)?;
     every_slot_acts(pool, model, &slots)?;
     let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;
+    let point_derivatives = continuous::point_derivatives(pool, &mut fields, model.dimension()).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
-    Ok(DiscreteSystem { rule, continuous, fields, slots, equations })
+    Ok(DiscreteSystem { rule, continuous, point_derivatives, fields, slots, equations })
 }
 
 /// The rule of the table that the system's rule is: by its name, or written out.

@@ -15,6 +15,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     let constant_mass = source.findings.constant_mass;
     let separable = source.findings.force_of_position;
     let (form, point) = point(source);
+    let (derivatives_form, point_derivatives) = point_derivatives(source);
     let scaled_point = source.system.continuous.time_scale.as_ref().map(|scale| scaled_point(source, scale));
     let scales_time = scaled_point.is_some().then(|| {
         quote!(
@@ -30,10 +31,12 @@ pub(super) fn item(source: &Source) -> TokenStream {
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#dimension, T> for #name<T> {
             type Mass = #form;
+            type PointMatrix = #derivatives_form;
             const CONSTANT_MASS: bool = #constant_mass;
             const SEPARABLE: bool = #separable;
             #scales_time
             #point
+            #point_derivatives
             #power
             #scaled_point
         }
@@ -63,6 +66,38 @@ fn point(source: &Source) -> (TokenStream, TokenStream) {
         ) -> ::vi_core::collocation::Point<#dimension, T, Self::Mass> {
             #inputs #statements
             #value
+        }
+    };
+    (form, function)
+}
+
+/// The form of the matrices, and the function of M and of how L_v and L_q + f change.
+fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
+    let dimension = source.dimension();
+    let formula = "M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.";
+    let Some((body, documentation)) = source.documented(FunctionId::PointDerivatives, formula, VelocityFrom::Argument)
+    else {
+        return (TokenStream::new(), TokenStream::new());
+    };
+    let inputs = state_parts(&body, source.model);
+    let statements = &body.statements;
+    let of = |output| matrix(&source.findings.point_derivatives, false, body.results.matrix(output));
+    let (form, mass) = of(Output::Mass);
+    let [(_, momentum_dq), (_, force_dq), (_, force_dv)] =
+        [Output::MomentumDq, Output::ForceDq, Output::ForceDv].map(of);
+    let function = quote! {
+        #documentation
+        #[inline(always)]
+        fn point_derivatives(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, #dimension>,
+            v: &::vi_core::SVector<T, #dimension>,
+        ) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> {
+            #inputs #statements
+            ::vi_core::collocation::PointDerivatives {
+                momentum_dq: #momentum_dq, mass: #mass, force_dq: #force_dq, force_dv: #force_dv
+            }
         }
     };
     (form, function)

@@ -27,7 +27,8 @@ fn fixed(source: &Source) -> TokenStream {
     let rounded = rounded(source);
     let constant = source.findings.constant_jacobian();
     let (form, equation) = momentum_equation(source);
-    let functions = [equation, momentum_residual(source), discrete_energy(source)].into_iter().flatten();
+    let (derivatives_form, derivatives) = momentum_derivatives(source);
+    let functions = [equation, momentum_residual(source), derivatives, discrete_energy(source)].into_iter().flatten();
     let closed = source.findings.closed_form().then(|| {
         quote!(
             const CLOSED_FORM: bool = true;
@@ -43,6 +44,7 @@ fn fixed(source: &Source) -> TokenStream {
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#dimension, T #rule> for #name<T> {
             type Jacobian = #form;
+            type StepMatrix = #derivatives_form;
             const CONSTANT_JACOBIAN: bool = #constant;
             #closed
             #inlined
@@ -71,7 +73,8 @@ fn energy(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let rule = source.rule_argument();
     let rounded = rounded(source);
-    let functions = [extended_system(source), extended_residual(source)].into_iter().flatten();
+    let functions =
+        [extended_system(source), extended_residual(source), extended_derivatives(source)].into_iter().flatten();
     quote! {
         impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#dimension, T #rule> for #name<T> {
             #(#functions)*
@@ -182,6 +185,66 @@ fn momentum_residual(source: &Source) -> Option<TokenStream> {
         let increment = vector_of(results.vector(Output::MomentumIncrement));
         quote! {
             ::vi_core::stepping::MomentumResidual { residual: #residual, scale: #scale, increment: #increment }
+        }
+    })
+}
+
+/// The derivatives of the momentum row and of p1 − p0 as `MomentumDerivatives` holds them, and the form of all but A.
+fn momentum_derivatives_of(source: &Source, results: &Results<Entry>) -> (TokenStream, TokenStream) {
+    let (_, residual_dv) =
+        matrix(&source.findings.pattern, source.findings.symmetric, results.matrix(Output::Jacobian));
+    let of = |output| matrix(&source.findings.step_derivatives, false, results.matrix(output));
+    let (form, residual_dq) = of(Output::ResidualDq);
+    let [(_, increment_dq), (_, increment_dv)] = [Output::MomentumIncrementDq, Output::MomentumIncrementDv].map(of);
+    let derivatives = quote! {
+        ::vi_core::stepping::MomentumDerivatives {
+            residual_dq: #residual_dq,
+            residual_dv: #residual_dv,
+            increment_dq: #increment_dq,
+            increment_dv: #increment_dv,
+        }
+    };
+    (form, derivatives)
+}
+
+fn momentum_derivatives(source: &Source) -> (TokenStream, Option<TokenStream>) {
+    let formula = "How the residual and `p1 − p0` change with the coordinates of the node and with v.";
+    let output = quote!(::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>);
+    let mut form = TokenStream::new();
+    let function = method(source, FunctionId::MomentumDerivatives, formula, &output, |results| {
+        let (of, derivatives) = momentum_derivatives_of(source, results);
+        form = of;
+        derivatives
+    });
+    (form, function)
+}
+
+fn extended_derivatives(source: &Source) -> Option<TokenStream> {
+    let dimension = source.dimension();
+    let formula = "How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.";
+    let output = quote!(::vi_core::stepping::ExtendedDerivatives<#dimension, T, Self::Jacobian, Self::StepMatrix>);
+    method(source, FunctionId::ExtendedDerivatives, formula, &output, |results| {
+        let (_, momentum) = momentum_derivatives_of(source, results);
+        let vector = |output| vector_of(results.vector(output));
+        let residual_dh = vector(Output::ResidualDh);
+        let increment_dh = vector(Output::MomentumIncrementDh);
+        let [energy_dq, energy_dv] = [Output::EnergyDq, Output::EnergyDv].map(vector);
+        let energy_dh = results.number(Output::EnergyDh);
+        let [energy_increment_dq, energy_increment_dv] =
+            [Output::EnergyIncrementDq, Output::EnergyIncrementDv].map(vector);
+        let energy_increment_dh = results.number(Output::EnergyIncrementDh);
+        quote! {
+            ::vi_core::stepping::ExtendedDerivatives {
+                momentum: #momentum,
+                residual_dh: #residual_dh,
+                increment_dh: #increment_dh,
+                energy_dq: #energy_dq,
+                energy_dv: #energy_dv,
+                energy_dh: #energy_dh,
+                energy_increment_dq: #energy_increment_dq,
+                energy_increment_dv: #energy_increment_dv,
+                energy_increment_dh: #energy_increment_dh,
+            }
         }
     })
 }

@@ -325,9 +325,11 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::Collocation<#n, T> for #name<T> {
             type Mass = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
+            type PointMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_MASS: bool = false;
             const SEPARABLE: bool = false;
             fn point(#at) -> ::vi_core::collocation::Point<#n, T, Self::Mass> #none
+            fn point_derivatives(#at) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> #none
             fn power(#at) -> T #none
         }
     }
@@ -352,15 +354,18 @@ fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStrea
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::FixedStepping<#n, T #rule> for #name<T> {
             type Jacobian = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
+            type StepMatrix = ::vi_core::nalgebra::SMatrix<T, #n, #n>;
             const CONSTANT_JACOBIAN: bool = false;
             fn momentum_equation(#from) -> ::vi_core::stepping::MomentumEquation<#n, T> #none
             fn momentum_residual(#from) -> ::vi_core::stepping::MomentumResidual<#n, T> #none
+            fn momentum_derivatives(#from) -> ::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix> #none
             fn momentum_rounding(#from) -> #vector #none
             fn discrete_energy(#from) -> T #none
         }
         impl<#generic T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<#n, T #rule> for #name<T> {
             fn extended_system(#from) -> ::vi_core::stepping::ExtendedSystem<#n, T> #none
             fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
+            fn extended_derivatives(#from) -> ::vi_core::stepping::ExtendedDerivatives<#n, T, Self::Jacobian, Self::StepMatrix> #none
             fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none
         }
     }

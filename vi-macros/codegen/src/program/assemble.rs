@@ -80,6 +80,10 @@ impl<'a> Assembly<'a> {
         exprs.iter().map(|expr| self.open(*expr)).collect()
     }
 
+    fn open_rows(&mut self, rows: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+        rows.iter().map(|row| self.open_all(row)).collect()
+    }
+
     fn rounding_scales(&mut self, exprs: &[Expr]) -> Vec<Expr> {
         exprs.iter().map(|expr| rounding_scale(self.pool, *expr)).collect()
     }
@@ -130,6 +134,12 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let momentum = (Output::Momentum, vec![of.momentum.clone()]);
     let mass_times_acceleration = (Output::MassTimesAcceleration, vec![of.mass_times_acceleration.clone()]);
     let applied_force = (Output::AppliedForce, vec![of.applied_force.clone()]);
+    let point_derivatives = vec![
+        mass.clone(),
+        (Output::MomentumDq, system.point_derivatives.momentum_dq.clone()),
+        (Output::ForceDq, system.point_derivatives.force_dq.clone()),
+        (Output::ForceDv, system.point_derivatives.force_dv.clone()),
+    ];
     let mut functions = vec![
         assembly.function(FunctionId::Lagrangian, number(of.lagrangian))?,
         assembly.function(FunctionId::Energy, number(of.energy))?,
@@ -137,6 +147,7 @@ fn continuous(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
         assembly.function(FunctionId::Force, vector(&of.force))?,
         assembly.function(FunctionId::Acceleration, vec![mass.clone(), mass_times_acceleration])?,
         assembly.function(FunctionId::Point, vec![momentum.clone(), applied_force.clone(), mass.clone()])?,
+        assembly.function(FunctionId::PointDerivatives, point_derivatives)?,
         assembly.function(FunctionId::Power, number(of.power))?,
         assembly.function(FunctionId::StepDensity, number(of.step_density))?,
         assembly.function(FunctionId::NonFinite, vector(&of.watched))?,
@@ -196,10 +207,27 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     let momentum_increment = assembly.open_all(&of.momentum_increment);
     let energy_increment = assembly.open_all(&[of.energy_increment]);
     let discrete_energy = assembly.open_all(&[of.discrete_energy]);
-    let jacobian: Vec<_> = of.residual_dv.iter().map(|row| assembly.open_all(row)).collect();
+    let jacobian = assembly.open_rows(&of.residual_dv);
     let residual_dh = assembly.open_all(&of.residual_dh);
     let energy_dv = assembly.open_all(&of.energy_dv);
     let energy_dh = assembly.open_all(&[of.energy_dh]);
+    let momentum_derivatives = vec![
+        (Output::Jacobian, jacobian.clone()),
+        (Output::ResidualDq, assembly.open_rows(&of.residual_dq)),
+        (Output::MomentumIncrementDq, assembly.open_rows(&of.momentum_increment_dq)),
+        (Output::MomentumIncrementDv, assembly.open_rows(&of.momentum_increment_dv)),
+    ];
+    let energy_derivatives = [
+        (Output::ResidualDh, vec![residual_dh.clone()]),
+        (Output::EnergyDq, vec![assembly.open_all(&of.energy_dq)]),
+        (Output::EnergyDv, vec![energy_dv.clone()]),
+        (Output::EnergyDh, vec![energy_dh.clone()]),
+        (Output::MomentumIncrementDh, vec![assembly.open_all(&of.momentum_increment_dh)]),
+        (Output::EnergyIncrementDq, vec![assembly.open_all(&of.energy_increment_dq)]),
+        (Output::EnergyIncrementDv, vec![assembly.open_all(&of.energy_increment_dv)]),
+        (Output::EnergyIncrementDh, vec![assembly.open_all(&[of.energy_increment_dh])]),
+    ];
+    let extended_derivatives = momentum_derivatives.iter().cloned().chain(energy_derivatives).collect();
     let rounding_scale = assembly.rounding_scales(&residual);
     let energy_rounding_scale = assembly.rounding_scales(&energy_residual);
     let residual = (Output::Residual, vec![residual]);
@@ -228,8 +256,10 @@ fn step(assembly: &mut Assembly, system: &DiscreteSystem) -> Assembled {
     Ok(vec![
         assembly.function(FunctionId::MomentumEquation, equation)?,
         assembly.function(FunctionId::MomentumResidual, measured)?,
+        assembly.function(FunctionId::MomentumDerivatives, momentum_derivatives)?,
         assembly.function(FunctionId::DiscreteEnergy, vector(&discrete_energy))?,
         assembly.function(FunctionId::ExtendedSystem, extended)?,
         assembly.function(FunctionId::ExtendedResidual, both_measured)?,
+        assembly.function(FunctionId::ExtendedDerivatives, extended_derivatives)?,
     ])
 }

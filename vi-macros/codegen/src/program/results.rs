@@ -18,6 +18,8 @@ pub enum FunctionId {
     Acceleration,
     /// L_v, L_q + f, and M.
     Point,
+    /// How L_v and L_q + f change.
+    PointDerivatives,
     /// f·v − L_t.
     Power,
     /// L_v, L_q + f, M, v·L_v − L, f·v − L_t, and the time scale with its derivatives.
@@ -48,12 +50,16 @@ pub enum FunctionId {
     MomentumEquation,
     /// The momentum row, its rounding scale, and p1 − p0.
     MomentumResidual,
+    /// How the momentum row and p1 − p0 change.
+    MomentumDerivatives,
     /// E1.
     DiscreteEnergy,
     /// Both rows and their derivatives.
     ExtendedSystem,
     /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
     ExtendedResidual,
+    /// How both rows, p1 − p0 and E1 − E0 change.
+    ExtendedDerivatives,
 }
 
 impl FunctionId {
@@ -67,6 +73,7 @@ impl FunctionId {
             Self::Force => "force",
             Self::Acceleration => "acceleration",
             Self::Point => "point",
+            Self::PointDerivatives => "point_derivatives",
             Self::Power => "power",
             Self::ScaledPoint => "scaled_point",
             Self::StepDensity => "step_density",
@@ -82,9 +89,11 @@ impl FunctionId {
             Self::GdPlus => "gd_plus",
             Self::MomentumEquation => "momentum_equation",
             Self::MomentumResidual => "momentum_residual",
+            Self::MomentumDerivatives => "momentum_derivatives",
             Self::DiscreteEnergy => "discrete_energy",
             Self::ExtendedSystem => "extended_system",
             Self::ExtendedResidual => "extended_residual",
+            Self::ExtendedDerivatives => "extended_derivatives",
         }
     }
 }
@@ -102,6 +111,12 @@ pub enum Output {
     MassTimesAcceleration,
     /// L_q + f.
     AppliedForce,
+    /// ∂L_v/∂q.
+    MomentumDq,
+    /// ∂(L_q + f)/∂q.
+    ForceDq,
+    /// ∂(L_q + f)/∂v.
+    ForceDv,
     /// v·L_v − L.
     Energy,
     /// f·v − L_t.
@@ -132,6 +147,22 @@ pub enum Output {
     MomentumIncrement,
     /// E1 − E0.
     EnergyIncrement,
+    /// ∂r/∂q.
+    ResidualDq,
+    /// The derivative of c by q.
+    EnergyDq,
+    /// ∂(p1 − p0)/∂q.
+    MomentumIncrementDq,
+    /// ∂(p1 − p0)/∂v.
+    MomentumIncrementDv,
+    /// ∂(p1 − p0)/∂h.
+    MomentumIncrementDh,
+    /// ∂(E1 − E0)/∂q.
+    EnergyIncrementDq,
+    /// ∂(E1 − E0)/∂v.
+    EnergyIncrementDv,
+    /// ∂(E1 − E0)/∂h.
+    EnergyIncrementDh,
 }
 
 /// Quantities, each as rows: a number is a row of one entry, a vector a row, a matrix as many rows as it has.
