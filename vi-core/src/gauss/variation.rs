@@ -43,12 +43,20 @@ where
             positions: equations.start(),
             velocities: equations.velocity(),
         };
-        let side_by_side = S::SIDE_BY_SIDE.then(|| instructions.run(Differentiate { system, at: &at }));
-        let derivatives =
-            side_by_side.filter(Derivatives::are_finite).unwrap_or_else(|| Derivatives::one_by_one(&rare, &at));
+        // Not arrays: those of long systems are too large for the stack of a thread.
+        let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
+        let (derivatives, equations) = rows.split_at_mut(4 * N);
+        let derivatives = derivatives.as_chunks_mut::<N>().0;
+        if S::SIDE_BY_SIDE {
+            instructions.run(Differentiate { system, at: &at, derivatives });
+        }
+        if !S::SIDE_BY_SIDE || !are_finite(derivatives) {
+            // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+            differentiate_plainly(&rare, &at, derivatives);
+        }
         for variations in variations.chunks_mut(TOGETHER) {
             let explicit = explicit(system, &at, variations);
-            let are_found = instructions.run(Vary { derivatives: &derivatives, h: run.h, explicit, variations });
+            let are_found = instructions.run(Vary { derivatives, equations, h: run.h, explicit, variations });
             if !are_found {
                 return Err(StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" });
             }
@@ -64,75 +72,23 @@ struct Solution<const N: usize, const S: usize> {
     velocities: Stages<N, S>,
 }
 
-/// How L_v and F change at the stages: the rows of C, M, K and B, one after the other. Entry (k, l) of a matrix is the derivative of component k by coordinate or
-/// velocity l, a row of stages. Not an array: those of long systems are too large for the stack of a thread.
-struct Derivatives<const N: usize, const S: usize>(Vec<Stages<N, S>>);
+/// How L_v and F change at the stages: C, M, K and B. Entry (k, l) is the derivative of component k by coordinate or velocity l, a row of stages.
+type Derivatives<const N: usize, const S: usize> = [[Stages<N, S>; N]];
 
-impl<const N: usize, const S: usize> Derivatives<N, S> {
-    /// C, M, K and B.
-    #[inline(always)]
-    fn matrices(&self) -> [&[Stages<N, S>; N]; 4] {
-        let matrices = self.0.as_chunks::<N>().0;
-        [&matrices[0], &matrices[1], &matrices[2], &matrices[3]]
-    }
-
-    /// Those of stages that are evaluated in the numbers T.
-    #[inline(always)]
-    fn by_numbers<T: AtStages<S>, Y: Collocation<N, T>>(system: &Y, at: &Solution<N, S>) -> Self {
-        if const { N <= LOOPED } {
-            // An array overlaps nothing, so far as the compiler knows: it makes vectors of the loop over the stages.
-            let mut matrices = [[[[0.0; S]; N]; N]; 4];
-            put_all(&mut matrices, system, at);
-            return Self(matrices.as_flattened().to_vec());
-        }
-        let mut rows = vec![[[0.0; S]; N]; 4 * N];
-        put_all(rows.as_chunks_mut::<N>().0, system, at);
-        Self(rows)
-    }
-
-    /// Those of every stage by itself, in plain numbers, which have sines and cosines of every angle.
-    fn one_by_one(system: &Rare<'_, N>, at: &Solution<N, S>) -> Self {
-        let mut rows = vec![[[0.0; S]; N]; 4 * N];
-        for i in 0..S {
-            let of_stage = system.derivatives(at.times[i], &stage(&at.positions, i), &stage(&at.velocities, i));
-            put::<_, f64, N, S>(rows.as_chunks_mut::<N>().0, i, &of_stage);
-        }
-        Self(rows)
-    }
-
-    /// Whether every number is finite.
-    fn are_finite(&self) -> bool {
-        self.0.as_flattened().as_flattened().iter().all(|entry| entry.is_finite())
-    }
+/// Whether every number is finite.
+fn are_finite<const N: usize, const S: usize>(derivatives: &Derivatives<N, S>) -> bool {
+    derivatives.as_flattened().as_flattened().as_flattened().iter().all(|entry| entry.is_finite())
 }
 
-/// Sets the matrices of all evaluations.
-#[inline(always)]
-fn put_all<const N: usize, const S: usize, T: AtStages<S>, Y: Collocation<N, T>>(
-    matrices: &mut [[Stages<N, S>; N]],
-    system: &Y,
+/// The derivatives of every stage by itself.
+fn differentiate_plainly<const N: usize, const S: usize>(
+    system: &Rare<'_, N>,
     at: &Solution<N, S>,
+    derivatives: &mut Derivatives<N, S>,
 ) {
-    for i in 0..T::EVALUATIONS {
-        let [q, v] = [&at.positions, &at.velocities].map(|stages| gathered(stages, i));
-        put(matrices, i, &system.point_derivatives(T::of(&at.times, i), &q, &v));
-    }
-}
-
-/// Sets the matrices C, M, K and B of an evaluation.
-#[inline(always)]
-fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
-    matrices: &mut [[Stages<N, S>; N]],
-    evaluation: usize,
-    derivatives: &PointDerivatives<D>,
-) {
-    let PointDerivatives { momentum_dq, mass, force_dq, force_dv } = derivatives;
-    for (rows, matrix) in matrices.iter_mut().zip([momentum_dq, mass, force_dq, force_dv]) {
-        for k in 0..N {
-            for l in 0..N {
-                matrix.entry(k, l).put(&mut rows[k][l], evaluation);
-            }
-        }
+    for i in 0..S {
+        let [q, v] = [&at.positions, &at.velocities].map(|of| stage(of, i));
+        put::<_, f64, N, S>(derivatives, i, &system.derivatives(at.times[i], &q, &v));
     }
 }
 
@@ -140,22 +96,58 @@ fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
 struct Differentiate<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     at: &'a Solution<N, S>,
+    derivatives: &'a mut Derivatives<N, S>,
 }
 
 /// Bytes up to which a matrix is evaluated at all stages at once: a thread has a stack of two million.
 const SIDE_BY_SIDE: usize = 1 << 16;
 
 impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'_, Y, N, S> {
-    type Output = Derivatives<N, S>;
+    type Output = ();
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> Derivatives<N, S> {
-        let Self { system, at } = self;
+    fn run<const FUSED: bool>(self) {
+        let Self { system, at, derivatives } = self;
         let bytes = const { size_of::<<Y::In<Lanes<S, FUSED>> as Collocation<N, Lanes<S, FUSED>>>::PointMatrix>() };
-        if const { N > LOOPED && (FUSED || WIDE) } && bytes <= SIDE_BY_SIDE {
-            Derivatives::by_numbers::<Lanes<S, FUSED>, _>(&system.convert(), at)
+        if const { N <= LOOPED } {
+            // An array overlaps nothing, so far as the compiler knows: it makes vectors of the loop over the stages.
+            let mut matrices = [[[[0.0; S]; N]; N]; 4];
+            put_all::<N, S, Lane<FUSED>, _>(&mut matrices, &system.convert(), at);
+            derivatives.copy_from_slice(&matrices);
+        } else if const { FUSED || WIDE } && bytes <= SIDE_BY_SIDE {
+            put_all::<N, S, Lanes<S, FUSED>, _>(derivatives, &system.convert(), at);
         } else {
-            Derivatives::by_numbers::<Lane<FUSED>, _>(&system.convert(), at)
+            put_all::<N, S, Lane<FUSED>, _>(derivatives, &system.convert(), at);
+        }
+    }
+}
+
+/// Sets the matrices of all evaluations.
+#[inline(always)]
+fn put_all<const N: usize, const S: usize, T: AtStages<S>, Y: Collocation<N, T>>(
+    derivatives: &mut Derivatives<N, S>,
+    system: &Y,
+    at: &Solution<N, S>,
+) {
+    for i in 0..T::EVALUATIONS {
+        let [q, v] = [&at.positions, &at.velocities].map(|stages| gathered(stages, i));
+        put(derivatives, i, &system.point_derivatives(T::of(&at.times, i), &q, &v));
+    }
+}
+
+/// Sets the matrices C, M, K and B of an evaluation.
+#[inline(always)]
+fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
+    derivatives: &mut Derivatives<N, S>,
+    evaluation: usize,
+    of: &PointDerivatives<D>,
+) {
+    let PointDerivatives { momentum_dq, mass, force_dq, force_dv } = of;
+    for (rows, matrix) in derivatives.iter_mut().zip([momentum_dq, mass, force_dq, force_dv]) {
+        for k in 0..N {
+            for l in 0..N {
+                matrix.entry(k, l).put(&mut rows[k][l], evaluation);
+            }
         }
     }
 }
@@ -188,6 +180,8 @@ fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usi
 /// Turns variations of the node at which a step began into those of the node reached; false, and anything in them, where the equations do not determine them.
 struct Vary<'a, const N: usize, const S: usize> {
     derivatives: &'a Derivatives<N, S>,
+    /// Room for the columns of the matrix and the right sides.
+    equations: &'a mut [Stages<N, S>],
     h: f64,
     explicit: Option<Explicit<N, S>>,
     variations: &'a mut [Variation<N>],
@@ -198,21 +192,25 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
-        let Self { derivatives, h, explicit, variations } = self;
+        let Self { derivatives, equations, h, explicit, variations } = self;
+        let [momentum_dq, mass, force_dq, force_dv] = derivatives else { return false };
         let weights = weights::<S>(h);
-        let mut equations = Vec::with_capacity(N * S + TOGETHER);
-        derivatives.columns::<FUSED>(&weights, &mut equations);
-        let [momentum_dq, _, force_dq, force_dv] = derivatives.matrices();
+        let (columns, right) = equations.split_at_mut(N * S);
+        for (l, columns) in columns.chunks_exact_mut(S).enumerate() {
+            for (j, column) in columns.iter_mut().enumerate() {
+                *column = self::column::<N, S, FUSED>([momentum_dq, mass, force_dq, force_dv], &weights, [l, j]);
+            }
+        }
         // What forces change by where the velocities of the stages do not.
         let mut forces = [[[0.0; S]; N]; TOGETHER];
         for (direction, variation) in variations.iter().enumerate() {
             let [mut momentum, mut force] = explicit.as_ref().map_or([[[0.0; S]; N]; 2], |of| of[direction]);
             add_products::<N, S, FUSED>(&mut momentum, momentum_dq, &constant(&variation.q));
             add_products::<N, S, FUSED>(&mut force, force_dq, &constant(&variation.q));
-            equations.push(missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights));
+            right[direction] = missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights);
             forces[direction] = force;
         }
-        let are_finite = eliminate::<N, S, FUSED>(&mut equations);
+        let are_finite = eliminate::<N, S, FUSED>(&mut equations[..N * S + variations.len()]);
         for (direction, variation) in variations.iter_mut().enumerate() {
             let velocities = &equations[N * S + direction];
             let force = &mut forces[direction];
@@ -227,41 +225,36 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
     }
 }
 
-impl<const N: usize, const S: usize> Derivatives<N, S> {
-    /// The columns of the matrix: entry i of column j is `δ_ij M_i + h a_ij (C_i − B_j) − h² Σ_m a_im a_mj K_m`.
-    #[inline(always)]
-    fn columns<const FUSED: bool>(&self, weights: &[f64; S], columns: &mut Vec<Stages<N, S>>) {
-        let first = const { &Tableau::<S>::VALUES.first };
-        let [momentum_dq, mass, force_dq, force_dv] = self.matrices();
-        for l in 0..N {
-            for j in 0..S {
-                // h a_ij
-                let mut along = [0.0; S];
-                for i in 0..S {
-                    along[i] = weights[j] * first[j][i];
-                }
-                let mut column = [[0.0; S]; N];
-                for k in 0..N {
-                    row_by_row();
-                    let of_force = force_dv[k][l][j];
-                    let mut curved = [0.0; S];
-                    for m in 0..S {
-                        curved[m] = weights[m] * along[m] * force_dq[k][l][m];
-                    }
-                    let mut entries = [0.0; S];
-                    for i in 0..S {
-                        entries[i] = along[i] * (of_force - momentum_dq[k][l][i]);
-                    }
-                    entries = product::<S, FUSED>(first, &curved, &entries);
-                    for i in 0..S {
-                        column[k][i] = -entries[i];
-                    }
-                    column[k][j] += mass[k][l][j];
-                }
-                columns.push(column);
-            }
-        }
+/// The column of the matrix for the velocity of the coordinate l at the stage j: its entry i is
+/// `δ_ij M_i + h a_ij (C_i − B_j) − h² Σ_m a_im a_mj K_m`.
+#[inline(always)]
+fn column<const N: usize, const S: usize, const FUSED: bool>(
+    [momentum_dq, mass, force_dq, force_dv]: [&[Stages<N, S>; N]; 4],
+    weights: &[f64; S],
+    [l, j]: [usize; 2],
+) -> Stages<N, S> {
+    let first = const { &Tableau::<S>::VALUES.first };
+    // h a_ij
+    let mut along = [0.0; S];
+    for i in 0..S {
+        along[i] = weights[j] * first[j][i];
     }
+    let mut column = [[0.0; S]; N];
+    for k in 0..N {
+        row_by_row();
+        let mut curved = [0.0; S];
+        let mut entries = [0.0; S];
+        for i in 0..S {
+            curved[i] = weights[i] * along[i] * force_dq[k][l][i];
+            entries[i] = along[i] * (force_dv[k][l][j] - momentum_dq[k][l][i]);
+        }
+        entries = product::<S, FUSED>(first, &curved, &entries);
+        for i in 0..S {
+            column[k][i] = -entries[i];
+        }
+        column[k][j] += mass[k][l][j];
+    }
+    column
 }
 
 /// The same vector at every stage.
