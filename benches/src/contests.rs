@@ -147,7 +147,8 @@ where
         .rival("variations, 1 direction", 0.0, Target::Costs(1.5), along(1))
         .rival("variations, 2 directions", 0.0, Target::Costs(2.0), along(2))
         .rival("variations, 4 directions", 0.0, Target::Costs(3.0), along(4))
-        .rival("gradient", 0.0, Target::Costs(4.0), Adjoint(run.clone()))
+        .rival("gradient, few nodes kept", 0.0, Target::Costs(4.0), Adjoint { run: run.clone(), keeps_all: false })
+        .rival("gradient, all nodes kept", 0.0, Target::Costs(4.0), Adjoint { run: run.clone(), keeps_all: true })
 }
 
 fn double_pendulum_derivatives() -> Contest {

@@ -107,14 +107,20 @@ impl<I: Differentiable<N>, const N: usize> Stepper for Tangent<I, N> {
     }
 }
 
-/// The gradient of the last coordinate that a run reaches.
-pub struct Adjoint<I, const N: usize>(pub I);
+/// The gradient of the last coordinate that a run reaches, and whether all of its nodes are kept, or as few as may be.
+pub struct Adjoint<I, const N: usize> {
+    /// The run.
+    pub run: I,
+    /// Whether all nodes are kept.
+    pub keeps_all: bool,
+}
 
 impl<I: Differentiable<N>, const N: usize> Run for Adjoint<I, N> {
     fn run(&self, steps: usize) -> Vec<f64> {
         let end = Cell::new(None);
+        let kept = if self.keeps_all { steps } else { 0 };
         let steps = steps as u64;
-        taken(gradient(&self.0, steps, 0, &Last { steps, end: &end }));
+        taken(gradient(&self.run, steps, kept, &Last { steps, end: &end }));
         flat(end.get().expect("the sweep begins at the end"))
     }
 }

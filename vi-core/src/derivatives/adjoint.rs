@@ -9,8 +9,8 @@
 //! z the time, coordinates and momenta, and the energy E that an energy-preserving run keeps. Parameters change as by
 //! [`crate::Integrator::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
 //!
-//! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, or more where the caller allows it, and one more
-//! run of work (Griewank and Walther, *Evaluating Derivatives*, chapter 12). Of each step 2N + 1 directions are followed, and one for each parameter
+//! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, and one more run of work (Griewank and Walther, *Evaluating
+//! Derivatives*, chapter 12). Where the caller allows for all nodes, nothing is taken again. Of each step 2N + 1 directions are followed, and one for each parameter
 //! that is asked for.
 
 use super::steps::Differentiable;
@@ -78,8 +78,8 @@ pub struct Gradient<const N: usize> {
     pub parameters: Vec<Vec<f64>>,
 }
 
-/// The gradient of an objective over the next `steps` steps of a run. `kept` runs are kept on the way at most, and as many again while the sweep goes back; at
-/// least `√steps` of each.
+/// The gradient of an objective over the next `steps` steps of a run. `kept` runs are kept on the way at most, at least `√steps`, and while the sweep goes back those of
+/// the nodes between two of them. Steps between are taken twice: with `kept = steps` none is.
 ///
 /// # Errors
 /// That of the step that fails, of its derivative, or of its inputs.
@@ -115,16 +115,20 @@ where
     let mut parameters = Vec::new();
     let mut inherited = vec![0.0; directions.len()];
     let mut last = steps;
+    let mut end = ahead;
+    let mut changes = Vec::with_capacity(directions.len());
     while let Some(station) = stations.pop() {
         let first = last.saturating_sub(1) / stride * stride;
-        let runs = between(station, first, last, objective)?;
+        let inner = between(&station, first, last, objective)?;
         for step in (first..last).rev() {
             // The run before the step, and after it, with its inputs.
-            let pair = usize::try_from(step - first).unwrap_or(usize::MAX);
-            let [before, after] = [&runs[pair], &runs[pair + 1]];
+            let place = usize::try_from(step - first).unwrap_or(usize::MAX);
+            let before = place.checked_sub(1).map_or(&station, |place| &inner[place]);
+            let after = inner.get(place).unwrap_or(&end);
             variations.clone_from_slice(&directions);
             after.vary(before.node(), &mut variations)?;
-            let mut changes: Vec<f64> = variations.iter().map(|variation| slope.of(variation)).collect();
+            changes.clear();
+            changes.extend(variations.iter().map(|variation| slope.of(variation)));
             if I::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
                 let state = before.state();
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
@@ -145,6 +149,7 @@ where
             parameters.push(of_parameters);
         }
         last = first;
+        end = station;
     }
     parameters.reverse();
     Ok(Gradient { start: slope, parameters })
@@ -156,15 +161,20 @@ fn stride(steps: u64, kept: usize) -> u64 {
     steps.div_ceil(kept).max(1)
 }
 
-/// The runs at the nodes `first` to `last`.
+/// The runs at the nodes between `first`, where a run is given, and `last`.
 fn between<I: Differentiable<N>, const N: usize>(
-    mut run: I,
+    start: &I,
     first: u64,
     last: u64,
     objective: &impl Objective<I, N>,
 ) -> Result<Vec<I>, StepError> {
-    let mut runs = vec![run.clone()];
-    for step in first..last {
+    let inner = first..last.saturating_sub(1);
+    if inner.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut run = start.clone();
+    let mut runs = Vec::new();
+    for step in inner {
         objective.prepare(step, &mut run)?;
         run.step()?;
         runs.push(run.clone());
