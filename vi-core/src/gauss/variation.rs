@@ -102,19 +102,23 @@ struct Differentiate<'a, Y, const N: usize, const S: usize> {
 /// Bytes up to which a matrix is evaluated at all stages at once: a thread has a stack of two million.
 const SIDE_BY_SIDE: usize = 1 << 16;
 
+/// Bytes of a matrix of all stages.
+const fn bytes<Y: Convertible<N>, const N: usize, const S: usize, const FUSED: bool>() -> usize {
+    size_of::<<Y::In<Lanes<S, FUSED>> as Collocation<N, Lanes<S, FUSED>>>::PointMatrix>()
+}
+
 impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'_, Y, N, S> {
     type Output = ();
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) {
         let Self { system, at, derivatives } = self;
-        let bytes = const { size_of::<<Y::In<Lanes<S, FUSED>> as Collocation<N, Lanes<S, FUSED>>>::PointMatrix>() };
         if const { N <= LOOPED } {
             // An array overlaps nothing, so far as the compiler knows: it makes vectors of the loop over the stages.
             let mut matrices = [[[[0.0; S]; N]; N]; 4];
             put_all::<N, S, Lane<FUSED>, _>(&mut matrices, &system.convert(), at);
             derivatives.copy_from_slice(&matrices);
-        } else if const { FUSED || WIDE } && bytes <= SIDE_BY_SIDE {
+        } else if const { (FUSED || WIDE) && bytes::<Y, N, S, FUSED>() <= SIDE_BY_SIDE } {
             put_all::<N, S, Lanes<S, FUSED>, _>(derivatives, &system.convert(), at);
         } else {
             put_all::<N, S, Lane<FUSED>, _>(derivatives, &system.convert(), at);
