@@ -1,5 +1,6 @@
 //! The tests across crates that take many steps, one program, compiled with optimization.
 
+mod derivatives_at_the_edge;
 mod derivatives_of_runs;
 mod energy_preserving_gauss;
 mod failures;

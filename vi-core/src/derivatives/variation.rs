@@ -2,6 +2,7 @@
 //!
 //! In: how fast each number of a node and each parameter changes. Out: the node and the system in dual numbers.
 
+use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
 use crate::real::{Dual, Slopes};
@@ -70,6 +71,16 @@ impl<const N: usize> Variation<N> {
         variation.parameters = vec![0.0; S::PARAMETERS.len()];
         variation.parameters[index] = 1.0;
         Some(variation)
+    }
+
+    /// Refuses what is not finite: the derivative of a force may be infinite where the force is not, and what varies along a chaotic run may leave the range of numbers.
+    pub(crate) fn check_finite(variations: &[Self], t: f64) -> Result<(), StepError> {
+        let is_finite = |of: &Self| [of.t, of.energy].iter().chain(&of.q).chain(&of.p).all(|entry| entry.is_finite());
+        if variations.iter().all(is_finite) {
+            Ok(())
+        } else {
+            Err(StepError::NonFinite { t, quantity: "variation of a step", expression: None })
+        }
     }
 
     /// The number that varies as `of` says in each of the directions.

@@ -47,10 +47,8 @@ where
         let mut rows = vec![[[0.0; STAGES]; N]; 4 * N + N * STAGES + TOGETHER];
         let (derivatives, equations) = rows.split_at_mut(4 * N);
         let derivatives = derivatives.as_chunks_mut::<N>().0;
-        if S::SIDE_BY_SIDE {
-            instructions.run(Differentiate { system, at: &at, derivatives });
-        }
-        if !S::SIDE_BY_SIDE || !are_finite(derivatives) {
+        let are_found = S::SIDE_BY_SIDE && instructions.run(Differentiate { system, at: &at, derivatives });
+        if !are_found || !are_finite(derivatives) {
             // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
             differentiate_plainly(&rare, &at, derivatives);
         }
@@ -61,7 +59,7 @@ where
                 return Err(StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" });
             }
         }
-        Ok(())
+        Variation::check_finite(variations, before.t)
     }
 }
 
@@ -92,7 +90,7 @@ fn differentiate_plainly<const N: usize, const S: usize>(
     }
 }
 
-/// The derivatives of all stages, by the instructions of the processor.
+/// The derivatives of all stages, by the instructions of the processor; whether they are found.
 struct Differentiate<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     at: &'a Solution<N, S>,
@@ -108,20 +106,22 @@ const fn bytes<Y: Convertible<N>, const N: usize, const S: usize, const FUSED: b
 }
 
 impl<Y: Convertible<N>, const N: usize, const S: usize> Loop for Differentiate<'_, Y, N, S> {
-    type Output = ();
+    type Output = bool;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
+    fn run<const FUSED: bool>(self) -> bool {
         let Self { system, at, derivatives } = self;
         if const { N <= LOOPED } {
             // An array overlaps nothing, so far as the compiler knows: it makes vectors of the loop over the stages.
             let mut matrices = [[[[0.0; S]; N]; N]; 4];
             put_all::<N, S, Lane<FUSED>, _>(&mut matrices, &system.convert(), at);
             derivatives.copy_from_slice(&matrices);
+            true
         } else if const { (FUSED || WIDE) && bytes::<Y, N, S, FUSED>() <= SIDE_BY_SIDE } {
             put_all::<N, S, Lanes<S, FUSED>, _>(derivatives, &system.convert(), at);
+            true
         } else {
-            put_all::<N, S, Lane<FUSED>, _>(derivatives, &system.convert(), at);
+            false
         }
     }
 }
@@ -214,7 +214,7 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
             right[direction] = missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights);
             forces[direction] = force;
         }
-        let are_finite = eliminate::<N, S, FUSED>(&mut equations[..N * S + variations.len()]);
+        let are_finite = eliminate::<N, S, FUSED>(&mut equations[..N * S + variations.len()], &comparable(mass));
         for (direction, variation) in variations.iter_mut().enumerate() {
             let velocities = &equations[N * S + direction];
             let force = &mut forces[direction];
@@ -318,12 +318,35 @@ fn missing<const N: usize, const S: usize, const FUSED: bool>(
 /// The entry of a column of the diagonal is its pivot unless another is so many times larger.
 const FAVOURED: f64 = 4.0;
 
-/// Solves equations whose columns come first, then their right sides, which become the solutions: elimination of every row but the pivot's, with partial pivoting.
-/// Whether all solutions are finite: not where the matrix is singular.
+/// What the rows of each coordinate are multiplied by to be comparable, whatever its unit is: `1/√M_kk`, by which the mass matrix has no entry above 1 where it is
+/// positive; of a diagonal that is zero the largest entry of the row.
 #[inline(always)]
-fn eliminate<const N: usize, const S: usize, const FUSED: bool>(equations: &mut [Stages<N, S>]) -> bool {
-    // 1 for rows that have no pivot yet, else 0.
-    let mut free = [[1.0; S]; N];
+fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64; N] {
+    let mut weights = [1.0; N];
+    for k in 0..N {
+        let mut size = mass[k][k][0].abs();
+        if size == 0.0 {
+            size = mass[k].iter().fold(0.0, |largest: f64, row| largest.max(row[0].abs()));
+        }
+        if size > 0.0 && size.is_finite() {
+            weights[k] = size.sqrt().recip();
+        }
+    }
+    weights
+}
+
+/// Solves equations whose columns come first, then their right sides, which become the solutions: elimination of every row but the pivot's, with partial pivoting among
+/// rows that are comparable by these weights. Whether all solutions are finite: not where the matrix is singular.
+#[inline(always)]
+fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
+    equations: &mut [Stages<N, S>],
+    weights: &[f64; N],
+) -> bool {
+    // The weight of rows that have no pivot yet, else 0.
+    let mut free = [[0.0; S]; N];
+    for k in 0..N {
+        free[k] = [weights[k]; S];
+    }
     let mut pivots = [[(0, 0); S]; N];
     let mut scales = [[0.0; S]; N];
     for l in 0..N {
