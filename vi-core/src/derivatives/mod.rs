@@ -7,8 +7,9 @@
 //! δu = −(∂R/∂u)⁻¹ (∂R/∂z0 δz0 + ∂R/∂θ δθ)        δz1 = ∂Z/∂u δu + ∂Z/∂z0 δz0 + ∂Z/∂θ δθ
 //! ```
 //!
-//! the derivatives of R and Z by coordinates and unknowns as the system says them, those by the time and by parameters by dual numbers. They are those of the step that was taken, to rounding, not of the continuous motion: the tangent map of a
-//! variational integrator without force is symplectic, to rounding too. An energy-preserving step varies in its length besides.
+//! the derivatives of R and Z by coordinates and unknowns as the system says them, those by the time and by parameters in dual numbers. They are those of the step that
+//! was taken, to rounding, not of the continuous motion: the tangent map of a variational integrator without force is symplectic, to rounding too. An energy-preserving
+//! step varies in its length besides.
 //!
 //! | file | what it gives |
 //! |---|---|

@@ -84,6 +84,16 @@ where
     Ok(node)
 }
 
+/// The x with `A x = rhs`, from the inverse of A; where that lost a pivot, from A.
+fn solved<A: Matrix<N, f64>, const N: usize>(
+    matrix: &A,
+    inverse: &A::Inverse,
+    rhs: &SVector<f64, N>,
+) -> Option<SVector<f64, N>> {
+    let x = A::apply(inverse, rhs);
+    if x.iter().all(|entry| entry.is_finite()) { Some(x) } else { linear::solve(matrix, rhs) }
+}
+
 /// Turns variations of a node into those of the node after the momentum step `(v, h)`.
 fn vary<S, const N: usize>(
     system: &S,
@@ -95,30 +105,25 @@ fn vary<S, const N: usize>(
 where
     S: FixedStepping<N> + Convertible<N>,
 {
+    // Borrowed: those of long systems are large.
     let derivatives = system.momentum_derivatives(node, h, v);
     let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = &derivatives;
+    let inverse = residual_dv.inverse();
     for variations in variations.chunks_mut(TOGETHER) {
         let explicit = Variation::varying_system(variations, system).map(|varied| {
             let node = Variation::in_time(variations, node);
             varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
         });
-        let mut residuals = SMatrix::<f64, N, TOGETHER>::zeros();
-        for (direction, variation) in variations.iter().enumerate() {
+        for (direction, variation) in variations.iter_mut().enumerate() {
             let mut residual = residual_dq.multiply(&variation.q) - variation.p;
+            let mut increment = increment_dq.multiply(&variation.q);
             if let Some(explicit) = &explicit {
                 residual += slope_along(direction, &explicit.residual);
-            }
-            residuals.set_column(direction, &residual);
-        }
-        let of_v = -linear::solve(residual_dv, &residuals).ok_or_else(|| singular(node.t))?;
-        for (direction, variation) in variations.iter_mut().enumerate() {
-            let of_v = of_v.column(direction).into_owned();
-            let mut increment = increment_dq.multiply(&variation.q) + increment_dv.multiply(&of_v);
-            if let Some(explicit) = &explicit {
                 increment += slope_along(direction, &explicit.increment);
             }
+            let of_v = -solved(residual_dv, &inverse, &residual).ok_or_else(|| singular(node.t))?;
             variation.q += of_v * h;
-            variation.p += increment;
+            variation.p += increment + increment_dv.multiply(&of_v);
         }
     }
     Variation::check_finite(variations, node.t)
@@ -222,44 +227,39 @@ where
         let ExtendedDerivatives { momentum, residual_dh, increment_dh, energy_dq, energy_dv, energy_dh, .. } =
             &derivatives;
         let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = momentum;
-        let along_h = linear::solve(residual_dv, residual_dh).ok_or_else(|| singular(before.t))?;
+        let inverse = residual_dv.inverse();
+        let along_h = solved(residual_dv, &inverse, residual_dh).ok_or_else(|| singular(before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
         for variations in variations.chunks_mut(TOGETHER) {
             let explicit = Variation::varying_system(variations, self.system()).map(|varied| {
                 let node = Variation::in_time(variations, before);
                 varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
             });
-            let mut residuals = SMatrix::<f64, N, TOGETHER>::zeros();
-            for (direction, variation) in variations.iter().enumerate() {
+            for (direction, variation) in variations.iter_mut().enumerate() {
                 let mut residual = residual_dq.multiply(&variation.q) - variation.p;
+                let mut energy = energy_dq.dot(&variation.q) + v.dot(&variation.p) - variation.energy;
+                let mut momentum_gain = increment_dq.multiply(&variation.q);
+                let mut energy_gain = derivatives.energy_increment_dq.dot(&variation.q);
                 if let Some(explicit) = &explicit {
                     residual += slope_along(direction, &explicit.residual);
-                }
-                residuals.set_column(direction, &residual);
-            }
-            let of_residuals = linear::solve(residual_dv, &residuals).ok_or_else(|| singular(before.t))?;
-            for (direction, variation) in variations.iter_mut().enumerate() {
-                let of_residual = of_residuals.column(direction).into_owned();
-                let mut energy = energy_dq.dot(&variation.q) + v.dot(&variation.p) - variation.energy;
-                let mut gain = increment_dq.multiply(&variation.q);
-                if let Some(explicit) = &explicit {
                     energy += explicit.energy_residual.slope.0[direction];
-                    gain += slope_along(direction, &explicit.increment.momentum);
-                    variation.energy += explicit.increment.energy.slope.0[direction];
+                    momentum_gain += slope_along(direction, &explicit.increment.momentum);
+                    energy_gain += explicit.increment.energy.slope.0[direction];
                 }
+                let of_residual = solved(residual_dv, &inverse, &residual).ok_or_else(|| singular(before.t))?;
                 let of_h = (energy_dv.dot(&of_residual) - energy / h) / schur;
                 if !of_h.is_finite() {
                     return Err(singular(before.t));
                 }
                 let of_v = -of_residual - along_h * of_h;
+                variation.t += of_h;
+                variation.q += of_v * h + v * of_h;
+                variation.p += momentum_gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
                 if !S::AUTONOMOUS || S::FORCED {
-                    variation.energy += derivatives.energy_increment_dq.dot(&variation.q)
+                    variation.energy += energy_gain
                         + derivatives.energy_increment_dv.dot(&of_v)
                         + derivatives.energy_increment_dh * of_h;
                 }
-                variation.t += of_h;
-                variation.q += of_v * h + v * of_h;
-                variation.p += gain + increment_dv.multiply(&of_v) + increment_dh * of_h;
             }
         }
         Variation::check_finite(variations, before.t)

@@ -214,7 +214,7 @@ impl<const N: usize, const S: usize> Loop for Vary<'_, N, S> {
             right[direction] = missing::<N, S, FUSED>(&variation.p, &momentum, &force, &weights);
             forces[direction] = force;
         }
-        let are_finite = eliminate::<N, S, FUSED>(&mut equations[..N * S + variations.len()], &comparable(mass));
+        let are_finite = eliminate::<N, S, FUSED>(&mut equations[..N * S + variations.len()], mass);
         for (direction, variation) in variations.iter_mut().enumerate() {
             let velocities = &equations[N * S + direction];
             let force = &mut forces[direction];
@@ -320,7 +320,7 @@ const FAVOURED: f64 = 4.0;
 
 /// What the rows of each coordinate are multiplied by to be comparable, whatever its unit is: `1/√M_kk`, by which the mass matrix has no entry above 1 where it is
 /// positive; of a diagonal that is zero the largest entry of the row.
-#[inline(always)]
+#[cold]
 fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64; N] {
     let mut weights = [1.0; N];
     for k in 0..N {
@@ -336,24 +336,21 @@ fn comparable<const N: usize, const S: usize>(mass: &[Stages<N, S>; N]) -> [f64;
 }
 
 /// Solves equations whose columns come first, then their right sides, which become the solutions: elimination of every row but the pivot's, with partial pivoting among
-/// rows that are comparable by these weights. Whether all solutions are finite: not where the matrix is singular.
+/// rows that the mass matrix makes comparable. Whether all solutions are finite: not where the matrix is singular.
 #[inline(always)]
 fn eliminate<const N: usize, const S: usize, const FUSED: bool>(
     equations: &mut [Stages<N, S>],
-    weights: &[f64; N],
+    mass: &[Stages<N, S>; N],
 ) -> bool {
-    // The weight of rows that have no pivot yet, else 0.
-    let mut free = [[0.0; S]; N];
-    for k in 0..N {
-        free[k] = [weights[k]; S];
-    }
+    // 1 for rows that have no pivot yet, else 0.
+    let mut free = [[1.0; S]; N];
     let mut pivots = [[(0, 0); S]; N];
     let mut scales = [[0.0; S]; N];
     for l in 0..N {
         for j in 0..S {
             let (done, rest) = equations.split_at_mut(l * S + j + 1);
             let Some(column) = done.last() else { return false };
-            let Some((row, at)) = pivot(column, &free, (l, j)) else { return false };
+            let Some((row, at)) = pivot(column, &free, (l, j), mass) else { return false };
             let scale = column[row][at].recip();
             free[row][at] = 0.0;
             pivots[l][j] = (row, at);
@@ -398,6 +395,7 @@ fn pivot<const N: usize, const S: usize>(
     column: &Stages<N, S>,
     free: &Stages<N, S>,
     diagonal: (usize, usize),
+    mass: &[Stages<N, S>; N],
 ) -> Option<(usize, usize)> {
     let mut sizes = [[0.0; S]; N];
     let mut largest = [0.0; N];
@@ -409,9 +407,25 @@ fn pivot<const N: usize, const S: usize>(
     }
     let (l, j) = diagonal;
     let largest = maximum(&largest);
-    if largest > 0.0 && FAVOURED * sizes[l][j] >= largest {
-        return Some(diagonal);
+    if largest > 0.0 && FAVOURED * sizes[l][j] >= largest { Some(diagonal) } else { compared(&sizes, diagonal, mass) }
+}
+
+/// The same in comparable rows, where in their own units another one is larger.
+#[cold]
+fn compared<const N: usize, const S: usize>(
+    sizes: &Stages<N, S>,
+    (l, j): (usize, usize),
+    mass: &[Stages<N, S>; N],
+) -> Option<(usize, usize)> {
+    let weights = comparable(mass);
+    let size = |place: usize| sizes[place / S][place % S] * weights[place / S];
+    let mut found = l * S + j;
+    let mut least = FAVOURED * size(found);
+    for place in 0..N * S {
+        if size(place) > least {
+            found = place;
+            least = size(place);
+        }
     }
-    let place = sizes.as_flattened().iter().position(|size| *size > 0.0 && *size >= largest)?;
-    Some((place / S, place % S))
+    (size(found) > 0.0).then_some((found / S, found % S))
 }
