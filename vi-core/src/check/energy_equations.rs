@@ -10,17 +10,17 @@
 
 use super::bounded::{Bounded, exact, vector_of};
 use super::comparison::Comparison;
-use super::derivatives::{First, columns, enough};
+use super::derivatives::{First, columns, enough, matrix};
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::steps::ends;
 use super::subject::{EnergyChecked, Place};
 use crate::discrete::DiscreteLagrangian;
-use crate::linear::Matrix;
 use crate::node::Node;
 use crate::real::dual::{Dual, along, lift, slopes, unit};
 use crate::stepping::{EnergyStepping, ExtendedResidual, FixedStepping};
 use nalgebra::SVector;
+use std::array;
 
 /// The energy row of a step and its increments against the slots, its derivatives against dual numbers, its momentum rows against
 /// those of a fixed step.
@@ -34,7 +34,6 @@ pub fn energy_equations<const N: usize, S: EnergyChecked<N>>(
     let mut check = Comparison::new(S::NAME, "energy equations");
     for sample in samples(system, place, &check)? {
         rows(&sample, &mut check)?;
-        jacobian(&sample, &mut check)?;
         derivatives(&sample, &mut check)?;
     }
     check.finish(&["energy residual", "momentum rows"])
@@ -69,32 +68,6 @@ fn rows<const N: usize, S: EnergyChecked<N>>(
     all.into_iter().try_for_each(|(residual, rounding)| enough(*residual, *rounding, check))
 }
 
-fn jacobian<const N: usize, S: EnergyChecked<N>>(
-    sample: &Sample<S, N>,
-    check: &mut Comparison,
-) -> Result<(), CheckFailure> {
-    let Sample { system, v, h, .. } = sample;
-    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
-    let found = system.extended_system(&node, *h, v);
-    let known = node.map(Bounded::exact);
-    let lifted = node.map(|number| Dual::fixed(Bounded::exact(number)));
-    let (step, velocity) = (Bounded::exact(*h), exact(v));
-    let again = bounded.extended_system(&known, step, &velocity);
-    let (matrix, bounds) = (found.momentum.jacobian.dense(), again.momentum.jacobian.dense());
-    for j in 0..N {
-        let column = dual.extended_system(&lifted, Dual::fixed(step), &along(&velocity, &unit(j)));
-        let entries: SVector<Bounded, N> = vector_of(&matrix.column(j).into_owned(), &bounds.column(j).into_owned());
-        check.vector("residual_dv", &entries, &slopes(&column.momentum.residual))?;
-        let wanted = (column.energy_residual.slope + again.momentum.residual[j]) / step;
-        check.number("energy_dv", again.energy_dv[j].of(found.energy_dv[j]), wanted)?;
-    }
-    let column = dual.extended_system(&lifted, Dual::variable(step), &lift(&velocity));
-    let residual_dh = vector_of(&found.residual_dh, &again.residual_dh);
-    check.vector("residual_dh", &residual_dh, &slopes(&column.momentum.residual))?;
-    check.number("energy_dh", again.energy_dh.of(found.energy_dh), column.energy_residual.slope / step)
-}
-
-/// What the system says where a motion is differentiated.
 fn derivatives<const N: usize, S: EnergyChecked<N>>(
     sample: &Sample<S, N>,
     check: &mut Comparison,
@@ -104,39 +77,45 @@ fn derivatives<const N: usize, S: EnergyChecked<N>>(
     let known = node.map(Bounded::exact);
     let lifted = known.map(Dual::fixed);
     let (step, velocity) = (Bounded::exact(*h), exact(v));
+    let after =
+        |q: SVector<First, N>, h: First, v: &SVector<First, N>| dual.extended_residual(&Node { q, ..lifted }, h, v);
+    let by_q = array::from_fn(|j| after(along(&known.q, &unit(j)), Dual::fixed(step), &lift(&velocity)));
+    let by_v = array::from_fn(|j| after(lifted.q, Dual::fixed(step), &along(&velocity, &unit(j))));
+    let by_h = after(lifted.q, Dual::variable(step), &lift(&velocity));
+    let [residual_dq, residual_dv] = [&by_q, &by_v].map(|by| columns(by, |rows| rows.residual));
+    let [increment_dq, increment_dv] = [&by_q, &by_v].map(|by| columns(by, |rows| rows.increment.momentum));
+    let residual_dh = slopes(&by_h.residual);
+    let row = bounded.extended_residual(&known, step, &velocity).residual;
+    let energy = |by: &[ExtendedResidual<N, First>; N]| SVector::from_fn(|j, _| by[j].energy_residual.slope);
+    let energy_dq = energy(&by_q);
+    let energy_dv = (energy(&by_v) + row).map(|entry| entry / step);
+    let energy_dh = by_h.energy_residual.slope / step;
+    let gain = |by: &[ExtendedResidual<N, First>; N]| SVector::from_fn(|j, _| by[j].increment.energy.slope);
+
+    let found = system.extended_system(&node, *h, v);
+    let again = bounded.extended_system(&known, step, &velocity);
+    matrix(check, "jacobian", (&found.momentum.jacobian, &again.momentum.jacobian), &residual_dv)?;
+    check.vector("residual_dh", &vector_of(&found.residual_dh, &again.residual_dh), &residual_dh)?;
+    check.vector("energy_dv", &vector_of(&found.energy_dv, &again.energy_dv), &energy_dv)?;
+    check.number("energy_dh", again.energy_dh.of(found.energy_dh), energy_dh)?;
+
     let found = system.extended_derivatives(&node, *h, v);
     let again = bounded.extended_derivatives(&known, step, &velocity);
-    let row = bounded.extended_residual(&known, step, &velocity).residual;
-    let by_q = |j: usize| {
-        let node = Node { q: along(&known.q, &unit(j)), ..lifted };
-        dual.extended_residual(&node, Dual::fixed(step), &lift(&velocity))
-    };
-    let by_v = |j: usize| dual.extended_residual(&lifted, Dual::fixed(step), &along(&velocity, &unit(j)));
-    let by_h = dual.extended_residual(&lifted, Dual::variable(step), &lift(&velocity));
     let (of, bounds) = (&found.momentum, &again.momentum);
-    columns(check, "residual_dq", (&of.residual_dq, &bounds.residual_dq), |j| slopes(&by_q(j).residual))?;
-    columns(check, "residual_dv", (&of.residual_dv, &bounds.residual_dv), |j| slopes(&by_v(j).residual))?;
-    let increment_dq = |j: usize| slopes(&by_q(j).increment.momentum);
-    columns(check, "increment_dq", (&of.increment_dq, &bounds.increment_dq), increment_dq)?;
-    let increment_dv = |j: usize| slopes(&by_v(j).increment.momentum);
-    columns(check, "increment_dv", (&of.increment_dv, &bounds.increment_dv), increment_dv)?;
-    check.vector("residual_dh", &vector_of(&found.residual_dh, &again.residual_dh), &slopes(&by_h.residual))?;
+    matrix(check, "residual_dq", (&of.residual_dq, &bounds.residual_dq), &residual_dq)?;
+    matrix(check, "residual_dv", (&of.residual_dv, &bounds.residual_dv), &residual_dv)?;
+    matrix(check, "increment_dq", (&of.increment_dq, &bounds.increment_dq), &increment_dq)?;
+    matrix(check, "increment_dv", (&of.increment_dv, &bounds.increment_dv), &increment_dv)?;
+    check.vector("residual_dh", &vector_of(&found.residual_dh, &again.residual_dh), &residual_dh)?;
     let increment_dh = vector_of(&found.increment_dh, &again.increment_dh);
     check.vector("increment_dh", &increment_dh, &slopes(&by_h.increment.momentum))?;
-    let entries = |of: fn(ExtendedResidual<N, First>) -> First| {
-        let by = |along: &dyn Fn(usize) -> ExtendedResidual<N, First>| SVector::from_fn(|j, _| of(along(j)).slope);
-        [by(&by_q), by(&by_v)]
-    };
-    let [energy_dq, change] = entries(|row| row.energy_residual);
     check.vector("energy_dq", &vector_of(&found.energy_dq, &again.energy_dq), &energy_dq)?;
-    let energy_dv = (change + row).map(|entry| entry / step);
     check.vector("energy_dv", &vector_of(&found.energy_dv, &again.energy_dv), &energy_dv)?;
-    check.number("energy_dh", again.energy_dh.of(found.energy_dh), by_h.energy_residual.slope / step)?;
-    let [increment_dq, increment_dv] = entries(|row| row.increment.energy);
+    check.number("energy_dh", again.energy_dh.of(found.energy_dh), energy_dh)?;
     let of_energy = vector_of(&found.energy_increment_dq, &again.energy_increment_dq);
-    check.vector("energy_increment_dq", &of_energy, &increment_dq)?;
+    check.vector("energy_increment_dq", &of_energy, &gain(&by_q))?;
     let of_energy = vector_of(&found.energy_increment_dv, &again.energy_increment_dv);
-    check.vector("energy_increment_dv", &of_energy, &increment_dv)?;
+    check.vector("energy_increment_dv", &of_energy, &gain(&by_v))?;
     let of_energy = again.energy_increment_dh.of(found.energy_increment_dh);
     check.number("energy_increment_dh", of_energy, by_h.increment.energy.slope)
 }

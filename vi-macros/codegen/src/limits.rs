@@ -15,7 +15,7 @@ pub(crate) const PARAMETERS: usize = 256;
 /// Distinct terms that the expressions of one system may have together, those of all stages.
 const TERMS: usize = 85_000;
 
-/// Steps of algebra that one system may take, those of all stages: half a second, and 3 s in a build without optimisation.
+/// Steps of algebra that one system may take, those of all stages: half a second, and 3 to 8 s in a build without optimisation.
 pub(crate) const WORK: usize = 56_000_000;
 
 /// Whether a system is still within its size.

@@ -6,6 +6,7 @@
 
 use std::hash::Hash;
 
+use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
 use crate::function::Parity;
@@ -144,7 +145,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let mut negative = false;
         let mut changed = factors.to_vec();
         for (base, exponent) in &mut changed {
-            let odd = exponent.is_integer() && exponent.numer().bit(0);
+            let odd = exponent.is_integer() && exponent.numer().is_odd();
             if odd && matches!(self.node(*base), Node::Sum(sum) if is_signed(sum)) {
                 *base = self.neg(*base);
                 negative = !negative;

@@ -5,6 +5,7 @@
 //! as in `f64::powf`.
 
 use num_bigint::BigInt;
+use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use crate::Rational;
@@ -94,7 +95,7 @@ fn integer_power(base: &Rational, exponent: &BigInt) -> Option<Rational> {
         return exponent.is_positive().then(Rational::zero);
     }
     if (-base).is_one() {
-        return Some(if exponent.bit(0) { base.clone() } else { Rational::one() });
+        return Some(if exponent.is_odd() { base.clone() } else { Rational::one() });
     }
     let exponent = exponent.to_i32()?;
     let fits = exponent.unsigned_abs() == 1 || bits(base).checked_mul(exponent.unsigned_abs().into())? <= MAX_BITS;
