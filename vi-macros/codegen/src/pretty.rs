@@ -46,17 +46,22 @@ pub fn write(folder: &Path, system: &str, text: &str) -> io::Result<PathBuf> {
     Ok(path)
 }
 
-/// The name of a type as the name of a file.
+/// The name of a type as that of a file or a module: `DoubleWell` as `double_well`, `FPUTChain` as `fput_chain`.
 #[must_use]
 pub fn snake_case(name: &str) -> String {
-    let mut snake = String::new();
-    for letter in name.trim_start_matches("r#").chars() {
-        if letter.is_uppercase() && !snake.is_empty() && !snake.ends_with('_') {
-            snake.push('_');
+    let letters: Vec<char> = name.trim_start_matches("r#").chars().collect();
+    let mut words = String::new();
+    for (index, letter) in letters.iter().enumerate() {
+        let before = index.checked_sub(1).and_then(|before| letters.get(before));
+        let ends_word = before.is_some_and(|before| before.is_lowercase() || before.is_numeric());
+        let begins_word = before.is_some_and(|before| before.is_uppercase())
+            && letters.get(index + 1).is_some_and(|after| after.is_lowercase());
+        if letter.is_uppercase() && (ends_word || begins_word) {
+            words.push('_');
         }
-        snake.extend(letter.to_lowercase());
+        words.extend(letter.to_lowercase());
     }
-    snake
+    words
 }
 
 #[cfg(test)]
@@ -64,11 +69,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_files() {
-        for (name, file) in
-            [("Kepler", "kepler"), ("DoubleWell", "double_well"), ("θSystem", "θ_system"), ("r#Match", "match")]
-        {
-            assert_eq!(snake_case(name), file);
+    fn names_become_words() {
+        let cases = [
+            ("DoubleWell", "double_well"),
+            ("FPUTChain", "fput_chain"),
+            ("Kepler", "kepler"),
+            ("Pendulum2D", "pendulum2_d"),
+            ("already_snake", "already_snake"),
+            ("ΩRing", "ω_ring"),
+            ("r#Match", "match"),
+        ];
+        for (name, wanted) in cases {
+            assert_eq!(snake_case(name), wanted);
         }
     }
 }

@@ -5,8 +5,9 @@
 
 use super::Source;
 use super::formula::number;
+use crate::pretty::snake_case;
 use crate::rules::LEAST_ORDER;
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::Attribute;
 
@@ -18,7 +19,7 @@ use syn::Attribute;
 pub(super) fn tests(source: &Source, further: &[Source], conditions: &[&Attribute]) -> Option<TokenStream> {
     let state = source.model.check_state.as_ref()?;
     let (name, dimension) = (&source.model.name, source.dimension());
-    let module = format_ident!("{}_checks", snake_case(name));
+    let module = format_ident!("{}_checks", snake_case(&name.to_string()));
     let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
     let (t, h) = (number(state.t), number(state.h));
     let (q, v) = (state.q.iter().map(|entry| number(*entry)), state.v.iter().map(|entry| number(*entry)));
@@ -82,41 +83,4 @@ fn checks(source: &Source) -> Vec<(&'static str, TokenStream)> {
         ("step_law", step_density && !forced, TokenStream::new()),
     ];
     each.into_iter().filter(|(_, applies, _)| *applies).map(|(check, _, order)| (check, order)).collect()
-}
-
-/// `DoubleWell` as `double_well`, `FPUTChain` as `fput_chain`.
-fn snake_case(name: &Ident) -> String {
-    let letters: Vec<char> = name.to_string().trim_start_matches("r#").chars().collect();
-    let mut words = String::new();
-    for (index, letter) in letters.iter().enumerate() {
-        let before = index.checked_sub(1).and_then(|before| letters.get(before));
-        let ends_word = before.is_some_and(|before| before.is_lowercase() || before.is_numeric());
-        let begins_word = before.is_some_and(|before| before.is_uppercase())
-            && letters.get(index + 1).is_some_and(|after| after.is_lowercase());
-        if letter.is_uppercase() && (ends_word || begins_word) {
-            words.push('_');
-        }
-        words.extend(letter.to_lowercase());
-    }
-    words
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_become_words() {
-        let cases = [
-            ("DoubleWell", "double_well"),
-            ("FPUTChain", "fput_chain"),
-            ("Kepler", "kepler"),
-            ("Pendulum2D", "pendulum2_d"),
-            ("already_snake", "already_snake"),
-            ("ΩRing", "ω_ring"),
-        ];
-        for (name, wanted) in cases {
-            assert_eq!(snake_case(&format_ident!("{name}")), wanted);
-        }
-    }
 }
