@@ -40,6 +40,74 @@ fn a_slope_without_a_bound_is_told() {
 }
 
 lagrangian! {
+    /// A mass on a hilltop, whose variations grow without end, and a brake.
+    struct Hill {
+        param k = 1.0, c = 0.0;
+        coord x;
+        L = dot(x)^2 / 2 + k * x^2 / 2;
+        force x = -c * dot(x);
+        discretize midpoint;
+    }
+}
+
+/// Whether an error tells that a number of this name is not finite.
+fn is_not_finite<T>(outcome: &Result<T, StepError>, name: &str) -> bool {
+    matches!(outcome, Err(StepError::NonFinite { quantity, .. }) if quantity.contains(name))
+}
+
+/// The last coordinate after so many steps, by this weight.
+struct Weighted(u64, f64);
+
+impl<I> Objective<I, 1> for Weighted {
+    fn slope(&self, step: u64, _state: &State<1>) -> Covector<1> {
+        let weight = if step == self.0 { self.1 } else { 0.0 };
+        Covector { q: SVector::repeat(weight), ..Covector::zero() }
+    }
+}
+
+#[test]
+fn what_grows_beyond_the_range_of_numbers_is_told() {
+    // cosh(t) of 700 and more is beyond them.
+    let top = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([0.0]) };
+    let fixed = FixedStep::new(Hill::default(), top, 0.5).expect("valid");
+    let gauss = Gauss::<_, 1, 4>::new(Hill::default(), top, 0.5).expect("valid");
+    assert!(is_not_finite(&gradient(&fixed, 2000, 0, &Weighted(2000, 1.0)), "gradient"));
+    assert!(is_not_finite(&gradient(&gauss, 2000, 0, &Weighted(2000, 1.0)), "gradient"));
+    for weight in [f64::NAN, f64::INFINITY] {
+        assert!(is_not_finite(&gradient(&fixed, 5, 0, &Weighted(5, weight)), "gradient"));
+        assert!(is_not_finite(&gradient(&fixed, 5, 0, &Weighted(2, weight)), "gradient"));
+    }
+    let mut run = fixed.clone();
+    let before = *run.node();
+    run.step().expect("solvable");
+    let huge = Variation { q: SVector::from([1e155]), parameters: vec![1e155], ..Variation::zero() };
+    assert!(run.second_variation(&before, &Variation::of_coordinate(0), &Variation::of_coordinate(0)).is_ok());
+    assert!(run.second_variation(&before, &huge, &huge).is_err());
+    let large = Variation { q: SVector::from([1e154]), parameters: vec![1e154], ..Variation::zero() };
+    assert!(is_not_finite(&run.second_variation(&before, &large, &large), "variation"));
+    // What goes in is no number.
+    let none = Variation { q: SVector::from([f64::NAN]), ..Variation::zero() };
+    assert!(is_not_finite(&Tangent::new(fixed, vec![none.clone()]).step(), "variation"));
+    assert!(is_not_finite(&Tangent::new(gauss, vec![none]).step(), "variation"));
+}
+
+#[test]
+fn an_exponent_without_a_bound_is_told() {
+    // The step ends at rest from everywhere, c h = 2: nothing is left of one direction.
+    let start = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([1.0]) };
+    let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
+    let mut exponents = Lyapunov::new(run, 2);
+    let failure = exponents.advance(3);
+    assert!(is_not_finite(&failure, "Lyapunov exponent"), "{failure:?}");
+    assert!(exponents.exponents().iter().all(|exponent| exponent.is_nan()), "{:?}", exponents.exponents());
+    // One direction alone loses length once, and keeps it then.
+    let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
+    let mut largest = Lyapunov::new(run, 1);
+    largest.advance(1000).expect("a length is left");
+    assert!(largest.exponents()[0].abs() < 0.01, "{:?}", largest.exponents());
+}
+
+lagrangian! {
     /// Two coupled oscillators, the second in the unit 1/u.
     struct Units {
         param u = 1.0, c = 0.3, b = 0.2;

@@ -60,7 +60,7 @@ pub trait Objective<I, const N: usize> {
     fn prepare(&self, _step: u64, _run: &mut I) -> Result<(), StepError> {
         Ok(())
     }
-    /// Names of the parameters by which the gradient is wanted; those that the system does not have are left out.
+    /// Names of the parameters by which the gradient is wanted; one that the system does not have gets no column, and those after it move up.
     fn parameters(&self) -> &[&str] {
         &[]
     }
@@ -82,7 +82,8 @@ pub struct Gradient<const N: usize> {
 /// the nodes between two of them. Steps between are taken twice: with `kept = steps` none is.
 ///
 /// # Errors
-/// That of the step that fails, of its derivative, or of its inputs.
+/// That of the step that fails, of its derivative, or of its inputs; [`StepError::NonFinite`] where the gradient is beyond the range of numbers, or a slope of the objective is
+/// no number.
 pub fn gradient<I, const N: usize>(
     run: &I,
     steps: u64,
@@ -102,7 +103,7 @@ where
             stations.push(ahead.clone());
         }
     }
-    let mut slope = objective.slope(steps, &ahead.state());
+    let mut slope = finite(objective.slope(steps, &ahead.state()), ahead.t())?;
     let mut directions = Variation::of_state();
     directions.push(Variation { t: 1.0, ..Variation::zero() });
     if I::KEEPS_ENERGY {
@@ -144,8 +145,13 @@ where
             }
             let (back, of_parameters) = sorted::<I, N>(&changes);
             let own = objective.slope(step, &before.state());
-            slope =
+            let t = before.t();
+            let sum =
                 Covector { t: back.t + own.t, q: back.q + own.q, p: back.p + own.p, energy: back.energy + own.energy };
+            slope = finite(sum, t)?;
+            if of_parameters.iter().any(|entry| !entry.is_finite()) {
+                return Err(not_finite(t));
+            }
             parameters.push(of_parameters);
         }
         last = first;
@@ -153,6 +159,18 @@ where
     }
     parameters.reverse();
     Ok(Gradient { start: slope, parameters })
+}
+
+/// A covector, unless it is beyond the range of numbers: the slope of the objective, or what it becomes on the way back, may be.
+fn finite<const N: usize>(covector: Covector<N>, t: f64) -> Result<Covector<N>, StepError> {
+    let numbers = [covector.t, covector.energy];
+    let are_finite = numbers.iter().chain(&covector.q).chain(&covector.p).all(|entry| entry.is_finite());
+    if are_finite { Ok(covector) } else { Err(not_finite(t)) }
+}
+
+/// The slope of the objective, or what it becomes on the way back, is beyond the range of numbers.
+fn not_finite(t: f64) -> StepError {
+    StepError::NonFinite { t, quantity: "gradient", expression: None }
 }
 
 /// Every how many steps a run is kept.

@@ -21,6 +21,8 @@ use crate::error::StepError;
 pub struct Lyapunov<I, const N: usize> {
     tangent: Tangent<I, N>,
     start: f64,
+    /// The time up to which growth is summed.
+    end: f64,
     /// Sums of logarithms, with their low parts.
     growth: Vec<(f64, f64)>,
 }
@@ -32,18 +34,27 @@ impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
         let start = run.t();
         let count = count.min(2 * N);
         let mut variations: Vec<Variation<N>> = (0..count).map(oblique).collect();
-        orthogonalize(&mut variations, &mut vec![(0.0, 0.0); count]);
-        Self { tangent: Tangent::new(run, variations), start, growth: vec![(0.0, 0.0); count] }
+        orthogonalize(&mut variations);
+        Self { tangent: Tangent::new(run, variations), start, end: start, growth: vec![(0.0, 0.0); count] }
     }
 
     /// Takes so many steps.
     ///
     /// # Errors
-    /// That of the step that fails; the estimates are then those up to there.
+    /// That of the step that fails, and [`StepError::NonFinite`] where a step leaves nothing of a direction, whose exponent is then without a bound. The estimates
+    /// are then those up to there.
     pub fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         for _ in 0..steps {
-            self.tangent.step()?;
-            orthogonalize(self.tangent.variations_mut(), &mut self.growth);
+            let before = self.tangent.run().t();
+            let t = self.tangent.step()?.t;
+            let lengths = orthogonalize(self.tangent.variations_mut());
+            if lengths.iter().any(|length| !length.is_normal()) {
+                return Err(StepError::NonFinite { t: before, quantity: "Lyapunov exponent", expression: None });
+            }
+            self.end = t;
+            for ((sum, low), length) in self.growth.iter_mut().zip(lengths) {
+                compensated::add(sum, low, length.ln());
+            }
         }
         Ok(())
     }
@@ -51,7 +62,7 @@ impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
     /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step.
     #[must_use]
     pub fn exponents(&self) -> Vec<f64> {
-        let t = self.tangent.run().t() - self.start;
+        let t = self.end - self.start;
         self.growth.iter().map(|(growth, low)| (growth + low) / t).collect()
     }
 
@@ -73,9 +84,10 @@ fn oblique<const N: usize>(index: usize) -> Variation<N> {
     variation
 }
 
-/// Makes directions orthogonal, of length one, in order, and adds the logarithms of the lengths that they had.
-fn orthogonalize<const N: usize>(variations: &mut [Variation<N>], growth: &mut [(f64, f64)]) {
-    for (index, (sum, low)) in growth.iter_mut().enumerate() {
+/// Makes directions orthogonal, of length one, in order, and returns the lengths that they had.
+fn orthogonalize<const N: usize>(variations: &mut [Variation<N>]) -> Vec<f64> {
+    let mut lengths = Vec::with_capacity(variations.len());
+    for index in 0..variations.len() {
         let (before, rest) = variations.split_at_mut(index);
         let Some(own) = rest.first_mut() else { continue };
         // Twice is enough (Parlett and Kahan).
@@ -92,6 +104,7 @@ fn orthogonalize<const N: usize>(variations: &mut [Variation<N>], growth: &mut [
         // Of steps that find their length the time varies too, and by a force the energy that is kept.
         own.t /= length;
         own.energy /= length;
-        compensated::add(sum, low, length.ln());
+        lengths.push(length);
     }
+    lengths
 }

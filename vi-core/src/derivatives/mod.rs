@@ -28,6 +28,7 @@ mod variation;
 pub use adjoint::{Covector, Gradient, Objective, gradient};
 pub use lyapunov::Lyapunov;
 pub use steps::Differentiable;
+pub(crate) use steps::singular;
 pub use tangent::Tangent;
 pub use variation::Variation;
-pub(crate) use variation::{TOGETHER, Varied};
+pub(crate) use variation::{TOGETHER, Varied, not_finite};

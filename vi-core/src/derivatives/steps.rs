@@ -4,7 +4,7 @@
 //! hand, and its system says how the equations change with them and with the coordinates of the node. How they change with the time and with parameters dual numbers
 //! say, where one of the directions asks for it.
 
-use super::variation::{TOGETHER, Variation, Varied};
+use super::variation::{TOGETHER, Variation, Varied, not_finite};
 use crate::composition::Composition;
 use crate::energy_preserving::{EnergyPreserving, Fallback};
 use crate::error::StepError;
@@ -32,8 +32,14 @@ pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> 
 }
 
 /// The derivative of the equations of a step cannot be inverted.
-fn singular(t: f64) -> StepError {
+pub(crate) fn singular(t: f64) -> StepError {
     StepError::Singular { t, matrix: "derivative of the equations of a step" }
+}
+
+/// Why an equation `A x = rhs` for the variation of a step has no solution.
+fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
+    let are_finite = matrix.dense().iter().chain(rhs).all(|entry| entry.is_finite());
+    if are_finite { singular(t) } else { not_finite(t) }
 }
 
 /// A number that varies in W directions, its value a number that may vary itself.
@@ -121,7 +127,8 @@ where
                 residual += slope_along(direction, &explicit.residual);
                 increment += slope_along(direction, &explicit.increment);
             }
-            let of_v = -solved(residual_dv, &inverse, &residual).ok_or_else(|| singular(node.t))?;
+            let of_v =
+                -solved(residual_dv, &inverse, &residual).ok_or_else(|| unsolved(residual_dv, &residual, node.t))?;
             variation.q += of_v * h;
             variation.p += increment + increment_dv.multiply(&of_v);
         }
@@ -170,9 +177,10 @@ where
         let v = self.v().zip_map(&change, |value, change| Dual { value, slope: -change.slope });
         let node = momentum_step(&plain, &system, node, Dual::fixed(self.h()), &v)?;
         let second = |number: Along<Varied<1>, 1>| number.slope.0[0].slope.0[0];
-        let q = SVector::from_fn(|k, _| second(node.q[k]) + second(node.q_low[k]));
-        let p = SVector::from_fn(|k, _| second(node.p[k]) + second(node.p_low[k]));
-        Ok((q, p))
+        let q: SVector<f64, N> = SVector::from_fn(|k, _| second(node.q[k]) + second(node.q_low[k]));
+        let p: SVector<f64, N> = SVector::from_fn(|k, _| second(node.p[k]) + second(node.p_low[k]));
+        let are_finite = q.iter().chain(&p).all(|entry| entry.is_finite());
+        if are_finite { Ok((q, p)) } else { Err(not_finite(before.t)) }
     }
 }
 
@@ -228,7 +236,8 @@ where
             &derivatives;
         let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = momentum;
         let inverse = residual_dv.inverse();
-        let along_h = solved(residual_dv, &inverse, residual_dh).ok_or_else(|| singular(before.t))?;
+        let along_h =
+            solved(residual_dv, &inverse, residual_dh).ok_or_else(|| unsolved(residual_dv, residual_dh, before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
         for variations in variations.chunks_mut(TOGETHER) {
             let explicit = Variation::varying_system(variations, self.system()).map(|varied| {
@@ -246,7 +255,8 @@ where
                     momentum_gain += slope_along(direction, &explicit.increment.momentum);
                     energy_gain += explicit.increment.energy.slope.0[direction];
                 }
-                let of_residual = solved(residual_dv, &inverse, &residual).ok_or_else(|| singular(before.t))?;
+                let of_residual = solved(residual_dv, &inverse, &residual)
+                    .ok_or_else(|| unsolved(residual_dv, &residual, before.t))?;
                 let of_h = (energy_dv.dot(&of_residual) - energy / h) / schur;
                 if !of_h.is_finite() {
                     return Err(singular(before.t));

@@ -26,7 +26,7 @@ impl<I: Differentiable<N>, const N: usize> Tangent<I, N> {
     /// Takes a step, and returns the state reached.
     ///
     /// # Errors
-    /// That of the step, after which the run and its variations are those before; or of [`Differentiable::vary`], after which the variations are none. The same
+    /// That of the step, after which the run and its variations are those before; or of [`Differentiable::vary`], after which the variations have no meaning. The same
     /// error again after an error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         if let Some(failure) = self.failure {

@@ -15,6 +15,11 @@ pub(crate) const TOGETHER: usize = 4;
 /// A number that varies in W directions.
 pub(crate) type Varied<const W: usize = TOGETHER> = Dual<f64, Slopes<f64, W>>;
 
+/// The variations of a step are beyond the range of numbers, or not a number.
+pub(crate) fn not_finite(t: f64) -> StepError {
+    StepError::NonFinite { t, quantity: "variation of a step", expression: None }
+}
+
 /// How fast a node and the parameters of its system change in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation<const N: usize> {
@@ -64,6 +69,9 @@ impl<const N: usize> Variation<N> {
     }
 
     /// The direction of a parameter of the system S, by its name; `None` where it has none of this name.
+    ///
+    /// Time, coordinates, momenta and the energy that is kept stay. Where the start is given by other numbers, velocities or the step of `from_midpoint`, what they
+    /// change by with the parameter belongs into `p` and `energy` of the variation.
     #[must_use]
     pub fn of_parameter<S: Lagrangian<N>>(name: &str) -> Option<Self> {
         let index = S::PARAMETERS.iter().position(|known| *known == name)?;
@@ -77,11 +85,7 @@ impl<const N: usize> Variation<N> {
     pub(crate) fn check_finite(variations: &[Self], t: f64) -> Result<(), StepError> {
         // Zero times a number is zero, or NaN where the number is not finite: one sum, and one test for all.
         let is_finite = |of: &Self| (of.q * 0.0 + of.p * 0.0).sum() + of.t * 0.0 + of.energy * 0.0 == 0.0;
-        if variations.iter().all(is_finite) {
-            Ok(())
-        } else {
-            Err(StepError::NonFinite { t, quantity: "variation of a step", expression: None })
-        }
+        if variations.iter().all(is_finite) { Ok(()) } else { Err(not_finite(t)) }
     }
 
     /// The number that varies as `of` says in each of the directions.

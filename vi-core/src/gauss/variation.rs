@@ -19,7 +19,7 @@ use super::stages::{
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
-use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied};
+use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied, not_finite, singular};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
@@ -56,7 +56,9 @@ where
             let explicit = explicit(system, &at, variations);
             let are_found = instructions.run(Vary { derivatives, equations, h: run.h, explicit, variations });
             if !are_found {
-                return Err(StepError::Singular { t: before.t, matrix: "derivative of the equations of a step" });
+                // What is singular, and what was not finite before.
+                Variation::check_finite(variations, before.t)?;
+                return Err(if are_finite(derivatives) { singular(before.t) } else { not_finite(before.t) });
             }
         }
         Variation::check_finite(variations, before.t)

@@ -106,6 +106,9 @@ impl Scene {
         if scene.h.is_some() && scene.dtau.is_some() {
             return Err("give either `h` or `dtau`, not both".to_owned());
         }
+        if scene.dtau.is_some() && scene.sweep.as_ref().is_some_and(|sweep| sweep.is_over("h")) {
+            return Err("the sweep goes over `h`, which steps in scaled time do not have; leave out `dtau`".to_owned());
+        }
         if scene.steps.is_some() && scene.until.is_some() {
             return Err("give either `steps` or `until`, not both".to_owned());
         }
@@ -167,6 +170,10 @@ mod tests {
             ("system = \"kepler\"\n\ncolour = 1\n", "line 3: unknown field `colour`"),
             ("system = \"kepler\"\nsteps = 1\nuntil = 2.0\n", "give either `steps` or `until`, not both"),
             ("system = \"kepler\"\nh = 1.0\ndtau = 2.0\n", "give either `h` or `dtau`, not both"),
+            (
+                "system = \"kepler\"\ndtau = 2.0\n[sweep]\nover = [{ name = \"h\", values = [0.1] }]\n",
+                "the sweep goes over `h`, which steps in scaled time do not have; leave out `dtau`",
+            ),
             (
                 "system = \"kepler\"\nshift = \"much\"\n",
                 "line 2: invalid value: string \"much\", expected a number in the units of the step density, such as 4.9, or auto",

@@ -4,7 +4,7 @@
 //! [`Axis::point`]s; a random one has none, and takes an [`Axis::draw`] in each run. AFTER THIS every value is finite.
 
 use super::random::{normal, uniform};
-use super::scene::{Over, Spacing};
+use super::scene::{Over, Spacing, Two};
 use crate::failure::Failure;
 use crate::numbers::short;
 use crate::quantity::Quantity;
@@ -103,9 +103,9 @@ impl Choice {
         }
         let choice = match (values, uniform, log_uniform, normal) {
             (Some(values), ..) => Self::Values(values.clone()),
-            (_, Some([low, high]), ..) => Self::Uniform { low: *low, high: *high },
-            (_, _, Some([low, high]), _) => Self::LogUniform { low: *low, high: *high },
-            (.., Some([mean, deviation])) => Self::Normal { mean: *mean, deviation: *deviation },
+            (_, Some(Two([low, high])), ..) => Self::Uniform { low: *low, high: *high },
+            (_, _, Some(Two([low, high])), _) => Self::LogUniform { low: *low, high: *high },
+            (.., Some(Two([mean, deviation]))) => Self::Normal { mean: *mean, deviation: *deviation },
             _ => {
                 let (Some(from), Some(to), Some(count)) = (*from, *to, *count) else {
                     return Err("needs all of `from`, `to` and `count`".to_owned());
@@ -139,7 +139,7 @@ impl Choice {
                 Err("goes from one value to another: `count` must be at least 2".to_owned())
             }
             Self::Uniform { low, high } | Self::LogUniform { low, high } if low >= high => {
-                Err("must give the lower number first".to_owned())
+                Err("must give a lower and a higher number, in this order".to_owned())
             }
             Self::Uniform { low, high } | Self::Range { from: low, to: high, .. } if !(high - low).is_finite() => {
                 Err("goes over more than a number can hold".to_owned())
@@ -215,20 +215,20 @@ mod tests {
             draws.sort_by(f64::total_cmp);
             (draws[0], draws[500], draws[1000])
         };
-        let (low, middle, high) = draws(Over { uniform: Some([2.0, 4.0]), ..Over::default() });
+        let (low, middle, high) = draws(Over { uniform: Some(Two([2.0, 4.0])), ..Over::default() });
         assert!(
             low > 2.0 && low < 2.02 && (middle - 3.0).abs() < 0.13 && high < 4.0 && high > 3.98,
             "{low} {middle} {high}"
         );
-        let (low, middle, high) = draws(Over { log_uniform: Some([1e-4, 1.0]), ..Over::default() });
+        let (low, middle, high) = draws(Over { log_uniform: Some(Two([1e-4, 1.0])), ..Over::default() });
         assert!(low > 1e-4 && (middle.log10() + 2.0).abs() < 0.26 && high < 1.0, "{low} {middle} {high}");
-        let (low, middle, high) = draws(Over { normal: Some([5.0, 0.1]), ..Over::default() });
+        let (low, middle, high) = draws(Over { normal: Some(Two([5.0, 0.1])), ..Over::default() });
         assert!(low > 4.5 && (middle - 5.0).abs() < 0.016 && high < 5.5, "{low} {middle} {high}");
     }
 
     #[test]
     fn what_gives_no_values_is_named() {
-        let both = Over { values: Some(vec![1.0]), uniform: Some([0.0, 1.0]), ..Over::default() };
+        let both = Over { values: Some(vec![1.0]), uniform: Some(Two([0.0, 1.0])), ..Over::default() };
         for (over, message) in [
             (
                 Over::default(),
@@ -248,9 +248,12 @@ mod tests {
                 range(0.0, 1.0, 3, Some(Spacing::Log)),
                 "goes by the logarithm: give two numbers of one sign, neither of them zero",
             ),
-            (Over { uniform: Some([1.0, 1.0]), ..Over::default() }, "must give the lower number first"),
             (
-                Over { normal: Some([1.0, 0.0]), ..Over::default() },
+                Over { uniform: Some(Two([1.0, 1.0])), ..Over::default() },
+                "must give a lower and a higher number, in this order",
+            ),
+            (
+                Over { normal: Some(Two([1.0, 0.0])), ..Over::default() },
                 "must have a positive deviation, the second number of `normal`",
             ),
         ] {

@@ -35,6 +35,13 @@ pub(crate) struct Sweep {
     pub(super) section: Option<Cut>,
 }
 
+impl Sweep {
+    /// Whether it goes over the quantity of this name.
+    pub(crate) fn is_over(&self, name: &str) -> bool {
+        self.over.iter().any(|over| over.name == name)
+    }
+}
+
 /// A quantity and its values.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -53,11 +60,25 @@ pub(crate) struct Over {
     /// How they lie in a range.
     pub(super) spacing: Option<Spacing>,
     /// Random, equally likely between two values.
-    pub(super) uniform: Option<[f64; 2]>,
+    pub(super) uniform: Option<Two>,
     /// Random, its logarithm equally likely between those of two values.
-    pub(super) log_uniform: Option<[f64; 2]>,
+    pub(super) log_uniform: Option<Two>,
     /// Random, normally distributed: mean and standard deviation.
-    pub(super) normal: Option<[f64; 2]>,
+    pub(super) normal: Option<Two>,
+}
+
+/// Two numbers, and not more.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
+pub(crate) struct Two(pub(super) [f64; 2]);
+
+impl TryFrom<Vec<f64>> for Two {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        let count = numbers.len();
+        numbers.try_into().map(Self).map_err(|_| format!("needs two numbers, not {count}"))
+    }
 }
 
 /// How the values of a range lie.
