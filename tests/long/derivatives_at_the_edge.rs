@@ -1,8 +1,11 @@
 //! Derivatives of motions where numbers are extreme: slopes without a bound, and coordinates in units that are far apart.
 
 use nalgebra::{DMatrix, SMatrix};
-use vi_core::derivatives::{Covector, Lyapunov, Objective, Tangent, Variation, gradient};
-use vi_core::{FixedStep, Gauss, SVector, State, StepError, lagrangian, nalgebra};
+use vi_core::composition::{Composition, Scheme};
+use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
+use vi_core::{
+    EnergyPreserving, Fallback, FixedStep, Gauss, Integrator, SVector, State, StepError, lagrangian, nalgebra,
+};
 
 lagrangian! {
     /// A force that is zero at x = 0, where its slope has no bound.
@@ -55,6 +58,78 @@ fn is_not_finite<T>(outcome: &Result<T, StepError>, name: &str) -> bool {
     matches!(outcome, Err(StepError::NonFinite { quantity, .. }) if quantity.contains(name))
 }
 
+/// Whether an error tells, with this word, why a step from the time `t` has no derivative.
+fn has_none(outcome: &Result<(), StepError>, t: f64, word: &str) -> bool {
+    matches!(outcome, Err(StepError::NoDerivative { t: at, because }) if *at == t && because.contains(word))
+}
+
+/// Only the last step of a run is differentiated, and only by the parameters that its system has.
+fn differentiates_its_last_step<I: Differentiable<1>>(mut run: I) {
+    let start = *run.node();
+    let states = Variation::of_state;
+    assert!(has_none(&run.vary(&start, &mut states()), start.t, "last"), "before any step");
+    run.step().expect("solvable");
+    run.vary(&start, &mut states()).expect("the last step");
+    let after = *run.node();
+    assert!(has_none(&run.vary(&after, &mut states()), after.t, "last"), "the node reached");
+    run.step().expect("solvable");
+    assert!(has_none(&run.vary(&start, &mut states()), start.t, "last"), "a node before the last step");
+    let many = Variation { parameters: vec![0.0; 3], ..Variation::zero() };
+    assert!(has_none(&run.vary(&after, &mut [many]), after.t, "more parameters"));
+    run.vary(&after, &mut states()).expect("the last step");
+    // The last step ends at a given time, to which it is equal but for rounding.
+    let before = *run.node();
+    run.propagate_until(before.t + 1.25 * run.h()).expect("solvable");
+    assert!(has_none(&run.vary(&before, &mut states()), before.t, "last"), "two steps");
+}
+
+#[test]
+fn only_the_last_step_is_differentiated() {
+    let start = State { t: 0.7, q: SVector::from([1.3]), p: SVector::from([0.4]) };
+    let hill = Hill { k: -2.0, c: 0.1 };
+    let fixed = FixedStep::new(hill, start, 0.1).expect("valid");
+    differentiates_its_last_step(fixed.clone());
+    differentiates_its_last_step(Gauss::<_, 1, 3>::new(hill, start, 0.1).expect("valid"));
+    differentiates_its_last_step(Composition::new(hill, Scheme::KAHAN_LI_6, start, 0.1).expect("valid"));
+    let energy = EnergyPreserving::from_midpoint(hill, 0.7, [1.3], [0.4], 0.1).expect("valid");
+    differentiates_its_last_step(energy.clone());
+    let leaping = energy.with_fallback(Fallback::FixedSteps);
+    let failure = Tangent::new(leaping, Variation::of_state()).step().map(drop);
+    assert!(failure.as_ref().is_err_and(|error| error.to_string().ends_with("take `Fallback::Stop`")), "{failure:?}");
+    // Second derivatives too.
+    let mut run = fixed;
+    let first = *run.node();
+    let one = Variation::of_coordinate(0);
+    let second = |run: &FixedStep<Hill, 1>, other: &Variation<1>| run.second_variation(&first, &one, other).map(drop);
+    assert!(has_none(&second(&run, &one), 0.7, "last"));
+    run.step().expect("solvable");
+    second(&run, &one).expect("the last step");
+    assert!(has_none(&second(&run, &Variation { parameters: vec![0.0; 3], ..one.clone() }), 0.7, "more parameters"));
+    run.step().expect("solvable");
+    assert!(has_none(&second(&run, &one), 0.7, "last"));
+}
+
+lagrangian! {
+    /// A force whose slope has no bound at x = 0, where it is not zero.
+    struct Root {
+        coord x;
+        L = dot(x)^2 / 2;
+        force x = 1.5 + sqrt(abs(x));
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn a_start_where_the_slope_of_a_force_has_no_bound_is_told() {
+    let start = State { t: 0.7, q: SVector::from([0.0]), p: SVector::from([0.0]) };
+    let mut run = FixedStep::new(Root::default(), start, 0.1).expect("the velocity is known");
+    let failure = run.step();
+    assert!(is_not_finite(&failure, "derivative of the momentum equation"), "{failure:?}");
+    // Away from there it is a step like any other.
+    let start = State { p: SVector::from([0.1]), ..start };
+    FixedStep::new(Root::default(), start, 0.1).expect("valid").step().expect("solvable");
+}
+
 /// The last coordinate after so many steps, by this weight.
 struct Weighted(u64, f64);
 
@@ -82,7 +157,7 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
     run.step().expect("solvable");
     let huge = Variation { q: SVector::from([1e155]), parameters: vec![1e155], ..Variation::zero() };
     assert!(run.second_variation(&before, &Variation::of_coordinate(0), &Variation::of_coordinate(0)).is_ok());
-    assert!(run.second_variation(&before, &huge, &huge).is_err());
+    assert!(is_not_finite(&run.second_variation(&before, &huge, &huge), "variation"));
     let large = Variation { q: SVector::from([1e154]), parameters: vec![1e154], ..Variation::zero() };
     assert!(is_not_finite(&run.second_variation(&before, &large, &large), "variation"));
     // What goes in is no number.

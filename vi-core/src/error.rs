@@ -119,6 +119,13 @@ pub enum StepError {
         /// The part of L or f that is not finite there, where the system says so.
         expression: Option<&'static str>,
     },
+    /// A step has no derivative, or not the one that was asked for.
+    NoDerivative {
+        /// Time at which the step was to begin.
+        t: f64,
+        /// Why, and what to do.
+        because: &'static str,
+    },
     /// A checkpoint was taken of another system, or with another value of a parameter.
     OtherSystem {
         /// Name of the system that was to be restarted.
@@ -198,6 +205,9 @@ impl fmt::Display for Reason<'_> {
             StepError::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
+            StepError::NoDerivative { t, because } => {
+                write!(f, "the step from t = {t:.9} cannot be differentiated: {because}")
+            }
             StepError::OtherSystem { system, parameter: None, .. } => {
                 write!(f, "the checkpoint is of another system than `{system}`, or of another rule")
             }
@@ -248,7 +258,9 @@ impl fmt::Display for StepError {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
-            Self::Singular { .. } | Self::NonFinite { .. } | Self::InvalidInput { .. } => Ok(()),
+            Self::Singular { .. } | Self::NonFinite { .. } | Self::NoDerivative { .. } | Self::InvalidInput { .. } => {
+                Ok(())
+            }
         }
     }
 }

@@ -93,8 +93,14 @@ fn solved<T: Real, const N: usize>(
     momentum: &SVector<T, N>,
 ) -> Result<SVector<T, N>, Failure> {
     linear::solve(mass, momentum).ok_or_else(|| {
-        let is_finite = momentum.iter().chain(mass.dense().iter()).all(|entry| entry.is_finite());
-        if is_finite { Failure::Singular } else { Failure::NonFinite }
+        let is_finite = |entry: &T| entry.is_finite();
+        if !momentum.iter().all(is_finite) {
+            Failure::NonFinite
+        } else if !mass.dense().iter().all(is_finite) {
+            Failure::InfiniteJacobian
+        } else {
+            Failure::Singular
+        }
     })
 }
 

@@ -35,7 +35,7 @@ pub(crate) trait Equations<T: Real> {
     /// `J⁻¹ r`, J at one u and r at another.
     ///
     /// # Errors
-    /// [`Failure::Singular`] or [`Failure::NonFinite`] where there is none.
+    /// [`Failure::Singular`] or [`Failure::InfiniteJacobian`] where there is none.
     fn correction(&self, jacobian: &Self::Evaluation, residual: &Self::Evaluation) -> Result<Self::Unknowns, Failure>;
     /// The same with pivoting, where [`Equations::correction`] does without.
     fn pivoted(&self, _: &Self::Evaluation) -> Option<Self::Unknowns> {
@@ -64,6 +64,8 @@ pub(crate) struct Root<U, E> {
 pub(crate) enum Failure {
     Singular,
     NonFinite,
+    /// The equations are finite, and their Jacobian is not.
+    InfiniteJacobian,
     Stalled { iterations: u32, residual: f64, residuals: Residuals },
 }
 
@@ -73,6 +75,7 @@ impl Failure {
         match self {
             Self::Singular => StepError::Singular { t, matrix },
             Self::NonFinite => StepError::NonFinite { t, quantity: "momentum equation", expression: None },
+            Self::InfiniteJacobian => StepError::NonFinite { t, quantity: matrix, expression: None },
             Self::Stalled { iterations, residual, residuals } => {
                 StepError::NotConverged { t, h, iterations, residual, residuals }
             }

@@ -81,7 +81,7 @@ pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Fa
         exponents.advance(part).map_err(|error| Failure::Step {
             advice: advice(&error, &plan).map(str::to_owned),
             error: Box::new(error),
-            before: format!("t = {}, after {taken} steps or more", short(exponents.t())),
+            before: format!("t = {}, q = {:?}, after {taken} steps or more", short(exponents.t()), exponents.q()),
         })?;
         taken += part;
         next *= 2;

@@ -28,7 +28,7 @@ mod variation;
 pub use adjoint::{Covector, Gradient, Objective, gradient};
 pub use lyapunov::Lyapunov;
 pub use steps::Differentiable;
-pub(crate) use steps::singular;
+pub(crate) use steps::{not_last, singular};
 pub use tangent::Tangent;
 pub use variation::Variation;
 pub(crate) use variation::{TOGETHER, Varied, not_finite};

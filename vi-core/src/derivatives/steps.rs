@@ -4,7 +4,7 @@
 //! hand, and its system says how the equations change with them and with the coordinates of the node. How they change with the time and with parameters dual numbers
 //! say, where one of the directions asks for it.
 
-use super::variation::{TOGETHER, Variation, Varied, not_finite};
+use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
 use crate::composition::Composition;
 use crate::energy_preserving::{EnergyPreserving, Fallback};
 use crate::error::StepError;
@@ -27,7 +27,7 @@ pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> 
     ///
     /// # Errors
     /// [`StepError::Singular`] where the equations of the step do not determine how its solution varies; [`StepError::NonFinite`] where its derivative is infinite, or beyond the
-    /// range of numbers.
+    /// range of numbers; [`StepError::NoDerivative`] where `before` is not the node at which the last step began, or a variation has more parameters than the system.
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
 }
 
@@ -40,6 +40,34 @@ pub(crate) fn singular(t: f64) -> StepError {
 fn unsolved<A: Matrix<N, f64>, const N: usize>(matrix: &A, rhs: &SVector<f64, N>, t: f64) -> StepError {
     let are_finite = matrix.dense().iter().chain(rhs).all(|entry| entry.is_finite());
     if are_finite { singular(t) } else { not_finite(t) }
+}
+
+/// Whether a step that ends at the time and the coordinates of `end` is the one that led to the node `reached`.
+fn is_last<const N: usize>(end: &Node<N>, reached: &Node<N>) -> bool {
+    // The time of the last node may have been set to the one that was asked for.
+    let late = (end.t - reached.t) + (end.t_low - reached.t_low);
+    let is_in_time = late.abs() <= 2.0 * f64::EPSILON * reached.t.abs();
+    is_in_time && end.q == reached.q && end.q_low == reached.q_low
+}
+
+/// Checks that the step `(v, h)` from the node `before` led to the node `reached`.
+///
+/// # Errors
+/// [`StepError::NoDerivative`] where it did not.
+fn check_last<const N: usize>(
+    before: &Node<N>,
+    h: f64,
+    v: &SVector<f64, N>,
+    reached: &Node<N>,
+) -> Result<(), StepError> {
+    let mut end = *before;
+    end.shift(h, v);
+    if is_last(&end, reached) { Ok(()) } else { Err(not_last(before.t)) }
+}
+
+/// The node given is not the one at which the last step began.
+pub(crate) fn not_last(t: f64) -> StepError {
+    StepError::NoDerivative { t, because: "the run did not take it last; give the node at which its last step began" }
 }
 
 /// A number that varies in W directions, its value a number that may vary itself.
@@ -67,14 +95,14 @@ fn varied<T: Real, const N: usize, const W: usize>(
 }
 
 /// The node after the momentum step `(v, h)` of a system, in dual numbers whose values solve it: one Newton step, by the derivative of the same system
-/// in the numbers T, gives v its slopes.
+/// in the numbers T, gives v its slopes. None where it has no inverse.
 fn momentum_step<T, P, S, const N: usize, const W: usize>(
     plain: &P,
     system: &S,
     mut node: Node<N, Along<T, W>>,
     h: T,
     v: &SVector<T, N>,
-) -> Result<Node<N, Along<T, W>>, StepError>
+) -> Option<Node<N, Along<T, W>>>
 where
     T: Real,
     P: FixedStepping<N, T>,
@@ -83,11 +111,11 @@ where
     let jacobian = plain.momentum_equation(&node.map(|number| number.value), h, v).jacobian;
     let h = Dual::fixed(h);
     let residual = system.momentum_residual(&node, h, &v.map(Dual::fixed)).residual;
-    let change = linear::solve(&jacobian, &slopes(&residual)).ok_or_else(|| singular(node.t.to_f64()))?;
+    let change = linear::solve(&jacobian, &slopes(&residual))?;
     let v = varied(v, &-change);
     let increment = system.momentum_residual(&node, h, &v).increment;
     node.advance(h, &v, &increment);
-    Ok(node)
+    Some(node)
 }
 
 /// The x with `A x = rhs`, from the inverse of A; where that lost a pivot, from A.
@@ -116,7 +144,7 @@ where
     let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = &derivatives;
     let inverse = residual_dv.inverse();
     for variations in variations.chunks_mut(TOGETHER) {
-        let explicit = Variation::varying_system(variations, system).map(|varied| {
+        let explicit = Variation::varying_system(variations, system, node.t)?.map(|varied| {
             let node = Variation::in_time(variations, node);
             varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
         });
@@ -141,7 +169,9 @@ where
     S: FixedStepping<N> + Convertible<N>,
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        vary(self.system(), before, self.h(), &self.v(), variations)
+        let v = self.v();
+        check_last(before, self.h(), &v, self.node())?;
+        vary(self.system(), before, self.h(), &v, variations)
     }
 }
 
@@ -160,6 +190,17 @@ where
         one: &Variation<N>,
         other: &Variation<N>,
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
+        let (h, v) = (self.h(), self.v());
+        check_last(before, h, &v, self.node())?;
+        // Where the matrix has an inverse, it is the variations that are beyond the range of numbers.
+        let unsolved = || {
+            let equation = self.system().momentum_equation(before, h, &v);
+            linear::solve(&equation.jacobian, &v).map_or_else(|| unsolved(&equation.jacobian, &v, before.t), |_| not_finite(before.t))
+        };
+        let directions = [one, other];
+        if directions.iter().any(|of| of.parameters.len() > S::PARAMETERS.len()) {
+            return Err(more_parameters(before.t));
+        }
         let mut system = self.system().convert::<Along<Varied<1>, 1>>();
         for (index, name) in S::PARAMETERS.iter().enumerate() {
             if let Some(parameter) = crate::lagrangian::Parameters::parameter_mut(&mut system, name) {
@@ -172,10 +213,10 @@ where
         let node = nested(&Variation::node(one, before), &inner);
         // The velocity as the other direction varies it; the dual numbers of the first differentiate its equation once more.
         let plain = Variation::system::<_, 1>(other, self.system());
-        let equation = plain.momentum_equation(&inner, Dual::fixed(self.h()), &self.v().map(Dual::fixed));
-        let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(|| singular(before.t))?;
-        let v = self.v().zip_map(&change, |value, change| Dual { value, slope: -change.slope });
-        let node = momentum_step(&plain, &system, node, Dual::fixed(self.h()), &v)?;
+        let equation = plain.momentum_equation(&inner, Dual::fixed(h), &v.map(Dual::fixed));
+        let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(unsolved)?;
+        let varied = v.zip_map(&change, |value, change| Dual { value, slope: -change.slope });
+        let node = momentum_step(&plain, &system, node, Dual::fixed(h), &varied).ok_or_else(unsolved)?;
         let second = |number: Along<Varied<1>, 1>| number.slope.0[0].slope.0[0];
         let q: SVector<f64, N> = SVector::from_fn(|k, _| second(node.q[k]) + second(node.q_low[k]));
         let p: SVector<f64, N> = SVector::from_fn(|k, _| second(node.p[k]) + second(node.p_low[k]));
@@ -211,7 +252,7 @@ where
             let increment = self.system().momentum_residual(&node, h, &v).increment;
             node.advance(h, &v, &increment);
         }
-        Ok(())
+        if is_last(&node, self.node()) { Ok(()) } else { Err(not_last(before.t)) }
     }
 }
 
@@ -223,14 +264,15 @@ where
     const KEEPS_ENERGY: bool = true;
 
     /// The energy that the run keeps is a variable of its own, beside q and p, and the length of the step varies. With
-    /// [`Fallback::FixedSteps`] the run may leap from one energy to another: it has no derivative, and this is [`StepError::InvalidInput`].
+    /// [`Fallback::FixedSteps`] the run may leap from one energy to another: it has no derivative, and this is [`StepError::NoDerivative`].
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         if self.fallback() != Fallback::Stop {
-            let (input, allowed) = ("the fallback of a run that is differentiated", "`Fallback::Stop`");
-            return Err(StepError::InvalidInput { input, allowed, value: 1.0 });
+            let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
+            return Err(StepError::NoDerivative { t: before.t, because });
         }
         let h = self.h();
         let v = self.v();
+        check_last(before, h, &v, self.node())?;
         let derivatives = self.system().extended_derivatives(before, h, &v);
         let ExtendedDerivatives { momentum, residual_dh, increment_dh, energy_dq, energy_dv, energy_dh, .. } =
             &derivatives;
@@ -240,7 +282,7 @@ where
             solved(residual_dv, &inverse, residual_dh).ok_or_else(|| unsolved(residual_dv, residual_dh, before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
         for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = Variation::varying_system(variations, self.system()).map(|varied| {
+            let explicit = Variation::varying_system(variations, self.system(), before.t)?.map(|varied| {
                 let node = Variation::in_time(variations, before);
                 varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
             });

@@ -20,6 +20,12 @@ pub(crate) fn not_finite(t: f64) -> StepError {
     StepError::NonFinite { t, quantity: "variation of a step", expression: None }
 }
 
+/// A variation has more parameters than the system of the step from the time `t`.
+pub(crate) fn more_parameters(t: f64) -> StepError {
+    let because = "a variation has more parameters than the system; give at most as many as `PARAMETERS` names";
+    StepError::NoDerivative { t, because }
+}
+
 /// How fast a node and the parameters of its system change in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation<const N: usize> {
@@ -98,12 +104,19 @@ impl<const N: usize> Variation<N> {
     }
 
     /// The system, its parameters varied in each of the directions; none where neither they nor the time vary in any.
+    ///
+    /// # Errors
+    /// [`StepError::NoDerivative`] of the step from the time `t` where a direction has more parameters than the system.
     pub(crate) fn varying_system<S: Convertible<N> + Lagrangian<N>>(
         variations: &[Self],
         system: &S,
-    ) -> Option<S::In<Varied>> {
+        t: f64,
+    ) -> Result<Option<S::In<Varied>>, StepError> {
+        if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
+            return Err(more_parameters(t));
+        }
         let is_explicit = |of: &Self| !S::AUTONOMOUS && of.t != 0.0 || of.parameters.iter().any(|slope| *slope != 0.0);
-        variations.iter().any(is_explicit).then(|| Self::system(variations, system))
+        Ok(variations.iter().any(is_explicit).then(|| Self::system(variations, system)))
     }
 
     /// The system, its parameters varied in each of the directions.

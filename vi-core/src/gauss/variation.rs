@@ -19,7 +19,7 @@ use super::stages::{
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};
-use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied, not_finite, singular};
+use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied, not_finite, not_last, singular};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::Matrix;
@@ -36,6 +36,9 @@ where
     /// Allocates: the equations of all stages are one matrix.
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let Self { system, instructions, run, .. } = self;
+        if !run.has_step() || run.before != *before {
+            return Err(not_last(before.t));
+        }
         let rare = Rare::of(system);
         let equations = equations(&rare, before, run.h, run.stages.data.0);
         let at = Solution {
@@ -53,7 +56,7 @@ where
             differentiate_plainly(&rare, &at, derivatives);
         }
         for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = explicit(system, &at, variations);
+            let explicit = explicit(system, &at, variations, before.t)?;
             let are_found = instructions.run(Vary { derivatives, equations, h: run.h, explicit, variations });
             if !are_found {
                 // What is singular, and what was not finite before.
@@ -162,12 +165,16 @@ fn put<D: Matrix<N, T>, T: AtStages<S>, const N: usize, const S: usize>(
 type Explicit<const N: usize, const S: usize> = [[Stages<N, S>; 2]; TOGETHER];
 
 /// Those at the stages; none where neither varies in any direction.
+///
+/// # Errors
+/// Those of [`Variation::varying_system`], for the step from the time `t`.
 fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usize>(
     system: &S,
     at: &Solution<N, STAGES>,
     variations: &[Variation<N>],
-) -> Option<Explicit<N, STAGES>> {
-    let varied = Variation::varying_system(variations, system)?;
+    t: f64,
+) -> Result<Option<Explicit<N, STAGES>>, StepError> {
+    let Some(varied) = Variation::varying_system(variations, system, t)? else { return Ok(None) };
     let mut explicit = [[[[0.0; STAGES]; N]; 2]; TOGETHER];
     for i in 0..STAGES {
         let t: Varied = Variation::number(variations, at.times[i], |variation| variation.t);
@@ -180,7 +187,7 @@ fn explicit<S: Convertible<N> + Lagrangian<N>, const N: usize, const STAGES: usi
             }
         }
     }
-    Some(explicit)
+    Ok(Some(explicit))
 }
 
 /// Turns variations of the node at which a step began into those of the node reached; false, and anything in them, where the equations do not determine them.

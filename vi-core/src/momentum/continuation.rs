@@ -100,6 +100,7 @@ pub(crate) fn solve<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
                     Err(Failure::Stalled { iterations, residual, residuals }) => {
                         Failure::Stalled { iterations: spent + iterations, residual, residuals }
                     }
+                    Err(Failure::InfiniteJacobian) if residual.is_finite() => Failure::InfiniteJacobian,
                     Err(_) => Failure::NonFinite,
                 };
                 return Err(failure.at(node.t.to_f64(), h.to_f64(), "derivative of the momentum equation"));

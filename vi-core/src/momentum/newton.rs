@@ -45,7 +45,7 @@ impl<const N: usize, T: Scalar, S: FixedStepping<N, T>> Equations<T> for Momentu
         let jacobian = &jacobian.equation.jacobian;
         linear::solve(jacobian, &residual.equation.residual).ok_or_else(|| {
             let is_finite = jacobian.dense().iter().all(|entry| entry.is_finite());
-            if is_finite { Failure::Singular } else { Failure::NonFinite }
+            if is_finite { Failure::Singular } else { Failure::InfiniteJacobian }
         })
     }
 
@@ -88,5 +88,10 @@ pub(crate) fn velocity<const N: usize, T: Scalar, S: FixedStepping<N, T>>(
 ) -> Result<SVector<T, N>, StepError> {
     let [first, second] = guesses;
     let root = solve(system, node, T::zero(), first).or_else(|_| solve(system, node, T::zero(), second));
-    root.map(|root| root.u).map_err(|failure| failure.at(node.t.to_f64(), 0.0, "mass matrix"))
+    root.map(|root| root.u).map_err(|failure| {
+        // At h = 0 the derivative is the mass matrix, but where a slope of L or f has no bound.
+        let is_infinite = matches!(failure, Failure::InfiniteJacobian);
+        let matrix = if is_infinite { "derivative of the momentum equation" } else { "mass matrix" };
+        failure.at(node.t.to_f64(), 0.0, matrix)
+    })
 }

@@ -21,6 +21,8 @@ pub trait Exponents {
     fn advance(&mut self, steps: u64) -> Result<(), StepError>;
     /// Time of the node reached last.
     fn t(&self) -> f64;
+    /// Its coordinates.
+    fn q(&self) -> &[f64];
     /// The estimates.
     fn exponents(&self) -> Vec<f64>;
 }
@@ -35,6 +37,10 @@ where
 
     fn t(&self) -> f64 {
         self.run().t()
+    }
+
+    fn q(&self) -> &[f64] {
+        self.run().node().q.as_slice()
     }
 
     fn exponents(&self) -> Vec<f64> {

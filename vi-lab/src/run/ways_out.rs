@@ -42,7 +42,10 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
         .into_iter()
         .zip(densities)
         .filter(|(other, _)| *other != stages)
-        .filter_map(|(other, density)| Some(format!("--stages {other}, D = {}", about(density?))))
+        .filter_map(|(other, density)| density.map(|density| (other, density)))
+        // At rest all of them vanish.
+        .filter(|(_, density)| *density != 0.0)
+        .map(|(other, density)| format!("--stages {other}, D = {}", about(density)))
         .collect();
     if !others.is_empty() {
         ways.push(format!("other orders have other step densities, here {}", others.join("; ")));

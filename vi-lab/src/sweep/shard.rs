@@ -25,33 +25,21 @@ impl Shard {
     /// The shard that is asked for, or that of the array task which this process is.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a shard that there is not, and where the environment does not say how many there are.
+    /// [`Failure::Input`] for a shard that there is not, and where the environment does not say how many there are, or which one this is.
     pub(super) fn of(asked: Option<&str>, variable: impl Fn(&str) -> Option<String>) -> Result<Option<Self>, Failure> {
-        let number = |name: &str| variable(name).and_then(|text| text.trim().parse::<u64>().ok());
-        let task = number("HQ_TASK_ID").or_else(|| number("SLURM_ARRAY_TASK_ID"));
-        let shard = match asked.map(|text| Asked::parse(text).ok_or(text)).transpose() {
-            Err(text) => Err(format!(
-                "`--shard {text}` must be I/N, or N in a task of an array: two whole numbers, I from 0 to N - 1"
-            )),
-            Ok(Some(Asked { index: Some(index), count })) => Ok(Some(Self { index, count })),
-            Ok(Some(Asked { index: None, count })) => match task {
+        let asked = asked.map(Asked::parse).transpose().map_err(Failure::Input)?;
+        let shard = match asked {
+            Some(Asked { index: Some(index), count }) => Ok(Some(Self { index, count })),
+            Some(Asked { index: None, count }) => task(&variable).and_then(|index| match index {
                 Some(index) => Ok(Some(Self { index, count })),
                 None => Err(format!(
                     "`--shard {count}` is for a task of an array, whose number HQ_TASK_ID or SLURM_ARRAY_TASK_ID tells; \
                      elsewhere write --shard I/{count}"
                 )),
-            },
-            Ok(None) => match number("HQ_TASK_ID") {
-                Some(0) => Ok(None),
-                Some(task) => Err(format!(
-                    "this is task {task} of HyperQueue, which does not say how many there are; write --shard N, and number \
-                     the tasks from 0 to N - 1"
-                )),
-                None => slurm(number),
-            },
+            }),
+            None => scheduled(&variable),
         };
-        let shard = shard.map_err(Failure::Input)?;
-        match shard {
+        match shard.map_err(Failure::Input)? {
             Some(Self { index, count }) if index >= count => Err(Failure::Input(match count {
                 0 => "there must be at least one shard".to_owned(),
                 _ => format!(
@@ -71,15 +59,42 @@ impl Shard {
     }
 }
 
+/// A number of the environment; none where it is not set.
+fn number(variable: impl Fn(&str) -> Option<String>, name: &str) -> Result<Option<u64>, String> {
+    let Some(text) = variable(name) else { return Ok(None) };
+    let number = text.trim().parse().map(Some);
+    number.map_err(|_| {
+        format!("{name} is `{text}`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole")
+    })
+}
+
+/// Which task of an array this process is.
+fn task(variable: &impl Fn(&str) -> Option<String>) -> Result<Option<u64>, String> {
+    let task = number(variable, "HQ_TASK_ID")?;
+    if task.is_some() { Ok(task) } else { number(variable, "SLURM_ARRAY_TASK_ID") }
+}
+
+/// The shard that a scheduler says; none where there is no scheduler.
+fn scheduled(variable: &impl Fn(&str) -> Option<String>) -> Result<Option<Shard>, String> {
+    match number(variable, "HQ_TASK_ID")? {
+        Some(0) => Ok(None),
+        Some(task) => Err(format!(
+            "this is task {task} of HyperQueue, which does not say how many there are; write --shard N, and number \
+             the tasks from 0 to N - 1"
+        )),
+        None => slurm(|name| number(variable, name)),
+    }
+}
+
 /// The shard of a task of a Slurm array; none where there is no array.
-fn slurm(number: impl Fn(&str) -> Option<u64>) -> Result<Option<Shard>, String> {
-    let (Some(task), Some(count)) = (number("SLURM_ARRAY_TASK_ID"), number("SLURM_ARRAY_TASK_COUNT")) else {
+fn slurm(number: impl Fn(&str) -> Result<Option<u64>, String>) -> Result<Option<Shard>, String> {
+    let (Some(task), Some(count)) = (number("SLURM_ARRAY_TASK_ID")?, number("SLURM_ARRAY_TASK_COUNT")?) else {
         return Ok(None);
     };
-    let first = number("SLURM_ARRAY_TASK_MIN").unwrap_or(0);
-    let last = number("SLURM_ARRAY_TASK_MAX").unwrap_or(first + count.saturating_sub(1));
+    let first = number("SLURM_ARRAY_TASK_MIN")?.unwrap_or(0);
+    let last = number("SLURM_ARRAY_TASK_MAX")?.unwrap_or(first.saturating_add(count.saturating_sub(1)));
     // A task that is run again alone is an array of one.
-    if first > 1 || last - first.min(last) + 1 != count || task < first {
+    if first > 1 || (last - first.min(last)).checked_add(1) != Some(count) || task < first {
         return Err(format!(
             "the tasks of this array are not all of 0 to N - 1; to run some of them again write --shard N, which is then \
              shard {task}/N"
@@ -101,12 +116,19 @@ struct Asked {
 }
 
 impl Asked {
-    fn parse(text: &str) -> Option<Self> {
+    /// What stands there.
+    ///
+    /// # Errors
+    /// What it must be.
+    fn parse(text: &str) -> Result<Self, String> {
         let number = |text: &str| text.trim().parse().ok();
-        match text.split_once('/') {
-            Some((index, count)) => Some(Self { index: Some(number(index)?), count: number(count)? }),
-            None => Some(Self { index: None, count: number(text)? }),
-        }
+        let (index, count) = match text.split_once('/') {
+            Some((index, count)) => (number(index).map(Some), number(count)),
+            None => (Some(None), number(text)),
+        };
+        index.zip(count).map(|(index, count)| Self { index, count }).ok_or_else(|| {
+            format!("`--shard {text}` must be I/N, or N in a task of an array: two whole numbers, I from 0 to N - 1")
+        })
     }
 }
 
@@ -172,6 +194,22 @@ mod tests {
             ),
         ] {
             assert_eq!(shard(asked, variables), Err(message.to_owned()));
+        }
+    }
+
+    #[test]
+    fn a_task_that_is_no_number_is_told() {
+        for name in ["SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "HQ_TASK_ID"] {
+            let variable = |asked: &str| match asked {
+                asked if asked == name => Some("x".to_owned()),
+                "SLURM_ARRAY_TASK_ID" | "SLURM_ARRAY_TASK_COUNT" => Some("3".to_owned()),
+                _ => None,
+            };
+            let message = Shard::of(None, variable).expect_err("no number").to_string();
+            let expected =
+                format!("{name} is `x`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole");
+            assert_eq!(message, expected);
+            assert!(Shard::of(Some("2/5"), variable).is_ok(), "{name}");
         }
     }
 

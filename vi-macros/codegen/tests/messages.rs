@@ -50,6 +50,8 @@ fn names() {
         "the name `t` is reserved\nhelp: `t` is the time",
     );
     case("param «L» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the name `L` is reserved");
+    case("param «L» = 1; coord x; L = dot(x)^2 / L; discretize midpoint;", "the name `L` is reserved");
+    case("param «f» = 1; coord x; L = dot(x)^2; force x = -f; discretize midpoint;", "the name `f` is reserved");
     case("param «sin» = 1; coord x; L = dot(x)^2; discretize midpoint;", "the name `sin` is reserved");
     case(
         "param mass = 1; coord x; L = «mas» * dot(x)^2; discretize midpoint;",

@@ -144,6 +144,10 @@ impl Scope {
     pub(super) fn declare(&mut self, name: &Ident, meaning: Meaning) -> Result<()> {
         let text = name.to_string();
         if RESERVED.contains(&text.as_str()) || Function::from_name(&text).is_some() {
+            if ["L", "f"].contains(&text.as_str()) {
+                // Expressions of a system have neither, so that what reads it means this.
+                self.names.entry(text.clone()).or_insert(Meaning::Wrong);
+            }
             return Err(error(name.span(), &Message::Reserved { name: text }));
         }
         if self.names.contains_key(&text) {
