@@ -10,10 +10,10 @@
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
 use super::points::Points;
-use super::stages::{AtStages, Stages, change, gathered, product, row_by_row, scaled, scatter, sum, times, weights};
+use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, sum, times, weights};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
-use crate::linear::Matrix;
+use crate::linear::{Matrix, row_by_row};
 use crate::node::Node;
 use crate::real::Lane;
 use core::marker::PhantomData;
@@ -57,9 +57,14 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
     #[inline(always)]
     fn positions(&self, coefficients: &[[f64; S]; S]) -> Stages<N, S> {
         let weights = weights(self.h);
+        let mut impulses = [[0.0; S]; N];
+        for k in 0..N {
+            row_by_row();
+            impulses[k] = scaled(&weights, &self.force[k]);
+        }
         let mut x = [[0.0; S]; N];
         for k in 0..N {
-            x[k] = product::<S, FUSED>(coefficients, &scaled(&weights, &self.force[k]), &[0.0; S]);
+            x[k] = product::<S, FUSED>(coefficients, &impulses[k], &[0.0; S]);
         }
         M::apply_to_rows(&self.inverse, &mut x);
         for k in 0..N {

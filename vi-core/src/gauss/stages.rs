@@ -5,6 +5,7 @@
 
 use super::points::{Form, Points};
 use super::tableau::Tableau;
+use crate::linear::row_by_row;
 use crate::node::Node;
 use crate::real::{Lane, Lanes, Real};
 use nalgebra::SVector;
@@ -149,12 +150,6 @@ pub(super) fn product<const S: usize, const FUSED: bool>(
     even
 }
 
-/// Keeps the compiler from making vectors across the rows of a loop: it would gather their numbers from memory, one by one. Those of a row stand side by side.
-#[inline(always)]
-pub(super) fn row_by_row() {
-    core::hint::black_box(());
-}
-
 /// What the polynomials through the stages of a step are at those of the next one.
 #[inline(always)]
 pub(super) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {
@@ -196,6 +191,7 @@ pub(super) fn change<const N: usize, const S: usize>(
     start: &SVector<f64, N>,
 ) -> f64 {
     let mut moved = [0.0; N];
+    let mut scale = [0.0; N];
     for k in 0..N {
         row_by_row();
         let mut distance = [0.0; S];
@@ -204,8 +200,11 @@ pub(super) fn change<const N: usize, const S: usize>(
             distance[i] = (after[k][i] - before[k][i]).abs();
             length[i] = after[k][i].abs();
         }
-        let scale = larger(maximum(&length), start[k].abs()) + f64::MIN_POSITIVE;
-        moved[k] = maximum(&distance) / (scale * f64::EPSILON);
+        moved[k] = maximum(&distance);
+        scale[k] = maximum(&length);
+    }
+    for k in 0..N {
+        moved[k] /= (larger(scale[k], start[k].abs()) + f64::MIN_POSITIVE) * f64::EPSILON;
     }
     maximum(&moved)
 }

@@ -14,7 +14,7 @@ use super::general::equations;
 use super::points::Rare;
 use super::solve::WIDE;
 use super::stages::{
-    AtStages, LOOPED, Stages, gathered, maximum, product, row_by_row, scaled, stage, sum, times, weights,
+    AtStages, LOOPED, Stages, gathered, maximum, product, scaled, stage, sum, times, weights,
 };
 use super::sweep::Equations;
 use super::tableau::Tableau;
@@ -22,7 +22,7 @@ use crate::collocation::{Collocation, PointDerivatives};
 use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied, not_finite, not_last, singular};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
-use crate::linear::Matrix;
+use crate::linear::{Matrix, row_by_row};
 use crate::node::Node;
 use crate::real::{Dual, Lane, Lanes};
 use crate::stepping::{Convertible, FixedStepping};

@@ -1,6 +1,6 @@
 //! Banded matrices, eliminated inside the band.
 
-use super::{Matrix, is_kept};
+use super::{Matrix, is_kept, row_by_row};
 use crate::real::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -86,6 +86,7 @@ impl<const N: usize, const D: usize, T: Real> Matrix<N, T> for Banded<N, D, T> {
             for right in 1..(w + 1).min(N - i) {
                 subtract(rows, i, factors[i][w + right], i + right);
             }
+            row_by_row();
             for entry in &mut rows[i] {
                 *entry *= factors[i][w];
             }

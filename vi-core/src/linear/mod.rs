@@ -32,6 +32,12 @@ use crate::real::Real;
 use core::fmt::Debug;
 use nalgebra::{SMatrix, SVector};
 
+/// Keeps the compiler from making vectors across the rows of a loop: it would gather their numbers from memory, one by one. Those of a row stand side by side.
+#[inline(always)]
+pub(crate) fn row_by_row() {
+    core::hint::black_box(());
+}
+
 /// A square matrix in the form that its zero pattern allows.
 pub trait Matrix<const N: usize, T: Real>: Copy + Debug + PartialEq {
     /// What is kept of A to solve with it many times.
