@@ -13,7 +13,7 @@
 use super::newton::Newton;
 use super::points::{Form, Points, Rare};
 use super::stages::{
-    AtStages, Stages, change, constant_mass, gathered, maximum, product, scaled, scatter, sum, times, weights,
+    AtStages, Roundings, Stages, change, constant_mass, gathered, maximum, product, roundings, scaled, scatter, sum, times, weights,
 };
 use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
@@ -41,6 +41,9 @@ pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
     /// The largest `Σ_l |M⁻¹_kl P_l|` of the stages, where the mass matrix varies: where velocities are less, these terms cancel, and leave their rounding.
     /// Zero where M is constant, and where it is not finite.
     terms: SVector<f64, N>,
+    /// Roundings of the velocities, and of the positions where they are looked at.
+    of_velocity: Roundings<N>,
+    of_position: Roundings<N>,
     numbers: PhantomData<T>,
 }
 
@@ -85,6 +88,8 @@ where
             evaluated: velocity,
             force,
             terms,
+            of_velocity: [0.0; N],
+            of_position: [0.0; N],
             numbers: PhantomData,
         };
         if equations.system.form() == Form::Separable {
@@ -257,7 +262,7 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         // Of a known type the compiler sees one of the two forms.
         let varies = || self.system.form() == Form::VaryingMass;
         if let Some(newton) = self.newton {
@@ -268,7 +273,7 @@ where
         } else {
             self.sweep_constant(x);
         }
-        self.positions()
+        *y = self.positions();
     }
 
     #[inline(always)]
@@ -293,11 +298,24 @@ where
         Some(self.evaluated)
     }
 
+    #[inline(always)]
+    fn take_roundings(&mut self, x: &Stages<N, S>) {
+        self.of_velocity = roundings(&self.velocity, &self.terms);
+        if self.newton.is_some() {
+            self.of_position = roundings(x, &self.node.q);
+        }
+    }
+
     /// That of the velocities, in roundings of what they are the sums of, from which positions follow; of stiff steps that of the positions too, which move their forces much.
     #[inline(always)]
-    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
-        let of_velocities = change(&self.evaluated, &self.velocity, &self.terms) * VELOCITY;
-        if self.newton.is_some() { change(before, after, &self.node.q).max(of_velocities) } else { of_velocities }
+    fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
+        let mut evaluated = self.evaluated;
+        let of_velocities = change(&mut evaluated, &self.velocity, &self.of_velocity) * VELOCITY;
+        if self.newton.is_some() {
+            return change(x, y, &self.of_position).max(of_velocities);
+        }
+        *x = *y;
+        of_velocities
     }
 
     /// After a sweep velocities are what its forces lead to, and these are off by as much as velocities are then. A correction by Newton's iteration leaves the

@@ -10,7 +10,9 @@
 //! Half of the products of the general equations, and sweeps that contract twice as fast.
 
 use super::points::Points;
-use super::stages::{AtStages, Stages, change, gathered, product, scaled, scatter, sum, times, weights};
+use super::stages::{
+    AtStages, Roundings, Stages, change, gathered, product, roundings, scaled, scatter, sum, times, weights,
+};
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
 use crate::linear::{Matrix, row_by_row};
@@ -31,6 +33,7 @@ pub(super) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S
     force: Stages<N, S>,
     /// Whether they are those of the step before.
     are_last: bool,
+    roundings: Roundings<N>,
     numbers: PhantomData<T>,
 }
 
@@ -50,27 +53,26 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
                 drift[k][i] = Lane::<FUSED>::multiply_add(c[i], moved, node.q_low[k]);
             }
         }
-        Self { system, node, h, inverse, drift, force, are_last, numbers: PhantomData }
+        let roundings = [0.0; N];
+        Self { system, node, h, inverse, drift, force, are_last, roundings, numbers: PhantomData }
     }
 
-    /// What the forces at hand move, by the coefficients `second`, or `ahead` where they are those of the step before.
+    /// Sets x to where the forces at hand lead, by the coefficients `second`, or `ahead` where they are those of the step before.
     #[inline(always)]
-    fn positions(&self, coefficients: &[[f64; S]; S]) -> Stages<N, S> {
+    fn set_positions(&self, x: &mut Stages<N, S>, coefficients: &[[f64; S]; S]) {
         let weights = weights(self.h);
         let mut impulses = [[0.0; S]; N];
         for k in 0..N {
             row_by_row();
             impulses[k] = scaled(&weights, &self.force[k]);
         }
-        let mut x = [[0.0; S]; N];
         for k in 0..N {
             x[k] = product::<S, FUSED>(coefficients, &impulses[k], &[0.0; S]);
         }
-        M::apply_to_rows(&self.inverse, &mut x);
+        M::apply_to_rows(&self.inverse, x);
         for k in 0..N {
             x[k] = self.moved(k, &x[k]);
         }
-        x
     }
 
     /// The coordinate k, moved by the velocities that forces add to its mean from the node to the stages.
@@ -100,18 +102,20 @@ where
     #[inline(always)]
     fn start(&self) -> Stages<N, S> {
         let Tableau { second, ahead, .. } = const { &Tableau::<S>::VALUES };
-        self.positions(if self.are_last { ahead } else { second })
+        let mut x = [[0.0; S]; N];
+        self.set_positions(&mut x, if self.are_last { ahead } else { second });
+        x
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         let rest = SVector::zeros();
         let times = times::<N, S, FUSED>(self.node, self.h);
         for i in 0..T::EVALUATIONS {
             let point = self.system.at(T::of(&times, i), &gathered(x, i), &rest);
             scatter(&mut self.force, i, &point.force);
         }
-        self.positions(const { &Tableau::<S>::VALUES.second })
+        self.set_positions(y, const { &Tableau::<S>::VALUES.second });
     }
 
     #[inline(always)]
@@ -143,8 +147,13 @@ where
     }
 
     #[inline(always)]
-    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
-        change(before, after, &self.node.q)
+    fn take_roundings(&mut self, x: &Stages<N, S>) {
+        self.roundings = roundings(x, &self.node.q);
+    }
+
+    #[inline(always)]
+    fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
+        change(x, y, &self.roundings)
     }
 
     /// Momenta have h ω of it: not much less than all, where a sweep leaves (h ω)².

@@ -182,31 +182,72 @@ pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; 
     scaled
 }
 
-/// The largest change of an entry from `before` to `after`, in roundings of the largest of its row and of `start`. Anything where a stage is
-/// not finite: then neither is the [`Increment`](super::sweep::Increment) of the step.
+/// One over a rounding of each row: a change times that is in roundings.
+pub(super) type Roundings<const N: usize> = [f64; N];
+
+/// Those of the largest entry of each row, and of `start`.
 #[inline(always)]
-pub(super) fn change<const N: usize, const S: usize>(
-    before: &Stages<N, S>,
-    after: &Stages<N, S>,
-    start: &SVector<f64, N>,
-) -> f64 {
-    let mut moved = [0.0; N];
-    let mut scale = [0.0; N];
+pub(super) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start: &SVector<f64, N>) -> Roundings<N> {
+    let mut scales = [0.0; N];
     for k in 0..N {
         row_by_row();
-        let mut distance = [0.0; S];
-        let mut length = [0.0; S];
+        let mut sizes = [0.0; S];
         for i in 0..S {
-            distance[i] = (after[k][i] - before[k][i]).abs();
-            length[i] = after[k][i].abs();
+            sizes[i] = of[k][i].abs();
         }
-        moved[k] = maximum(&distance);
-        scale[k] = maximum(&length);
+        scales[k] = larger(maximum(&sizes), start[k].abs());
     }
+    // Vectors of divisions.
+    let mut roundings = [0.0; N];
     for k in 0..N {
-        moved[k] /= (larger(scale[k], start[k].abs()) + f64::MIN_POSITIVE) * f64::EPSILON;
+        roundings[k] = 1.0 / ((scales[k] + SMALLEST) * f64::EPSILON);
     }
-    maximum(&moved)
+    roundings
+}
+
+/// The smallest number of which a rounding has a reciprocal.
+const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
+/// The largest change of an entry from `before` to `after`, in roundings; then `before` is `after`. Anything where a stage is not finite: then neither is the
+/// [`Increment`](super::sweep::Increment) of the step.
+#[inline(always)]
+pub(super) fn change<const N: usize, const S: usize>(
+    before: &mut Stages<N, S>,
+    after: &Stages<N, S>,
+    roundings: &Roundings<N>,
+) -> f64 {
+    if const { N > LOOPED } {
+        return change_of_many(before, after, roundings);
+    }
+    let mut changes = [0.0; N];
+    for k in 0..N {
+        let mut distances = [0.0; S];
+        for i in 0..S {
+            distances[i] = (after[k][i] - before[k][i]).abs();
+        }
+        changes[k] = maximum(&distances) * roundings[k];
+    }
+    *before = *after;
+    maximum(&changes)
+}
+
+/// The same of many rows: the largest of each stage, and then of all.
+#[inline(always)]
+fn change_of_many<const N: usize, const S: usize>(
+    before: &mut Stages<N, S>,
+    after: &Stages<N, S>,
+    roundings: &Roundings<N>,
+) -> f64 {
+    let mut changes = [0.0; S];
+    for k in 0..N {
+        row_by_row();
+        for i in 0..S {
+            changes[i] = larger((after[k][i] - before[k][i]).abs() * roundings[k], changes[i]);
+            before[k][i] = after[k][i];
+        }
+    }
+    // In memory: else the compiler takes pairs of numbers all along, for the sake of this one.
+    maximum(&core::hint::black_box(changes))
 }
 
 /// The larger of two numbers.

@@ -35,22 +35,27 @@ pub(super) const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q that a step may leave of the error of its stages.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
 
+/// Roundings that a change must have to change a rounding: a part of the number itself.
+const COARSE: f64 = 0.0625 / f64::EPSILON;
+
 /// The equations of the stages of a step.
 pub(super) trait Equations<const N: usize, const S: usize> {
     /// Whether there is another way to solve them, where sweeps are slow.
     fn has_another_way(&self) -> bool;
     /// The positions that the guess of the step leads to.
     fn start(&self) -> Stages<N, S>;
-    /// Evaluates the equations at the positions x, and returns those that follow from it.
-    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S>;
+    /// Evaluates the equations at the positions x, and sets y to those that follow from it.
+    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>);
     /// What moves the node, by the evaluation of the last sweep.
     fn increment(&self) -> Increment<N>;
     /// What the stages are found from: what is extrapolated to the next step.
     fn guess(&self) -> Stages<N, S>;
     /// The velocities at which the last sweep evaluated; none where nothing depends on them.
     fn velocities(&self) -> Option<Stages<N, S>>;
-    /// The change by the last sweep, which led from `before` to `after`, in roundings of the positions.
-    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64;
+    /// Takes the roundings of the stages, after a sweep that led to the positions x.
+    fn take_roundings(&mut self, x: &Stages<N, S>);
+    /// The change by the last sweep, which led from x to y, in the roundings taken last, those of positions; then x is y.
+    fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64;
     /// What of the error of the stages, relative, the increment has, where a sweep leaves `contraction` of it.
     fn passed_on(&self, contraction: f64) -> f64;
 }
@@ -145,6 +150,7 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     before: &Convergence,
 ) -> Sweeps<N, S> {
     let mut x = equations.start();
+    let mut y = [[0.0; S]; N];
     let mut state = Convergence { sweeps: 0, change: f64::INFINITY, ..*before };
     // What x leaves, without the rounding of its change.
     let mut error = f64::INFINITY;
@@ -152,12 +158,19 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     let mut left = f64::INFINITY;
     let mut least = f64::INFINITY;
     let mut stalls = 0;
+    let mut is_last = false;
     let are_given_up = loop {
-        let y = equations.sweep(&x);
-        let change = equations.change(&x, &y);
-        let last = state.change;
-        state.change = change;
+        equations.sweep(&x, &mut y);
         state.sweeps += 1;
+        if is_last {
+            break false;
+        }
+        let last = state.change;
+        if last > COARSE {
+            equations.take_roundings(&y);
+        }
+        let change = equations.change(&mut x, &y);
+        state.change = change;
         if change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0) {
             break false;
         }
@@ -178,10 +191,8 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         if state.sweeps >= PATIENCE && is_slow() {
             break true;
         }
-        if stalls == STALLS || state.sweeps == SWEEPS {
-            break false;
-        }
-        x = y;
+        // What is judged then is what the stages leave at x.
+        is_last = stalls == STALLS || state.sweeps == SWEEPS;
     };
     Sweeps { convergence: state, positions: x, are_given_up }
 }
@@ -189,7 +200,7 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
 /// The last of the sweeps of a step.
 pub(super) struct Sweeps<const N: usize, const S: usize> {
     pub(super) convergence: Convergence,
-    /// Positions at which it evaluated.
+    /// Positions that it led to; those at which it evaluated, where they do not rest.
     pub(super) positions: Stages<N, S>,
     /// Whether further sweeps would come closer, but slowly.
     pub(super) are_given_up: bool,

@@ -13,7 +13,7 @@
 //! by the new g, V and E'.
 
 use super::super::newton::Newton;
-use super::super::stages::{Stages, change, constant_mass, product, scaled, set, stage, weights};
+use super::super::stages::{Roundings, Stages, change, constant_mass, product, roundings, scaled, set, stage, weights};
 use super::super::sweep::{Equations, Increment, VELOCITY};
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
@@ -62,6 +62,15 @@ where
     force: Stages<N, S>,
     /// The largest H, and v·p, there: what an energy is a sum of.
     energy_scale: f64,
+    roundings: AllRoundings<N>,
+}
+
+/// Roundings of all that changes.
+pub(super) struct AllRoundings<const N: usize> {
+    position: Roundings<N>,
+    velocity: Roundings<N>,
+    time: Roundings<1>,
+    energy: Roundings<1>,
 }
 
 impl<'a, T, Y, const N: usize, const S: usize, const FUSED: bool> Scaled<'a, T, Y, N, S, FUSED>
@@ -84,8 +93,9 @@ where
         let velocity = rates.velocity;
         let energy_scale = 0.0;
         let evaluated = clock;
+        let roundings = AllRoundings { position: [0.0; N], velocity: [0.0; N], time: [0.0], energy: [0.0] };
         let mut equations =
-            Self { system, node, dtau, mass, newton, rates, clock, velocity, evaluated, force, energy_scale };
+            Self { system, node, dtau, mass, newton, rates, clock, velocity, evaluated, force, energy_scale, roundings };
         equations.advance_clock();
         equations
     }
@@ -275,13 +285,13 @@ where
     }
 
     #[inline(always)]
-    fn sweep(&mut self, x: &Stages<N, S>) -> Stages<N, S> {
+    fn sweep(&mut self, x: &Stages<N, S>, y: &mut Stages<N, S>) {
         let correction = match self.newton {
             Some(newton) => newton.correction(&self.evaluate(x, |_, _| {})),
             None if Y::CONSTANT_MASS => self.by_constant_mass(x),
             None => self.by_varying_mass(x),
         };
-        self.moved(&correction)
+        *y = self.moved(&correction);
     }
 
     #[inline(always)]
@@ -306,12 +316,24 @@ where
 
     /// With those of velocities, of times, which count as positions, and of energies.
     #[inline(always)]
-    fn change(&self, before: &Stages<N, S>, after: &Stages<N, S>) -> f64 {
+    fn take_roundings(&mut self, x: &Stages<N, S>) {
+        self.roundings = AllRoundings {
+            position: roundings(x, &self.node.q),
+            velocity: roundings(&self.rates.velocity, &SVector::zeros()),
+            time: roundings(&[self.clock.time], &SVector::from([self.node.t])),
+            energy: roundings(&[self.clock.energy], &SVector::from([self.energy_scale])),
+        };
+    }
+
+    #[inline(always)]
+    fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64 {
+        let roundings = &self.roundings;
+        let mut evaluated = self.velocity;
         let Clock { time, energy } = self.evaluated;
-        let velocity = change(&self.velocity, &self.rates.velocity, &SVector::zeros());
-        let time = change(&[time], &[self.clock.time], &SVector::from([self.node.t]));
-        let energy = change(&[energy], &[self.clock.energy], &SVector::from([self.energy_scale]));
-        change(before, after, &self.node.q).max(time).max(velocity.max(energy) * VELOCITY)
+        let velocity = change(&mut evaluated, &self.rates.velocity, &roundings.velocity);
+        let time = change(&mut [time], &[self.clock.time], &roundings.time);
+        let energy = change(&mut [energy], &[self.clock.energy], &roundings.energy);
+        change(x, y, &roundings.position).max(time).max(velocity.max(energy) * VELOCITY)
     }
 
     #[inline(always)]
