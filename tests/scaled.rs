@@ -224,8 +224,8 @@ fn angular_momentum_and_energy_are_kept() {
     println!(
         "angular momentum off by {turned:.1e}; H − E up to {first:.2e} in ten periods, {last:.2e} in the last ten of 1000"
     );
-    // Measured: 2.5e-15; 4.39e-9 and 4.39e-9.
-    assert!(turned < 4e-15, "{turned:e}");
+    // Measured: 6.8e-15, a random walk of roundings: 1.3e-15 to 9.3e-15 with 17 to 40 steps in a period. 4.39e-9 and 4.39e-9.
+    assert!(turned < 1e-14, "{turned:e}");
     assert!(first > 1e-10 && last < 1.1 * first, "{first:e}, {last:e}");
 }
 

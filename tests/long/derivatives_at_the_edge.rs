@@ -3,9 +3,7 @@
 use nalgebra::{DMatrix, SMatrix};
 use vi_core::composition::{Composition, Scheme};
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
-use vi_core::{
-    EnergyPreserving, Fallback, FixedStep, Gauss, Integrator, SVector, State, StepError, lagrangian, nalgebra,
-};
+use vi_core::{EnergyPreserving, Fallback, FixedStep, Gauss, SVector, State, StepError, lagrangian, nalgebra};
 
 lagrangian! {
     /// A force that is zero at x = 0, where its slope has no bound.
@@ -60,7 +58,7 @@ fn is_not_finite<T>(outcome: &Result<T, StepError>, name: &str) -> bool {
 
 /// Whether an error tells, with this word, why a step from the time `t` has no derivative.
 fn has_none(outcome: &Result<(), StepError>, t: f64, word: &str) -> bool {
-    matches!(outcome, Err(StepError::NoDerivative { t: at, because }) if *at == t && because.contains(word))
+    matches!(outcome, Err(StepError::NoDerivative { t: at, because }) if at.total_cmp(&t).is_eq() && because.contains(word))
 }
 
 /// Only the last step of a run is differentiated, and only by the parameters that its system has.

@@ -47,8 +47,8 @@ fn the_pole_is_swung_up_and_no_other_forces_nearby_cost_less() {
     let least = problem.value(&forces).expect("a run");
     for direction in directions() {
         let slope = difference(&problem, &forces, &direction);
-        // Measured: at most 5.4e-9, the rounding of the difference.
-        assert!(slope.abs() < 1e-8, "{slope:e}");
+        // Measured: at most 1.3e-8, two roundings of the cost in the difference.
+        assert!(slope.abs() < 2e-8, "{slope:e}");
         for by in [-0.05, 0.05] {
             assert!(problem.value(&moved(&forces, &direction, by)).expect("a run") > least);
         }

@@ -66,7 +66,11 @@ pub(crate) enum Failure {
     NonFinite,
     /// The equations are finite, and their Jacobian is not.
     InfiniteJacobian,
-    Stalled { iterations: u32, residual: f64, residuals: Residuals },
+    Stalled {
+        iterations: u32,
+        residual: f64,
+        residuals: Residuals,
+    },
 }
 
 impl Failure {

@@ -195,7 +195,8 @@ where
         // Where the matrix has an inverse, it is the variations that are beyond the range of numbers.
         let unsolved = || {
             let equation = self.system().momentum_equation(before, h, &v);
-            linear::solve(&equation.jacobian, &v).map_or_else(|| unsolved(&equation.jacobian, &v, before.t), |_| not_finite(before.t))
+            linear::solve(&equation.jacobian, &v)
+                .map_or_else(|| unsolved(&equation.jacobian, &v, before.t), |_| not_finite(before.t))
         };
         let directions = [one, other];
         if directions.iter().any(|of| of.parameters.len() > S::PARAMETERS.len()) {

@@ -13,7 +13,8 @@
 use super::newton::Newton;
 use super::points::{Form, Points, Rare};
 use super::stages::{
-    AtStages, Roundings, Stages, change, constant_mass, gathered, maximum, product, roundings, scaled, scatter, sum, times, weights,
+    AtStages, Roundings, Stages, change, constant_mass, gathered, maximum, product, roundings, scaled, scatter, sum,
+    times, weights,
 };
 use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;

@@ -208,8 +208,9 @@ pub(super) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start
 /// The smallest number of which a rounding has a reciprocal.
 const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
-/// The largest change of an entry from `before` to `after`, in roundings; then `before` is `after`. Anything where a stage is not finite: then neither is the
-/// [`Increment`](super::sweep::Increment) of the step.
+/// The largest change of an entry from `before` to `after`, in roundings; then `before` is `after`.
+///
+/// Anything where a stage is not finite: then neither is the [`Increment`](super::sweep::Increment) of the step.
 #[inline(always)]
 pub(super) fn change<const N: usize, const S: usize>(
     before: &mut Stages<N, S>,

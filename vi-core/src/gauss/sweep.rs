@@ -34,8 +34,7 @@ const STALLS: u32 = 4;
 pub(super) const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q that a step may leave of the error of its stages.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
-
-/// Roundings that a change must have to change a rounding: a part of the number itself.
+/// Roundings of a change after which roundings are taken anew: a sixteenth of the number that they are roundings of.
 const COARSE: f64 = 0.0625 / f64::EPSILON;
 
 /// The equations of the stages of a step.
@@ -52,7 +51,7 @@ pub(super) trait Equations<const N: usize, const S: usize> {
     fn guess(&self) -> Stages<N, S>;
     /// The velocities at which the last sweep evaluated; none where nothing depends on them.
     fn velocities(&self) -> Option<Stages<N, S>>;
-    /// Takes the roundings of the stages, after a sweep that led to the positions x.
+    /// Takes the roundings in which changes are measured, after a sweep that led to the positions x.
     fn take_roundings(&mut self, x: &Stages<N, S>);
     /// The change by the last sweep, which led from x to y, in the roundings taken last, those of positions; then x is y.
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64;

@@ -13,9 +13,7 @@ use super::Gauss;
 use super::general::equations;
 use super::points::Rare;
 use super::solve::WIDE;
-use super::stages::{
-    AtStages, LOOPED, Stages, gathered, maximum, product, scaled, stage, sum, times, weights,
-};
+use super::stages::{AtStages, LOOPED, Stages, gathered, maximum, product, scaled, stage, sum, times, weights};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::{Collocation, PointDerivatives};

@@ -64,7 +64,9 @@ fn number(variable: impl Fn(&str) -> Option<String>, name: &str) -> Result<Optio
     let Some(text) = variable(name) else { return Ok(None) };
     let number = text.trim().parse().map(Some);
     number.map_err(|_| {
-        format!("{name} is `{text}`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole")
+        format!(
+            "{name} is `{text}`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole"
+        )
     })
 }
 
@@ -206,8 +208,9 @@ mod tests {
                 _ => None,
             };
             let message = Shard::of(None, variable).expect_err("no number").to_string();
-            let expected =
-                format!("{name} is `x`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole");
+            let expected = format!(
+                "{name} is `x`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole"
+            );
             assert_eq!(message, expected);
             assert!(Shard::of(Some("2/5"), variable).is_ok(), "{name}");
         }

@@ -94,8 +94,20 @@ where
         let energy_scale = 0.0;
         let evaluated = clock;
         let roundings = AllRoundings { position: [0.0; N], velocity: [0.0; N], time: [0.0], energy: [0.0] };
-        let mut equations =
-            Self { system, node, dtau, mass, newton, rates, clock, velocity, evaluated, force, energy_scale, roundings };
+        let mut equations = Self {
+            system,
+            node,
+            dtau,
+            mass,
+            newton,
+            rates,
+            clock,
+            velocity,
+            evaluated,
+            force,
+            energy_scale,
+            roundings,
+        };
         equations.advance_clock();
         equations
     }
