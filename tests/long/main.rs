@@ -5,6 +5,7 @@ mod derivatives_of_runs;
 mod energy_preserving_gauss;
 mod failures;
 mod gauss;
+mod gauss_scales;
 mod gauss_slots;
 mod gauss_stiff;
 mod hunt;

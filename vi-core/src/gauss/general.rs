@@ -13,8 +13,8 @@
 use super::newton::Newton;
 use super::points::{Form, Points, Rare};
 use super::stages::{
-    AtStages, Roundings, Stages, change, constant_mass, gathered, maximum, product, roundings, scaled, scatter, sum,
-    times, weights,
+    AtStages, Roundings, Stages, change, constant_mass, gathered, growth, maximum, product, roundings, scaled, scatter,
+    sum, times, weights,
 };
 use super::sweep::{Equations, Increment, VELOCITY};
 use super::tableau::Tableau;
@@ -300,11 +300,14 @@ where
     }
 
     #[inline(always)]
-    fn take_roundings(&mut self, x: &Stages<N, S>) {
-        self.of_velocity = roundings(&self.velocity, &self.terms);
+    fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
+        let before = core::mem::replace(&mut self.of_velocity, roundings(&self.velocity, &self.terms));
+        let of_velocities = growth(&before, &self.of_velocity);
         if self.newton.is_some() {
-            self.of_position = roundings(x, &self.node.q);
+            let before = core::mem::replace(&mut self.of_position, roundings(x, &self.node.q));
+            return growth(&before, &self.of_position).max(of_velocities);
         }
+        of_velocities
     }
 
     /// That of the velocities, in roundings of what they are the sums of, from which positions follow; of stiff steps that of the positions too, which move their forces much.

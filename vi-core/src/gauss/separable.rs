@@ -11,7 +11,7 @@
 
 use super::points::Points;
 use super::stages::{
-    AtStages, Roundings, Stages, change, gathered, product, roundings, scaled, scatter, sum, times, weights,
+    AtStages, Roundings, Stages, change, gathered, growth, product, roundings, scaled, scatter, sum, times, weights,
 };
 use super::sweep::{Equations, Increment};
 use super::tableau::Tableau;
@@ -147,8 +147,9 @@ where
     }
 
     #[inline(always)]
-    fn take_roundings(&mut self, x: &Stages<N, S>) {
-        self.roundings = roundings(x, &self.node.q);
+    fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
+        let before = core::mem::replace(&mut self.roundings, roundings(x, &self.node.q));
+        growth(&before, &self.roundings)
     }
 
     #[inline(always)]

@@ -182,10 +182,10 @@ pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; 
     scaled
 }
 
-/// One over a rounding of each row: a change times that is in roundings.
+/// What changes of each row are measured by: one over its scale. A change times that, over ε, is in roundings.
 pub(super) type Roundings<const N: usize> = [f64; N];
 
-/// Those of the largest entry of each row, and of `start`.
+/// One over the largest entry of each row, and of `start`.
 #[inline(always)]
 pub(super) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start: &SVector<f64, N>) -> Roundings<N> {
     let mut scales = [0.0; N];
@@ -200,13 +200,21 @@ pub(super) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start
     // Vectors of divisions.
     let mut roundings = [0.0; N];
     for k in 0..N {
-        roundings[k] = 1.0 / ((scales[k] + SMALLEST) * f64::EPSILON);
+        // Never zero: a change without end stays one.
+        roundings[k] = 1.0 / (scales[k] + f64::MIN_POSITIVE).min(f64::MAX);
     }
     roundings
 }
 
-/// The smallest number of which a rounding has a reciprocal.
-const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+/// By how much a change is larger in the roundings `after` than in those `before`, at most.
+#[inline(always)]
+pub(super) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>) -> f64 {
+    let mut growths = [0.0; N];
+    for k in 0..N {
+        growths[k] = after[k] / before[k];
+    }
+    maximum(&growths)
+}
 
 /// The largest change of an entry from `before` to `after`, in roundings; then `before` is `after`.
 ///
@@ -229,7 +237,7 @@ pub(super) fn change<const N: usize, const S: usize>(
         changes[k] = maximum(&distances) * roundings[k];
     }
     *before = *after;
-    maximum(&changes)
+    maximum(&changes) / f64::EPSILON
 }
 
 /// The same of many rows: the largest of each stage, and then of all.
@@ -248,7 +256,7 @@ fn change_of_many<const N: usize, const S: usize>(
         }
     }
     // In memory: else the compiler takes pairs of numbers all along, for the sake of this one.
-    maximum(&core::hint::black_box(changes))
+    maximum(&core::hint::black_box(changes)) / f64::EPSILON
 }
 
 /// The larger of two numbers.

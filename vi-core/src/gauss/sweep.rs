@@ -51,8 +51,9 @@ pub(super) trait Equations<const N: usize, const S: usize> {
     fn guess(&self) -> Stages<N, S>;
     /// The velocities at which the last sweep evaluated; none where nothing depends on them.
     fn velocities(&self) -> Option<Stages<N, S>>;
-    /// Takes the roundings in which changes are measured, after a sweep that led to the positions x.
-    fn take_roundings(&mut self, x: &Stages<N, S>);
+    /// Takes the roundings in which changes are measured, after a sweep that led to the positions x, and returns by how much changes are larger in them
+    /// than in those taken before, at most.
+    fn take_roundings(&mut self, x: &Stages<N, S>) -> f64;
     /// The change by the last sweep, which led from x to y, in the roundings taken last, those of positions; then x is y.
     fn change(&self, x: &mut Stages<N, S>, y: &Stages<N, S>) -> f64;
     /// What of the error of the stages, relative, the increment has, where a sweep leaves `contraction` of it.
@@ -168,9 +169,17 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
         if last > COARSE {
             equations.take_roundings(&y);
         }
-        let change = equations.change(&mut x, &y);
+        let mut change = equations.change(&mut x, &y);
+        let is_small = |change, left| change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0);
+        if is_small(change, left) || change >= least {
+            // What ends sweeps is measured in roundings of the stages that they lead to: those taken before may be of other numbers.
+            let growth = equations.take_roundings(&x);
+            change *= growth;
+            left *= growth;
+            error *= growth;
+        }
         state.change = change;
-        if change <= FLOOR && (left <= NEGLIGIBLE || change == 0.0) {
+        if is_small(change, left) {
             break false;
         }
         let stands_out = change > FLOOR || last > NOISE;

@@ -13,7 +13,9 @@
 //! by the new g, V and E'.
 
 use super::super::newton::Newton;
-use super::super::stages::{Roundings, Stages, change, constant_mass, product, roundings, scaled, set, stage, weights};
+use super::super::stages::{
+    Roundings, Stages, change, constant_mass, growth, product, roundings, scaled, set, stage, weights,
+};
 use super::super::sweep::{Equations, Increment, VELOCITY};
 use super::super::tableau::Tableau;
 use crate::collocation::Collocation;
@@ -328,13 +330,17 @@ where
 
     /// With those of velocities, of times, which count as positions, and of energies.
     #[inline(always)]
-    fn take_roundings(&mut self, x: &Stages<N, S>) {
-        self.roundings = AllRoundings {
+    fn take_roundings(&mut self, x: &Stages<N, S>) -> f64 {
+        let after = AllRoundings {
             position: roundings(x, &self.node.q),
             velocity: roundings(&self.rates.velocity, &SVector::zeros()),
             time: roundings(&[self.clock.time], &SVector::from([self.node.t])),
             energy: roundings(&[self.clock.energy], &SVector::from([self.energy_scale])),
         };
+        let before = core::mem::replace(&mut self.roundings, after);
+        let now = &self.roundings;
+        let of_motion = growth(&before.position, &now.position).max(growth(&before.velocity, &now.velocity));
+        of_motion.max(growth(&before.time, &now.time)).max(growth(&before.energy, &now.energy))
     }
 
     #[inline(always)]
