@@ -55,6 +55,12 @@ const EIGHT_V: [f64; 6] = [
     -0.864_731_460_921_02,
 ];
 
+/// A planet about a fixed sun.
+#[must_use]
+pub fn kepler() -> Entry {
+    Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005)
+}
+
 /// The ready systems, in the order in which they are listed.
 #[must_use]
 pub fn systems() -> Vec<Entry> {
@@ -64,7 +70,7 @@ pub fn systems() -> Vec<Entry> {
         Entry::new::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
         Entry::new::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
         Entry::new::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
-        Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005),
+        kepler(),
         Entry::new::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
         Entry::new::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),
         Entry::new::<HardDuffing, 1>("driven oscillator with a stiffening spring", [1.0], rest, 0.01),

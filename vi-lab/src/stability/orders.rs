@@ -8,7 +8,7 @@ use super::ending::{Course, Limit};
 use crate::chart::{Axis, Class, boundary};
 use crate::failure::Failure;
 use core::f64::consts::FRAC_PI_2;
-use vi_core::{EnergyPreservingGauss, State, StepError};
+use vi_core::{Called, EnergyPreservingGauss, State, StepError};
 use vi_systems::Pendulum;
 
 const LIMIT: Limit = Limit { steps: 20_000, until: 25.0, bound: 1e3 };
@@ -45,10 +45,10 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     Ok(())
 }
 
-type Run<const S: usize> = EnergyPreservingGauss<Pendulum, 1, S>;
+type Run<const S: usize> = EnergyPreservingGauss<Called<Pendulum>, 1, S>;
 
 fn begin<const S: usize>(angle: f64, h: f64) -> Result<Run<S>, StepError> {
-    let system = Pendulum::default();
+    let system = Called(Pendulum::default());
     EnergyPreservingGauss::new(system, State::at(&system, 0.0, [angle], [0.0]), h)
 }
 

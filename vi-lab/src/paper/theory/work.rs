@@ -12,7 +12,8 @@ use core::cell::Cell;
 use core::f64::consts::TAU;
 use vi_core::{Called, Gauss, State, StepError};
 use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
-use vi_runs::system::{self, System};
+use vi_runs::ready;
+use vi_runs::system::System;
 use vi_systems::Kepler;
 
 /// Periods of a run; the error is that of the last.
@@ -93,7 +94,7 @@ struct Orbit {
 
 impl Orbit {
     fn new(eccentricity: f64) -> Self {
-        Self { eccentricity, erased: system::erased::<Kepler, 2>() }
+        Self { eccentricity, erased: ready::kepler().system }
     }
 
     /// Where it starts, and how fast.
