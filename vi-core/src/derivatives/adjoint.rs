@@ -10,8 +10,8 @@
 //! [`crate::Integrator::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
 //!
 //! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, and one more run of work (Griewank and Walther, *Evaluating
-//! Derivatives*, chapter 12). Where the caller allows for all nodes, nothing is taken again. Of each step 2N + 1 directions are followed, and one for each parameter
-//! that is asked for.
+//! Derivatives*, chapter 12). Where the caller allows for all nodes, nothing is taken again. Of each step 2N directions are followed, that of the energy and that of
+//! the time where steps depend on them, and one for each parameter that is asked for.
 
 use super::steps::Differentiable;
 use super::variation::{TOGETHER, Variation};
@@ -105,9 +105,12 @@ where
     }
     let mut slope = finite(objective.slope(steps, &ahead.state()), ahead.t())?;
     let mut directions = Variation::of_state();
-    directions.push(Variation { t: 1.0, ..Variation::zero() });
     if I::KEEPS_ENERGY {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
+    }
+    let is_autonomous = <I::System as Lagrangian<N>>::AUTONOMOUS;
+    if !is_autonomous {
+        directions.push(Variation { t: 1.0, ..Variation::zero() });
     }
     let of_state = directions.len();
     directions.extend(objective.parameters().iter().filter_map(|name| Variation::of_parameter::<I::System>(name)));
@@ -135,15 +138,19 @@ where
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
                 let lost = changes_of_energy(before.system(), &state, &directions)?;
                 // The parameters that the step found are those of the step before.
-                let of_energy = changes[2 * N + 1];
+                let of_energy = changes[2 * N];
                 for (index, change) in changes.iter_mut().enumerate() {
-                    let is_of_state = index < 2 * N + 2;
+                    let is_of_state = index < of_state;
                     let own = of_energy * lost[index];
                     let lost = if is_of_state { own } else { core::mem::replace(&mut inherited[index], own) };
                     *change += of_energy * gained[index] - lost;
                 }
             }
-            let (back, of_parameters) = sorted::<I, N>(&changes);
+            let (mut back, of_parameters) = sorted::<I, N>(&changes);
+            if is_autonomous {
+                // A motion that begins later is the same motion.
+                back.t = slope.t;
+            }
             let own = objective.slope(step, &before.state());
             let t = before.t();
             let sum =
@@ -191,7 +198,7 @@ fn between<I: Differentiable<N>, const N: usize>(
         return Ok(Vec::new());
     }
     let mut run = start.clone();
-    let mut runs = Vec::new();
+    let mut runs = Vec::with_capacity(usize::try_from(last - first).unwrap_or(0));
     for step in inner {
         objective.prepare(step, &mut run)?;
         run.step()?;
@@ -232,7 +239,7 @@ fn sorted<I: Differentiable<N>, const N: usize>(changes: &[f64]) -> (Covector<N>
     let mut next = || changes.next().unwrap_or(0.0);
     let q = SVector::from_fn(|_, _| next());
     let p = SVector::from_fn(|_, _| next());
-    let t = next();
     let energy = if I::KEEPS_ENERGY { next() } else { 0.0 };
+    let t = if <I::System as Lagrangian<N>>::AUTONOMOUS { 0.0 } else { next() };
     (Covector { t, q, p, energy }, changes.collect())
 }
