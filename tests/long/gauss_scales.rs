@@ -88,6 +88,18 @@ fn stages_beyond_the_range_of_numbers_are_no_solution() {
     assert!(matches!(outcome, Err(StepError::NonFinite { .. })), "{outcome:?}");
 }
 
+#[test]
+fn stages_that_leave_the_range_of_numbers_change_without_end() {
+    let (q, v) = crate::gauss_stiff::lowest_mode();
+    let system = vi_systems::FpuChain::default();
+    let mut run = Gauss::<_, 16, 8>::new(system, State::at(&system, 0.0, q, v), 25.0).expect("a valid start");
+    let failure = run.find_map(Result::err);
+    let Some(StepError::StagesUnsettled { change, contraction, .. }) = failure else {
+        panic!("{failure:?}");
+    };
+    assert!(change.is_infinite() && contraction.is_infinite(), "{change} {contraction}");
+}
+
 /// The largest part of a coordinate or momentum by which a linear step from small numbers differs from that from large ones.
 fn off<const STAGES: usize>(scale: f64) -> f64 {
     let [q, v] = [[0.7, -0.4], [0.3, 0.9]];

@@ -235,7 +235,8 @@ where
             None
         };
         let solved = side_by_side.unwrap_or_else(|| run.solved_plainly(&Rare::of(system), Some(newton)));
-        let unsettled = || solved.sweeps.convergence.unsettled(run.node.t, run.h, newton.stiffness());
+        let Solved { increment, sweeps, .. } = &solved;
+        let unsettled = || sweeps.convergence.unsettled(increment, [run.node.t, run.h], newton.stiffness());
         let accepted = run.accepted(&Rare::of(&self.system), &solved, Some(newton));
         accepted.ok_or_else(|| lost_force(&self.system, &run.node, run.h).unwrap_or_else(unsettled))
     }

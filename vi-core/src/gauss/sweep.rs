@@ -128,12 +128,18 @@ impl Convergence {
         self.sweeps > 0
     }
 
-    /// The error of stages that did not come to rest, in the step of length h from the time t.
-    pub(super) fn unsettled(&self, t: f64, h: f64, stiffness: f64) -> StepError {
+    /// The error of stages that did not come to rest, in the step of length h from the time t, and led to this increment.
+    pub(super) fn unsettled<const N: usize>(
+        &self,
+        increment: &Increment<N>,
+        [t, h]: [f64; 2],
+        stiffness: f64,
+    ) -> StepError {
         let Self { sweeps, change, contraction } = *self;
-        // What is not a number was beyond all.
+        // What is not a number was beyond all: of two infinite numbers the change is none.
+        let is_beyond = |ratio: f64| ratio.is_nan() || !increment.is_finite();
         let [change, contraction] =
-            [change, contraction].map(|ratio| if ratio.is_nan() { f64::INFINITY } else { ratio });
+            [change, contraction].map(|ratio| if is_beyond(ratio) { f64::INFINITY } else { ratio });
         StepError::StagesUnsettled { t, h, iterations: sweeps, change, contraction, stiffness }
     }
 

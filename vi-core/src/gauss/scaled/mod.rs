@@ -184,7 +184,7 @@ where
         }
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
         let h = time_scale(&self.system, node.t, &node.q) * dtau;
-        solved.sweeps.convergence.unsettled(node.t, h, stiffness)
+        solved.sweeps.convergence.unsettled(&solved.increment, [node.t, h], stiffness)
     }
 
     /// The step by simplified Newton iterations about its middle.
