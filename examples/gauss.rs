@@ -1,6 +1,6 @@
-//! Error against time of Gauss steps: Kepler's problem, e = 0.6, three periods.
+//! How many stages: error against time of Gauss steps, Kepler's problem, e = 0.6, three periods.
 //!
-//! In: nothing. Out: for each error the shortest time of a run, its stages and its steps. `cargo run --release --example gauss`
+//! In: nothing. Out: for each number of stages the shortest time of a run within each error, and its steps. `cargo run --release --example gauss`
 
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -13,11 +13,13 @@ const RUNS: u32 = 9;
 /// Numbers of steps that are tried.
 const STEPS: [u32; 20] = [24, 28, 32, 36, 42, 48, 56, 64, 72, 84, 96, 110, 128, 148, 170, 196, 226, 260, 300, 340];
 
-/// One kind of run: seconds, relative error of the position, stages, steps.
+/// Errors that are asked for.
+const ERRORS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+/// One kind of run: seconds, relative error of the position, steps.
 struct Run {
     seconds: f64,
     error: f64,
-    stages: usize,
     steps: u32,
 }
 
@@ -38,21 +40,30 @@ fn runs<const S: usize>() -> Result<Vec<Run>, StepError> {
         // Steps that are too long have no solution.
         let Ok(end) = end else { continue };
         // After whole periods the planet is where it began.
-        runs.push(Run { seconds, error: (end.q - start.q).norm() / start.q.norm(), stages: S, steps });
+        runs.push(Run { seconds, error: (end.q - start.q).norm() / start.q.norm(), steps });
     }
     Ok(runs)
 }
 
-fn main() -> Result<(), StepError> {
-    let all: Vec<Run> = [runs::<4>()?, runs::<6>()?, runs::<8>()?, runs::<12>()?].into_iter().flatten().collect();
-    for error in [1e-3, 1e-6, 1e-9, 1e-12] {
-        let good = all.iter().filter(|run| run.error <= error);
+/// A line of the fastest runs of S stages within each error.
+fn print_fastest<const S: usize>() -> Result<(), StepError> {
+    let runs = runs::<S>()?;
+    print!("{S:2} stages");
+    for error in ERRORS {
+        let good = runs.iter().filter(|run| run.error <= error);
         match good.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
-            Some(Run { seconds, stages, steps, .. }) => {
-                println!("{error:.0e}: {:6.1} µs, {stages} stages, {steps} steps", 1e6 * seconds);
-            }
-            None => println!("{error:.0e}: none"),
+            Some(Run { seconds, steps, .. }) => print!("  {error:.0e}: {:5.1} µs, {steps:3} steps", 1e6 * seconds),
+            None => print!("  {error:.0e}: none{:15}", ""),
         }
     }
+    println!();
     Ok(())
+}
+
+fn main() -> Result<(), StepError> {
+    print_fastest::<4>()?;
+    print_fastest::<5>()?;
+    print_fastest::<6>()?;
+    print_fastest::<8>()?;
+    print_fastest::<12>()
 }
