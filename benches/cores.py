@@ -14,24 +14,31 @@ import tempfile
 import time
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("svg")
-matplotlib.rcParams["svg.hashsalt"] = "cores"
 import matplotlib.pyplot as plt
+
+# The same numbers give the same bytes.
+plt.rcParams["svg.hashsalt"] = "cores"
 
 
 def counts(most):
-    return [n for n in range(1, most + 1) if n < 4 or n == most or n & (n - 1) == 0 or n % 3 == 0 and (n // 3) & (n // 3 - 1) == 0]
+    """1, 2, 3, 4, 6, 8, 12 … up to all cores."""
+    steps = {factor * 2**k for factor in (1, 3) for k in range(most.bit_length())}
+    return sorted({n for n in steps if n <= most} | {most})
 
 
 def elapsed(commands, threads):
     environment = {**os.environ, "RAYON_NUM_THREADS": str(threads)}
     start = time.perf_counter()
     for together in commands:
-        processes = [subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for command in together]
-        if any(process.wait() for process in processes):
-            sys.exit(f"failed: {together[0]}")
+        processes = [
+            subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            for command in together
+        ]
+        # All are waited for before one that failed ends the program.
+        words = [process.communicate()[1] for process in processes]
+        for process, said in zip(processes, words):
+            if process.returncode != 0:
+                sys.exit(f"{' '.join(process.args)}\n{said}")
     return time.perf_counter() - start
 
 
