@@ -3,12 +3,12 @@
 //! In: a file of Rust. Out: the product of one stage for each `lagrangian!` in it. Mistakes in a system are shown at their
 //! places, and the systems after it are expanded all the same.
 
-use crate::failure::Failure;
 use clap::{Args, ValueEnum};
 use proc_macro2::TokenStream;
 use std::fs;
 use std::path::{Path, PathBuf};
 use vi_codegen::inspect::{self, report, source};
+use vi_report::failure::Failure;
 
 /// The command line of `vi-lab expand`.
 #[derive(Debug, Args)]

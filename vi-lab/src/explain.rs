@@ -5,11 +5,11 @@
 //! systems are read from the files that the library itself is made of.
 
 use super::{catalogue, expand};
-use crate::failure::Failure;
 use clap::{Args, ValueEnum};
 use proc_macro2::TokenStream;
 use std::path::Path;
 use vi_codegen::inspect::{self, source};
+use vi_report::failure::Failure;
 
 /// The command line of `vi-lab explain`.
 #[derive(Debug, Args)]

@@ -6,51 +6,35 @@
 //!
 //! | module | what it makes |
 //! |---|---|
-//! | `catalogue` | the systems by name |
 //! | `new` | `vi-lab new`: a crate of one's own with all of this command |
 //! | `run` | `vi-lab run`: rows as CSV or NPY |
-//! | `paper` | `vi-lab paper`: figures, tables and the page |
-//! | `stability` | `vi-lab stability`: where methods fail, as maps |
+//! | `vi_studies` | `vi-lab paper`: figures, tables and the page; `vi-lab stability`: where methods fail, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: how fast neighbouring motions part |
 //! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
-//! | `chart`, `table`, `html`, `report` | figures, tables, and the page that holds them |
-//! | `input`, `numbers`, `quantity` | numbers as users write them, and as pages and messages do; what differs from run to run |
 //! | `npy`, `place` | the head of an array file; where a file can be written |
-//! | `progress`, `machine`, `failure`, `interrupt` | bars, versions, errors, signals |
+//! | `vi_report` | what all of them show and say; the systems by name |
 
-mod catalogue;
-mod chart;
 mod expand;
 mod explain;
-mod failure;
-mod html;
-mod input;
-mod interrupt;
 mod lyapunov;
-mod machine;
 mod new;
 mod npy;
-mod numbers;
-mod paper;
 mod place;
-mod progress;
-mod quantity;
-mod report;
 mod run;
-mod stability;
 mod sweep;
-mod table;
 mod work_precision;
 
-pub use catalogue::Own;
 use clap::{Parser, Subcommand};
-use failure::Failure;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use vi_report::catalogue;
+pub use vi_report::catalogue::Own;
+use vi_report::failure::Failure;
 pub use vi_runs::ready::Entry;
+use vi_studies::{paper, stability};
 
 /// Variational integrators at work: simulate a system, or reproduce the paper.
 #[derive(Debug, Parser)]

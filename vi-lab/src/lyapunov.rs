@@ -3,12 +3,12 @@
 //! In: the command line. Out: estimates of the largest Lyapunov exponents along one run of Gauss steps, at times each twice the one before, so that a reader
 //! sees whether they have settled; as CSV on standard output. The directions are those of the tangent map of the steps themselves (`vi_core::derivatives`).
 
-use crate::catalogue::kebab;
-use crate::failure::{Failure, advice};
-use crate::input::{count, number};
-use crate::numbers::short;
 use crate::run;
 use clap::Args;
+use vi_report::catalogue::kebab;
+use vi_report::failure::{Failure, advice};
+use vi_report::input::{count, number};
+use vi_report::numbers::short;
 use vi_runs::plan::Method;
 
 /// The command line of `vi-lab lyapunov`.

@@ -3,10 +3,10 @@
 //! In: a name. Out: a folder with a crate that builds and runs as it is: the manifest, with profiles in which debug builds step fast and
 //! release builds are short; a library with one system; the program with all of this command for it; a README of five lines.
 
-use crate::failure::Failure;
 use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
+use vi_report::failure::Failure;
 
 /// The command line of `vi-lab new`.
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! Where a file can be written.
 
-use crate::failure::Failure;
 use std::path::Path;
+use vi_report::failure::Failure;
 
 /// Whether a file can be made at a path, were it not for permissions: its folder is there, and the path is no folder itself. `what` is what the file is.
 ///

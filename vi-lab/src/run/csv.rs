@@ -4,14 +4,14 @@
 //! WRITTEN the file consists of whole lines, whatever ends the run.
 
 use super::{BLOCK, Request, Sink, energies, method};
-use crate::failure::Failure;
-use crate::machine::{VERSION, command_line};
-use crate::numbers::{assigned, short};
-use crate::table::csv_field;
 use core::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use vi_report::failure::Failure;
+use vi_report::machine::{VERSION, command_line};
+use vi_report::numbers::{assigned, short};
+use vi_report::table::csv_field;
 use vi_runs::simulation::Row;
 
 /// A CSV file, or standard output.

@@ -5,8 +5,8 @@
 //! become many more: [`Extent::check`] ends such a run.
 
 use super::request::Request;
-use crate::failure::Failure;
-use crate::numbers::{about, short};
+use vi_report::failure::Failure;
+use vi_report::numbers::{about, short};
 
 /// Bytes of output that need no permission.
 const LIMIT: f64 = 1e9;

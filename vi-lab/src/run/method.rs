@@ -1,6 +1,6 @@
 //! The integrator of a run in words: `energy, 2 stages, shift 0.5, with fallback`.
 
-use crate::numbers::short;
+use vi_report::numbers::short;
 use vi_runs::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 
 /// The integrator of a plan and its start, as they are asked for on the command line.

@@ -23,11 +23,6 @@ mod scene;
 mod shift;
 mod ways_out;
 
-use crate::failure::{Failure, advice};
-use crate::input::{count, number};
-use crate::interrupt::{Interrupt, Signal};
-use crate::numbers::short;
-use crate::progress::Progress;
 use clap::Args;
 use core::cell::Cell;
 use extent::Extent;
@@ -35,6 +30,11 @@ use request::Output;
 pub(crate) use request::{Length, Request};
 use shift::Wanted;
 use std::path::PathBuf;
+use vi_report::failure::{Failure, advice};
+use vi_report::input::{count, number};
+use vi_report::interrupt::{Interrupt, Signal};
+use vi_report::numbers::short;
+use vi_report::progress::Progress;
 use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
 use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
@@ -400,7 +400,7 @@ mod tests {
 
     #[test]
     fn a_signal_ends_a_run_after_the_node_reached_last() {
-        for (signal, status) in crate::interrupt::SIGNALS.into_iter().zip([130, 143]) {
+        for (signal, status) in vi_report::interrupt::SIGNALS.into_iter().zip([130, 143]) {
             let looks = Cell::new(0);
             let third_look = || {
                 looks.set(looks.get() + 1);

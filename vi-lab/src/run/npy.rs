@@ -5,13 +5,13 @@
 //! the file, whatever ends the run.
 
 use super::{BLOCK, Request, Sink, energies, method};
-use crate::failure::Failure;
-use crate::machine::{VERSION, command_line};
 use crate::npy::{ROOM, head};
 use serde_json::json;
 use std::fs::{self, File};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use vi_report::failure::Failure;
+use vi_report::machine::{VERSION, command_line};
 use vi_runs::simulation::Row;
 
 /// An NPY file.

@@ -4,14 +4,14 @@
 //! each stretch are kept, of a phase portrait every 2^k-th row, which is then drawn as dots.
 
 use super::{Request, Sink, method};
-use crate::catalogue::kebab;
-use crate::chart::{Axis, Chart, Look, Panel, Sample, Series, Sheet, Trace};
-use crate::failure::Failure;
-use crate::machine::{VERSION, command_line};
-use crate::numbers::{assigned, short};
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use vi_report::catalogue::kebab;
+use vi_report::chart::{Axis, Chart, Look, Panel, Sample, Series, Sheet, Trace};
+use vi_report::failure::Failure;
+use vi_report::machine::{VERSION, command_line};
+use vi_report::numbers::{assigned, short};
 use vi_runs::simulation::Row;
 
 /// The most coordinates that are drawn.

@@ -5,9 +5,9 @@
 //! is at rest.
 
 use super::request::{Length, Request};
-use crate::failure::Failure;
-use crate::numbers::{about, short};
 use core::cell::Cell;
+use vi_report::failure::Failure;
+use vi_report::numbers::{about, short};
 use vi_runs::plan::{Method, Plan};
 
 /// Checks the step by itself and against the times of the run.

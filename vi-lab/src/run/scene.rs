@@ -20,12 +20,12 @@
 //! With a table `[sweep]` it is many runs: see `sweep/scene.rs`.
 
 use super::shift::{self, Wanted};
-use crate::failure::Failure;
-use crate::input::count_of_scene;
 use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
+use vi_report::failure::Failure;
+use vi_report::input::count_of_scene;
 use vi_runs::plan::{Method, Start};
 
 /// The entries of a scene file.

@@ -2,10 +2,10 @@
 //!
 //! In: text, or a value of TOML. Out: the shift, or one line that says what is allowed.
 
-use crate::input::number;
 use core::fmt;
 use serde::Deserializer;
 use serde::de::{self, Visitor};
+use vi_report::input::number;
 
 /// A shift that is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]

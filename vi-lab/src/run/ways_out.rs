@@ -5,9 +5,9 @@
 //! Nothing for an error of another kind.
 
 use super::request::Request;
-use crate::numbers::about;
 use core::cell::Cell;
 use vi_core::StepError;
+use vi_report::numbers::about;
 use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift};
 use vi_runs::simulation::Row;
 

@@ -5,10 +5,10 @@
 
 use super::random::{normal, uniform};
 use super::scene::{Over, Spacing, Two};
-use crate::failure::Failure;
-use crate::numbers::short;
-use crate::quantity::Quantity;
 use core::fmt;
+use vi_report::failure::Failure;
+use vi_report::numbers::short;
+use vi_report::quantity::Quantity;
 use vi_runs::system::System;
 
 /// A quantity with its values.
@@ -177,7 +177,7 @@ impl fmt::Display for Axis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue;
+    use vi_report::catalogue;
 
     fn axis(over: Over) -> Result<Axis, String> {
         let entry = catalogue::find("kepler").unwrap_or_else(|failure| panic!("{failure}"));

@@ -6,13 +6,13 @@
 
 use super::part::Growing;
 use super::study::Study;
-use crate::failure::Failure;
-use crate::interrupt::Interrupt;
-use crate::progress::Progress;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
+use vi_report::failure::Failure;
+use vi_report::interrupt::Interrupt;
+use vi_report::progress::Progress;
 
 /// Time between two looks for a signal.
 const PATIENCE: Duration = Duration::from_millis(50);

@@ -7,7 +7,7 @@
 use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
-use crate::failure::Failure;
+use vi_report::failure::Failure;
 use vi_runs::plan::Plan;
 use vi_runs::system::System;
 
@@ -101,7 +101,7 @@ impl Items {
 mod tests {
     use super::super::random::uniform;
     use super::*;
-    use crate::catalogue;
+    use vi_report::catalogue;
 
     fn items(text: &str) -> Result<Items, String> {
         let sweep: Sweep = toml::from_str(text).map_err(|error| error.message().to_owned())?;

@@ -5,9 +5,9 @@
 use super::ending::Ending;
 use super::scene::{Cut, Keep, Passing, Sweep};
 use super::shape::{Column, Shape};
-use crate::failure::Failure;
-use crate::numbers::short;
 use vi_core::integrator::Direction;
+use vi_report::failure::Failure;
+use vi_report::numbers::short;
 use vi_runs::plan::Plan;
 use vi_runs::simulation::{Row, Section};
 

@@ -5,10 +5,10 @@
 
 use super::part::Part;
 use super::sink::{Format, Target};
-use crate::failure::Failure;
 use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
+use vi_report::failure::Failure;
 
 /// Names in a message.
 const MOST_NAMES: usize = 5;

@@ -28,7 +28,6 @@ mod shard;
 mod sink;
 mod study;
 
-use crate::failure::Failure;
 use clap::Args;
 use part::Growing;
 use shard::Shard;
@@ -36,6 +35,7 @@ use sink::{Format, beside};
 use std::env;
 use std::path::PathBuf;
 use study::Study;
+use vi_report::failure::Failure;
 
 /// The command line of `vi-lab sweep`.
 #[derive(Clone, Debug, Args)]

@@ -9,13 +9,13 @@
 
 use super::shape::Shape;
 use super::shard::Shard;
-use crate::failure::Failure;
 use core::num::NonZeroU64;
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use vi_report::failure::Failure;
 
 /// How a part begins.
 const MAGIC: &[u8] = b"vi-lab part 1\n";

@@ -13,8 +13,8 @@
 //! section = { coordinate = "y", at = 0.0, direction = "rising" }   # or { period = 6.28 }
 //! ```
 
-use crate::input::count_of_scene;
 use serde::Deserialize;
+use vi_report::input::count_of_scene;
 
 /// The entries of the table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]

@@ -4,10 +4,10 @@
 //! numbered from 0, as the tasks of an array are; the runs of one stand next to each other, so that parts put together in their order
 //! are the whole.
 
-use crate::failure::Failure;
 use core::fmt;
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
+use vi_report::failure::Failure;
 
 /// One of some parts of equal size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

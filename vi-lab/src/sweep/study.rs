@@ -9,11 +9,11 @@ use super::keep::Kept;
 use super::part::{Chunk, Description, Heading};
 use super::scene::Keep;
 use super::shard::Shard;
-use crate::catalogue;
-use crate::failure::Failure;
-use crate::machine::VERSION;
-use crate::numbers::{about, assigned, short};
 use crate::run::{Length, Request, method};
+use vi_report::catalogue;
+use vi_report::failure::Failure;
+use vi_report::machine::VERSION;
+use vi_report::numbers::{about, assigned, short};
 
 /// Steps in a chunk: some hundredths of a second of fixed steps.
 const STEPS: f64 = 5e4;

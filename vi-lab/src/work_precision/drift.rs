@@ -7,9 +7,9 @@
 
 use super::method::{Method, TOO_MANY, Task};
 use super::reference::Reference;
-use crate::numbers::order;
-use crate::progress::Progress;
 use core::cell::Cell;
+use vi_report::numbers::order;
+use vi_report::progress::Progress;
 use vi_runs::plan::{PhasePoint, Plan};
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
@@ -160,7 +160,7 @@ fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut Watch<'_>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue;
+    use vi_report::catalogue;
 
     #[test]
     fn kepler_drifts_with_the_rival_and_not_with_fixed_steps() {

@@ -6,9 +6,9 @@
 
 use super::method::Method;
 use super::study::{Point, Run};
-use crate::failure::Failure;
 use std::fs;
 use std::path::Path;
+use vi_report::failure::Failure;
 
 /// Names of the columns, as in the table of runs.
 const HEAD: &str = "method,setting,error,evaluations,\"seconds, least\",\"seconds, median\",ended";

@@ -6,9 +6,9 @@ use super::clock;
 use super::drift::Drift;
 use super::method::Method;
 use super::study::{Findings, Point, fitted_order};
-use crate::chart::{Axis, Chart, Look, Series};
-use crate::numbers::{about, extremes, scientific};
-use crate::table::Table;
+use vi_report::chart::{Axis, Chart, Look, Series};
+use vi_report::numbers::{about, extremes, scientific};
+use vi_report::table::Table;
 
 /// An error above this is no approximation of the motion.
 pub(super) const LOST: f64 = 2.0;

@@ -4,8 +4,8 @@
 //! tolerance. Out: the state reached, or why it was not. The energy-preserving integrator stops at the first node from the
 //! end on; the others take the number of steps that is nearest.
 
-use crate::chart::Look;
 use core::cell::Cell;
+use vi_report::chart::Look;
 use vi_runs::plan::{self, PhasePoint, Plan};
 use vi_runs::rival::Ended;
 use vi_runs::simulation::Simulation;

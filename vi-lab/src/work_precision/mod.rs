@@ -23,18 +23,18 @@ mod method;
 mod reference;
 mod study;
 
-use crate::catalogue;
-use crate::failure::Failure;
-use crate::html::escape;
-use crate::input::number;
-use crate::machine::Machine;
-use crate::numbers::scientific;
-use crate::progress::Progress;
-use crate::report::{Page, Report};
 use clap::Args;
 use method::Method;
 use std::path::PathBuf;
 use study::Findings;
+use vi_report::catalogue;
+use vi_report::failure::Failure;
+use vi_report::html::escape;
+use vi_report::input::number;
+use vi_report::machine::Machine;
+use vi_report::numbers::scientific;
+use vi_report::page::{Page, Report};
+use vi_report::progress::Progress;
 use vi_runs::ready::Entry;
 
 /// `vi-lab work-precision SYSTEM`.

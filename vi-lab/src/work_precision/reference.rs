@@ -115,7 +115,7 @@ fn distance(one: &[f64], other: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue;
+    use vi_report::catalogue;
 
     #[test]
     fn the_reference_is_the_closed_form() {

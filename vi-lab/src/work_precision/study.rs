@@ -6,9 +6,9 @@ use super::clock;
 use super::drift::{self, Drift};
 use super::method::{Method, Task};
 use super::reference::{Agreement, Reference};
-use crate::numbers::{median, order};
-use crate::progress::Progress;
 use core::cell::Cell;
+use vi_report::numbers::{median, order};
+use vi_report::progress::Progress;
 use vi_runs::plan::PhasePoint;
 use vi_runs::ready::Entry;
 use vi_runs::rival::Ended;
@@ -196,8 +196,8 @@ const FITTED: f64 = 2.9;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue;
     use vi_core::StepError;
+    use vi_report::catalogue;
 
     fn quick(name: &str, q: &[f64]) -> Findings {
         let entry = catalogue::find(name).expect("the system");

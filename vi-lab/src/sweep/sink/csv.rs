@@ -5,10 +5,10 @@
 use super::super::part::Description;
 use super::super::shape::{Column, Kind, Shape, word};
 use super::Sink;
-use crate::table::csv_field;
 use core::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, Write as _};
+use vi_report::table::csv_field;
 
 /// A CSV file.
 pub(super) struct Csv {

@@ -10,11 +10,11 @@ mod parquet;
 
 use super::part::Description;
 use super::shape::Shape;
-use crate::failure::Failure;
 use crate::place;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
+use vi_report::failure::Failure;
 
 /// Where rows go.
 trait Sink {

@@ -1,0 +1,156 @@
+//! The systems that the command knows by name, each with a place to start from: those of the program that the command stands in
+//! ([`crate::main!`]), then the ready ones.
+//!
+//! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
+
+use crate::failure::Failure;
+use crate::machine::program;
+use crate::table::Table;
+use std::path::Path;
+use std::sync::OnceLock;
+use vi_runs::ready::{self, Entry};
+
+/// The systems of a program of one's own, set once before its command is read.
+static OWN: OnceLock<Own> = OnceLock::new();
+
+/// The systems of a program of one's own; [`crate::main!`] writes it.
+#[derive(Clone, Copy)]
+pub struct Own {
+    /// The text of the files that declare them.
+    pub sources: &'static [&'static str],
+    /// The systems.
+    pub entries: fn() -> Vec<Entry>,
+}
+
+impl Own {
+    /// Makes these systems known to the command.
+    pub fn declare(self) {
+        // A second set of systems in one process is none.
+        let _ = OWN.set(self);
+    }
+}
+
+/// The text of the files that declare the systems.
+pub fn sources() -> impl Iterator<Item = &'static str> {
+    let own = OWN.get().map_or(&[][..], |own| own.sources);
+    own.iter().copied().chain(vi_systems::SOURCES)
+}
+
+/// All systems, in the order in which they are listed: one's own hide ready ones of the same name.
+pub fn entries() -> Vec<Entry> {
+    let mut all = OWN.get().map_or_else(Vec::new, |own| (own.entries)());
+    let own: Vec<&str> = all.iter().map(|entry| entry.system.name()).collect();
+    let others: Vec<Entry> = ready::systems().into_iter().filter(|entry| !own.contains(&entry.system.name())).collect();
+    all.extend(others);
+    all
+}
+
+/// The first system of one's own: what a command is about that names none.
+pub fn first_own() -> Result<Entry, Failure> {
+    own().ok_or_else(|| Failure::Input(format!("name a system, as `{} list` does", program())))
+}
+
+/// The first of one's own systems, where the program has one.
+pub fn own() -> Option<Entry> {
+    OWN.get().and_then(|own| (own.entries)().into_iter().next())
+}
+
+/// The entry of this name, or the first of one's own.
+pub fn named(name: Option<&str>) -> Result<Entry, Failure> {
+    name.map_or_else(first_own, find)
+}
+
+/// The entry of this name.
+pub fn find(name: &str) -> Result<Entry, Failure> {
+    let wanted = plain(name);
+    let mut entries = entries();
+    if let Some(index) = entries.iter().position(|entry| plain(entry.system.name()) == wanted) {
+        return Ok(entries.swap_remove(index));
+    }
+    let near = entries
+        .iter()
+        .map(|entry| (strsim::jaro_winkler(&plain(entry.system.name()), &wanted), entry))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|(one, _), (other, _)| one.total_cmp(other));
+    let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
+    let hint = match near {
+        Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
+        None if extension == Some("rs") => "of a file of Rust `explain` and `expand` show the systems".to_owned(),
+        None if name.contains(['/', '\\', '.']) => {
+            "a scene is a file whose name ends in .toml, a declaration one in .rs".to_owned()
+        }
+        None => format!("`{} list` names them all", program()),
+    };
+    Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
+}
+
+/// The catalogue as a table.
+pub fn table() -> Table {
+    let mut table = Table::new("systems", ["system", "what it is", "parameters", "starts at", "h"]);
+    for Entry { system, about, q, v, h } in entries() {
+        let parameters: Vec<String> =
+            system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let coordinates = shortened(system.coordinates().iter().map(ToString::to_string).collect());
+        let start = format!("({coordinates}) = ({}), v = ({})", list(&q), list(&v));
+        table.row([kebab(system.name()), about.to_owned(), parameters.join(", "), start, h.to_string()]);
+    }
+    table
+}
+
+fn list(values: &[f64]) -> String {
+    shortened(values.iter().map(f64::to_string).collect())
+}
+
+/// A list that fits in a table: of more than four entries the first two and the last.
+fn shortened(mut entries: Vec<String>) -> String {
+    if entries.len() > 4 {
+        entries.splice(2..entries.len() - 1, ["…".to_owned()]);
+    }
+    entries.join(", ")
+}
+
+/// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.
+pub fn kebab(name: &str) -> String {
+    let mut kebab = String::new();
+    for (index, letter) in name.chars().enumerate() {
+        if letter.is_uppercase() && index > 0 {
+            kebab.push('-');
+        }
+        kebab.extend(letter.to_lowercase());
+    }
+    kebab
+}
+
+/// A name without case, hyphens and underscores.
+fn plain(name: &str) -> String {
+    name.chars().filter(|letter| !matches!(letter, '-' | '_' | ' ')).flat_map(char::to_lowercase).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_in_any_spelling() {
+        for name in ["double-well", "DoubleWell", "double_well", "DOUBLEWELL"] {
+            assert!(find(name).is_ok_and(|entry| entry.system.name() == "DoubleWell"), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_near_name_is_offered() {
+        let message = |name: &str| find(name).err().map(|failure| failure.to_string());
+        assert_eq!(
+            message("double-wel").as_deref(),
+            Some("there is no system `double-wel`; did you mean `double-well`?")
+        );
+        assert_eq!(
+            message("folder/xyz.yml").as_deref(),
+            Some(
+                "there is no system `folder/xyz.yml`; a scene is a file whose name ends in .toml, a declaration one in .rs"
+            )
+        );
+        let listed = format!("there is no system `xyz`; `{} list` names them all", program());
+        assert_eq!(message("xyz"), Some(listed));
+    }
+}

@@ -1,0 +1,88 @@
+//! Colours of Okabe and Ito, which colour-blind readers tell apart, with a stroke and a marker for each meaning.
+//!
+//! A method keeps its look in every figure. Source: Okabe and Ito, *Color universal design* (2008).
+
+use kuva::prelude::MarkerShape;
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// Colour as hexadecimal RGB.
+    pub colour: &'static str,
+    /// Width of the line in pixels; zero draws none.
+    pub width: f64,
+    /// Pattern of the line.
+    pub stroke: Stroke,
+    /// Marker at each point, with its radius in pixels.
+    pub marker: Option<(MarkerShape, f64)>,
+}
+
+/// Pattern of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// Without gaps.
+    Solid,
+    /// Dashes.
+    Dashed,
+    /// Dots.
+    Dotted,
+}
+
+impl Look {
+    /// The energy-preserving integrator.
+    pub const ENERGY: Self = Self::of("#D55E00", MarkerShape::Circle);
+    /// The fixed-step integrator.
+    pub const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
+    /// Gauss steps of few stages, and of many.
+    pub const GAUSS: [Self; 2] = [
+        Self { stroke: Stroke::Dashed, ..Self::of("#56B4E9", MarkerShape::Plus) },
+        Self { width: 2.6, ..Self::of("#56B4E9", MarkerShape::Circle) },
+    ];
+    /// A method of other makers.
+    pub const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
+    /// A program of other makers.
+    pub const ELSEWHERE: Self = Self { stroke: Stroke::Dashed, ..Self::of("#000000", MarkerShape::Square) };
+    /// The exact solution, or a law.
+    pub const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
+    /// Below [`Look::EXACT`] where the ground is coloured.
+    pub const HALO: Self = Self { colour: "#FFFFFF", width: 4.0, stroke: Stroke::Solid, marker: None };
+    /// What a published number says.
+    pub const PUBLISHED: Self = Self { colour: "#777777", width: 1.4, stroke: Stroke::Dotted, marker: None };
+    /// Level sets and the like.
+    pub const BACKGROUND: Self = Self { colour: "#C9CED6", width: 1.0, stroke: Stroke::Solid, marker: None };
+    /// Further series, in this order.
+    pub const OTHERS: [Self; 4] = [
+        Self::of("#009E73", MarkerShape::Triangle),
+        Self::of("#CC79A7", MarkerShape::Diamond),
+        Self::of("#E69F00", MarkerShape::TriangleDown),
+        Self::of("#56B4E9", MarkerShape::Plus),
+    ];
+
+    const fn of(colour: &'static str, marker: MarkerShape) -> Self {
+        Self { colour, width: 1.8, stroke: Stroke::Solid, marker: Some((marker, 4.0)) }
+    }
+
+    /// The line alone.
+    pub const fn line(self) -> Self {
+        Self { marker: None, ..self }
+    }
+
+    /// The line alone, dashed.
+    pub const fn dashed(self) -> Self {
+        Self { marker: None, stroke: Stroke::Dashed, ..self }
+    }
+
+    /// The line alone, dotted.
+    pub const fn dotted(self) -> Self {
+        Self { marker: None, stroke: Stroke::Dotted, ..self }
+    }
+
+    /// The markers alone, of the given radius.
+    pub const fn dots(self, radius: f64) -> Self {
+        let marker = match self.marker {
+            Some((shape, _)) => Some((shape, radius)),
+            None => Some((MarkerShape::Circle, radius)),
+        };
+        Self { width: 0.0, marker, ..self }
+    }
+}

@@ -1,0 +1,167 @@
+//! Recording a run of any length in bounded memory, for a figure of some hundred pixels.
+//!
+//! In: the points of a run one after the other. Out: [`Trace::points`], of a function of the time, with the extremes of every stretch; and
+//! [`Sample::points`], of a curve in the plane, every 2^k-th of its points. Both give all points of a run that is short. Every point that they give is
+//! one of those that were put in, in their order, and the same run always leaves the same ones.
+
+/// The most stretches of a trace: two for each column of a wide figure.
+const STRETCHES: usize = 2048;
+/// The most points of a sample.
+const POINTS: usize = 2048;
+
+/// A function of the time: of each stretch of points the first, the lowest, the highest and the last.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    /// Stretches of `1 << doublings` points each, but the last.
+    stretches: Vec<Stretch>,
+    doublings: u32,
+    count: u64,
+}
+
+/// Points that follow each other.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    first: Point,
+    low: Point,
+    high: Point,
+    last: Point,
+}
+
+/// A point and its number.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    number: u64,
+    at: (f64, f64),
+}
+
+impl Stretch {
+    fn of(point: Point) -> Self {
+        Self { first: point, low: point, high: point, last: point }
+    }
+
+    /// Both stretches as one.
+    fn joined(self, next: Self) -> Self {
+        Self {
+            first: self.first,
+            low: if next.low.at.1 < self.low.at.1 { next.low } else { self.low },
+            high: if next.high.at.1 > self.high.at.1 { next.high } else { self.high },
+            last: next.last,
+        }
+    }
+}
+
+impl Trace {
+    /// Adds a point.
+    pub fn push(&mut self, at: (f64, f64)) {
+        let next = Stretch::of(Point { number: self.count, at });
+        let begins = self.count.is_multiple_of(1 << self.doublings);
+        self.count += 1;
+        match self.stretches.last_mut() {
+            Some(last) if !begins => *last = last.joined(next),
+            _ => self.stretches.push(next),
+        }
+        if self.stretches.len() > STRETCHES {
+            // The number of points is a multiple of a stretch, plus one: pairs are whole but for the last.
+            let pair = |pair: &[Stretch]| pair.iter().copied().reduce(Stretch::joined);
+            self.stretches = self.stretches.chunks(2).filter_map(pair).collect();
+            self.doublings += 1;
+        }
+    }
+
+    /// The points that are left.
+    pub fn points(&self) -> Vec<(f64, f64)> {
+        let mut points = Vec::new();
+        for Stretch { first, low, high, last } in &self.stretches {
+            let mut stretch = [first, low, high, last];
+            stretch.sort_by_key(|point| point.number);
+            let mut before = None;
+            for Point { number, at } in stretch {
+                if before != Some(number) {
+                    points.push(*at);
+                }
+                before = Some(number);
+            }
+        }
+        points
+    }
+}
+
+/// A curve in the plane: every 2^k-th of its points.
+#[derive(Clone, Debug, Default)]
+pub struct Sample {
+    points: Vec<(f64, f64)>,
+    doublings: u32,
+    count: u64,
+}
+
+impl Sample {
+    /// Adds a point.
+    pub fn push(&mut self, at: (f64, f64)) {
+        if self.count.is_multiple_of(1 << self.doublings) {
+            self.points.push(at);
+        }
+        self.count += 1;
+        if self.points.len() > POINTS {
+            self.points = self.points.iter().copied().step_by(2).collect();
+            self.doublings += 1;
+        }
+    }
+
+    /// Whether these are all points that were put in.
+    pub fn is_whole(&self) -> bool {
+        self.doublings == 0
+    }
+
+    /// The points that are left.
+    pub fn points(&self) -> Vec<(f64, f64)> {
+        self.points.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_run_is_whole() {
+        let points: Vec<(f64, f64)> = (0..2048).map(|i| (f64::from(i), f64::from(i % 7))).collect();
+        let mut trace = Trace::default();
+        let mut sample = Sample::default();
+        for point in &points {
+            trace.push(*point);
+            sample.push(*point);
+        }
+        assert_eq!((trace.points(), sample.points(), sample.is_whole()), (points.clone(), points, true));
+        assert!(Trace::default().points().is_empty() && Sample::default().points().is_empty());
+    }
+
+    #[test]
+    fn a_long_run_keeps_its_ends_its_extremes_and_its_order_in_bounded_memory() {
+        let count = 1_000_003;
+        let mut trace = Trace::default();
+        let mut sample = Sample::default();
+        for i in 0..count {
+            // A swing with one spike of a single point up, and one down.
+            let height = match i {
+                4711 => 9.0,
+                777_777 => -9.0,
+                _ => f64::from(i % 7),
+            };
+            trace.push((f64::from(i), height));
+            sample.push((f64::from(i), height));
+        }
+        let points = trace.points();
+        assert!(points.len() <= 4 * STRETCHES && points.len() >= STRETCHES, "{}", points.len());
+        assert!(points.is_sorted_by(|one, other| one.0 < other.0));
+        assert_eq!((points[0], points[points.len() - 1].0), ((0.0, 0.0), f64::from(count - 1)));
+        assert!(points.contains(&(4711.0, 9.0)) && points.contains(&(777_777.0, -9.0)));
+        // 2¹⁸ points in a stretch and more would be too many: of each 512 points the swing is seen.
+        for window in points.windows(5) {
+            assert!(window[4].0 - window[0].0 <= 2.0 * 512.0, "{window:?}");
+        }
+        let kept = sample.points();
+        assert!(kept.len() > POINTS / 2 && kept.len() <= POINTS && !sample.is_whole());
+        let distance = kept[1].0 - kept[0].0;
+        assert!(kept.windows(2).all(|pair| (pair[1].0 - pair[0].0 - distance).abs() < 0.5));
+    }
+}

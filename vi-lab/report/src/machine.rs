@@ -1,0 +1,86 @@
+//! What made a file: versions, command line, machine.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Version of the project.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Version of the compiler.
+const RUSTC: &str = env!("VI_RUSTC");
+
+/// The machine, and when the work began.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    processor: String,
+    threads: usize,
+    started: Instant,
+}
+
+impl Machine {
+    /// This machine, now.
+    pub fn here() -> Self {
+        Self {
+            processor: processor().unwrap_or_else(|| "unknown processor".to_owned()),
+            threads: std::thread::available_parallelism().map_or(1, Into::into),
+            started: Instant::now(),
+        }
+    }
+
+    /// One paragraph for a footer.
+    pub fn describe(&self) -> String {
+        let build = if cfg!(debug_assertions) { "debug" } else { "release" };
+        format!(
+            "Made by vi-lab {VERSION} ({build} build, {RUSTC}) with “{command}” in {seconds:.1} s on {processor}, \
+             {threads} threads, {os} {architecture}. Charts drawn by kuva {kuva}.",
+            command = command_line(),
+            seconds = self.started.elapsed().as_secs_f64(),
+            processor = self.processor,
+            threads = self.threads,
+            os = env::consts::OS,
+            architecture = env::consts::ARCH,
+            kuva = kuva::VERSION,
+        )
+    }
+}
+
+/// The name of the program that runs: `vi-lab`, or one of a user's own.
+pub fn program() -> String {
+    let path = env::args_os().next().map(PathBuf::from);
+    let name = path.as_deref().and_then(Path::file_stem).map(|name| name.to_string_lossy().into_owned());
+    name.unwrap_or_else(|| "vi-lab".to_owned())
+}
+
+/// The command line on one line, the program by its name alone; an argument with blanks stands in quotes.
+pub fn command_line() -> String {
+    let arguments = env::args_os().skip(1).map(|argument| quoted(&argument.to_string_lossy()));
+    core::iter::once(quoted(&program())).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// An argument as one word of one line.
+fn quoted(argument: &str) -> String {
+    let needs_quotes = argument.is_empty() || argument.contains(|letter: char| letter.is_whitespace());
+    let visible =
+        |letter: char| if letter.is_control() { letter.escape_default().collect() } else { letter.to_string() };
+    let argument: String = argument.chars().map(visible).collect();
+    if needs_quotes { format!("'{argument}'") } else { argument }
+}
+
+/// The processor's name, where the system tells it.
+fn processor() -> Option<String> {
+    let description = fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = description.lines().find(|line| line.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_argument_is_one_word_of_one_line() {
+        let shown = ["kepler", "a b.csv", "", "x\ny"].map(quoted);
+        assert_eq!(shown, ["kepler", "'a b.csv'", "''", "'x\\ny'"]);
+    }
+}

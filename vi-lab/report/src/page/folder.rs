@@ -1,0 +1,66 @@
+//! A page and the files beside it, written as they grow.
+
+use super::Page;
+use crate::chart::Figure;
+use crate::failure::Failure;
+use crate::machine::Machine;
+use crate::table::Table;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The page under construction, and the folder of its files.
+#[derive(Debug)]
+pub struct Report {
+    folder: PathBuf,
+    page: Page,
+}
+
+impl Report {
+    /// An empty page in a folder, which is made if need be.
+    ///
+    /// # Errors
+    /// [`Failure::File`] where the folder cannot be made; so for all files below.
+    pub fn new(folder: &Path, page: Page) -> Result<Self, Failure> {
+        fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
+        Ok(Self { folder: folder.to_owned(), page })
+    }
+
+    /// Starts a section.
+    pub fn section(&mut self, heading: &str) {
+        self.page.section(heading);
+    }
+
+    /// A paragraph of HTML.
+    pub fn prose(&mut self, html: &str) {
+        self.page.prose(html);
+    }
+
+    /// A formula of `MathML` elements.
+    pub fn formula(&mut self, mathml: &str) {
+        self.page.formula(mathml);
+    }
+
+    /// A figure with its caption; its files are written at once.
+    pub fn figure(&mut self, figure: &Figure, caption: &str) -> Result<(), Failure> {
+        self.page.figure(figure, caption);
+        self.write(&format!("{}.svg", figure.name), &figure.svg)?;
+        self.write(&format!("{}.csv", figure.name), &figure.csv)
+    }
+
+    /// A table with its caption; its file is written at once.
+    pub fn table(&mut self, table: &Table, caption: &str) -> Result<(), Failure> {
+        self.page.table(table, caption);
+        self.write(&format!("{}.csv", table.name), &table.csv())
+    }
+
+    /// Writes the page, and returns where it is.
+    pub fn finish(self, machine: &Machine) -> Result<PathBuf, Failure> {
+        self.write("index.html", &self.page.html(machine))?;
+        Ok(self.folder.join("index.html"))
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
+        let path = self.folder.join(name);
+        fs::write(&path, text).map_err(|error| Failure::file(&path, error))
+    }
+}

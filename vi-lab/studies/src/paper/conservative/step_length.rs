@@ -1,0 +1,87 @@
+//! The step length along the orbit, and the law that it follows.
+
+use super::super::book::{Book, Verdict};
+use super::super::unexpected;
+use super::runs::Run;
+use vi_core::{Lagrangian, SVector};
+use vi_report::chart::{Axis, Chart, Look, Series};
+use vi_report::failure::Failure;
+use vi_report::page::math::{frac, id, num, op, row, sub, sup};
+use vi_systems::DoubleWell;
+
+/// The section: h/h0 against the iteration, with the step law over it.
+pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
+    book.section("Step length");
+    book.prose(
+        "The step length is a function of the place on the orbit. The paper observes that it oscillates with the motion; \
+         it does so by a law. With the acceleration <i>a</i> and derivatives along the motion, define the step density",
+    );
+    book.formula(&density());
+    book.prose("where here the force <i>f</i> is zero. Then, without forces,");
+    book.formula(&law());
+    for run in runs.iter().filter(|run| run.case.h0 < 0.05) {
+        let name = if run.case.q0 < 0.9 { "step-length-0.74" } else { "step-length-0.995" };
+        let mut series = vec![Series::line("computed", Look::ENERGY.line(), computed(run))];
+        series.push(Series::line("step law", Look::EXACT, predicted(run)?));
+        let chart = Chart {
+            name,
+            title: format!("Step length, {}", run.case.label()),
+            x: Axis::linear("iteration k"),
+            y: Axis::linear("h / h₀"),
+            equal_aspect: false,
+            series,
+        };
+        let caption = format!(
+            "The step varies between {:.4} and {:.4} times <i>h</i><sub>0</sub> over the whole run. Dashed: the law, from \
+             <i>D</i> at the midpoints.",
+            run.energy.steps.0 / run.case.h0,
+            run.energy.steps.1 / run.case.h0
+        );
+        book.figure(&chart, &caption)?;
+    }
+    let ratios: Vec<String> = runs.iter().map(|run| format!("{:.4}", run.energy.steps.1 / run.case.h0)).collect();
+    book.claim(
+        "the step adapts: it oscillates along the orbit",
+        "—",
+        format!("h_max/h₀ = {}", ratios.join(", ")),
+        Verdict::reproduced(runs.iter().all(|run| run.energy.steps.1 > run.case.h0)),
+    );
+    Ok(())
+}
+
+/// `D = a·(L_q + f) − v·d/dt L_q − d/dt L_t`.
+fn density() -> String {
+    let by_time = || frac(&id("d"), &row(&[id("d"), id("t")]));
+    let power = [id("a"), op("·"), op("("), sub(&id("L"), &id("q")), op("+"), id("f"), op(")")].concat();
+    let force_change = [id("v"), op("·"), by_time(), sub(&id("L"), &id("q"))].concat();
+    let time_change = [by_time(), sub(&id("L"), &id("t"))].concat();
+    [id("D"), op("="), power, op("−"), force_change, op("−"), time_change].concat()
+}
+
+/// `h_k = h_0 (D_0/D_k)^{1/3} (1 + O(h²))`.
+fn law() -> String {
+    let h = |index: String| sub(&id("h"), &index);
+    let third = row(&[num("1"), op("/"), num("3")]);
+    let ratio = row(&[op("("), frac(&sub(&id("D"), &num("0")), &sub(&id("D"), &id("k"))), op(")")]);
+    let correction = [num("1"), op("+"), id("O"), op("("), sup(&id("h"), &num("2")), op(")")].concat();
+    [h(id("k")), op("="), h(num("0")), sup(&ratio, &third), op("("), correction, op(")")].concat()
+}
+
+fn computed(run: &Run) -> Vec<(f64, f64)> {
+    run.energy.samples.iter().zip(1_u32..).map(|(sample, k)| (f64::from(k), sample.h / run.case.h0)).collect()
+}
+
+/// `(D_1/D_k)^{1/3}`, scaled to the first step.
+fn predicted(run: &Run) -> Result<Vec<(f64, f64)>, Failure> {
+    let system = DoubleWell::default();
+    let mut first = None;
+    let mut points = Vec::new();
+    for (sample, k) in run.energy.samples.iter().zip(1_u32..) {
+        let q = SVector::from([sample.q]);
+        let v = SVector::from([sample.v]);
+        let density = system.step_density(sample.t, &q, &v).map_err(unexpected("step law"))?;
+        let (d0, h0) = *first.get_or_insert((density, sample.h));
+        points.push((f64::from(k), h0 / run.case.h0 * (d0 / density).cbrt()));
+    }
+    Ok(points)
+}

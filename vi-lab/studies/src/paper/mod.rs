@@ -1,0 +1,109 @@
+//! `vi-lab paper`: the numerical study of the paper (section 5), run again.
+//!
+//! In: how long the long runs are, and a folder. Out: in the folder a page `index.html`, and for every figure and table
+//! an SVG and a CSV file; as text, what each claim of the paper became. Every number of the page is computed in the run,
+//! except those that the paper or the theory states.
+//!
+//! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
+
+mod book;
+mod conservative;
+mod errata;
+mod forced;
+mod law;
+pub(super) mod raw;
+mod theory;
+
+use book::Book;
+use std::path::Path;
+use vi_core::StepError;
+use vi_report::failure::Failure;
+use vi_report::input::count;
+use vi_report::machine::Machine;
+use vi_report::progress::Progress;
+
+/// Steps of the long runs.
+pub const STEPS: u32 = 1_000_000;
+/// Fewer show nothing.
+const SHORTEST: u32 = 1000;
+
+/// The number of steps that a user writes.
+pub fn steps(text: &str) -> Result<u32, String> {
+    let steps = u32::try_from(count(text)?).ok().filter(|steps| *steps >= SHORTEST);
+    steps.ok_or_else(|| format!("the study needs {SHORTEST} to {} steps", u32::MAX))
+}
+
+/// How large the study is.
+#[derive(Clone, Copy, Debug)]
+pub struct Study {
+    /// Steps of the long runs.
+    pub steps: u32,
+}
+
+/// Makes the page and its files in `out`, and returns the summary.
+///
+/// # Errors
+/// [`Failure::File`] where a file cannot be written, [`Failure::Step`] where a step fails that must not.
+pub fn write(out: &Path, study: Study) -> Result<String, Failure> {
+    let machine = Machine::here();
+    let mut book = Book::new(out)?;
+    {
+        // Two long runs of each of the four cases make almost all of the work.
+        let mut progress = Progress::new(8 * u64::from(study.steps));
+        introduction(&mut book, study);
+        conservative::chapter(&mut book, study, &mut progress)?;
+        forced::chapter(&mut book, &mut progress)?;
+        progress.message("step law");
+        law::section(&mut book)?;
+        errata::section(&mut book)?;
+        theory::chapter(&mut book, &mut progress)?;
+    }
+    book.finish(&machine)
+}
+
+/// A step that failed where the study needs one.
+fn unexpected(what: &str) -> impl Fn(StepError) -> Failure {
+    let before = what.to_owned();
+    move |error| Failure::Step { error: Box::new(error), before: before.clone(), advice: None }
+}
+
+fn introduction(book: &mut Book, study: Study) {
+    book.prose(
+        "The paper derives variational integrators for forced Lagrangian systems in which time is a discrete variable of \
+         its own: one step solves the momentum equation and the energy equation together, and so finds its own length. \
+         It then studies two examples numerically. Here both are run again, with integrators generated from ten lines \
+         that state the Lagrangian and the force. Wherever the paper makes a claim, its number stands beside ours; where \
+         the two differ, the reason is given.",
+    );
+    book.prose(&format!(
+        "The long runs have {} steps. Colours mean the same everywhere: <b style=\"color:#D55E00\">energy-preserving</b>, \
+         <b style=\"color:#0072B2\">fixed step</b>. Each figure comes as SVG, with the points that it shows \
+         as CSV. The claims one by one are in the <a href=\"#claims\">last table</a>.",
+        study.steps
+    ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_small_study_makes_every_file_and_reproduces_every_claim() {
+        let folder = std::env::temp_dir().join(format!("vi-lab-paper-{}", std::process::id()));
+        let summary = write(&folder, Study { steps: 3000 }).unwrap_or_else(|failure| panic!("{failure}"));
+        assert!(!summary.contains("not reproduced"), "{summary}");
+        let page = fs::read_to_string(folder.join("index.html")).expect("the page");
+        let files: Vec<String> =
+            page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).map(String::from).collect();
+        let named: Vec<&String> = files.iter().filter(|name| !name.starts_with('#')).collect();
+        // 24 figures in two forms, 9 tables.
+        assert_eq!(named.len(), 2 * 24 + 9);
+        for name in named {
+            let length = fs::metadata(folder.join(name)).map_or(0, |file| file.len());
+            assert!(length > 100, "{name} has {length} bytes");
+        }
+        assert!(!page.contains("NaN") && !page.contains("inf,"), "a number of the page is not finite");
+        fs::remove_dir_all(&folder).expect("the folder can be removed");
+    }
+}

@@ -1,0 +1,234 @@
+//! Compositions and damping: where substeps that go backwards in time feed on it.
+//!
+//! With the midpoint rule a substep multiplies the mode `e^{λt}` of a linear system by `(1 + γhλ/2)/(1 − γhλ/2)`, so a
+//! whole step of a composition multiplies it by
+//!
+//! ```text
+//! R(z) = Π_i (1 + γ_i z/2)/(1 − γ_i z/2)        z = hλ;   for a = −c v: z = −c h;   stable where |R| ≤ 1
+//! ```
+//!
+//! A damped mode has `Re z < 0`; a negative weight then has its pole at `z = 2/γ`, on the side of damping.
+
+use super::atlas::{Atlas, Axes, Labels};
+use super::ending::{Course, Ending, LASTING, Limit, UNBOUNDED};
+use vi_core::{Composition, Scheme, State};
+use vi_report::chart::{Axis, Chart, Class, Look, Series, boundary};
+use vi_report::failure::Failure;
+use vi_report::table::Table;
+use vi_systems::DampedOscillator;
+
+/// Whole steps of a run.
+const STEPS: u32 = 500;
+/// Growth that counts as instability: none is allowed to a motion that decays.
+const BOUND: f64 = 10.0;
+/// Amplitude of a motion that has come to rest: far above the smallest numbers, where rounding is no longer relative.
+const REST: f64 = 1e-200;
+const DECAYS: Class = Class { label: "decays, as the motion", ..LASTING };
+/// What the chart shows of `c h`.
+const WIDEST: f64 = 6.0;
+/// What the map of a scheme shows. The instability is a band beside a pole; the map shows the widest band.
+#[derive(Clone, Copy)]
+struct Band {
+    scheme: Scheme,
+    /// Stem of the file names.
+    name: &'static str,
+    /// The least `c h`.
+    least: f64,
+    /// The largest `c h`.
+    largest: f64,
+    /// The largest `h ω`; the least is 0.
+    fastest: f64,
+}
+
+const BANDS: [Band; 4] = [
+    Band { scheme: Scheme::TRIPLE_JUMP_4, name: "composed-triple", least: 1.1, largest: 1.4, fastest: 0.6 },
+    Band { scheme: Scheme::SUZUKI_4, name: "composed-suzuki", least: 3.0, largest: 3.2, fastest: 0.6 },
+    Band { scheme: Scheme::KAHAN_LI_6, name: "composed-kl6", least: 2.5, largest: 4.0, fastest: 2.0 },
+    Band { scheme: Scheme::KAHAN_LI_8, name: "composed-kl8", least: 4.5, largest: 7.0, fastest: 3.0 },
+];
+
+/// The section: the factor of a whole step, the largest stable steps, and a map for each scheme.
+pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
+    atlas.section("Compositions and damping");
+    atlas.prose(
+        "Steps of order 4 and more are composed of fixed steps, some of which go backwards in time. There damping feeds: \
+         for the force −<i>cv</i> a substep <i>γh</i> multiplies the speed by (1 − <i>z</i>/2)/(1 + <i>z</i>/2), <i>z</i> = \
+         <i>cγh</i>, which has a pole where <i>γ</i> is negative.",
+    );
+    factors(atlas)?;
+    let head = ["scheme", "order", "c h from the product", "c h of runs"];
+    let mut table = Table::new("composed-limits", head);
+    for scheme in Scheme::ALL {
+        let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
+        let runs = limit(|ch| slows_down(scheme, ch));
+        table.row([scheme.name.to_owned(), scheme.order.to_string(), format!("{theory:.4}"), format!("{runs:.4}")]);
+    }
+    atlas.table(
+        &table,
+        "The <i>ch</i> up to which each composition is stable, from the product and from runs of its steps.",
+    )?;
+    for band in BANDS {
+        map(atlas, band)?;
+    }
+    atlas.advice(
+        "Keep <i>ch</i>, the damping rate of the fastest decay times the whole step, below the limit of the scheme, and for \
+         accuracy far below. Where damping is stronger than that, take fixed steps of order 2: they damp whatever is damped.",
+    );
+    Ok(())
+}
+
+/// The factor of a whole step for `a = −c v`, by the product, and by one step of each composition as dots.
+fn factors(atlas: &mut Atlas) -> Result<(), Failure> {
+    // Each scheme has the look that it has in work-precision charts, where there is no triple jump.
+    let [suzuki, six, eight, jump] = Look::OTHERS;
+    let looks = Scheme::ALL.into_iter().zip([jump, suzuki, six, eight]);
+    let places = |count: u32| (1..=count).map(move |i| WIDEST * f64::from(i) / f64::from(count));
+    let mut series = vec![Series::line("limit: 1", Look::EXACT, vec![(0.0, 1.0), (WIDEST, 1.0)])];
+    for (scheme, look) in looks {
+        let line = places(800).map(|ch| (ch, factor(scheme, -ch, 0.0))).collect();
+        series.push(Series::line(scheme.name, look.line(), line));
+        let dots = places(40).filter_map(|ch| Some((ch, after_one_step(scheme, ch)?))).collect();
+        series.push(Series::scatter("", look.dots(3.0), dots).unlabelled());
+    }
+    let chart = Chart {
+        name: "composed-factor",
+        title: "Compositions on damping: factor of the speed over a step".to_owned(),
+        x: Axis::linear("c h").over(0.0, WIDEST),
+        y: Axis::log10("|v after a step / v before|").over(1e-3, 1e2),
+        equal_aspect: false,
+        series,
+    };
+    atlas.chart(
+        &chart,
+        "Lines: the product of the substeps’ factors. Dots: one step of each composition as it runs. Above the dashed line \
+         the speed grows although the force only brakes: in a band beside each pole. Beyond it the step is stable again, but \
+         no approximation of e<sup>−<i>ch</i></sup>.",
+    )
+}
+
+impl Band {
+    /// `c h` across, `h ω` upwards.
+    fn axes(&self) -> Axes {
+        Axes { x: Axis::linear("c h").over(self.least, self.largest), y: Axis::linear("h ω").over(0.0, self.fastest) }
+    }
+}
+
+/// How runs of the damped oscillator end over `c h` and `h ω`, with the boundary of the product over them.
+fn map(atlas: &mut Atlas, band: Band) -> Result<(), Failure> {
+    let Band { scheme, name, .. } = band;
+    let grid = atlas.coarse_grid(band.axes(), 2);
+    let theory = boundary("|R| = 1", grid.zeros(&|ch, h_omega| radius(scheme, ch, h_omega) - 1.0 - 1e-9));
+    let title = format!("Damped oscillator: {}", scheme.name);
+    let caption = "Runs of the composition on an oscillator: pale decays, as it should; orange grows. The band follows the \
+                   faster of the two modes of an overdamped oscillator, <i>c</i> > 2<i>ω</i>.";
+    atlas.map(Labels { name, title: &title, caption }, &grid, theory, |ch, h_omega| class(scheme, ch, h_omega))?;
+    Ok(())
+}
+
+/// `|R(z)|`, `z` by its real and its imaginary part.
+fn factor(scheme: Scheme, re: f64, im: f64) -> f64 {
+    // |1 + γz/2| / |1 − γz/2|
+    let of = |weight: &f64| {
+        let re = weight * re / 2.0;
+        let im = weight * im / 2.0;
+        (1.0 + re).hypot(im) / (1.0 - re).hypot(im)
+    };
+    scheme.weights.iter().map(of).product()
+}
+
+/// The larger of `|R(z)|` over the two modes of an oscillator, `z² + (c h) z + (h ω)² = 0`.
+fn radius(scheme: Scheme, ch: f64, h_omega: f64) -> f64 {
+    let discriminant = ch * ch / 4.0 - h_omega * h_omega;
+    if discriminant < 0.0 {
+        factor(scheme, -ch / 2.0, (-discriminant).sqrt())
+    } else {
+        let root = discriminant.sqrt();
+        factor(scheme, -ch / 2.0 - root, 0.0).max(factor(scheme, -ch / 2.0 + root, 0.0))
+    }
+}
+
+/// The first `c h` at which `stable` fails, to 1e-6; zero where it holds up to 10.
+fn limit(stable: impl Fn(f64) -> bool) -> f64 {
+    let part = 1e-3;
+    let first = (1..10_000).map(|index| part * f64::from(index)).find(|ch| !stable(*ch));
+    let (mut low, mut high) = first.map_or((0.0, 0.0), |ch| (ch - part, ch));
+    while high - low > 1e-6 {
+        let middle = f64::midpoint(low, high);
+        *(if stable(middle) { &mut low } else { &mut high }) = middle;
+    }
+    low
+}
+
+/// The factor of the speed over one step of `a = −c v`; none where the step fails.
+fn after_one_step(scheme: Scheme, ch: f64) -> Option<f64> {
+    let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
+    let start = State::at(&system, 0.0, [0.0], [1.0]);
+    Some(Composition::new(system, scheme, start, 1.0).ok()?.step().ok()?.p.x.abs())
+}
+
+/// Whether one step of `a = −c v` does not make the speed larger.
+fn slows_down(scheme: Scheme, ch: f64) -> bool {
+    after_one_step(scheme, ch).is_some_and(|factor| factor <= 1.0)
+}
+
+/// How a run of the oscillator with the whole step 1 ends.
+fn class(scheme: Scheme, ch: f64, h_omega: f64) -> Class {
+    let system = DampedOscillator { m: 1.0, k: h_omega * h_omega, c: ch };
+    let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND };
+    let state = State::at(&system, 0.0, [1.0], [0.0]);
+    let course = Composition::new(system, scheme, state, 1.0).map(|mut run| {
+        // Displacement and momentum both: at an extreme one of them vanishes.
+        Course::of(limit, || {
+            run.step().map(|state| {
+                let size = state.q.x.hypot(state.p.x);
+                (if size < REST { f64::INFINITY } else { state.t }, size)
+            })
+        })
+    });
+    match course.map_or_else(Ending::Failing, |course| course.ending) {
+        Ending::Lasting => DECAYS,
+        Ending::Unbounded => UNBOUNDED,
+        ending @ Ending::Failing(_) => ending.class(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::atlas::Grid;
+    use super::super::atlas::tests::strays;
+    use super::*;
+
+    #[test]
+    fn the_product_and_the_runs_have_the_documented_limits() {
+        for (scheme, documented) in Scheme::ALL.into_iter().zip([1.13, 3.02, 2.73, 3.30]) {
+            let theory = limit(|ch| factor(scheme, -ch, 0.0) <= 1.0);
+            let runs = limit(|ch| slows_down(scheme, ch));
+            // The documentation of the compositions has two decimals.
+            assert!((theory - documented).abs() <= 0.005, "{}: {theory}", scheme.name);
+            // Measured: both within the 1e-6 of the bisection.
+            assert!((theory - runs).abs() <= 2e-6, "{}: {theory}, {runs}", scheme.name);
+        }
+    }
+
+    #[test]
+    fn a_whole_step_is_the_product() {
+        for scheme in Scheme::ALL {
+            for ch in [0.1, 0.5, 1.0, 2.0, 3.5] {
+                let run = after_one_step(scheme, ch).expect("a step");
+                let product = factor(scheme, -ch, 0.0);
+                assert!((run / product - 1.0).abs() < 1e-13, "{} at {ch}: {run}, {product}", scheme.name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_maps_agree_with_the_product() {
+        for band in BANDS {
+            let Band { scheme, name, .. } = band;
+            let grid = Grid::new(band.axes(), 16);
+            let cells = grid.cells(&|ch, h_omega| class(scheme, ch, h_omega), |_| ());
+            assert!(cells.iter().all(|cell| [DECAYS, UNBOUNDED].contains(cell)), "{name}");
+            assert_eq!(strays(&grid, &cells, UNBOUNDED, |ch, h_omega| radius(scheme, ch, h_omega) > 1.0), 0, "{name}");
+        }
+    }
+}

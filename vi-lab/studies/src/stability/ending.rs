@@ -1,0 +1,150 @@
+//! How runs end, and the colour of each end: the same in every map.
+//!
+//! In: an integrator and a [`Limit`]. Out: a [`Course`]: the [`Ending`], the number of steps taken, the largest coordinate. A map
+//! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
+
+use vi_core::collocation::Collocation;
+use vi_core::stepping::{Convertible, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, EnergyPreservingGauss, FixedStep, SVector, State, StepError};
+use vi_report::chart::Class;
+
+/// When a run is over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limit {
+    /// Steps to be taken at most.
+    pub(super) steps: u32,
+    /// Time to be reached at most.
+    pub(super) until: f64,
+    /// A coordinate larger than this is instability.
+    pub(super) bound: f64,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Ending {
+    /// At its limit.
+    Lasting,
+    /// A coordinate outgrew the bound.
+    Unbounded,
+    /// A step failed.
+    Failing(StepError),
+}
+
+/// What a run did.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course {
+    /// How it ended.
+    pub(super) ending: Ending,
+    /// Steps taken.
+    pub(super) steps: u32,
+    /// Largest coordinate, by absolute value.
+    pub(super) largest: f64,
+}
+
+/// A run to its limit.
+pub(super) const LASTING: Class = Class { number: 0, label: "runs to the end", colour: "#E3ECF4" };
+/// A coordinate that outgrows its bound.
+pub(super) const UNBOUNDED: Class = Class { number: 1, label: "unstable: grows on", colour: "#E69F00" };
+const NO_FORWARD_STEP: Class = Class { number: 2, label: "no forward step", colour: "#CC79A7" };
+const DEGENERATE_STEP: Class = Class { number: 3, label: "degenerate step", colour: "#56B4E9" };
+const STEP_RATIO: Class = Class { number: 4, label: "step ratio above 3", colour: "#0072B2" };
+/// No solution of the momentum equation was found.
+pub(super) const NOT_CONVERGED: Class = Class { number: 5, label: "solver: no solution", colour: "#3A3A3A" };
+const SINGULAR: Class = Class { number: 6, label: "singular matrix", colour: "#F0E442" };
+const NON_FINITE: Class = Class { number: 7, label: "not finite", colour: "#999999" };
+const OTHER: Class = Class { number: 8, label: "no such start", colour: "#009E73" };
+/// First number for the classes of a single chart.
+pub(super) const OWN: u8 = 10;
+
+impl Ending {
+    /// The colour of this end.
+    pub(super) fn class(self) -> Class {
+        match self {
+            Self::Lasting => LASTING,
+            Self::Unbounded => UNBOUNDED,
+            Self::Failing(error) => match error {
+                StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => NO_FORWARD_STEP,
+                StepError::DegenerateStep { .. } => DEGENERATE_STEP,
+                StepError::StepRatio { .. } => STEP_RATIO,
+                StepError::NotConverged { .. } | StepError::StagesUnsettled { .. } => NOT_CONVERGED,
+                StepError::Singular { .. } => SINGULAR,
+                StepError::NonFinite { .. } => NON_FINITE,
+                _ => OTHER,
+            },
+        }
+    }
+}
+
+impl Course {
+    /// The course of a run that could not start.
+    fn none(error: StepError) -> Self {
+        Self { ending: Ending::Failing(error), steps: 0, largest: 0.0 }
+    }
+
+    /// Follows a run, whose every step gives the time and the largest coordinate.
+    pub(super) fn of(limit: Limit, mut step: impl FnMut() -> Result<(f64, f64), StepError>) -> Self {
+        let mut course = Self { ending: Ending::Lasting, steps: 0, largest: 0.0 };
+        while course.steps < limit.steps {
+            match step() {
+                Ok((t, size)) => {
+                    course.steps += 1;
+                    course.largest = course.largest.max(size);
+                    if size > limit.bound {
+                        course.ending = Ending::Unbounded;
+                        break;
+                    }
+                    if t >= limit.until {
+                        break;
+                    }
+                }
+                Err(error) => {
+                    course.ending = Ending::Failing(error);
+                    break;
+                }
+            }
+        }
+        course
+    }
+
+    /// Runs the integrator with fixed step from the node `(q, p)`, p belonging to `v`.
+    pub(super) fn fixed<S: FixedStepping<N>, const N: usize>(
+        system: S,
+        q: impl Into<SVector<f64, N>>,
+        v: impl Into<SVector<f64, N>>,
+        h: f64,
+        limit: Limit,
+    ) -> Self {
+        let state = State::at(&system, 0.0, q, v);
+        match FixedStep::new(system, state, h) {
+            Ok(mut run) => Self::of(limit, || run.step().map(|state| (state.t, state.q.amax()))),
+            Err(error) => Self::none(error),
+        }
+    }
+
+    /// Runs the energy-preserving integrator from the midpoint `(q, v)` of the first interval.
+    pub(super) fn energy<S: EnergyStepping<N>, const N: usize>(
+        system: S,
+        q: impl Into<SVector<f64, N>>,
+        v: impl Into<SVector<f64, N>>,
+        h: f64,
+        limit: Limit,
+    ) -> Self {
+        match EnergyPreserving::from_midpoint(system, 0.0, q, v, h) {
+            Ok(mut run) => Self::of(limit, || run.step().map(|step| (step.t, step.q.amax()))),
+            Err(error) => Self::none(error),
+        }
+    }
+    /// Follows a run of energy-preserving Gauss steps.
+    pub(super) fn gauss<S, const N: usize, const STAGES: usize>(
+        run: Result<EnergyPreservingGauss<S, N, STAGES>, StepError>,
+        limit: Limit,
+    ) -> Self
+    where
+        S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    {
+        match run {
+            Ok(mut run) => Self::of(limit, || run.step().map(|state| (state.t, state.q.amax()))),
+            Err(error) => Self::none(error),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! `vi-lab stability`: where methods fail, and what a user should do about it.
+//!
+//! In: a folder, and perhaps a system. Out: in the folder a page `index.html`, and for every map and chart an SVG and a CSV
+//! file. Without a system, and in a program that has none of its own, the page goes through the ways of failing one by one, the boundary that theory gives drawn over
+//! what the runs did; with one it maps how the runs of that system end. Colours and names distinguish
+//! a solver that finds no step from a motion that grows without bound.
+//!
+//! | module | what it makes |
+//! |---|---|
+//! | [`linear`] … [`tradeoff`] | the sections of the page, one file each |
+//! | [`system`] | the maps of one system |
+//! | [`atlas`], [`contour`], [`ending`] | maps as they grow, curves D = 0, ends of runs and their colours |
+//! | [`trial`] | systems that only the charts need |
+
+mod atlas;
+mod chain;
+mod composed;
+mod contour;
+mod damping;
+mod ending;
+mod kepler;
+mod linear;
+mod orders;
+mod resonance;
+mod roots;
+mod separatrix;
+mod span;
+mod stiff;
+mod system;
+mod tradeoff;
+#[allow(dead_code, unreachable_pub)] // generated for users; the charts need a part
+mod trial;
+
+use atlas::Atlas;
+use clap::Args;
+use std::path::PathBuf;
+use vi_report::catalogue;
+use vi_report::failure::Failure;
+use vi_report::machine::Machine;
+use vi_report::page::{Page, Report};
+
+/// Maps on the whole page.
+const MAPS: u32 = 27;
+
+/// `vi-lab stability [SYSTEM]`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// System of the catalogue [default: the first system of this program's own; of a program without one, the page of all systems]
+    system: Option<String>,
+    /// Folder for the page, its figures (SVG) and their data (CSV)
+    #[arg(long, value_name = "DIR", default_value = "stability")]
+    out: PathBuf,
+    /// Cells in a row of a map
+    #[arg(long, value_name = "N", default_value_t = 149, value_parser = clap::value_parser!(u16).range(10..=596))]
+    columns: u16,
+    /// Horizontal axis of the system's maps: a coordinate, a velocity (v_x), a parameter, or h, as NAME=LOW:HIGH
+    #[arg(long, value_name = "NAME=LOW:HIGH", allow_hyphen_values = true)]
+    x: Option<String>,
+    /// Vertical axis
+    #[arg(long, value_name = "NAME=LOW:HIGH", allow_hyphen_values = true)]
+    y: Option<String>,
+}
+
+/// Makes the page and its files, and returns where the page is.
+///
+/// # Errors
+/// [`Failure::Input`] for a system or an axis that does not exist, [`Failure::File`] where a file cannot be written.
+pub fn write(arguments: &Arguments) -> Result<String, Failure> {
+    let machine = Machine::here();
+    let entry = match &arguments.system {
+        Some(name) => Some(catalogue::find(name)?),
+        None => catalogue::own(),
+    };
+    if entry.is_none() && (arguments.x.is_some() || arguments.y.is_some()) {
+        return Err(Failure::Input("--x and --y are axes of the map of one system: name it".to_owned()));
+    }
+    let report = match entry {
+        Some(entry) => {
+            let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
+            let title = format!("Where runs of the system {} end", catalogue::kebab(entry.system.name()));
+            let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
+            let mut atlas = Atlas::new(report, arguments.columns, 2);
+            system::maps(&mut atlas, &entry, &axes)?;
+            atlas.into_report()
+        }
+        None => whole(arguments)?,
+    };
+    Ok(report.finish(&machine)?.display().to_string())
+}
+
+/// The page of all ways of failing.
+fn whole(arguments: &Arguments) -> Result<Report, Failure> {
+    let page = Page::new(
+        "Where methods fail",
+        "Variational integrators with fixed and with energy-preserving steps: before, at, and after the step that does not \
+         exist",
+    );
+    let mut atlas = Atlas::new(Report::new(&arguments.out, page)?, arguments.columns, MAPS);
+    atlas.prose(
+        "Every method fails somewhere. Each chart shows how runs end over two quantities, and the dashed line where theory \
+         says that they should. Colours mean the same in all maps: <b style=\"background:#E3ECF4\">pale</b> runs to the \
+         end; <b style=\"background:#E69F00\">orange</b> grows without bound, the method being unstable; the others are \
+         steps that the solver reports as not existing, each typed error in a colour of its own, first of all <b \
+         style=\"background:#CC79A7\">no forward step</b> of the energy-preserving integrator and <b \
+         style=\"background:#3A3A3A;color:#FFFFFF\">no solution</b> of the momentum equation. None of them is ever a NaN \
+         or a silent wrong answer.",
+    );
+    linear::section(&mut atlas)?;
+    resonance::section(&mut atlas)?;
+    roots::section(&mut atlas)?;
+    stiff::section(&mut atlas)?;
+    damping::section(&mut atlas)?;
+    composed::section(&mut atlas)?;
+    kepler::section(&mut atlas)?;
+    separatrix::section(&mut atlas)?;
+    orders::section(&mut atlas)?;
+    chain::section(&mut atlas)?;
+    tradeoff::section(&mut atlas)?;
+    Ok(atlas.into_report())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_coarse_page_has_every_file() {
+        let out = std::env::temp_dir().join(format!("vi-lab-stability-{}", std::process::id()));
+        let arguments = Arguments { system: None, out: out.clone(), columns: 6, x: None, y: None };
+        let place = write(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let page = fs::read_to_string(place).expect("the page");
+        let files: Vec<&str> = page
+            .split("href=\"")
+            .skip(1)
+            .filter_map(|rest| rest.split('"').next())
+            .filter(|name| !name.starts_with('#'))
+            .collect();
+        // 27 maps and 4 charts, in two forms each, and a table.
+        assert_eq!(files.len(), 2 * 31 + 1);
+        for name in files {
+            let text = fs::read_to_string(out.join(name)).unwrap_or_default();
+            assert!(text.len() > 100 && !text.contains("NaN"), "{name}");
+        }
+        fs::remove_dir_all(&out).expect("the folder can be removed");
+    }
+}

@@ -1,0 +1,89 @@
+//! Energy-preserving steps of order 2, 4 and 6, and the shift: each order has a domain of its own.
+//!
+//! Pendulum from rest at the angle a: the step density D_s keeps its sign for a below 3.09, π/2 and 0.81 rad with 1, 2 and 3 stages
+//! (`docs/theory.md`, section 4). With a shift beyond the largest |D_s| every motion runs.
+
+use super::atlas::{Atlas, Axes, Labels};
+use super::ending::{Course, Limit};
+use core::f64::consts::FRAC_PI_2;
+use vi_core::{Called, EnergyPreservingGauss, State, StepError};
+use vi_report::chart::{Axis, Class, boundary};
+use vi_report::failure::Failure;
+use vi_systems::Pendulum;
+
+const LIMIT: Limit = Limit { steps: 20_000, until: 25.0, bound: 1e3 };
+const STEPS: (f64, f64) = (0.02, 0.8);
+
+/// The section: a map for each number of stages, and one with a shift.
+pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
+    atlas.section("Energy-preserving steps of order 2, 4, 6, and the shift");
+    atlas.prose(
+        "A step of <i>s</i> stages, of order 2<i>s</i>, has a step density <i>D<sub>s</sub></i> of its own, and exists while that \
+         keeps its sign: the domain of a higher order is another one. Pendulum released at rest, for 25 units of time.",
+    );
+    let axes =
+        Axes { x: Axis::linear("angle a, from rest").over(0.2, 3.1), y: Axis::log10("h₀").over(STEPS.0, STEPS.1) };
+    let grid = atlas.coarse_grid(axes, 2);
+    let line = |name: &str, at: f64| boundary(name, vec![vec![(at, STEPS.0), (at, STEPS.1)]]);
+    let caption = "One stage: every libration but the widest runs.";
+    let labels = Labels { name: "orders-1", title: "Pendulum, order 2", caption };
+    atlas.map(labels, &grid, line("a = 3.09", 3.09), plain::<1>)?;
+    let caption = "Two stages: up to π/2.";
+    let labels = Labels { name: "orders-2", title: "Pendulum, order 4", caption };
+    atlas.map(labels, &grid, line("a = π/2", FRAC_PI_2), plain::<2>)?;
+    let caption = "Three stages: up to 0.81. Of the shortest steps the energy tells no length: degenerate.";
+    let labels = Labels { name: "orders-3", title: "Pendulum, order 6", caption };
+    atlas.map(labels, &grid, line("a = 0.81", 0.81), plain::<3>)?;
+    let caption = "Two stages with a shift of twice the largest |<i>D</i><sub>2</sub>| of the first 25 units of time: the step exists \
+                   everywhere.";
+    let labels = Labels { name: "orders-2-shifted", title: "Pendulum, order 4, with a shift", caption };
+    atlas.map(labels, &grid, Vec::new(), shifted)?;
+    atlas.advice(
+        "Where the energy has to stay on a motion on which <i>D<sub>s</sub></i> changes its sign, take \
+         <code>EnergyPreservingGauss</code> with two stages and <code>with_shift_from(period)</code>.",
+    );
+    Ok(())
+}
+
+type Run<const S: usize> = EnergyPreservingGauss<Called<Pendulum>, 1, S>;
+
+fn begin<const S: usize>(angle: f64, h: f64) -> Result<Run<S>, StepError> {
+    let system = Called(Pendulum::default());
+    EnergyPreservingGauss::new(system, State::at(&system, 0.0, [angle], [0.0]), h)
+}
+
+fn plain<const S: usize>(angle: f64, h: f64) -> Class {
+    Course::gauss(begin::<S>(angle, h), LIMIT).ending.class()
+}
+
+fn shifted(angle: f64, h: f64) -> Class {
+    let run = begin::<2>(angle, h).and_then(|run| run.with_shift_from(LIMIT.until));
+    Course::gauss(run, LIMIT).ending.class()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::atlas::Grid;
+    use super::super::atlas::tests::strays;
+    use super::super::ending::LASTING;
+    use super::*;
+
+    fn cells(class: impl Fn(f64, f64) -> Class + Sync) -> (Grid, Vec<Class>) {
+        let axes = Axes { x: Axis::linear("a").over(0.2, 3.0), y: Axis::log10("h").over(0.03, 0.06) };
+        let grid = Grid::new(axes, 20);
+        let cells = grid.cells(&class, |_| ());
+        (grid, cells)
+    }
+
+    #[test]
+    fn each_order_has_its_domain() {
+        let (grid, runs) = cells(plain::<2>);
+        assert_eq!(strays(&grid, &runs, LASTING, |a, _| a < FRAC_PI_2), 0);
+    }
+
+    #[test]
+    fn with_a_shift_every_motion_runs() {
+        let (_, runs) = cells(shifted);
+        assert!(runs.iter().all(|class| class.number == LASTING.number));
+    }
+}

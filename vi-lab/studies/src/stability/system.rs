@@ -1,0 +1,169 @@
+//! The maps of one system: how its runs end, over the phase plane or any two quantities.
+//!
+//! In: an entry of the catalogue and two axes. Out: a map for the energy-preserving integrator, with the curve D = 0 of
+//! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
+
+use super::atlas::{Atlas, Axes, Grid, Labels};
+use super::ending::{Course, Ending, Limit};
+use super::span::Span;
+use core::cell::Cell;
+use vi_report::catalogue::kebab;
+use vi_report::chart::{Class, Look, Series, boundary, middles};
+use vi_report::failure::Failure;
+use vi_report::quantity::Quantity;
+use vi_runs::plan::{Method, PhasePoint, Plan};
+use vi_runs::ready::Entry;
+use vi_runs::simulation::Simulation;
+use vi_runs::system::System;
+
+/// Steps of a run.
+const STEPS: u32 = 2500;
+/// Runs across and upwards whose ends are marked.
+const ENDS: (usize, usize) = (15, 11);
+/// A coordinate that grows beyond this many times its scale is instability.
+const BOUND: f64 = 1e3;
+
+/// The two axes that are asked for, or those that show most: the phase plane in one degree of freedom; otherwise the
+/// largest initial value, and the step.
+pub(super) fn axes(entry: &Entry, x: Option<&str>, y: Option<&str>) -> Result<[Span; 2], Failure> {
+    let [first, second] = usual(entry);
+    let axis = |text: Option<&str>, usual: Span| text.map_or(Ok(usual), |text| Span::parse(entry, text));
+    let axes = [axis(x, first)?, axis(y, second)?];
+    match &axes {
+        [x, y] if x.quantity == y.quantity => {
+            Err(Failure::Input(format!("both axes vary `{}`; give two different ones with --x and --y", x.name)))
+        }
+        _ => Ok(axes),
+    }
+}
+
+fn usual(entry: &Entry) -> [Span; 2] {
+    let span = |quantity, name: String, low, high| Span { quantity, name, range: (low, high) };
+    let coordinates = entry.system.coordinates();
+    let name = |index: usize| coordinates.get(index).copied().unwrap_or_default();
+    if let [q] = entry.q.as_slice() {
+        let width = 2.0 * q.abs().max(0.75);
+        let plane = span(Quantity::Coordinate(0), name(0).to_owned(), -width, width);
+        return [plane, span(Quantity::Velocity(0), format!("v_{}", name(0)), -width, width)];
+    }
+    let places = entry.q.iter().enumerate().map(|(index, q)| (*q, Quantity::Coordinate(index), name(index).to_owned()));
+    let velocities =
+        entry.v.iter().enumerate().map(|(index, v)| (*v, Quantity::Velocity(index), format!("v_{}", name(index))));
+    let largest = places.chain(velocities).max_by(|(a, ..), (b, ..)| a.abs().total_cmp(&b.abs()));
+    let (value, quantity, name) = largest.unwrap_or((1.0, Quantity::Coordinate(0), String::new()));
+    let reach = 2.0 * value.abs().max(0.1);
+    [span(quantity, name, 0.0, reach), span(Quantity::Step, "h".to_owned(), entry.h / 5.0, entry.h * 50.0)]
+}
+
+/// Two maps and what they mean.
+pub(super) fn maps(atlas: &mut Atlas, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
+    let grid = grid(atlas, entry, axes);
+    let name = kebab(entry.system.name());
+    let fixed: Vec<String> =
+        entry.system.parameters().iter().map(|(parameter, value)| format!("{parameter} = {value}")).collect();
+    atlas.section("The energy-preserving integrator");
+    atlas.prose(&format!(
+        "Each cell is a run of {STEPS} steps at most, from the midpoint start. What the axes do not vary: {}, q = {:?}, v = \
+         {:?}, h = {}.",
+        if fixed.is_empty() { "no parameters".to_owned() } else { fixed.join(", ") },
+        entry.q,
+        entry.v,
+        entry.h
+    ));
+    let title = format!("{name}: energy-preserving");
+    let caption = "How runs end. Dashed, where it lies in the picture: the initial states with <i>D</i> = 0. Steps exist while \
+                   <i>D</i> keeps its sign; a run ends where its orbit meets <i>D</i> = 0.";
+    energy(atlas, Labels { name: "energy", title: &title, caption }, entry, axes)?;
+    atlas.section("Fixed steps");
+    let caption = "The same with fixed steps: no step density limits them, but the equation may have no solution, and a \
+                   motion may grow without bound.";
+    let title = format!("{name}: fixed step");
+    atlas.map(Labels { name: "fixed", title: &title, caption }, &grid, Vec::new(), |a, b| {
+        class(entry, axes, (a, b), Method::Fixed)
+    })?;
+    atlas.advice(
+        "Start where both maps are pale, and away from the dashed curve. Where only the second is, take fixed steps. Where \
+         neither is, shorten the step: <code>--y h=LOW:HIGH</code> shows how far.",
+    );
+    Ok(())
+}
+
+/// The grid of a system's maps: coarser for many degrees of freedom, whose steps take long.
+fn grid(atlas: &Atlas, entry: &Entry, [x, y]: &[Span; 2]) -> Grid {
+    atlas.coarse_grid(Axes { x: x.axis(), y: y.axis() }, entry.q.len() / 2)
+}
+
+/// The map of the energy-preserving integrator: how runs end, the curve D = 0, and in the phase plane of one degree of
+/// freedom the middles of the last steps of some runs.
+pub(super) fn energy(atlas: &mut Atlas, labels: Labels<'_>, entry: &Entry, axes: &[Span; 2]) -> Result<(), Failure> {
+    let [x, y] = axes;
+    let grid = grid(atlas, entry, axes);
+    let zeros = grid.zeros(&|a, b| {
+        let (system, plan) = varied(entry, axes, (a, b), Method::Energy);
+        system.step_density(&plan.q, &plan.v).unwrap_or(f64::NAN)
+    });
+    let mut curves = boundary("D = 0", zeros);
+    if entry.q.len() == 1 && (&x.quantity, &y.quantity) == (&Quantity::Coordinate(0), &Quantity::Velocity(0)) {
+        let ends: Vec<(f64, f64)> = middles(&grid.axes.y, ENDS.1)
+            .flat_map(|v| middles(&grid.axes.x, ENDS.0).map(move |q| (q, v)))
+            .filter_map(|place| last_middle(entry, axes, place))
+            .filter(|(q, v)| x.contains(*q) && y.contains(*v))
+            .collect();
+        if !ends.is_empty() {
+            curves.push(Series::scatter("last steps of some runs", Look::EXACT.dots(2.5), ends));
+        }
+    }
+    atlas.map(labels, &grid, curves, |a, b| class(entry, axes, (a, b), Method::Energy))?;
+    Ok(())
+}
+
+/// Coordinate and velocity in the middle of the last step of a run that failed; none where it did not.
+fn last_middle(entry: &Entry, axes: &[Span; 2], place: (f64, f64)) -> Option<(f64, f64)> {
+    let (system, plan) = varied(entry, axes, place, Method::Energy);
+    let evaluations = Cell::new(0);
+    let mut run = system.begin(&plan, &evaluations).ok()?;
+    let node = |run: &dyn Simulation| Some((run.t(), *run.q().first()?));
+    let mut before = node(run.as_ref())?;
+    for _ in 0..STEPS {
+        let now = node(run.as_ref())?;
+        if run.advance().is_err() {
+            let (t0, q0) = before;
+            let (t1, q1) = now;
+            return (t1 > t0).then(|| (f64::midpoint(q0, q1), (q1 - q0) / (t1 - t0)));
+        }
+        before = now;
+    }
+    None
+}
+
+/// The system and the plan of the cell at `place`.
+fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> (Box<dyn System>, Plan) {
+    let mut system = entry.system.copy();
+    let q = entry.q.clone();
+    let v = entry.v.clone();
+    let mut plan = Plan::new(method, entry.h, PhasePoint { t: 0.0, q, v });
+    for (span, value) in axes.iter().zip([place.0, place.1]) {
+        span.quantity.set(value, system.as_mut(), &mut plan);
+    }
+    (system, plan)
+}
+
+/// How the run of a cell ends.
+fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> Class {
+    let (system, plan) = varied(entry, axes, place, method);
+    let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let scale = size(&plan.q).max(size(&plan.v)).max(1.0);
+    let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND * scale };
+    let evaluations = Cell::new(0);
+    let ending = match system.begin(&plan, &evaluations) {
+        Ok(mut run) => {
+            Course::of(limit, || {
+                run.advance()?;
+                Ok((run.t(), size(run.q())))
+            })
+            .ending
+        }
+        Err(error) => Ending::Failing(error),
+    };
+    ending.class()
+}
