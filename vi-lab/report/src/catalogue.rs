@@ -46,6 +46,9 @@ pub fn entries() -> Vec<Entry> {
 }
 
 /// The first system of one's own: what a command is about that names none.
+///
+/// # Errors
+/// [`Failure::Input`] where the program has none.
 pub fn first_own() -> Result<Entry, Failure> {
     own().ok_or_else(|| Failure::Input(format!("name a system, as `{} list` does", program())))
 }
@@ -56,11 +59,17 @@ pub fn own() -> Option<Entry> {
 }
 
 /// The entry of this name, or the first of one's own.
+///
+/// # Errors
+/// As [`find`] and [`first_own`].
 pub fn named(name: Option<&str>) -> Result<Entry, Failure> {
     name.map_or_else(first_own, find)
 }
 
 /// The entry of this name.
+///
+/// # Errors
+/// [`Failure::Input`] where there is none, with the nearest name.
 pub fn find(name: &str) -> Result<Entry, Failure> {
     let wanted = plain(name);
     let mut entries = entries();
@@ -110,6 +119,7 @@ fn shortened(mut entries: Vec<String>) -> String {
 }
 
 /// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.
+#[must_use]
 pub fn kebab(name: &str) -> String {
     let mut kebab = String::new();
     for (index, letter) in name.chars().enumerate() {

@@ -68,6 +68,7 @@ impl Failure {
     }
 
     /// A failure to write to standard output.
+    #[must_use]
     pub fn standard_output(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::Unread,
@@ -76,6 +77,7 @@ impl Failure {
     }
 
     /// One failure after the other.
+    #[must_use]
     pub fn both(first: Self, second: Self) -> Self {
         Self::Both(Box::new([first, second]))
     }
@@ -106,6 +108,7 @@ impl Failure {
     }
 
     /// The exit status of the command.
+    #[must_use]
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::Input(_) => 2,
@@ -142,6 +145,7 @@ fn suggestion(error: &clap::Error) -> Option<String> {
 }
 
 /// What the command line can do about a step that failed.
+#[must_use]
 pub fn advice(error: &StepError, plan: &Plan) -> Option<&'static str> {
     match (error, plan.method) {
         (

@@ -7,6 +7,9 @@ use serde::Deserializer;
 use serde::de::{self, Unexpected, Visitor};
 
 /// A number of steps or rows: `1000`, or `1e6` where that is whole.
+///
+/// # Errors
+/// What is allowed, where the text is no such number.
 pub fn count(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let digits = text.parse().ok();
@@ -23,6 +26,9 @@ fn whole(value: f64) -> Option<u64> {
 }
 
 /// A number; whether it has to be finite depends on what it is for.
+///
+/// # Errors
+/// As [`count`].
 pub fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| {
         let hint = if text.contains('\u{2212}') { "; the minus of a number is the hyphen `-`" } else { "" };
@@ -31,6 +37,9 @@ pub fn number(text: &str) -> Result<f64, String> {
 }
 
 /// The count of an entry of a scene, `1000` or `1e6`.
+///
+/// # Errors
+/// As [`count`], at the place of the entry.
 pub fn count_of_scene<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<u64>, D::Error> {
     entry.deserialize_any(Count).map(Some)
 }

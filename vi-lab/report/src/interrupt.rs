@@ -19,6 +19,7 @@ pub struct Signal {
 
 impl Signal {
     /// The exit status of a command that this signal ended, by custom: 130 for SIGINT, 143 for SIGTERM.
+    #[must_use]
     pub fn exit_status(self) -> u8 {
         u8::try_from(128 + self.number).unwrap_or(u8::MAX)
     }
@@ -54,6 +55,7 @@ impl Interrupt {
     }
 
     /// The signal that has come.
+    #[must_use]
     pub fn signal(&self) -> Option<Signal> {
         let place = self.came.load(Ordering::Relaxed).checked_sub(1)?;
         SIGNALS.get(place).copied()

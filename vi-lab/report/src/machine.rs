@@ -29,6 +29,7 @@ impl Machine {
     }
 
     /// One paragraph for a footer.
+    #[must_use]
     pub fn describe(&self) -> String {
         let build = if cfg!(debug_assertions) { "debug" } else { "release" };
         format!(
@@ -53,6 +54,7 @@ pub fn program() -> String {
 }
 
 /// The command line on one line, the program by its name alone; an argument with blanks stands in quotes.
+#[must_use]
 pub fn command_line() -> String {
     let arguments = env::args_os().skip(1).map(|argument| quoted(&argument.to_string_lossy()));
     core::iter::once(quoted(&program())).chain(arguments).collect::<Vec<_>>().join(" ")

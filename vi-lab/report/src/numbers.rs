@@ -1,6 +1,7 @@
 //! Numbers as pages and messages write them, and the few statistics that they need.
 
 /// A number in three digits, with a power of ten where that is shorter: `7.19·10⁻⁹`.
+#[must_use]
 pub fn scientific(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -17,6 +18,7 @@ pub fn scientific(value: f64) -> String {
 }
 
 /// An integer in superscript digits.
+#[must_use]
 pub fn superscript(exponent: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     exponent
@@ -27,12 +29,14 @@ pub fn superscript(exponent: i32) -> String {
 }
 
 /// A number in all its digits, with an exponent where it would have many zeros: `0.01`, `1e-300`.
+#[must_use]
 pub fn short(value: f64) -> String {
     let is_plain = value == 0.0 || !value.is_finite() || (1e-5..1e15).contains(&value.abs());
     if is_plain { value.to_string() } else { format!("{value:e}") }
 }
 
 /// Names with their values, in all digits: `m = 1, k = 4`.
+#[must_use]
 pub fn assigned(values: &[(&str, f64)]) -> String {
     let each: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
     each.join(", ")
@@ -56,6 +60,7 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
 }
 
 /// Slope of the straight line through `(log x, log y)` by least squares: the order of a power law.
+#[must_use]
 pub fn order(points: &[(f64, f64)]) -> f64 {
     let mut n = 0.0;
     let mut sx = 0.0;

@@ -24,6 +24,7 @@ impl Progress {
     pub const FINENESS: u64 = 1_000_000_000_000_000;
 
     /// A bar of the given length.
+    #[must_use]
     pub fn new(length: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
         // The template is a constant; were it wrong, the bar's own style would do.

@@ -30,6 +30,7 @@ impl Table {
     }
 
     /// The table as an HTML element.
+    #[must_use]
     pub fn html(&self) -> String {
         let mut html = String::from("<div class=\"table\"><table>\n<thead><tr>");
         // Writing to a string cannot fail.
@@ -49,6 +50,7 @@ impl Table {
     }
 
     /// The table as CSV, head first.
+    #[must_use]
     pub fn csv(&self) -> String {
         let mut csv = String::new();
         for row in core::iter::once(&self.head).chain(&self.rows) {
@@ -59,6 +61,7 @@ impl Table {
     }
 
     /// The table as text in columns.
+    #[must_use]
     pub fn text(&self) -> String {
         let mut text = comfy_table::Table::new();
         text.load_style(presets::UTF8_HORIZONTAL_ONLY)
@@ -73,6 +76,7 @@ impl Table {
 }
 
 /// A field of a CSV file, quoted where RFC 4180 asks for it.
+#[must_use]
 pub fn csv_field(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

@@ -61,6 +61,12 @@ pub fn kepler() -> Entry {
     Entry::new::<Kepler, 2>("planet about a fixed sun, eccentricity 0.6", [0.4, 0.0], [0.0, 2.0], 0.005)
 }
 
+/// A mass on a rod.
+#[must_use]
+pub fn pendulum() -> Entry {
+    Entry::new::<Pendulum, 1>("mass on a rod", [1.0], [0.0], 0.01)
+}
+
 /// The ready systems, in the order in which they are listed.
 #[must_use]
 pub fn systems() -> Vec<Entry> {
@@ -69,7 +75,7 @@ pub fn systems() -> Vec<Entry> {
     vec![
         Entry::new::<DoubleWell, 1>("particle in a double well: the paper's conservative example", [0.74], rest, 0.01),
         Entry::new::<DampedOscillator, 1>("damped oscillator: the paper's forced example", [1.0], rest, 0.01),
-        Entry::new::<Pendulum, 1>("mass on a rod", [1.0], rest, 0.01),
+        pendulum(),
         kepler(),
         Entry::new::<DoublePendulum, 2>("two pendula, one hanging from the other", [1.0, 1.0], [0.0, 0.0], 0.005),
         Entry::new::<HarmonicOscillator, 1>("mass on a spring", [1.0], rest, 0.01),

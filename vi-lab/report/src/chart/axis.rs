@@ -46,11 +46,13 @@ impl Axis {
     }
 
     /// The same axis over a given range of values.
+    #[must_use]
     pub fn over(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
     }
 
     /// The value at a part of the given range, from 0 at its beginning to 1 at its end; of 0 to 1 where none is given.
+    #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         let (low, high) = self.range.unwrap_or((0.0, 1.0));
         match self.scale {

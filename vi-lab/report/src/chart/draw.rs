@@ -52,6 +52,7 @@ struct Drawn<'a> {
 
 impl Chart {
     /// The chart as an SVG figure, and the points that it shows as a CSV table.
+    #[must_use]
     pub fn figure(&self) -> Figure {
         self.figure_over(None)
     }

@@ -41,6 +41,7 @@ pub fn middles(axis: &Axis, count: usize) -> impl Iterator<Item = f64> + '_ {
 }
 
 /// A boundary that theory gives: curves that contrast with every colour of the cells, and one entry in the legend.
+#[must_use]
 pub fn boundary(label: &str, curves: Vec<Vec<(f64, f64)>>) -> Vec<Series> {
     let lines = curves.clone().into_iter().enumerate().map(|(index, points)| {
         let line = Series::curve(label, Look::EXACT, points);
@@ -51,6 +52,7 @@ pub fn boundary(label: &str, curves: Vec<Vec<(f64, f64)>>) -> Vec<Series> {
 
 impl Map {
     /// The map as an SVG figure, and its cells as a CSV matrix.
+    #[must_use]
     pub fn figure(&self) -> Figure {
         let classes: BTreeSet<Class> = self.cells.iter().copied().collect();
         let legend = classes.iter().map(|class| LegendEntry {

@@ -80,16 +80,19 @@ impl Series {
     }
 
     /// A curve of the background, without an entry in the legend.
+    #[must_use]
     pub fn background(points: Vec<(f64, f64)>) -> Self {
         Self { label: None, look: Look::BACKGROUND, thinning: Thinning::Curve, points, whiskers: Vec::new() }
     }
 
     /// The same series with a whisker at each point, up or down to the ordinate given for it.
+    #[must_use]
     pub fn with_whiskers(self, whiskers: Vec<f64>) -> Self {
         Self { whiskers, ..self }
     }
 
     /// The same series without an entry in the legend.
+    #[must_use]
     pub fn unlabelled(self) -> Self {
         Self { label: None, ..self }
     }

@@ -63,21 +63,25 @@ impl Look {
     }
 
     /// The line alone.
+    #[must_use]
     pub const fn line(self) -> Self {
         Self { marker: None, ..self }
     }
 
     /// The line alone, dashed.
+    #[must_use]
     pub const fn dashed(self) -> Self {
         Self { marker: None, stroke: Stroke::Dashed, ..self }
     }
 
     /// The line alone, dotted.
+    #[must_use]
     pub const fn dotted(self) -> Self {
         Self { marker: None, stroke: Stroke::Dotted, ..self }
     }
 
     /// The markers alone, of the given radius.
+    #[must_use]
     pub const fn dots(self, radius: f64) -> Self {
         let marker = match self.marker {
             Some((shape, _)) => Some((shape, radius)),

@@ -69,6 +69,7 @@ impl Trace {
     }
 
     /// The points that are left.
+    #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {
         let mut points = Vec::new();
         for Stretch { first, low, high, last } in &self.stretches {
@@ -108,11 +109,13 @@ impl Sample {
     }
 
     /// Whether these are all points that were put in.
+    #[must_use]
     pub fn is_whole(&self) -> bool {
         self.doublings == 0
     }
 
     /// The points that are left.
+    #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {
         self.points.clone()
     }

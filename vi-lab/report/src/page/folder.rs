@@ -41,6 +41,9 @@ impl Report {
     }
 
     /// A figure with its caption; its files are written at once.
+    ///
+    /// # Errors
+    /// [`Failure::File`].
     pub fn figure(&mut self, figure: &Figure, caption: &str) -> Result<(), Failure> {
         self.page.figure(figure, caption);
         self.write(&format!("{}.svg", figure.name), &figure.svg)?;
@@ -48,12 +51,18 @@ impl Report {
     }
 
     /// A table with its caption; its file is written at once.
+    ///
+    /// # Errors
+    /// [`Failure::File`].
     pub fn table(&mut self, table: &Table, caption: &str) -> Result<(), Failure> {
         self.page.table(table, caption);
         self.write(&format!("{}.csv", table.name), &table.csv())
     }
 
     /// Writes the page, and returns where it is.
+    ///
+    /// # Errors
+    /// [`Failure::File`].
     pub fn finish(self, machine: &Machine) -> Result<PathBuf, Failure> {
         self.write("index.html", &self.page.html(machine))?;
         Ok(self.folder.join("index.html"))

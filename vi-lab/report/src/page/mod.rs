@@ -27,6 +27,7 @@ pub struct Page {
 
 impl Page {
     /// A page with a title and a line below it.
+    #[must_use]
     pub fn new(title: &str, subtitle: &str) -> Self {
         let body = format!("<header><h1>{}</h1>\n<p class=\"subtitle\">{subtitle}</p></header>\n", escape(title));
         Self { title: title.to_owned(), body, contents: String::new(), sections: 0, figures: 0, tables: 0 }
@@ -78,6 +79,7 @@ impl Page {
     }
 
     /// The finished page, with the machine and the versions that made it in the footer.
+    #[must_use]
     pub fn html(&self, machine: &Machine) -> String {
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

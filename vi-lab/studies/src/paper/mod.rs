@@ -28,6 +28,9 @@ pub const STEPS: u32 = 1_000_000;
 const SHORTEST: u32 = 1000;
 
 /// The number of steps that a user writes.
+///
+/// # Errors
+/// What is allowed, where the text is no such number.
 pub fn steps(text: &str) -> Result<u32, String> {
     let steps = u32::try_from(count(text)?).ok().filter(|steps| *steps >= SHORTEST);
     steps.ok_or_else(|| format!("the study needs {SHORTEST} to {} steps", u32::MAX))

@@ -3,10 +3,12 @@
 //! In: an integrator and a [`Limit`]. Out: a [`Course`]: the [`Ending`], the number of steps taken, the largest coordinate. A map
 //! distinguishes a solver that fails from a motion that grows without bound: each typed error has a colour of its own.
 
-use vi_core::collocation::Collocation;
-use vi_core::stepping::{Convertible, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, EnergyPreservingGauss, FixedStep, SVector, State, StepError};
+use core::cell::Cell;
+use vi_core::stepping::{EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError};
 use vi_report::chart::Class;
+use vi_runs::plan::Plan;
+use vi_runs::system::System;
 
 /// When a run is over.
 #[derive(Clone, Copy, Debug)]
@@ -134,17 +136,21 @@ impl Course {
             Err(error) => Self::none(error),
         }
     }
-    /// Follows a run of energy-preserving Gauss steps.
-    pub(super) fn gauss<S, const N: usize, const STAGES: usize>(
-        run: Result<EnergyPreservingGauss<S, N, STAGES>, StepError>,
-        limit: Limit,
-    ) -> Self
-    where
-        S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-    {
-        match run {
-            Ok(mut run) => Self::of(limit, || run.step().map(|state| (state.t, state.q.amax()))),
+
+    /// Runs what is planned of a system whose type is erased.
+    pub(super) fn planned(system: &dyn System, plan: &Plan, limit: Limit) -> Self {
+        let evaluations = Cell::new(0);
+        match system.begin(plan, &evaluations) {
+            Ok(mut run) => Self::of(limit, || {
+                run.advance()?;
+                Ok((run.t(), size(run.q())))
+            }),
             Err(error) => Self::none(error),
         }
     }
+}
+
+/// The largest of some numbers, by absolute value.
+pub(super) fn size(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()))
 }

@@ -7,10 +7,10 @@
 //!
 //! | module | what it makes |
 //! |---|---|
-//! | [`linear`] … [`tradeoff`] | the sections of the page, one file each |
-//! | [`system`] | the maps of one system |
-//! | [`atlas`], [`contour`], [`ending`] | maps as they grow, curves D = 0, ends of runs and their colours |
-//! | [`trial`] | systems that only the charts need |
+//! | `linear` … `tradeoff` | the sections of the page, one file each |
+//! | `system` | the maps of one system |
+//! | `atlas`, `contour`, `ending` | maps as they grow, curves D = 0, ends of runs and their colours |
+//! | `trial` | systems that only the charts need |
 
 mod atlas;
 mod chain;

@@ -6,13 +6,15 @@
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Limit};
 use core::f64::consts::FRAC_PI_2;
-use vi_core::{Called, EnergyPreservingGauss, State, StepError};
 use vi_report::chart::{Axis, Class, boundary};
 use vi_report::failure::Failure;
-use vi_systems::Pendulum;
+use vi_runs::plan::{Method, PhasePoint, Plan, Shift};
+use vi_runs::ready;
 
 const LIMIT: Limit = Limit { steps: 20_000, until: 25.0, bound: 1e3 };
 const STEPS: (f64, f64) = (0.02, 0.8);
+/// That of the last map.
+const SHIFT: Option<Shift> = Some(Shift::Over(LIMIT.until));
 
 /// The section: a map for each number of stages, and one with a shift.
 pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
@@ -27,17 +29,17 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     let line = |name: &str, at: f64| boundary(name, vec![vec![(at, STEPS.0), (at, STEPS.1)]]);
     let caption = "One stage: every libration but the widest runs.";
     let labels = Labels { name: "orders-1", title: "Pendulum, order 2", caption };
-    atlas.map(labels, &grid, line("a = 3.09", 3.09), plain::<1>)?;
+    atlas.map(labels, &grid, line("a = 3.09", 3.09), |angle, h| class(1, None, angle, h))?;
     let caption = "Two stages: up to π/2.";
     let labels = Labels { name: "orders-2", title: "Pendulum, order 4", caption };
-    atlas.map(labels, &grid, line("a = π/2", FRAC_PI_2), plain::<2>)?;
+    atlas.map(labels, &grid, line("a = π/2", FRAC_PI_2), |angle, h| class(2, None, angle, h))?;
     let caption = "Three stages: up to 0.81. Of the shortest steps the energy tells no length: degenerate.";
     let labels = Labels { name: "orders-3", title: "Pendulum, order 6", caption };
-    atlas.map(labels, &grid, line("a = 0.81", 0.81), plain::<3>)?;
+    atlas.map(labels, &grid, line("a = 0.81", 0.81), |angle, h| class(3, None, angle, h))?;
     let caption = "Two stages with a shift of twice the largest |<i>D</i><sub>2</sub>| of the first 25 units of time: the step exists \
                    everywhere.";
     let labels = Labels { name: "orders-2-shifted", title: "Pendulum, order 4, with a shift", caption };
-    atlas.map(labels, &grid, Vec::new(), shifted)?;
+    atlas.map(labels, &grid, Vec::new(), |angle, h| class(2, SHIFT, angle, h))?;
     atlas.advice(
         "Where the energy has to stay on a motion on which <i>D<sub>s</sub></i> changes its sign, take \
          <code>EnergyPreservingGauss</code> with two stages and <code>with_shift_from(period)</code>.",
@@ -45,20 +47,11 @@ pub(super) fn section(atlas: &mut Atlas) -> Result<(), Failure> {
     Ok(())
 }
 
-type Run<const S: usize> = EnergyPreservingGauss<Called<Pendulum>, 1, S>;
-
-fn begin<const S: usize>(angle: f64, h: f64) -> Result<Run<S>, StepError> {
-    let system = Called(Pendulum::default());
-    EnergyPreservingGauss::new(system, State::at(&system, 0.0, [angle], [0.0]), h)
-}
-
-fn plain<const S: usize>(angle: f64, h: f64) -> Class {
-    Course::gauss(begin::<S>(angle, h), LIMIT).ending.class()
-}
-
-fn shifted(angle: f64, h: f64) -> Class {
-    let run = begin::<2>(angle, h).and_then(|run| run.with_shift_from(LIMIT.until));
-    Course::gauss(run, LIMIT).ending.class()
+/// How a run of so many stages ends that starts from rest at an angle.
+fn class(stages: usize, shift: Option<Shift>, angle: f64, h: f64) -> Class {
+    let start = PhasePoint { t: 0.0, q: vec![angle], v: vec![0.0] };
+    let plan = Plan { stages: Some(stages), shift, ..Plan::new(Method::Energy, h, start) };
+    Course::planned(ready::pendulum().system.as_ref(), &plan, LIMIT).ending.class()
 }
 
 #[cfg(test)]
@@ -77,13 +70,13 @@ mod tests {
 
     #[test]
     fn each_order_has_its_domain() {
-        let (grid, runs) = cells(plain::<2>);
+        let (grid, runs) = cells(|angle, h| class(2, None, angle, h));
         assert_eq!(strays(&grid, &runs, LASTING, |a, _| a < FRAC_PI_2), 0);
     }
 
     #[test]
     fn with_a_shift_every_motion_runs() {
-        let (_, runs) = cells(shifted);
+        let (_, runs) = cells(|angle, h| class(2, SHIFT, angle, h));
         assert!(runs.iter().all(|class| class.number == LASTING.number));
     }
 }

@@ -4,7 +4,7 @@
 //! the initial states over it, and one for the fixed step. What an axis does not vary is as the catalogue has it.
 
 use super::atlas::{Atlas, Axes, Grid, Labels};
-use super::ending::{Course, Ending, Limit};
+use super::ending::{Course, Limit, size};
 use super::span::Span;
 use core::cell::Cell;
 use vi_report::catalogue::kebab;
@@ -151,19 +151,7 @@ fn varied(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) ->
 /// How the run of a cell ends.
 fn class(entry: &Entry, axes: &[Span; 2], place: (f64, f64), method: Method) -> Class {
     let (system, plan) = varied(entry, axes, place, method);
-    let size = |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let scale = size(&plan.q).max(size(&plan.v)).max(1.0);
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND * scale };
-    let evaluations = Cell::new(0);
-    let ending = match system.begin(&plan, &evaluations) {
-        Ok(mut run) => {
-            Course::of(limit, || {
-                run.advance()?;
-                Ok((run.t(), size(run.q())))
-            })
-            .ending
-        }
-        Err(error) => Ending::Failing(error),
-    };
-    ending.class()
+    Course::planned(system.as_ref(), &plan, limit).ending.class()
 }

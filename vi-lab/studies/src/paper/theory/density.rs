@@ -2,9 +2,7 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{LOOKS, end, released, swing};
-use vi_core::StepError;
-use vi_core::gauss::energy::step_density;
+use super::{LOOKS, end, swing};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::page::math::{frac, id, num, op, row, sub, sub_sup, sup};
@@ -13,6 +11,8 @@ use vi_report::page::math::{frac, id, num, op, row, sub, sub_sup, sup};
 const ANGLE: f64 = 2.0;
 /// More than half a swing.
 const UNTIL: f64 = 5.0;
+/// Steps of the runs with 1, 2 and 3 stages.
+const STEPS: [f64; 3] = [0.01, 0.03, 0.08];
 
 /// The section: the statement, and the figure.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
@@ -27,19 +27,14 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         "A step exists, for small <i>h</i>, while <i>D<sub>s</sub></i> keeps its sign, and unforced its length obeys",
     );
     book.formula(&law());
-    let states = swing(ANGLE, UNTIL).map_err(unexpected("pendulum"))?;
-    let of = |density: fn(&_, &_) -> Result<f64, StepError>| {
-        states.iter().map(|state| Ok((state.t, density(&released(ANGLE).0, state)?))).collect::<Result<Vec<_>, _>>()
-    };
-    let densities = [of(step_density::<_, 1, 1>), of(step_density::<_, 1, 2>), of(step_density::<_, 1, 3>)];
-    let ends = [end::<1>(ANGLE, 0.01, UNTIL), end::<2>(ANGLE, 0.03, UNTIL), end::<3>(ANGLE, 0.08, UNTIL)];
+    let swing = swing(ANGLE, UNTIL).map_err(unexpected("pendulum"))?;
     let mut series = vec![Series::line("zero", Look::BACKGROUND, vec![(0.0, 0.0), (UNTIL, 0.0)]).unlabelled()];
     let mut marks = Vec::new();
-    for ((density, look), (stages, end)) in densities.into_iter().zip(LOOKS).zip((1..).zip(ends)) {
-        let density = density.map_err(unexpected("pendulum"))?;
-        let largest = density.iter().fold(0.0_f64, |largest, (_, density)| largest.max(density.abs()));
-        let points: Vec<(f64, f64)> = density.into_iter().map(|(t, density)| (t, density / largest)).collect();
-        if let Some(end) = end.map_err(unexpected("pendulum"))? {
+    for (index, (look, h)) in LOOKS.into_iter().zip(STEPS).enumerate() {
+        let stages = index + 1;
+        let largest = swing.iter().fold(0.0_f64, |largest, point| largest.max(point.densities[index].abs()));
+        let points: Vec<(f64, f64)> = swing.iter().map(|point| (point.t, point.densities[index] / largest)).collect();
+        if let Some(end) = end(stages, ANGLE, h, UNTIL).map_err(unexpected("pendulum"))? {
             let near = points.iter().min_by(|(one, _), (other, _)| (one - end).abs().total_cmp(&(other - end).abs()));
             marks.extend(near.map(|(_, density)| (end, *density)));
         }

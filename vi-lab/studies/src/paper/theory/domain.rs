@@ -2,13 +2,12 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{LOOKS, end, released, swing};
-use vi_core::gauss::energy::step_density;
-use vi_core::{Called, State, StepError};
+use super::{LOOKS, end, swing};
+use vi_core::StepError;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
-use vi_systems::Pendulum;
+use vi_runs::plan::ENERGY_STAGES;
 
 /// Amplitudes, in radians.
 const AMPLITUDES: (f64, f64) = (0.1, 3.1);
@@ -18,9 +17,8 @@ const COUNT: u32 = 61;
 const QUARTER: f64 = 6.0;
 /// How long runs have to last: some quarters.
 const LASTING: f64 = 12.0;
-
-/// A density, and a run from an amplitude: none where its steps end.
-type Order = (fn(&Called<Pendulum>, &State<1>) -> Result<f64, StepError>, fn(f64) -> Result<bool, StepError>);
+/// Short steps of 1, 2 and 3 stages: of shorter ones rounding would lose the length.
+const STEPS: [f64; ENERGY_STAGES.len()] = [0.005, 0.03, 0.1];
 
 /// The section: a figure, and the thresholds.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
@@ -30,22 +28,19 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
          largest, along the accurate motion. Where it is positive steps exist; filled circles are runs of short steps that last, \
          crosses those that end.",
     );
-    let orders: [Order; 3] = [
-        (step_density::<_, 1, 1>, lasts::<1>),
-        (step_density::<_, 1, 2>, lasts::<2>),
-        (step_density::<_, 1, 3>, lasts::<3>),
-    ];
+    let margins = margins().map_err(unexpected("pendulum"))?;
     let mut series = vec![Series::line("zero", Look::BACKGROUND, vec![(0.0, 0.0), (AMPLITUDES.1, 0.0)]).unlabelled()];
     let mut table = Table::new(
         "theory-domains",
         ["stages", "order", "D_s keeps its sign below", "the widest run that lasts", "the narrowest that ends"],
     );
     let [mut lasting, mut ending] = [Vec::new(), Vec::new()];
-    for ((order, look), stages) in orders.into_iter().zip(LOOKS).zip(1..) {
-        let points = margins(order.0).map_err(unexpected("pendulum"))?;
+    for (index, stages) in ENERGY_STAGES.into_iter().enumerate() {
+        let points: Vec<(f64, f64)> = margins.iter().map(|(angle, margins)| (*angle, margins[index])).collect();
         let mut bounds = [f64::NAN; 2];
         for point in points.iter().skip(1).step_by(3) {
-            if order.1(point.0).map_err(unexpected("pendulum"))? {
+            let end = end(stages, point.0, STEPS[index], LASTING).map_err(unexpected("pendulum"))?;
+            if end.is_none() {
                 bounds[0] = point.0;
                 lasting.push(*point);
             } else {
@@ -57,7 +52,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
         let [widest, narrowest] =
             bounds.map(|angle| if angle.is_nan() { "–".to_owned() } else { format!("{angle:.2} rad") });
         table.row([stages.to_string(), (2 * stages).to_string(), threshold, widest, narrowest]);
-        series.push(Series::line(format!("s = {stages}"), look, points));
+        series.push(Series::line(format!("s = {stages}"), LOOKS[index], points));
     }
     series.push(Series::scatter("a run lasts", Look::ENERGY.dots(4.0), lasting));
     series.push(Series::scatter("a run ends", Look::RIVAL.dots(4.0), ending));
@@ -73,18 +68,19 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.table(&table, "Thresholds of the pendulum. Theory: 3.09, π/2 and 0.81 rad.")
 }
 
-/// The least D_s of a swing by the largest, over the amplitude.
-fn margins(density: fn(&Called<Pendulum>, &State<1>) -> Result<f64, StepError>) -> Result<Vec<(f64, f64)>, StepError> {
+/// The least D_s of a swing by the largest, of each number of stages, over the amplitude.
+fn margins() -> Result<Vec<(f64, [f64; ENERGY_STAGES.len()])>, StepError> {
     let (low, high) = AMPLITUDES;
     let amplitudes = (0..COUNT).map(|k| low + (high - low) * f64::from(k) / f64::from(COUNT - 1));
     let margin = |angle: f64| {
-        let densities = swing(angle, QUARTER)?
-            .iter()
-            .map(|state| density(&released(angle).0, state))
-            .collect::<Result<Vec<_>, _>>()?;
-        let least = densities.iter().copied().fold(f64::INFINITY, f64::min);
-        let largest = densities.iter().fold(0.0_f64, |largest, density| largest.max(density.abs()));
-        Ok((angle, least / largest))
+        let swing = swing(angle, QUARTER)?;
+        let margins = core::array::from_fn(|index| {
+            let densities = || swing.iter().map(|point| point.densities[index]);
+            let least = densities().fold(f64::INFINITY, f64::min);
+            let largest = densities().fold(0.0_f64, |largest, density| largest.max(density.abs()));
+            least / largest
+        });
+        Ok((angle, margins))
     };
     amplitudes.map(margin).collect()
 }
@@ -94,11 +90,4 @@ fn crossing(points: &[(f64, f64)]) -> Option<f64> {
     let (before, after) =
         points.iter().zip(points.iter().skip(1)).find(|(before, after)| before.1 > 0.0 && after.1 <= 0.0)?;
     Some(before.0 + (after.0 - before.0) * before.1 / (before.1 - after.1))
-}
-
-/// Whether a run of short steps lasts.
-fn lasts<const S: usize>(angle: f64) -> Result<bool, StepError> {
-    // The length of shorter ones would be lost in rounding.
-    let h = [0.005, 0.03, 0.1][S - 1];
-    Ok(end::<S>(angle, h, LASTING)?.is_none())
 }

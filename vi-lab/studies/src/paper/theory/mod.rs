@@ -9,11 +9,14 @@ mod shift;
 mod work;
 
 use super::book::Book;
-use vi_core::{Called, EnergyPreservingGauss, Gauss, State, StepError};
+use core::cell::Cell;
+use vi_core::StepError;
 use vi_report::chart::Look;
 use vi_report::failure::Failure;
 use vi_report::progress::Progress;
-use vi_systems::Pendulum;
+use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan};
+use vi_runs::ready;
+use vi_runs::system::System;
 
 /// How energy-preserving steps of 1, 2 and 3 stages are drawn.
 const LOOKS: [Look; 3] = [Look::ENERGY.dotted(), Look::ENERGY.dashed(), Look::ENERGY.line()];
@@ -30,31 +33,57 @@ pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Fa
     work::section(book)
 }
 
-/// A pendulum at rest at an angle.
-fn released(angle: f64) -> (Called<Pendulum>, State<1>) {
-    let system = Pendulum::default();
-    (Called(system), State::at(&system, 0.0, [angle], [0.0]))
+/// A pendulum, its type erased: the command has its integrators anyway.
+fn pendulum() -> Box<dyn System> {
+    ready::pendulum().system
 }
 
-/// When a run of energy-preserving steps from rest at an angle ends, if it does before a time.
-fn end<const S: usize>(angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
-    let (system, start) = released(angle);
-    let mut run = EnergyPreservingGauss::<_, 1, S>::new(system, start, h)?;
-    while run.state().t < until {
-        if run.step().is_err() {
-            return Ok(Some(run.state().t));
+/// A run from rest at an angle by steps of the length h.
+fn released(method: Method, angle: f64, h: f64) -> Plan {
+    Plan::new(method, h, PhasePoint { t: 0.0, q: vec![angle], v: vec![0.0] })
+}
+
+/// When a run of energy-preserving steps of so many stages from rest at an angle ends, if it does before a time.
+fn end(stages: usize, angle: f64, h: f64, until: f64) -> Result<Option<f64>, StepError> {
+    let plan = Plan { stages: Some(stages), ..released(Method::Energy, angle, h) };
+    let sweeps = Cell::new(0);
+    let mut run = pendulum().begin(&plan, &sweeps)?;
+    while run.t() < until {
+        if run.advance().is_err() {
+            return Ok(Some(run.t()));
         }
     }
     Ok(None)
 }
 
-/// States along the accurate motion of a pendulum from rest, until a time.
-fn swing(angle: f64, until: f64) -> Result<Vec<State<1>>, StepError> {
-    let (Called(system), start) = released(angle);
-    let mut run = Gauss::<_, 1, 8>::new(system, start, 0.05)?;
-    let mut states = vec![start];
-    while run.state().t < until {
-        states.push(run.step()?);
+/// A state on a motion, and the step densities of 1, 2 and 3 stages there.
+struct Point {
+    t: f64,
+    densities: [f64; ENERGY_STAGES.len()],
+}
+
+/// Points along the accurate motion of a pendulum from rest, until a time.
+fn swing(angle: f64, until: f64) -> Result<Vec<Point>, StepError> {
+    let system = pendulum();
+    let sweeps = Cell::new(0);
+    let mut run = system.begin(&released(Method::Gauss, angle, 0.05), &sweeps)?;
+    let mut points = Vec::new();
+    loop {
+        let densities = densities(system.as_ref(), run.t(), run.q(), run.p())?;
+        points.push(Point { t: run.t(), densities });
+        if run.t() >= until {
+            return Ok(points);
+        }
+        run.advance()?;
     }
-    Ok(states)
+}
+
+/// The step densities of 1, 2 and 3 stages at a node.
+fn densities(system: &dyn System, t: f64, q: &[f64], p: &[f64]) -> Result<[f64; ENERGY_STAGES.len()], StepError> {
+    let densities = system.step_densities(t, q, p);
+    if densities.iter().all(Option::is_some) {
+        Ok(densities.map(Option::unwrap_or_default))
+    } else {
+        Err(StepError::NonFinite { t, quantity: "step density", expression: None })
+    }
 }

@@ -2,13 +2,15 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::released;
-use vi_core::gauss::energy::step_density;
-use vi_core::{EnergyPreservingGauss, StepError};
+use super::{densities, pendulum, released};
+use core::cell::Cell;
+use vi_core::StepError;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, scientific};
 use vi_report::page::math::{id, num, op, row, sub, sup};
+use vi_runs::plan::{Method, Plan, Shift};
+use vi_runs::simulation::ShiftedEnergy;
 
 const ANGLE: f64 = 2.0;
 const H: f64 = 0.05;
@@ -26,6 +28,8 @@ struct Node {
     h: f64,
     /// `D_2 + D_*`.
     density: f64,
+    /// `D_*`.
+    shift: f64,
 }
 
 /// The section: the statement, and what is kept.
@@ -39,8 +43,9 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     let order = row(&[num("2"), id("s")]);
     let [c, d] = [sub(&id("C"), &id("s")), sub(&id("D"), &op("∗"))];
     book.formula(&[sup(&id("E"), &op("′")), op("="), id("E"), op("−"), c, sup(&id("h"), &order), d].concat());
-    let (shift, nodes) = run().map_err(unexpected("pendulum with a shift"))?;
+    let nodes = run().map_err(unexpected("pendulum with a shift"))?;
     let Some(first) = nodes.first() else { return Ok(()) };
+    let shift = first.shift;
     let line = |label: &str, look: Look, pick: fn(&Node) -> f64| {
         Series::line(label, look, nodes.iter().map(|node| (node.t, pick(node) - pick(first))).collect())
     };
@@ -78,22 +83,27 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     book.figure(&chart, &caption)
 }
 
-/// The shift that is measured, and the nodes of the run.
-fn run() -> Result<(f64, Vec<Node>), StepError> {
-    let (system, start) = released(ANGLE);
-    let mut run = EnergyPreservingGauss::<_, 1, 2>::new(system, start, H)?.with_shift_from(UNTIL)?;
-    let shift = run.shift();
+/// The nodes of the run, its shift measured.
+fn run() -> Result<Vec<Node>, StepError> {
+    let system = pendulum();
+    let plan = Plan { stages: Some(2), shift: Some(Shift::Over(UNTIL)), ..released(Method::Energy, ANGLE, H) };
+    let sweeps = Cell::new(0);
+    let mut run = system.begin(&plan, &sweeps)?;
     let mut nodes = Vec::new();
-    while run.state().t < UNTIL {
-        let state = run.step()?;
+    while run.t() < UNTIL {
+        run.advance()?;
+        let [_, density, _] = densities(system.as_ref(), run.t(), run.q(), run.p())?;
+        let kept = run.shifted_energy().zip(run.discrete_energy());
+        let Some((ShiftedEnergy { energy: shifted, shift }, discrete)) = kept else { break };
         nodes.push(Node {
-            t: state.t,
-            total: state.energy(&system)?,
-            discrete: run.discrete_energy(),
-            shifted: run.shifted_energy(),
+            t: run.t(),
+            total: run.energy()?,
+            discrete,
+            shifted,
             h: run.h(),
-            density: step_density::<_, 1, 2>(&system, &state)? + shift,
+            density: density + shift,
+            shift,
         });
     }
-    Ok((shift, nodes))
+    Ok(nodes)
 }
