@@ -1,5 +1,5 @@
 //! The systems that the command knows by name, each with a place to start from: those of the program that the command stands in
-//! ([`crate::main!`]), then the ready ones.
+//! (`vi_lab::main!`), then the ready ones.
 //!
 //! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
 
@@ -13,7 +13,7 @@ use vi_runs::ready::{self, Entry};
 /// The systems of a program of one's own, set once before its command is read.
 static OWN: OnceLock<Own> = OnceLock::new();
 
-/// The systems of a program of one's own; [`crate::main!`] writes it.
+/// The systems of a program of one's own; `vi_lab::main!` writes it.
 #[derive(Clone, Copy)]
 pub struct Own {
     /// The text of the files that declare them.

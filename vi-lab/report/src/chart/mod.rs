@@ -1,7 +1,7 @@
 //! Charts: named series in, one SVG figure and one CSV table of the same points out.
 //!
 //! In: a [`Chart`], whose series hold the values as computed, however many. Out: [`Chart::figure`], in which a series
-//! is thinned to what its width in pixels can show (see [`thin`]); the CSV lists exactly the points drawn.
+//! is thinned to what its width in pixels can show (`thin`); the CSV lists exactly the points drawn.
 //! A logarithmic axis is drawn as a linear axis of log10 with labels of its own, because the library's logarithmic
 //! axes clamp in silence below 1e-10. Not done here: prose, and where files go.
 
