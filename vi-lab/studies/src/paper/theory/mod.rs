@@ -80,10 +80,8 @@ fn swing(angle: f64, until: f64) -> Result<Vec<Point>, StepError> {
 
 /// The step densities of 1, 2 and 3 stages at a node.
 fn densities(system: &dyn System, t: f64, q: &[f64], p: &[f64]) -> Result<[f64; ENERGY_STAGES.len()], StepError> {
-    let densities = system.step_densities(t, q, p);
-    if densities.iter().all(Option::is_some) {
-        Ok(densities.map(Option::unwrap_or_default))
-    } else {
-        Err(StepError::NonFinite { t, quantity: "step density", expression: None })
+    match system.step_densities(t, q, p) {
+        [Some(one), Some(two), Some(three)] => Ok([one, two, three]),
+        _ => Err(StepError::NonFinite { t, quantity: "step density", expression: None }),
     }
 }
