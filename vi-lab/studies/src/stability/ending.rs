@@ -78,9 +78,16 @@ impl Ending {
 }
 
 impl Course {
-    /// The course of a run that could not start.
-    fn none(error: StepError) -> Self {
-        Self { ending: Ending::Failing(error), steps: 0, largest: 0.0 }
+    /// Follows a run, where it could start, by steps as of [`Course::of`].
+    fn begun<R>(
+        run: Result<R, StepError>,
+        limit: Limit,
+        mut step: impl FnMut(&mut R) -> Result<(f64, f64), StepError>,
+    ) -> Self {
+        match run {
+            Ok(mut run) => Self::of(limit, || step(&mut run)),
+            Err(error) => Self { ending: Ending::Failing(error), steps: 0, largest: 0.0 },
+        }
     }
 
     /// Follows a run, whose every step gives the time and the largest coordinate.
@@ -117,10 +124,7 @@ impl Course {
         limit: Limit,
     ) -> Self {
         let state = State::at(&system, 0.0, q, v);
-        match FixedStep::new(system, state, h) {
-            Ok(mut run) => Self::of(limit, || run.step().map(|state| (state.t, state.q.amax()))),
-            Err(error) => Self::none(error),
-        }
+        Self::begun(FixedStep::new(system, state, h), limit, |run| run.step().map(|state| (state.t, state.q.amax())))
     }
 
     /// Runs the energy-preserving integrator from the midpoint `(q, v)` of the first interval.
@@ -131,22 +135,17 @@ impl Course {
         h: f64,
         limit: Limit,
     ) -> Self {
-        match EnergyPreserving::from_midpoint(system, 0.0, q, v, h) {
-            Ok(mut run) => Self::of(limit, || run.step().map(|step| (step.t, step.q.amax()))),
-            Err(error) => Self::none(error),
-        }
+        let run = EnergyPreserving::from_midpoint(system, 0.0, q, v, h);
+        Self::begun(run, limit, |run| run.step().map(|step| (step.t, step.q.amax())))
     }
 
     /// Runs what is planned of a system whose type is erased.
     pub(super) fn planned(system: &dyn System, plan: &Plan, limit: Limit) -> Self {
         let evaluations = Cell::new(0);
-        match system.begin(plan, &evaluations) {
-            Ok(mut run) => Self::of(limit, || {
-                run.advance()?;
-                Ok((run.t(), size(run.q())))
-            }),
-            Err(error) => Self::none(error),
-        }
+        Self::begun(system.begin(plan, &evaluations), limit, |run| {
+            run.advance()?;
+            Ok((run.t(), size(run.q())))
+        })
     }
 }
 

@@ -2,17 +2,18 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{LOOKS, end, swing};
+use super::{LOOKS, end, largest, swing};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::page::math::{frac, id, num, op, row, sub, sub_sup, sup};
+use vi_runs::plan::ENERGY_STAGES;
 
 /// Where the pendulum is released.
 const ANGLE: f64 = 2.0;
 /// More than half a swing.
 const UNTIL: f64 = 5.0;
 /// Steps of the runs with 1, 2 and 3 stages.
-const STEPS: [f64; 3] = [0.01, 0.03, 0.08];
+const STEPS: [f64; ENERGY_STAGES.len()] = [0.01, 0.03, 0.08];
 
 /// The section: the statement, and the figure.
 pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
@@ -30,15 +31,14 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     let swing = swing(ANGLE, UNTIL).map_err(unexpected("pendulum"))?;
     let mut series = vec![Series::line("zero", Look::BACKGROUND, vec![(0.0, 0.0), (UNTIL, 0.0)]).unlabelled()];
     let mut marks = Vec::new();
-    for (index, (look, h)) in LOOKS.into_iter().zip(STEPS).enumerate() {
-        let stages = index + 1;
-        let largest = swing.iter().fold(0.0_f64, |largest, point| largest.max(point.densities[index].abs()));
+    for (index, stages) in ENERGY_STAGES.into_iter().enumerate() {
+        let largest = largest(&swing, index);
         let points: Vec<(f64, f64)> = swing.iter().map(|point| (point.t, point.densities[index] / largest)).collect();
-        if let Some(end) = end(stages, ANGLE, h, UNTIL).map_err(unexpected("pendulum"))? {
+        if let Some(end) = end(stages, ANGLE, STEPS[index], UNTIL).map_err(unexpected("pendulum"))? {
             let near = points.iter().min_by(|(one, _), (other, _)| (one - end).abs().total_cmp(&(other - end).abs()));
             marks.extend(near.map(|(_, density)| (end, *density)));
         }
-        series.push(Series::line(format!("s = {stages}"), look, points));
+        series.push(Series::line(format!("s = {stages}"), LOOKS[index], points));
     }
     series.push(Series::scatter("a run ends", Look::RIVAL.dots(5.0), marks));
     let chart = Chart {

@@ -2,7 +2,7 @@
 
 use super::super::book::Book;
 use super::super::unexpected;
-use super::{LOOKS, end, swing};
+use super::{LOOKS, end, largest, swing};
 use vi_core::StepError;
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
@@ -75,10 +75,8 @@ fn margins() -> Result<Vec<(f64, [f64; ENERGY_STAGES.len()])>, StepError> {
     let margin = |angle: f64| {
         let swing = swing(angle, QUARTER)?;
         let margins = core::array::from_fn(|index| {
-            let densities = || swing.iter().map(|point| point.densities[index]);
-            let least = densities().fold(f64::INFINITY, f64::min);
-            let largest = densities().fold(0.0_f64, |largest, density| largest.max(density.abs()));
-            least / largest
+            let least = swing.iter().map(|point| point.densities[index]).fold(f64::INFINITY, f64::min);
+            least / largest(&swing, index)
         });
         Ok((angle, margins))
     };

@@ -19,7 +19,7 @@ use vi_runs::ready;
 use vi_runs::system::System;
 
 /// How energy-preserving steps of 1, 2 and 3 stages are drawn.
-const LOOKS: [Look; 3] = [Look::ENERGY.dotted(), Look::ENERGY.dashed(), Look::ENERGY.line()];
+const LOOKS: [Look; ENERGY_STAGES.len()] = [Look::ENERGY.dotted(), Look::ENERGY.dashed(), Look::ENERGY.line()];
 
 /// The sections beyond the paper.
 pub(super) fn chapter(book: &mut Book, progress: &mut Progress) -> Result<(), Failure> {
@@ -60,6 +60,11 @@ fn end(stages: usize, angle: f64, h: f64, until: f64) -> Result<Option<f64>, Ste
 struct Point {
     t: f64,
     densities: [f64; ENERGY_STAGES.len()],
+}
+
+/// The largest `|D_s|` of some points, of the number of stages with this index.
+fn largest(points: &[Point], index: usize) -> f64 {
+    points.iter().fold(0.0_f64, |largest, point| largest.max(point.densities[index].abs()))
 }
 
 /// Points along the accurate motion of a pendulum from rest, until a time.
