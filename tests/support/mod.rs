@@ -7,6 +7,7 @@ pub(crate) mod ending;
 pub(crate) mod exact;
 pub(crate) mod reference;
 pub(crate) mod scenes;
+pub(crate) mod twice;
 
 /// The next entry of a fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
 pub(crate) struct Sequence(u64);

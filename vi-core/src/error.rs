@@ -34,6 +34,21 @@ pub enum StepError {
         /// The largest `|D_s|` that the run has met.
         largest: f64,
     },
+    /// The shift of the step density adds more to the energy that is kept than the energy has: E' would say nothing of it.
+    ShiftTooLarge {
+        /// Time of the last good node.
+        t: f64,
+        /// Length of the last good step.
+        h: f64,
+        /// The shift D_*.
+        shift: f64,
+        /// What it adds, `C_s h^2s D_*`.
+        part: f64,
+        /// The size of the terms of H, `|v·p| + |H|`, along the motion.
+        size: f64,
+        /// Length of a step whose part is a tenth of that size.
+        shorter: f64,
+    },
     /// The step density vanishes: the length of the step is not determined.
     DegenerateStep {
         /// Time of the last good node.
@@ -91,7 +106,7 @@ pub enum StepError {
         /// Estimate of h ω, ω the fastest rate of the equations linearized in the middle of the step.
         stiffness: f64,
     },
-    /// The time scale g of `dt = g dτ` is not positive, or not finite.
+    /// The time scale g of `dt = g dτ` is not positive, not finite, or so small that a step does not change the time.
     TimeScale {
         /// Time at which it was met.
         t: f64,
@@ -102,6 +117,11 @@ pub enum StepError {
     NoTimeScale {
         /// Name of the system.
         system: &'static str,
+    },
+    /// Velocities of both signs have the same momenta: L is not defined at rest, and convex on neither side alone.
+    Ambiguous {
+        /// Time at which it was met.
+        t: f64,
     },
     /// A matrix that has to be inverted is singular.
     Singular {
@@ -170,6 +190,10 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "no energy-preserving step with s = {stages} leads forward from t = {t:.9} (last h = {h:.3e}, H − E = {excess:.3e}, step density D = {density:.3e}, shifted by {shift:.3e})"
             ),
+            StepError::ShiftTooLarge { t, h, shift, part, size, .. } => write!(
+                f,
+                "the shift {shift:.3e} of the step density outweighs the energy at t = {t:.9}: with h = {h:.3e} it adds {part:.3e}, and the terms of H are {size:.3e}"
+            ),
             StepError::DegenerateStep { t, h, density } => write!(
                 f,
                 "the step length is not determined at t = {t:.9} (last h = {h:.3e}, step density D = {density:.3e})"
@@ -194,10 +218,14 @@ impl fmt::Display for Reason<'_> {
                 f,
                 "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings in iteration {iterations}, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
             ),
+            StepError::TimeScale { t, g } if *g > 0.0 && g.is_finite() => {
+                write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, so small that the time stands still")
+            }
             StepError::TimeScale { t, g } => {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
             }
             StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
+            StepError::Ambiguous { t } => write!(f, "two velocities have the momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}")
@@ -235,6 +263,7 @@ impl fmt::Display for StepError {
                 "; `with_shift({:.3e})`, beyond the largest |D| so far, makes steps that exist here, other numbers of stages have other densities, and `with_fallback(Fallback::FixedSteps)` or `Gauss` with h = {h:.3e} goes on",
                 2.0 * largest
             ),
+            Self::ShiftTooLarge { shorter, .. } => write!(f, "; start with steps of {shorter:.1e} or shorter"),
             Self::StepBounds { found, .. } => write!(
                 f,
                 "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"
@@ -248,12 +277,16 @@ impl fmt::Display for StepError {
                 h.abs()
             ),
             Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
+            Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => {
+                f.write_str("; end the run before, or write a `time_scale` that does not vanish there")
+            }
             Self::TimeScale { .. } => {
                 f.write_str("; take shorter steps, or write a `time_scale` that is positive there")
             }
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
             }
+            Self::Ambiguous { .. } => f.write_str("; write an L that grows with `dot()` on one side of zero only, or that is convex"),
             Self::OtherSystem { parameter: None, .. } => {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }

@@ -9,6 +9,7 @@ use crate::newton::{self, Equations, Failure, worst};
 use crate::node::Node;
 use crate::real::{Real, Rounded, Scalar};
 use crate::state::State;
+use crate::vector::Vector;
 use nalgebra::SVector;
 
 impl<const N: usize, T: Real> State<N, T> {
@@ -153,11 +154,18 @@ where
     }
 }
 
+/// Sizes of velocities from which a search starts where Newton's iteration finds none from rest: logarithms and roots are defined for one sign,
+/// and far from the root they send it out of their domain.
+const SCALES: [f64; 9] = [1.0, 0.1, 10.0, 1e-2, 1e2, 1e-4, 1e4, 1e-8, 1e8];
+/// Part of a velocity by which two are told apart.
+const APART: f64 = 1e-6;
+
 /// The v with `∂L/∂v(t, q, v) = p` of a system, given also in numbers that carry a bound of their rounding, and its mass matrix: by
-/// Newton's iteration from rest. Where the mass matrix vanishes there, any other start will do.
+/// Newton's iteration from rest. Where that has no value, or no slope, from p and from velocities of several sizes.
 ///
 /// # Errors
-/// [`StepError::Singular`], [`StepError::NonFinite`] or [`StepError::NotConverged`] from the last guess.
+/// [`StepError::Ambiguous`] where the velocity of the other sign has the same momenta; [`StepError::Singular`], [`StepError::NonFinite`] or
+/// [`StepError::NotConverged`] from p where no guess leads to one.
 pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     system: &impl Lagrangian<N, T>,
     rounded: &impl Lagrangian<N, Rounded>,
@@ -165,6 +173,19 @@ pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     (t, q, p): (T, &SVector<T, N>, &SVector<T, N>),
 ) -> Result<SVector<T, N>, StepError> {
     let equations = Momentum { system, rounded, mass, t, q, p };
-    let root = newton::solve(&equations, SVector::zeros()).or_else(|_| newton::solve(&equations, *p));
-    root.map(|root| root.u).map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))
+    let from = |guess: SVector<T, N>| newton::solve(&equations, guess).map(|root| root.u);
+    if let Ok(v) = from(SVector::zeros()) {
+        return Ok(v);
+    }
+    let signs = p.map(|p| T::real(if p.to_f64() < 0.0 { -1.0 } else { 1.0 }));
+    let searched = || {
+        let directions = [SVector::repeat(T::one()), SVector::repeat(-T::one()), signs];
+        let mut guesses = SCALES.iter().flat_map(|scale| directions.map(|direction| direction * T::real(*scale)));
+        guesses.find_map(|guess| from(guess).ok())
+    };
+    let v = from(*p).or_else(|failure| searched().ok_or(failure));
+    let v = v.map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))?;
+    // L has no value at rest, and may have two branches: which of them is meant, momenta do not say.
+    let other = from(-v).is_ok_and(|other| (other - v).longest() > T::real(APART) * v.longest());
+    if other { Err(StepError::Ambiguous { t: t.to_f64() }) } else { Ok(v) }
 }

@@ -207,6 +207,8 @@ pub struct Rounding<const N: usize, T = f64> {
     pub residual: SVector<T, N>,
     /// Of the combined energy residual c.
     pub energy_residual: T,
+    /// Of the energy residual `e = D1 L_d + g_d⁻ − E0` itself. In stiff steps it is far below that of c, which holds v·(h/2) L_q.
+    pub energy: T,
 }
 
 /// What the rounding of the momentum residual is measured in: that of a system, given in numbers that carry a bound of their
@@ -231,8 +233,16 @@ pub fn extended_rounding<const N: usize, T: Real>(
     v: &SVector<T, N>,
 ) -> Rounding<N, T> {
     let node = node.map(|number| Rounded::exact(number.to_f64()));
-    let measured = system.extended_residual(&node, nearest(h), &v.map(nearest));
-    Rounding { residual: measured.residual.map(ulps), energy_residual: ulps(measured.energy_residual) }
+    let (h, v) = (nearest(h), v.map(nearest));
+    let measured = system.extended_residual(&node, h, &v);
+    // E1 − E0 less the increment: e without r.
+    let kept = node.energy + node.energy_low + measured.increment.energy;
+    let energy = system.discrete_energy(&node, h, &v) - kept;
+    Rounding {
+        residual: measured.residual.map(ulps),
+        energy_residual: ulps(measured.energy_residual),
+        energy: ulps(energy),
+    }
 }
 
 /// The number nearest to the one that is meant.

@@ -12,6 +12,7 @@
 //! and what the integrator says of it must be that number. That the residual is the one of the slots is for `check::steps` to say,
 //! which runs here first. A motion may end with a typed error; then another one begins.
 
+mod stages;
 mod sudden;
 
 use crate::support::Sequence;

@@ -134,6 +134,13 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
     }
 }
 
+/// The energy residual `e = c + v·r` of measured rows. In stiff steps v·(h/2) L_q, of which c knows no more digits than L_q has, is the
+/// same number in both, and leaves e.
+#[inline(always)]
+pub(super) fn energy_residual<const N: usize, T: Scalar>(measured: &ExtendedResidual<N, T>, v: &SVector<T, N>) -> T {
+    measured.energy_residual + v.dot(&measured.residual)
+}
+
 /// Both equations of a step whose length lies in a range.
 struct Extended<'a, const N: usize, T, S> {
     system: &'a S,
@@ -164,8 +171,11 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
     }
 
     fn roundings(&self, of: &Self::Evaluation, scales: &Self::Evaluation) -> [f64; 2] {
-        let momentum = worst(&of.measured.residual, &scales.scale.residual);
-        [momentum, roundings(of.measured.energy_residual, scales.scale.energy_residual)]
+        let Evaluated { trial, measured, .. } = of;
+        let scale = &scales.scale;
+        let combined = roundings(measured.energy_residual, scale.energy_residual);
+        let energy = roundings(energy_residual(measured, &trial.v), scale.energy);
+        [worst(&measured.residual, &scale.residual), worse(combined, energy)]
     }
 
     fn correction(
@@ -195,7 +205,8 @@ pub(super) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     trial: VelocityStep<N, T>,
     range: (T, T),
 ) -> Result<EnergyStep<N, T>, NoStep<T>> {
-    let root = newton::solve(&Extended { system, node, range }, trial).map_err(|failure| match failure {
+    let extended = Extended { system, node, range };
+    let root = newton::solve(&extended, trial).map_err(|failure| match failure {
         newton::Failure::Stalled { residuals, .. } => NoStep::NoRoot(residuals),
         _ => NoStep::NoRoot(Residuals::new()),
     })?;
@@ -206,7 +217,6 @@ pub(super) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     if elimination.is_degenerate() {
         return Err(NoStep::Degenerate { h, density });
     }
-    let momentum = worst(&root.at.measured.residual, &root.at.scale.residual);
-    let energy = roundings(root.at.measured.energy_residual, root.at.scale.energy_residual);
+    let [momentum, energy] = extended.roundings(&root.at, &root.at);
     Ok(EnergyStep { v, h, density, iterations: root.iterations, residual: worse(momentum, energy) })
 }

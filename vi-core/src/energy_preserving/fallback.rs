@@ -157,9 +157,13 @@ impl<T: Scalar> Phase<T> {
         let (length, shorter) = match (fallback, failure) {
             (Fallback::Stop, _) => return Err(failure),
             (_, StepError::StepBounds { found, h_min, .. }) => (bounded(T::real(found)), found < h_min),
-            (_, StepError::Singular { .. } | StepError::NonFinite { .. } | StepError::InvalidInput { .. }) => {
-                return Err(failure);
-            }
+            (
+                _,
+                StepError::Singular { .. }
+                | StepError::NonFinite { .. }
+                | StepError::InvalidInput { .. }
+                | StepError::ShiftTooLarge { .. },
+            ) => return Err(failure),
             _ => (bounded(h), false),
         };
         Ok(Self { h: length, shorter, law_h: h, law_density: density, density_next: density, gap: T::zero() })

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! accept     where |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ (ε/2) (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
-//!            or the same parts of the sum of the absolute values of the terms of each row
+//!            or the same parts of the sum of the absolute values of the terms of each row, if e = c + v·r is at its own floor too
 //! ```
 //!
 //! `None` where three Newton steps do not come there, the length leaves its range or D changes its sign. What is left of the
@@ -14,13 +14,14 @@
 //! is `4 ε E/(h² D)` of h.
 //! AFTER A STEP both residuals were measured at the (v, h) that was taken.
 
-use super::equations::{Elimination, EnergyStep};
+use super::equations::{Elimination, EnergyStep, energy_residual};
 use super::interval::{Last, RATIO};
-use crate::newton::{are_at_floor, roundings, worst};
+use crate::called::Called;
+use crate::newton::{FLOOR, are_at_floor, roundings, worst};
 use crate::node::Node;
 use crate::predictor::Predictor;
 use crate::real::Scalar;
-use crate::stepping::{EnergyStepping, ExtendedResidual, Increment, Rounding};
+use crate::stepping::{EnergyStepping, ExtendedResidual, Increment};
 use crate::vector::{Vector, VelocityStep, length_squared, worse};
 use nalgebra::SVector;
 
@@ -134,7 +135,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
                 continue;
             }
             let at = system.extended_residual(node, trial.h, &trial.v);
-            let Some((remainder, residual)) = self.measured(node, &trial.v, &at) else {
+            let Some((remainder, residual)) = self.measured(system, node, &trial, &at) else {
                 continue;
             };
             let VelocityStep { v, h } = trial;
@@ -151,34 +152,45 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
     /// What is left of the momentum rows with what was carried to them, and the largest residual in roundings, where every row is
     /// at the floor.
     #[inline(always)]
-    fn measured(
+    fn measured<S: EnergyStepping<N, T>>(
         &self,
+        system: &S,
         node: &Node<N, T>,
-        v: &SVector<T, N>,
+        trial: &VelocityStep<N, T>,
         at: &ExtendedResidual<N, T>,
     ) -> Option<(SVector<T, N>, f64)> {
         let remainder = at.residual + self.remainder;
-        let is_at_floor = |scale: &Rounding<N, T>| {
-            let rounding = scale.energy_residual * T::real(T::EPSILON);
+        let is_at_floor = |rows: &SVector<T, N>, energy: T| {
+            let rounding = energy * T::real(T::EPSILON);
             // A scale that overflows proves nothing.
             let energy = at.energy_residual.abs() <= rounding * T::real(ENERGY_FLOOR) && rounding.is_finite();
-            energy & are_at_floor(&at.residual, &self.remainder, &scale.residual, REMAINING)
+            energy & are_at_floor(&at.residual, &self.remainder, rows, REMAINING)
         };
         let own = node.energy.abs() + at.increment.energy.abs();
-        let mut scale = Rounding {
-            residual: node.p.zip_map(&at.increment.momentum, |p, increment| p.abs() + increment.abs()),
-            energy_residual: node.p.iter().zip(v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs()),
-        };
-        if !is_at_floor(&scale) {
+        let mut rows = node.p.zip_map(&at.increment.momentum, |p, increment| p.abs() + increment.abs());
+        let mut energy = node.p.iter().zip(trial.v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs());
+        // Rows at this floor keep the energy itself: e = c + v·r.
+        if !is_at_floor(&rows, energy) {
             // Where momenta or the energy vanish, what they are sums of need not.
-            scale = Rounding { residual: at.scale, energy_residual: at.energy_scale };
-            if !is_at_floor(&scale) {
+            (rows, energy) = (at.scale, at.energy_scale);
+            if !(is_at_floor(&rows, energy) && is_energy_kept(&Called(*system), node, trial, at)) {
                 return None;
             }
         }
-        let rows = worst(&at.residual, &scale.residual);
-        Some((remainder, worse(rows, roundings(at.energy_residual, scale.energy_residual))))
+        Some((remainder, worse(worst(&at.residual, &rows), roundings(at.energy_residual, energy))))
     }
+}
+
+/// Whether the energy itself is at its floor: the terms of stiff rows cancel in it.
+#[cold]
+#[inline(never)]
+fn is_energy_kept<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+    system: &S,
+    node: &Node<N, T>,
+    VelocityStep { v, h }: &VelocityStep<N, T>,
+    at: &ExtendedResidual<N, T>,
+) -> bool {
+    roundings(energy_residual(at, v), system.extended_rounding(node, *h, v).energy) <= FLOOR
 }
 
 /// Whether a change is less than a millionth of the trial that it leads to.

@@ -11,7 +11,8 @@
 
 use super::general::equations;
 use super::points::Rare;
-use super::stages::Stages;
+use super::rounding;
+use super::stages::{Stages, stage};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
@@ -45,10 +46,12 @@ pub(super) fn energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    Interval::new(&Rare::of(system), node, h, stages).energies(system, base, |number| number)
+    let interval = Interval::new(&Rare::of(system), node, h, stages);
+    interval.energies(system, base, |number| number, |i| stage(&interval.velocities, i))
 }
 
-/// The same in numbers that carry a bound of their rounding, each number of the stages the nearest to the one that is meant.
+/// The same in numbers that carry a bound of their rounding, each position the nearest to the one that is meant. Velocities carry the
+/// rounding of the forces that they follow from: at an angle of thousands of turns these are known to the ulp of the angle only.
 pub(super) fn bounded_energies<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
@@ -59,7 +62,10 @@ pub(super) fn bounded_energies<Y, const N: usize, const S: usize>(
 where
     Y: Collocation<N> + Convertible<N>,
 {
-    Interval::new(&Rare::of(system), node, h, stages).energies(&system.convert::<Rounded>(), base, Rounded::nearest)
+    let rare = Rare::of(system);
+    let interval = Interval::new(&rare, node, h, stages);
+    let velocities = rounding::velocities(&rare, node, h, &interval.positions, &interval.velocities);
+    interval.energies(&system.convert::<Rounded>(), base, Rounded::nearest, |i| velocities[i])
 }
 
 /// A step with the positions and the velocities at its stages.
@@ -83,6 +89,7 @@ impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
         system: &Y,
         base: f64,
         number: impl Fn(f64) -> T + Copy,
+        velocity: impl Fn(usize) -> SVector<T, N>,
     ) -> Energies<T> {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
         let mut mean = T::zero();
@@ -92,7 +99,7 @@ impl<'a, const N: usize, const S: usize> Interval<'a, N, S> {
         for i in 0..S {
             let t = number(self.node.t + (self.node.t_low + self.h * c[i]));
             let q = SVector::from_fn(|k, _| number(self.positions[k][i]));
-            let v = SVector::from_fn(|k, _| number(self.velocities[k][i]));
+            let v = velocity(i);
             let energy = system.energy(t, &q, &v);
             mean += T::real(b[i]) * (energy - T::real(base));
             size += T::real(b[i]) * (v.dot(&system.momentum(t, &q, &v)).abs() + energy.abs());

@@ -256,8 +256,9 @@ where
         self.run.h
     }
 
-    /// What the stages of the last step leave of their equations: in roundings of the coordinates where forces depend on them alone, else in sixteens of
-    /// roundings of the velocities, or of the terms of `M⁻¹ p` where M varies. Zero before the first step.
+    /// The number by which the last step was accepted, 4 at most: by how much its stages still change, in roundings of the coordinates where forces depend
+    /// on them alone, else in sixteens of roundings of the velocities, or of the terms of `M⁻¹ p` where M varies; where that stalls, what the stages
+    /// leave of their equations over its rounding-error bound. Zero before the first step.
     pub fn residual(&self) -> f64 {
         self.run.convergence.change
     }

@@ -1,22 +1,24 @@
-//! Whether what stages leave of their equations is rounding, by running error analysis.
+//! What stages leave of their equations, in roundings by running error analysis.
 //!
-//! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out:
-//! whether every row is at most four of its bounds,
+//! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out: the
+//! largest row over its bound,
 //!
 //! ```text
 //! p0 + h Σ a_ij F_j − L_v(T_i, Q_i, V_i)                     where there are velocities
 //! q0 + h Σ a_ij M⁻¹ (p0 + h Σ a_jk F_k) − Q_i                where there are positions only
 //! ```
 //!
-//! It is asked where changes stall above the rounding of the unknowns: where terms cancel, their sum is known less well.
+//! and the velocities with the rounding of the forces that they follow from. It is asked where changes stall above the rounding of the
+//! unknowns: where terms cancel, their sum is known less well.
 
-use super::points::{Points, Rare};
+use super::points::{Form, Points, Rare};
 use super::stages::Stages;
 use super::tableau::Tableau;
 use crate::linear::Matrix;
-use crate::newton::FLOOR;
+use crate::newton::roundings;
 use crate::node::Node;
 use crate::real::{Real, Rounded};
+use crate::vector::worse;
 use nalgebra::SVector;
 
 /// The vector of one stage.
@@ -24,52 +26,102 @@ pub(super) fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usiz
     SVector::from_fn(|k, _| Rounded::nearest(of[k][i]))
 }
 
-/// Whether a row is zero as far as its arithmetic can tell; not where its rounding has no bound.
-pub(super) fn is_rounding(row: Rounded) -> bool {
-    let bound = FLOOR * f64::EPSILON * row.ulps();
-    bound < f64::INFINITY && row.to_f64().abs() <= bound
+/// The larger of a residual so far and that of a row, in roundings; not a number where the rounding of the row has no bound.
+pub(super) fn worse_row(worst: f64, row: Rounded) -> f64 {
+    worse(worst, roundings(row.to_f64(), row.ulps()))
 }
 
-/// Whether the stages of the step of length h from `node` satisfy their equations.
-pub(super) fn are_solved<const N: usize, const S: usize>(
+/// The equations of stages; see the [module](self).
+struct Rows<'a, const N: usize, const S: usize> {
+    node: &'a Node<N>,
+    /// `h b_j`.
+    weights: [Rounded; S],
+    /// What the forces give beyond L_v, at each stage; beyond L_v of rest where there are positions only.
+    missing: [SVector<Rounded, N>; S],
+    /// M⁻¹ of that.
+    velocity: [SVector<Rounded, N>; S],
+}
+
+impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
+    fn of(
+        system: &Rare<'_, N>,
+        node: &'a Node<N>,
+        h: f64,
+        positions: &Stages<N, S>,
+        velocities: Option<&Stages<N, S>>,
+    ) -> Self {
+        let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
+        let zeros = [SVector::zeros(); S];
+        let mut rows = Self { node, weights: b.map(|b| Rounded::nearest(h * b)), missing: zeros, velocity: zeros };
+        let points: [_; S] = core::array::from_fn(|i| {
+            let t = Rounded::nearest(node.t + h * c[i]);
+            match velocities {
+                // Positions follow from velocities, and carry the rounding of that sum.
+                Some(v) => {
+                    let q = SVector::from_fn(|k, _| rows.sum(rows.start(k), i, &|j| Rounded::nearest(v[k][j])));
+                    system.at(t, &q, &nearest(v, i))
+                }
+                None => system.at(t, &nearest(positions, i), &SVector::zeros()),
+            }
+        });
+        for i in 0..S {
+            rows.missing[i] = SVector::from_fn(|k, _| {
+                let start = Rounded::exact(node.p[k]) + Rounded::exact(node.p_low[k]) - points[i].momentum[k];
+                rows.sum(start, i, &|j| points[j].force[k])
+            });
+        }
+        for i in 0..S {
+            rows.velocity[i] = points[i].mass.solve_unchecked(&rows.missing[i]);
+        }
+        rows
+    }
+
+    /// The coordinate k of the node.
+    fn start(&self, k: usize) -> Rounded {
+        Rounded::exact(self.node.q[k]) + Rounded::exact(self.node.q_low[k])
+    }
+
+    /// The sum over the stages, from `start`.
+    fn sum(&self, start: Rounded, i: usize, of: &dyn Fn(usize) -> Rounded) -> Rounded {
+        let first = const { &Tableau::<S>::VALUES.first };
+        (0..S).fold(start, |sum, j| sum + Rounded::nearest(first[j][i]) * (self.weights[j] * of(j)))
+    }
+}
+
+/// What the stages of the step of length h from `node` leave of their equations, in roundings; not a number where these have no bound.
+pub(super) fn residual<const N: usize, const S: usize>(
     system: &Rare<'_, N>,
     node: &Node<N>,
     h: f64,
     positions: &Stages<N, S>,
     velocities: Option<&Stages<N, S>>,
-) -> bool {
-    let Tableau { b, c, first, .. } = const { &Tableau::<S>::VALUES };
-    let weights = b.map(|b| Rounded::nearest(h * b));
-    // The sum over the stages, from `start`.
-    let sum = |start: Rounded, i: usize, of: &dyn Fn(usize) -> Rounded| {
-        (0..S).fold(start, |sum, j| sum + Rounded::nearest(first[j][i]) * (weights[j] * of(j)))
-    };
-    let start = |k: usize| Rounded::exact(node.q[k]) + Rounded::exact(node.q_low[k]);
-    let points: [_; S] = core::array::from_fn(|i| {
-        let t = Rounded::nearest(node.t + h * c[i]);
-        match velocities {
-            // Positions follow from velocities, and carry the rounding of that sum.
-            Some(v) => {
-                let q = SVector::from_fn(|k, _| sum(start(k), i, &|j| Rounded::nearest(v[k][j])));
-                system.at(t, &q, &nearest(v, i))
-            }
-            None => system.at(t, &nearest(positions, i), &SVector::zeros()),
-        }
-    });
-    let missing: [SVector<Rounded, N>; S] = core::array::from_fn(|i| {
-        SVector::from_fn(|k, _| {
-            let start = Rounded::exact(node.p[k]) + Rounded::exact(node.p_low[k]) - points[i].momentum[k];
-            sum(start, i, &|j| points[j].force[k])
-        })
-    });
+) -> f64 {
+    let rows = Rows::of(system, node, h, positions, velocities);
     if velocities.is_some() {
-        return missing.iter().flat_map(|row| row.iter()).all(|row| is_rounding(*row));
+        return rows.missing.iter().flat_map(|row| row.iter()).copied().fold(0.0, worse_row);
     }
-    let velocity: [SVector<Rounded, N>; S] = core::array::from_fn(|i| points[i].mass.solve_unchecked(&missing[i]));
-    (0..N).all(|k| {
-        (0..S).all(|i| {
-            let start = start(k) - Rounded::nearest(positions[k][i]);
-            is_rounding(sum(start, i, &|j| velocity[j][k]))
-        })
+    let mut worst = 0.0;
+    for k in 0..N {
+        for i in 0..S {
+            let start = rows.start(k) - Rounded::nearest(positions[k][i]);
+            worst = worse_row(worst, rows.sum(start, i, &|j| rows.velocity[j][k]));
+        }
+    }
+    worst
+}
+
+/// The velocities at the stages, with the rounding of the forces, and so of the positions, that they follow from.
+pub(super) fn velocities<const N: usize, const S: usize>(
+    system: &Rare<'_, N>,
+    node: &Node<N>,
+    h: f64,
+    positions: &Stages<N, S>,
+    velocities: &Stages<N, S>,
+) -> [SVector<Rounded, N>; S] {
+    let are_unknowns = Points::<N, Rounded>::form(system) != Form::Separable;
+    let rows = Rows::of(system, node, h, positions, are_unknowns.then_some(velocities));
+    core::array::from_fn(|i| {
+        rows.velocity[i]
+            .zip_map(&nearest(velocities, i), |followed, v| v + followed - Rounded::exact(followed.to_f64()))
     })
 }

@@ -74,7 +74,8 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let pause = if newton.is_some() { self.pause.after_newton() } else { Pause::NONE };
         let mut run = *self;
         run.take(solved, pause);
-        (run.node.is_finite() && self.is_solved(system, solved)).then_some(run)
+        run.convergence.change = self.residual(system, solved);
+        (run.node.is_finite() && run.convergence.is_at_floor()).then_some(run)
     }
 
     /// The next step in plain numbers. Not inlined: one copy serves all systems of N coordinates.
@@ -93,11 +94,14 @@ impl<const N: usize, const S: usize> Run<N, S> {
         newton.linearize(system, Linearization { h: self.h, t, q, v, iterations: None });
     }
 
-    /// Whether what the stages leave of their equations is rounding.
-    fn is_solved(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> bool {
+    /// The number by which a step is judged: the last change of its stages, or, where that stalls, what they leave of their equations by
+    /// running error analysis.
+    fn residual(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> f64 {
         let Solved { sweeps, velocities, .. } = solved;
-        let are_rounding = || rounding::are_solved(system, &self.node, self.h, &sweeps.positions, velocities.as_ref());
-        solved.is_at_floor() || !sweeps.are_given_up && are_rounding()
+        if solved.is_at_floor() || sweeps.are_given_up {
+            return sweeps.convergence.change;
+        }
+        rounding::residual(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
     }
 }
 

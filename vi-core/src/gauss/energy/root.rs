@@ -67,7 +67,7 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
             }
         }
         best.after.convergence.sweeps = sweeps;
-        let is_root = best.roundings() <= FLOOR || has_stalled && self.is_preserved(&best);
+        let is_root = best.roundings() <= FLOOR || has_stalled && self.is_preserved(&best).unwrap_or(false);
         if is_root {
             self.course.slope = slope;
         }

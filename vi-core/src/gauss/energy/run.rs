@@ -38,6 +38,8 @@ pub(super) struct Course {
     pub(super) excess: f64,
     /// The size of the terms of H there.
     pub(super) size: f64,
+    /// The largest size met.
+    pub(super) largest_size: f64,
     /// `D_s + D_*` of the last two steps, the newest first; none before the first step.
     pub(super) densities: Option<[f64; 2]>,
     /// The largest `|D_s|` met.
@@ -64,6 +66,7 @@ impl Course {
             slope,
             excess: 0.0,
             size: 0.0,
+            largest_size: 0.0,
             densities: None,
             largest: 0.0,
             shift: 0.0,
@@ -109,6 +112,13 @@ impl Course {
         self.largest = self.largest.max((density - self.shift).abs());
     }
 
+    /// Sets what was measured at a node: `H − E'` and the size of the terms of H.
+    pub(super) fn set_excess(&mut self, [excess, size]: [f64; 2]) {
+        self.excess = excess;
+        self.size = size;
+        self.largest_size = self.largest_size.max(size);
+    }
+
     /// `D_s + D_*` of the last step.
     pub(super) fn density(&self) -> Option<f64> {
         self.densities.map(|[density, _]| density)
@@ -126,9 +136,9 @@ impl Course {
 
     /// Whether a step can follow: what a file says may be anything.
     fn check(&self, t: f64) -> Result<(), StepError> {
-        let Self { slope, excess, size, densities, largest, shift, residual, switches, .. } = *self;
+        let Self { slope, excess, size, largest_size, densities, largest, shift, residual, switches, .. } = *self;
         let [last, before] = densities.unwrap_or_default();
-        let numbers = [slope, excess, size, last, before, largest, shift, residual];
+        let numbers = [slope, excess, size, largest_size, last, before, largest, shift, residual];
         let products = self.products;
         let costs = [switches.energy_change, switches.energy_cost];
         if !numbers.iter().chain(&products).chain(&costs).all(|number| number.is_finite()) {

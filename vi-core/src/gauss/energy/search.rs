@@ -114,7 +114,7 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
                 low = middle;
             }
         }
-        if best.roundings() <= FLOOR || self.is_preserved(&best) {
+        if best.roundings() <= FLOOR || self.is_preserved(&best)? {
             return Ok(best);
         }
         let t = self.gauss.run().node.t;

@@ -11,9 +11,12 @@ use crate::energy_preserving::interval::RATIO;
 use crate::error::StepError;
 use crate::gauss::stages::Stages;
 use crate::gauss::sweep::Convergence;
-use crate::newton::FLOOR;
+use crate::newton::{FLOOR, roundings};
 use crate::state::{Method, State};
 use nalgebra::SMatrix;
+
+/// Part of the terms of an energy that its rounding may be: one that is known to fewer digits is not kept.
+const KNOWN: f64 = 1e-10;
 
 /// A run on its way to the next node.
 pub(super) struct Stepper<'a, const N: usize, const S: usize> {
@@ -61,13 +64,44 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
         Ok(Trial { after, residual, work: energies.work, size: energies.size })
     }
 
-    /// Whether the energy of a trial is the one to preserve as far as its arithmetic can tell, and tells the length.
+    /// What rounding moves the energy of a trial by at most, by running error analysis, in ulps of 1.
     #[cold]
-    pub(super) fn is_preserved(&self, trial: &Trial<N, S>) -> bool {
+    fn rounding_of(&self, trial: &Trial<N, S>) -> f64 {
         let base = self.gauss.run().node.energy;
-        let energies = self.gauss.bounded_energies(trial.h(), trial.after.stages.data.0, base);
-        let rounding = f64::EPSILON * energies.start.ulps();
-        trial.residual.abs() <= FLOOR * rounding && self.course.excess.abs() >= Self::least_excess(rounding)
+        self.gauss.bounded_energies(trial.h(), trial.after.stages.data.0, base).start.ulps()
+    }
+
+    /// Whether the energy of a trial is the one to preserve as far as its arithmetic can tell.
+    ///
+    /// # Errors
+    /// [`StepError::DegenerateStep`] where it is, and `H − E` is too small to tell the length.
+    #[cold]
+    pub(super) fn is_preserved(&self, trial: &Trial<N, S>) -> Result<bool, StepError> {
+        let rounding = f64::EPSILON * self.rounding_of(trial);
+        if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * trial.size) {
+            return Ok(false);
+        }
+        if self.course.excess.abs() < Self::least_excess(rounding) { Err(self.degenerate()) } else { Ok(true) }
+    }
+
+    /// The error where `H − E` tells no length.
+    fn degenerate(&self) -> StepError {
+        let (t, h) = (self.gauss.run().node.t, self.course.h());
+        StepError::DegenerateStep { t, h, density: self.course.excess / power::<S>(h) }
+    }
+
+    /// Refuses a shift that adds more to the energy than `size`, the size of its terms along the motion.
+    ///
+    /// # Errors
+    /// [`StepError::ShiftTooLarge`].
+    pub(super) fn check_shift(&self, shift: f64, size: f64) -> Result<(), StepError> {
+        let (t, h) = (self.gauss.run().node.t, self.course.h());
+        let part = power::<S>(h) * shift.abs();
+        if part <= size {
+            return Ok(());
+        }
+        let shorter = h * (0.1 * size / part).powf(Self::SLOPE.recip());
+        Err(StepError::ShiftTooLarge { t, h, shift, part, size, shorter })
     }
 
     /// The least `|H − E|` that tells a length, where energies are rounded by so much.
@@ -80,10 +114,14 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     /// The next step, within the bounds.
     pub(super) fn found(&mut self) -> Result<Trial<N, S>, StepError> {
         let t = self.gauss.run().node.t;
-        let Course { excess, size, .. } = *self.course;
+        let Course { excess, size, largest_size, shift, .. } = *self.course;
         let previous = self.course.h();
         if excess.abs() < Self::least_excess(f64::EPSILON * size) {
-            return Err(StepError::DegenerateStep { t, h: previous, density: excess / power::<S>(previous) });
+            return Err(self.degenerate());
+        }
+        // A motion that has only gained speed so far has not shown how large its energies are.
+        if size < largest_size {
+            self.check_shift(shift, largest_size)?;
         }
         // Past a change of sign lies another root.
         if self.course.density().is_some_and(|last| excess * last < 0.0) {
@@ -110,17 +148,22 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
             after.node.add_energy(step.work);
             after.node.check_finite(self.gauss.run().node.t)?;
         }
-        let [excess, size] = self.excess_of(after.node.energy, after.node.energy_low, &after.node.state())?;
+        let measured = self.excess_of(after.node.energy, after.node.energy_low, &after.node.state())?;
+        let residual = match method {
+            Method::FixedStep => 0.0,
+            _ if step.roundings() <= FLOOR => step.roundings(),
+            _ => roundings(step.residual, self.rounding_of(step)),
+        };
+        let excess = measured[0];
         // The mean of `H − E0` at the start and of `H − E1` at the end.
         let mean = 0.5 * (self.course.excess + excess) - step.residual;
         let course = &mut *self.course;
         course.push(step.h(), mean / power::<S>(step.h()));
-        course.residual = if method == Method::FixedStep { 0.0 } else { step.roundings() };
+        course.residual = residual;
         if method == Method::FixedStep {
             course.forget_lengths();
         }
-        course.excess = excess;
-        course.size = size;
+        course.set_excess(measured);
         course.method = method;
         *self.gauss.run_mut() = after;
         Ok(())
@@ -129,9 +172,8 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     /// Measures the energy of the node.
     pub(super) fn measure_excess(&mut self) -> Result<(), StepError> {
         let node = &self.gauss.run().node;
-        let [excess, size] = self.excess_of(node.energy, node.energy_low, &node.state())?;
-        self.course.excess = excess;
-        self.course.size = size;
+        let measured = self.excess_of(node.energy, node.energy_low, &node.state())?;
+        self.course.set_excess(measured);
         Ok(())
     }
 

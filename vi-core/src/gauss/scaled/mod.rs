@@ -108,8 +108,8 @@ where
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`] where the stages do not come to rest: Δτ is too long for the fastest motion of the system;
-    /// [`StepError::TimeScale`] where g is not positive and finite at a stage, or at the state reached; [`StepError::NonFinite`]. The same
-    /// error again after an error.
+    /// [`StepError::TimeScale`] where g is not positive and finite at a stage, or at the state reached, or so small that the time stands still;
+    /// [`StepError::NonFinite`]. The same error again after an error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         if let Some(failure) = self.failure {
             return Err(failure);
@@ -136,7 +136,8 @@ where
             solved_plainly(&self.system, &self.run, None)
         };
         let run = self.run.after(&swept);
-        if swept.is_at_floor() && run.is_sound(&self.system) { Ok(run) } else { self.solve_with_care(Some(&swept)) }
+        let is_solved = swept.is_at_floor() && run.is_sound(&self.system) && run.leaves(&self.run.node);
+        if is_solved { Ok(run) } else { self.solve_with_care(Some(&swept)) }
     }
 
     /// The run after a step that sweeps do not bring to the rounding of its positions, or that they are not tried on, or whose g is not
@@ -152,21 +153,24 @@ where
                 plain = solved_plainly(&self.system, &self.run, None);
                 &plain
             };
-            let run = self.run.after(solved);
-            if self.is_solved(solved, &run) {
+            if let Some(run) = self.accepted(solved, self.run.after(solved)) {
                 return Ok(run);
             }
         }
         let solved = self.solve_stiff();
         let run = self.run.after_newton(&solved);
-        if self.is_solved(&solved, &run) { Ok(run) } else { Err(self.failure_of(&solved, &run)) }
+        self.accepted(&solved, run).ok_or_else(|| self.failure_of(&solved, &run))
     }
 
-    /// Whether what the stages leave of their equations is rounding, and the run after them can go on.
-    fn is_solved(&self, solved: &Solved<N, STAGES>, after: &Run<N, STAGES>) -> bool {
-        let Run { node, dtau, .. } = &self.run;
-        let is_rounding = || rounding::are_solved(&self.system.convert::<Rounded>(), node, *dtau, solved);
-        after.is_sound(&self.system) && (solved.is_at_floor() || !solved.sweeps.are_given_up && is_rounding())
+    /// The run after a solved step, with the number by which the step is judged: the last change of its stages, or, where that stalls, what
+    /// they leave of their equations by running error analysis. None where that is not rounding, or the run cannot go on.
+    fn accepted(&self, solved: &Solved<N, STAGES>, mut after: Run<N, STAGES>) -> Option<Run<N, STAGES>> {
+        if !solved.is_at_floor() && !solved.sweeps.are_given_up {
+            let Run { node, dtau, .. } = &self.run;
+            after.convergence.change = rounding::residual(&self.system.convert::<Rounded>(), node, *dtau, solved);
+        }
+        (after.convergence.is_at_floor() && after.is_sound(&self.system) && after.leaves(&self.run.node))
+            .then_some(after)
     }
 
     /// Why a step was not solved.
@@ -181,6 +185,9 @@ where
         }
         if let Some(failure) = lost_force(&self.system, node, *h) {
             return failure;
+        }
+        if after.convergence.is_at_floor() && !after.leaves(node) {
+            return StepError::TimeScale { t: node.t, g: solved.rates.g[0] };
         }
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
         let h = time_scale(&self.system, node.t, &node.q) * dtau;
@@ -239,7 +246,8 @@ where
         Ok(energy - self.run.node.energy)
     }
 
-    /// What the stages of the last step leave of their equations, in roundings of the coordinates. Zero before the first step.
+    /// The number by which the last step was accepted, 4 at most: by how much its stages still change, in roundings of the coordinates, or, where
+    /// that stalls above their rounding, what they leave of their equations over its rounding-error bound. Zero before the first step.
     pub fn residual(&self) -> f64 {
         self.run.convergence.change
     }

@@ -1,7 +1,7 @@
-//! Whether what the stages of a step in scaled time leave of their equations is rounding, by running error analysis.
+//! What the stages of a step in scaled time leave of their equations, in roundings by running error analysis.
 //!
 //! In: a system in numbers that carry a bound of their rounding, and stages, each number the nearest to the one that is meant. Out:
-//! whether every row is at most four of its bounds,
+//! the largest row over its bound,
 //!
 //! ```text
 //! q0 + Δτ Σ a_ij g_j V_j − Q_i        p0 + Δτ Σ a_ij P'_j − L_v(T_i, Q_i, V_i)        t0 + Δτ Σ a_ij g_j − T_i        E0 + Δτ Σ a_ij E'_j − E_i
@@ -9,7 +9,7 @@
 //!
 //! It is asked where changes stall above the rounding of the unknowns: where terms cancel, their sum is known less well.
 
-use super::super::rounding::{is_rounding, nearest};
+use super::super::rounding::{nearest, worse_row};
 use super::super::tableau::Tableau;
 use super::Solved;
 use crate::collocation::{Collocation, ScaledPoint};
@@ -24,13 +24,13 @@ struct Place<const N: usize> {
     energy: Rounded,
 }
 
-/// Whether the stages of the step of length Δτ from `node` satisfy their equations.
-pub(super) fn are_solved<Y, const N: usize, const S: usize>(
+/// What the stages of the step of length Δτ from `node` leave of their equations, in roundings; not a number where these have no bound.
+pub(super) fn residual<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
     dtau: f64,
     solved: &Solved<N, S>,
-) -> bool
+) -> f64
 where
     Y: Collocation<N, Rounded>,
 {
@@ -67,13 +67,15 @@ where
         let force = point.force.zip_map(&g_dq, |force, g_dq| g * force - excess * g_dq);
         (point.momentum, force)
     });
-    (0..S).all(|i| {
+    let mut worst = 0.0;
+    for i in 0..S {
         let (place, reached) = (&places[i], &followed[i]);
-        is_rounding(reached.t - place.t)
-            && is_rounding(reached.energy - place.energy)
-            && (0..N).all(|k| {
-                let p = sum(i, [node.p[k], node.p_low[k]], &|j| points[j].1[k]);
-                is_rounding(reached.q[k] - place.q[k]) && is_rounding(p - points[i].0[k])
-            })
-    })
+        let clock = [reached.t - place.t, reached.energy - place.energy];
+        let motion = (0..N).flat_map(|k| {
+            let p = sum(i, [node.p[k], node.p_low[k]], &|j| points[j].1[k]);
+            [reached.q[k] - place.q[k], p - points[i].0[k]]
+        });
+        worst = clock.into_iter().chain(motion).fold(worst, worse_row);
+    }
+    worst
 }

@@ -111,6 +111,12 @@ impl<const N: usize, const S: usize> Run<N, S> {
         Self { pause: self.pause.after_newton(), ..self.after(solved) }
     }
 
+    /// Whether its time is another than that of the node before, in both parts of its sum.
+    #[inline(always)]
+    pub(super) fn leaves(&self, before: &Node<N>) -> bool {
+        self.node.t != before.t || self.node.t_low != before.t_low
+    }
+
     /// Whether it is finite, and g positive at all stages and at the node.
     #[inline(always)]
     pub(super) fn is_sound<Y: TimeScale<N>>(&self, system: &Y) -> bool {
