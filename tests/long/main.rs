@@ -11,8 +11,10 @@ mod gauss_stiff;
 mod hunt;
 mod invariants;
 mod iterations;
+mod kept_energies;
 mod robustness;
 mod solvability;
 #[path = "../support/mod.rs"]
 mod support;
 mod swing_up;
+mod velocities;

@@ -90,7 +90,13 @@ pub(crate) fn assert_typed(error: StepError) {
         StepError::NotConverged { t, h, residual, residuals, .. } => {
             [t, h, residual].into_iter().chain(residuals.iter()).collect()
         }
-        StepError::Singular { t, .. } | StepError::NonFinite { t, .. } => vec![t],
+        StepError::NoForwardGaussStep { t, h, excess, density, shift, largest, .. } => {
+            vec![t, h, excess, density, shift, largest]
+        }
+        StepError::ShiftTooLarge { t, h, shift, part, size, shorter } => vec![t, h, shift, part, size, shorter],
+        // Stages that went beyond all numbers say so by infinite ones.
+        StepError::StagesUnsettled { t, h, .. } | StepError::TimeScale { t, g: h } => vec![t, h],
+        StepError::Singular { t, .. } | StepError::NonFinite { t, .. } | StepError::Ambiguous { t } => vec![t],
         other => panic!("an error that this test does not know: {other:?}"),
     };
     assert!(numbers.into_iter().all(f64::is_finite), "{error:?}");

@@ -1,4 +1,4 @@
-//! Numbers of twice the digits: sums of two `f64`, good to 1e-29.
+//! Numbers of twice the digits: sums of two `f64`, good to 1e-27 of their terms.
 //!
 //! In: a formula generic over [`Real`]. Out: its value with an error that is nothing beside a rounding of `f64`. Source of sum, product and
 //! quotient: Hida, Li, Bailey, *Quad-double arithmetic*. The crate `twofloat` was tried: `1/3` and `exp` have `f64`'s digits there.
@@ -236,7 +236,7 @@ impl Real for Twice {
     }
 }
 
-/// Each function has an inverse, or an identity, to 1e-29 of its terms, and its first digits are those of `f64`.
+/// Each function has an inverse, or an identity, to 1e-27 of its terms, and its first digits are those of `f64`.
 #[test]
 fn functions_have_their_digits() {
     let one = Twice::real(1.0);
@@ -256,14 +256,20 @@ fn functions_have_their_digits() {
             ("tanh", x.tanh() * x.cosh(), x.sinh(), size),
             ("doubled sine", (x + x).sin(), (sine + sine) * cosine, x.abs().max(one)),
             ("sum of exponents", (x + one).exp(), x.exp() * one.exp(), (x + one).exp() * x.abs().max(one)),
-            ("pow", x.abs().pow(Twice::real(1.5)), x.abs() * x.abs().sqrt(), x.abs() * x.abs().sqrt() * Twice::real(8.0)),
+            (
+                "pow",
+                x.abs().pow(Twice::real(1.5)),
+                x.abs() * x.abs().sqrt(),
+                x.abs() * x.abs().sqrt() * Twice::real(8.0),
+            ),
         ];
         for (name, found, wanted, size) in pairs {
             let error = ((found - wanted) / size).to_f64().abs();
-            // Measured: 1.2e-30, of `ln exp`.
-            assert!(error <= 1e-29, "{name} of {x:?}: {found:?}, not {wanted:?}: {error:e}");
+            // Measured: 3e-28, of `cosh² − sinh²` at 40.3: `exp` has squared its error.
+            assert!(error <= 1e-27, "{name} of {x:?}: {found:?}, not {wanted:?}: {error:e}");
         }
-        for (found, wanted) in [(sine, x.high.sin()), (x.exp(), x.high.exp()), (x.sinh(), x.high.sinh())] {
+        let near = Twice::real(x.high);
+        for (found, wanted) in [(near.sin(), x.high.sin()), (near.exp(), x.high.exp()), (near.sinh(), x.high.sinh())] {
             assert!((found.to_f64() - wanted).abs() <= 4.0 * f64::EPSILON * wanted.abs(), "{found:?}, {wanted}");
         }
     }

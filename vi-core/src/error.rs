@@ -118,7 +118,7 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
-    /// Velocities of both signs have the same momenta: L is not defined at rest, and convex on neither side alone.
+    /// Two velocities have the same momenta: L is not defined at rest and has a branch on each side of it.
     Ambiguous {
         /// Time at which it was met.
         t: f64,
@@ -286,7 +286,7 @@ impl fmt::Display for StepError {
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
             }
-            Self::Ambiguous { .. } => f.write_str("; write an L that grows with `dot()` on one side of zero only, or that is convex"),
+            Self::Ambiguous { .. } => f.write_str("; L is not defined at rest and has a branch on each side of it: take one that is defined on one side alone"),
             Self::OtherSystem { parameter: None, .. } => {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }

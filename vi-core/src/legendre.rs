@@ -186,6 +186,6 @@ pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     let v = from(*p).or_else(|failure| searched().ok_or(failure));
     let v = v.map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))?;
     // L has no value at rest, and may have two branches: which of them is meant, momenta do not say.
-    let other = from(-v).is_ok_and(|other| (other - v).longest() > T::real(APART) * v.longest());
+    let other = from(-v).is_ok_and(|other| (other - v).longest() > APART * v.longest());
     if other { Err(StepError::Ambiguous { t: t.to_f64() }) } else { Ok(v) }
 }

@@ -26,8 +26,10 @@ use vi_core::{EnergyPreservingGauss, Gauss, Integrator, SVector, ScaledGauss, St
 const STEPS: usize = 400;
 const MOTIONS: usize = 20;
 const MOST_MOTIONS: usize = 400;
-/// Roundings by which an end may be off. Measured: 2.4, of Kepler's problem in scaled time.
-const FLOOR: f64 = 4.0;
+/// Roundings by which an end or an energy may be off. Measured: 0.52, of the charged particle's energy-preserving steps of one stage.
+const FLOOR: f64 = 1.0;
+/// What a step may report. Measured: 3.95, where it is what a step is accepted at.
+const ACCEPTED: f64 = 4.0;
 
 /// The tableau of S stages.
 struct Tableau<const S: usize> {
@@ -65,9 +67,7 @@ impl<const S: usize> Tableau<S> {
             (0..S).filter(|k| *k != j).fold(one, |product, k| product * (x - c[k]) / (c[j] - c[k]))
         };
         let a = core::array::from_fn(|i| {
-            core::array::from_fn(|j| {
-                (0..S).fold(Twice::real(0.0), |sum, k| sum + c[i] * b[k] * basis(j, c[i] * c[k]))
-            })
+            core::array::from_fn(|j| (0..S).fold(Twice::real(0.0), |sum, k| sum + c[i] * b[k] * basis(j, c[i] * c[k])))
         });
         Self { a, b, c }
     }
@@ -191,7 +191,10 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
         let bounded = self.bounded(before, h, &stages);
         let end = Start::<N, Twice>::of(after);
         let mut off = Off::default();
-        let mut row = |found: Twice, start: Twice, of: &dyn Fn(&Stage<N, Twice>) -> Twice, bound: &dyn Fn(&Stage<N, Rounded>) -> Rounded| {
+        let mut row = |found: Twice,
+                       start: Twice,
+                       of: &dyn Fn(&Stage<N, Twice>) -> Twice,
+                       bound: &dyn Fn(&Stage<N, Rounded>) -> Rounded| {
             let sum = (0..S).fold(start, |sum, j| sum + Twice::real(h) * self.tableau.b[j] * of(&stages[j]));
             let weight = |j: usize| Rounded::nearest(h * self.tableau.b[j].to_f64());
             let rounding = (0..S).fold(Rounded::nearest(start.to_f64()), |sum, j| sum + weight(j) * bound(&bounded[j]));
@@ -215,7 +218,8 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
             let added = Twice::real(shift) * (0..2 * S).fold(one, |power, _| power * Twice::real(h));
             let rounding = (0..S).fold(Rounded::nearest(start.energy.to_f64()), |sum, j| {
                 let left = h * (1.0 - self.tableau.c[j].to_f64());
-                sum + Rounded::nearest(self.tableau.b[j].to_f64()) * (bounded[j].hamiltonian - Rounded::nearest(left) * bounded[j].power)
+                sum + Rounded::nearest(self.tableau.b[j].to_f64())
+                    * (bounded[j].hamiltonian - Rounded::nearest(left) * bounded[j].power)
             });
             // Terms of size |v·p| + |En| may cancel: a rounding of them is one.
             let size = stages.iter().fold(0.0, |size: f64, at| size.max(at.hamiltonian.to_f64().abs()));
@@ -247,12 +251,14 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
                 } else {
                     start.t + Rounded::nearest(h * c)
                 };
-                let carried = (0..S).fold(start.energy, |sum, j| sum + weight(i, j) * Rounded::nearest(stages[j].energy.to_f64()));
+                let carried = (0..S)
+                    .fold(start.energy, |sum, j| sum + weight(i, j) * Rounded::nearest(stages[j].energy.to_f64()));
                 stage(&system, self.is_scaled, (t, q, velocities[i]), carried)
             });
             for i in 0..S {
                 let missing = SVector::from_fn(|k, _| {
-                    (0..S).fold(start.p[k] - points[i].1.momentum[k], |sum, j| sum + weight(i, j) * points[j].0.force[k])
+                    (0..S)
+                        .fold(start.p[k] - points[i].1.momentum[k], |sum, j| sum + weight(i, j) * points[j].0.force[k])
                 });
                 let followed: SVector<Rounded, N> = points[i].1.mass.solve_unchecked(&missing);
                 velocities[i] = nearest(&stages[i].v).zip_map(&followed, |v, followed| v + noise(followed));
@@ -309,12 +315,18 @@ fn hunted<I, Y, const N: usize, const S: usize>(
     }
     println!("{}, {name}, {S} stages: {steps} steps, {left_out} left out, {worst:?}, reported {reported:.2}", Y::NAME);
     assert!(worst.end <= FLOOR && worst.energy <= FLOOR, "{}, {name}, {S} stages: {worst:?}", Y::NAME);
-    assert!(reported <= FLOOR, "{}, {name}, {S} stages: {reported} reported", Y::NAME);
+    assert!(reported <= ACCEPTED, "{}, {name}, {S} stages: {reported} reported", Y::NAME);
     // Something was hunted, and a difference of zero throughout is not one.
-    assert!(steps >= STEPS / 4 && left_out <= steps && worst.end > 0.01, "{}, {name}: {steps} steps, {worst:?}", Y::NAME);
+    assert!(
+        steps >= STEPS / 4 && left_out <= steps && worst.end > 0.01,
+        "{}, {name}: {steps} steps, {worst:?}",
+        Y::NAME
+    );
 }
 
-fn by_gauss_steps<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize, const S: usize>(scene: &Scene<Y, N>) {
+fn by_gauss_steps<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize, const S: usize>(
+    scene: &Scene<Y, N>,
+) {
     let judge = Judge { system: &scene.system, tableau: Tableau::<S>::new(), is_scaled: false, shift: None };
     let begin = |state, h| Gauss::<_, N, S>::new(scene.system, state, h);
     hunted(scene, "Gauss steps", &judge, begin, |run| (run.h(), run.residual()));
@@ -342,6 +354,17 @@ fn hunt<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize>(s
 }
 
 scenes::each_system!(hunt);
+
+/// Systems whose motion changes suddenly.
+mod sudden {
+    use super::{Collocation, Convertible, FixedStepping, Scene, by_gauss_steps};
+
+    fn hunt<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N: usize>(scene: Scene<Y, N>) {
+        by_gauss_steps::<_, N, 3>(&scene);
+    }
+
+    crate::hunt::sudden::each_sudden!(hunt, hunt);
+}
 
 fn hunt_scaled<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usize>(scene: &Scene<Y, N>) {
     fn by<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usize, const S: usize>(scene: &Scene<Y, N>) {
