@@ -6,7 +6,11 @@
 use crate::habits::{self, Habit};
 use crate::rules::{self, RULES};
 use proc_macro2::Span;
+use std::collections::BTreeSet;
 use vi_expr::TooLarge;
+
+/// Messages that are shown of one system; a last one counts those after them.
+const SHOWN: usize = 30;
 
 /// Why an expression does not see a name that the system declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -194,6 +198,8 @@ pub enum Message {
     TooLarge(TooLarge),
     /// Text after the system.
     AfterSystem,
+    /// So many more messages, which are not shown.
+    More { count: usize },
     /// A mistake of this compiler, found by checking its own output.
     Internal { what: &'static str },
 }
@@ -330,6 +336,7 @@ impl Message {
             Self::TooLarge(TooLarge::Terms { limit }) => format!("the system grows over {limit} terms"),
             Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
+            Self::More { count } => format!("{count} more mistakes are not shown"),
             Self::Internal { what } => format!("internal error: the operations of `{what}` do not compute its formula"),
         }
     }
@@ -432,15 +439,18 @@ impl Message {
                 "use fewer coordinates or a simpler Lagrangian".to_owned()
             }
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
+            Self::More { .. } => "correct those above, and compile again".to_owned(),
             Self::Internal { .. } => "please report this system".to_owned(),
         }
     }
 }
 
-/// The errors of one stage, in the order in which they were found.
+/// The errors of one stage or of a part of it, in the order in which they were found.
 #[derive(Debug, Default)]
 pub struct Errors {
     combined: Option<syn::Error>,
+    /// What was said.
+    texts: BTreeSet<String>,
 }
 
 impl Errors {
@@ -451,6 +461,7 @@ impl Errors {
 
     /// Adds an error made elsewhere.
     pub fn add(&mut self, error: syn::Error) {
+        self.texts.insert(error.to_string());
         match &mut self.combined {
             Some(combined) => combined.combine(error),
             None => self.combined = Some(error),
@@ -464,9 +475,7 @@ impl Errors {
             Err(error) => error,
         };
         for one in error {
-            let text = one.to_string();
-            let mut said = self.combined.iter().flat_map(Clone::clone);
-            if !said.any(|said| said.to_string() == text) {
+            if !self.texts.contains(&one.to_string()) {
                 self.add(one);
             }
         }
@@ -479,7 +488,7 @@ impl Errors {
         self.combined.is_none()
     }
 
-    /// The product of the stage, if nothing was found wrong.
+    /// The product, if nothing was found wrong.
     ///
     /// # Errors
     /// All that was found.
@@ -489,6 +498,24 @@ impl Errors {
             None => Ok(product),
         }
     }
+}
+
+/// The first [`SHOWN`] messages of a system, and how many more there are: each is printed with its line of text, which may be long.
+#[must_use]
+pub(crate) fn bounded(errors: syn::Error) -> syn::Error {
+    let count = errors.clone().into_iter().count();
+    if count <= SHOWN + 1 {
+        return errors;
+    }
+    let mut first = Errors::default();
+    for (index, one) in errors.into_iter().take(SHOWN + 1).enumerate() {
+        if index < SHOWN {
+            first.add(one);
+        } else {
+            first.at(one.span(), &Message::More { count: count - SHOWN });
+        }
+    }
+    first.combined.unwrap_or_else(|| error(Span::call_site(), &Message::More { count }))
 }
 
 /// One error at a token.

@@ -811,6 +811,31 @@ fn depth_and_size_are_bounded() {
 }
 
 #[test]
+fn only_the_first_messages_are_shown() {
+    for count in [31, 4000, 20_000] {
+        let names = |prefix: &'static str| (0..count).map(move |i| format!("{prefix}{i}"));
+        let unused = names("a").map(|name| format!("{name} = 1")).collect::<Vec<_>>().join(", ");
+        let unknown = names("b").collect::<Vec<_>>().join(" + ");
+        let clauses = names("c").map(|name| format!("{name} 1;")).collect::<String>();
+        for body in [
+            format!("param {unused}; {REST}"),
+            format!("coord x; L = dot(x)^2 + {unknown}; discretize midpoint;"),
+            format!("{REST} {clauses}"),
+        ] {
+            let found = errors(&format!("struct System {{ {body} }}"));
+            let (_, last) = &found[found.len() - 1];
+            if count == 31 {
+                assert_eq!(found.len(), 31);
+                assert!(!last.contains("more mistakes"), "{last}");
+                continue;
+            }
+            let wanted = format!("{} more mistakes are not shown\nhelp: correct those above", count - 30);
+            assert!(found.len() == 31 && last.starts_with(&wanted), "{} messages, at last {last}", found.len());
+        }
+    }
+}
+
+#[test]
 fn delimiters_around_a_clause_are_bounded_too() {
     for (open, close) in [("(", ")"), ("[", "]"), ("{", "}")] {
         let nest = format!("{}{}", open.repeat(5000), close.repeat(5000));

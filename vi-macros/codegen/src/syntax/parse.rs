@@ -10,7 +10,7 @@ use super::{
     System,
 };
 use crate::habits::Habit;
-use crate::messages::{Errors, Message, error, nearest};
+use crate::messages::{Errors, Message, bounded, error, nearest};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use syn::buffer::Cursor;
@@ -43,7 +43,7 @@ const CLAUSE_DEPTH: usize = 3;
 /// # Errors
 /// Every clause that cannot be read, at the token that does not fit.
 pub fn system(tokens: TokenStream) -> Result<System> {
-    read(tokens, &mut None)
+    read(tokens, &mut None).map_err(bounded)
 }
 
 /// What can be read of a system whose clauses may be wrong: its head, and the clauses that are right.
