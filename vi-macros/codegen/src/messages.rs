@@ -120,6 +120,10 @@ pub enum Message {
     SecondDissipation,
     /// A Rayleigh function without velocities.
     NoDissipation,
+    /// A term of a Rayleigh function that is linear in the velocities.
+    ConstantDissipation,
+    /// A Rayleigh function by which the motion gains energy.
+    FeedingDissipation,
     /// A second line `time_scale = …;`.
     SecondTimeScale,
     /// A time scale that depends on velocities, by this name.
@@ -142,9 +146,9 @@ pub enum Message {
     MissingStep,
     /// A check with a step that is zero or negative.
     StepNotPositive,
-    /// A line of a check for a name that is no coordinate.
+    /// A line of a check for a name that is neither a coordinate nor a parameter.
     CheckOfOther { name: String, near: Option<String> },
-    /// A second line of a check for one coordinate or velocity.
+    /// A second line of a check for one coordinate, velocity or parameter.
     SecondEntry { name: String },
     /// No line `coord …;`.
     MissingCoordinates,
@@ -296,6 +300,10 @@ impl Message {
             Self::UnusedParameter { name } => format!("the parameter `{name}` acts on nothing"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
             Self::NoDissipation => "`dissipation` does not depend on any velocity".to_owned(),
+            Self::ConstantDissipation => {
+                "a term of `dissipation` is linear in velocities: its force is constant".to_owned()
+            }
+            Self::FeedingDissipation => "`dissipation` adds energy: its power `-v * ∂R/∂v` is positive".to_owned(),
             Self::SecondTimeScale => "a second `time_scale`".to_owned(),
             Self::VelocityInTimeScale { name } => format!("a time scale cannot depend on the velocities in `{name}`"),
             Self::TimeScaleNotPositive => "the time scale is not positive".to_owned(),
@@ -307,7 +315,7 @@ impl Message {
             Self::SecondCheck => "a second `check`".to_owned(),
             Self::MissingStep => "the check has no step".to_owned(),
             Self::StepNotPositive => "the step `h` is not positive".to_owned(),
-            Self::CheckOfOther { name, .. } => format!("`{name}` is not a coordinate"),
+            Self::CheckOfOther { name, .. } => format!("`{name}` is neither a coordinate nor a parameter"),
             Self::SecondEntry { name } => format!("`{name}` is given twice"),
             Self::MissingCoordinates => "the system has no coordinates".to_owned(),
             Self::ForceOnOther { name, .. } => format!("a force on `{name}`, which is not a coordinate"),
@@ -389,6 +397,14 @@ impl Message {
             Self::NoDissipation => {
                 "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
             }
+            Self::ConstantDissipation => {
+                "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(dot(x))` for dry friction; a driving force belongs in `force x = …;`"
+                    .to_owned()
+            }
+            Self::FeedingDissipation => {
+                "write it with the other sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`"
+                    .to_owned()
+            }
             Self::SecondTimeScale => "write `time_scale` once".to_owned(),
             Self::VelocityInTimeScale { .. } => "use positions, time, constants and parameters".to_owned(),
             Self::TimeScaleNotPositive => "dt = g dτ: g is positive wherever the system moves".to_owned(),
@@ -402,9 +418,9 @@ impl Message {
             Self::StepNotPositive => "give a step with which the system moves well, as in `h = 0.01;`".to_owned(),
             Self::CheckOfOther { near, .. } => did_you_mean(
                 near.as_ref(),
-                "a check gives coordinates, `dot(…)` of them, the time `t` and the step `h`",
+                "a check gives coordinates, `dot(…)` of them, parameters, the time `t` and the step `h`",
             ),
-            Self::SecondEntry { .. } => "give each coordinate and each velocity once".to_owned(),
+            Self::SecondEntry { .. } => "give each coordinate, velocity and parameter once".to_owned(),
             Self::MissingCoordinates => "declare them: `coord x, y;`".to_owned(),
             Self::ForceOnOther { near, .. } => {
                 did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`")

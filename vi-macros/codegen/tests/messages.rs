@@ -602,6 +602,9 @@ fn arrays_of_parameters() {
         "param m[2] = 1.0",
         "param m[N] = [1, N^2]",
         "param a = 2, m[2] = [1, 2,],; let b = a; dissipation = b * dot(x)^2",
+        // Entries that are not used, as of an adjacency matrix.
+        "param m[3] = 1",
+        "param m[2] = 1, a[9] = 0; let springs = sum(i in 0..3, a[3 * i] * x^2); force x = -springs",
     ] {
         assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
     }
@@ -626,7 +629,6 @@ fn arrays_of_parameters() {
     case(&system("param m[2] = [1, «exp»(1000)]"), "the value of `m` is not finite");
     case(&system("param «m»[2]"), "`m` has no value\nhelp: write `m = 1.0`");
     case(&system("param m[2] = 1, «m» = 2"), "the name `m` is declared twice");
-    case(&system("param «m»[3] = 1"), "the parameter `m[2]` acts on nothing");
     case(&system("param m[2] = 1, «k»[4] = 1"), "the parameter `k` acts on nothing");
     case(&system("param m[2] = 1; let a = m[«2»]"), "`m[2]` is out of range 0..2\nhelp: the indices are 0 to 1");
     case(&system("param m[2] = 1; let a = «m»"), "`m` is an array\nhelp: write one entry, `m[0]`, or a sum over it");
@@ -642,6 +644,73 @@ fn dissipation() {
     let system = |line: &str| format!("coord x; L = dot(x)^2; {line} discretize midpoint;");
     case(&system("dissipation = dot(x)^2; «dissipation» = dot(x)^2;"), "a second `dissipation`");
     case(&system("«dissipation» = x^2;"), "`dissipation` does not depend on any velocity");
+}
+
+/// A power of known sign.
+#[test]
+fn dissipation_takes_energy() {
+    let system = |rayleigh: &str| {
+        format!(
+            "param c = 0.3, w = 2, K[4] = [2, 1, 1, 2], e = 1e-3, d = -1; coord x, y; let v[i in 0..2] = dot(x) * (1 - i) + dot(y) * i; \
+             let drag = c * w * dot(x); L = (1 + c^2 + w^2 + e^2 + d^2 + K[0]) * (dot(x)^2 + dot(y)^2); dissipation = {rayleigh}; discretize midpoint;"
+        )
+    };
+    for linear in [
+        "«c» * dot(x)",
+        "«-»c * dot(x)",
+        "c * dot(x)^2 / 2 + «w» * dot(y)",
+        "c * dot(x)^2 - «sin»(t) * dot(x)",
+        "dot(y)^2 + «drag»",
+        "«c» * (dot(x) - dot(y))",
+        "«x» * dot(x)",
+    ] {
+        case(
+            &system(linear),
+            "a term of `dissipation` is linear in velocities: its force is constant\nhelp: write `c * dot(x)^2 / 2` for viscous",
+        );
+    }
+    for feeding in [
+        "«-»c * dot(x)^2 / 2",
+        "dot(y)^2 - «c» * dot(x)^2 / 2",
+        "«d» * dot(x)^2",
+        "«-»1 * (dot(x)^2 + dot(y)^2)",
+        "«-»abs(dot(x))^3",
+        "«-»sqrt(dot(x)^2 + e^2)",
+        "«-»exp(x) * dot(x)^4 + c * dot(y)^2",
+        "«-»(dot(x) * dot(y))^2",
+        "«-»sum(i in 0..2, v[i]^2)",
+    ] {
+        case(
+            &system(feeding),
+            "`dissipation` adds energy: its power `-v * ∂R/∂v` is positive\nhelp: write it with the other sign",
+        );
+    }
+    for right in [
+        "c * dot(x)^2 / 2",
+        "-d * dot(x)^2",
+        "c * (dot(x) - dot(y))^2 / 2",
+        // Relative to a belt, to a wind that changes.
+        "c * (dot(x) - w)^2 / 2",
+        "c * (dot(x) - w * sin(t))^4",
+        "sum(i in 0..2, sum(j in 0..2, K[2 * i + j] * v[i] * v[j])) / 2",
+        "c * abs(dot(x)) + abs(dot(y))^3",
+        "c * sqrt(dot(x)^2 + e^2)",
+        "c * sqrt(dot(x)^2)",
+        "c * (dot(x)^2 + dot(y)^2)^(3/4)",
+        "c * e * ln(cosh(dot(x) / e))",
+        // Van der Pol's, and others that take and give.
+        "c * (x^2 - 1) * dot(x)^2 / 2",
+        "c * (1 - x^2) * dot(x)^2 / 2",
+        "sin(t) * dot(x)^2",
+        "-cos(t) * dot(x)^2",
+        "(x^2 - 1e4) * dot(x)^2",
+        "c * dot(x) * dot(y)",
+        "c * dot(x)^4 - w * dot(x)^2",
+        "0 * c * dot(x) + dot(y)^2",
+        "c * x^2 * dot(x)^2 / (1 + x^2)",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
+    }
 }
 
 #[test]
@@ -705,15 +774,18 @@ fn checks() {
     case(&system("check { h = «-»1; }"), "the step `h` is not positive");
     case(
         "coord angle; L = dot(angle)^2; discretize midpoint; check { «angel» = 1; h = 1; }",
-        "`angel` is not a coordinate\nhelp: did you mean `angle`?",
+        "`angel` is neither a coordinate nor a parameter\nhelp: did you mean `angle`?",
     );
-    case(&system("check { «mass» = 1; h = 1; }"), "`mass` is not a coordinate\nhelp: a check gives coordinates");
-    case(&system("check { «a» = 1; h = 1; }"), "`a` is not a coordinate\nhelp: a check gives coordinates");
-    case(&system("check { «h» = 2; h = 1; }"), "`h` is not a coordinate");
+    let other =
+        "is neither a coordinate nor a parameter\nhelp: a check gives coordinates, `dot(…)` of them, parameters,";
+    for name in ["mass", "N", "half"] {
+        case(&system(&format!("let half = a / 2; check {{ «{name}» = 1; h = 1; }}")), &format!("`{name}` {other}"));
+    }
+    case(&system("check { «h» = 2; h = 1; }"), &format!("`h` {other}"));
     case(&system("check { dot(«a») = 1; h = 1; }"), "`dot(a)`: `a` is not a coordinate");
-    case(&system("check { «sin»(x) = 1; h = 1; }"), "expected a coordinate, `dot(…)`, `t` or `h`");
+    case(&system("check { «sin»(x) = 1; h = 1; }"), "expected a coordinate, `dot(…)`, a parameter, `t` or `h`");
     case(&system("check { dot(x «x») = 1; h = 1; }"), "expected `)`");
-    case(&system("check { x = 1, «x» = 2; h = 1; }"), "`x` is given twice\nhelp: give each coordinate");
+    case(&system("check { x = 1, «x» = 2; h = 1; }"), "`x` is given twice\nhelp: give each coordinate, velocity");
     case(&system("check { dot(x) = 1; dot(«x») = 2; h = 1; }"), "`x` is given twice");
     case(&system("check { t = 1; «t» = 2; h = 1; }"), "`t` is given twice");
     case(&system("check { q[i in 0..N] = i; «q»[0] = 1; h = 1; }"), "`q` is given twice");
@@ -730,7 +802,39 @@ fn checks() {
     case(&system("check «;»"), "expected `{` and a place");
     let two = errors(&format!("struct System {{ {} }}", system("check { y = 1; z = 2; }")));
     let said: Vec<&str> = two.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
-    assert_eq!(said, ["the check has no step", "`y` is not a coordinate", "`z` is not a coordinate"]);
+    let nor = |name: &str| format!("`{name}` is neither a coordinate nor a parameter");
+    assert_eq!(said, ["the check has no step".to_owned(), nor("y"), nor("z")]);
+}
+
+/// Parameters beside coordinates.
+#[test]
+fn parameters_of_a_check() {
+    let system = |check: &str| {
+        let parameters = "param mass = 1, h = 2, k[3] = 0";
+        let lagrangian = "L = mass * dot(x)^2 - h * sum(i in 0..3, k[i]) * x^2";
+        format!("{parameters}; coord x; {lagrangian}; discretize midpoint; check {{ {check} }}")
+    };
+    for right in [
+        "mass = 2, x = 1; h = 1;",
+        "h = 3; h = 1;",
+        "k[0] = 1, k[i in 1..3] = i; h = 1;",
+        "mass = -1; dot(x) = 1; t = 2; h = 1;",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
+    }
+    case(&system("«mas» = 1; h = 1;"), "`mas` is neither a coordinate nor a parameter\nhelp: did you mean `mass`?");
+    case(
+        &system("mass = 1, «mass» = 1; h = 1;"),
+        "`mass` is given twice\nhelp: give each coordinate, velocity and param",
+    );
+    case(&system("k[1] = 1, «k»[i in 0..3] = i; h = 1;"), "`k` is given twice");
+    case(&system("«k» = 1; h = 1;"), "`k` is an array\nhelp: write one entry, `k[0]`");
+    case(&system("«mass»[0] = 1; h = 1;"), "`mass` is not an array");
+    case(&system("k[«3»] = 1; h = 1;"), "`k[3]` is out of range 0..3\nhelp: the indices are 0 to 2");
+    case(&system("k[i in 0..«4»] = 1; h = 1;"), "`k[3]` is out of range 0..3");
+    case(&system("dot(«mass») = 1; h = 1;"), "`dot(mass)`: `mass` is not a coordinate");
+    case(&system("mass = «h»; h = 1;"), "`mass` is not a constant");
+    case(&system("mass = «exp»(1000); h = 1;"), "the value of `mass` is not finite");
 }
 
 #[test]

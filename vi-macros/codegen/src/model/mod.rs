@@ -7,6 +7,7 @@
 pub mod check;
 mod check_state;
 mod context;
+mod dissipation;
 mod force;
 mod mass;
 mod point;

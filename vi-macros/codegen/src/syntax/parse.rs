@@ -324,7 +324,7 @@ fn entry(input: ParseStream) -> Result<Entry> {
     }
     let dot = name(input)?;
     if dot != "dot" {
-        return Err(error(dot.span(), &Message::Expected { what: "a coordinate, `dot(…)`, `t` or `h`" }));
+        return Err(error(dot.span(), &Message::Expected { what: "a coordinate, `dot(…)`, a parameter, `t` or `h`" }));
     }
     let inner;
     syn::parenthesized!(inner in input);
