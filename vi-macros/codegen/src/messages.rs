@@ -47,6 +47,19 @@ impl Absence {
     }
 }
 
+/// Why a mass matrix is singular for every state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Singular {
+    /// This coordinate adds nothing to it.
+    Massless(String, Massless),
+    /// L is linear in all velocities: the equations are of first order.
+    FirstOrder,
+    /// L is homogeneous of degree 1 in the velocities: v·L_v = L, so that M v = 0.
+    Homogeneous,
+    /// Some directions of motion have no kinetic energy.
+    Dependent,
+}
+
 /// How a coordinate stands in L that adds nothing to the mass matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Massless {
@@ -159,7 +172,7 @@ pub enum Message {
     /// L does not depend on any velocity.
     NoVelocity,
     /// The mass matrix has no inverse anywhere.
-    SingularMass { missing: Option<(String, Massless)> },
+    SingularMass { why: Singular },
     /// A rule by a name that does not exist.
     UnknownRule { name: String, near: Option<String> },
     /// A rule that a list names twice.
@@ -188,6 +201,8 @@ pub enum Message {
     NotDecimal,
     /// A number out of the range of `f64`.
     NumberRange,
+    /// A part of L or of a force without a derivative that the equations need.
+    NoDerivative { expression: String, by: String },
     /// A coefficient of the equations that no `f64` holds.
     CoefficientRange,
     /// Parentheses nested too deep.
@@ -252,16 +267,31 @@ fn with_arguments(name: &str, takes: usize) -> String {
 }
 
 /// What to do about a direction without kinetic energy.
-fn move_with_energy(missing: Option<&(String, Massless)>) -> String {
-    match missing {
-        Some((name, Massless::Multiplier)) => format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT),
-        Some((name, Massless::Absent)) => {
-            format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`")
+fn move_with_energy(why: &Singular) -> String {
+    match why {
+        Singular::Massless(name, Massless::Multiplier) => {
+            format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT)
         }
-        Some((name, Massless::Linear)) => format!(
+        Singular::Massless(name, Massless::Absent) => format!(
+            "`{name}` has no kinetic energy, and coordinates without mass are not supported: add a term with `dot({name})^2`, or make \
+             `{name}` a `param`"
+        ),
+        Singular::Massless(name, Massless::Linear) => format!(
             "`dot({name})` stands in `L` in the first power alone, which is no kinetic energy: add a term with `dot({name})^2`"
         ),
-        None => "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned(),
+        Singular::FirstOrder => {
+            "`L` is linear in the velocities; systems of first order, dq/dt = f(q), are not supported: every coordinate needs a kinetic \
+             energy, as in `m * dot(x)^2 / 2`"
+                .to_owned()
+        }
+        Singular::Homogeneous => {
+            "`L` is homogeneous of degree 1 in the velocities, so that its motion has no speed: let the time `t` take the place of one \
+             coordinate, as in `-m * c^2 * sqrt(1 - dot(x)^2 / c^2)`"
+                .to_owned()
+        }
+        Singular::Dependent => {
+            "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned()
+        }
     }
 }
 
@@ -336,6 +366,9 @@ impl Message {
             Self::Habit(habit) => habit.what(),
             Self::NotDecimal => "not a decimal number".to_owned(),
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
+            Self::NoDerivative { expression, by } => {
+                format!("`{expression}` has no derivative with respect to `{by}`")
+            }
             Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
             Self::TooLong { limit } => format!("the system is longer than {limit} tokens"),
@@ -427,7 +460,7 @@ impl Message {
             }
             Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
-            Self::SingularMass { missing } => move_with_energy(missing.as_ref()),
+            Self::SingularMass { why } => move_with_energy(why),
             Self::UnknownRule { name, near } => rule_for(name, near.as_ref()),
             Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
             Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
@@ -447,6 +480,10 @@ impl Message {
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
+            Self::NoDerivative { .. } => {
+                "its derivative divides by zero, or holds the logarithm of zero or of a negative number, for every state; write it otherwise"
+                    .to_owned()
+            }
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLong { .. } => "write what repeats with arrays and `sum`".to_owned(),

@@ -150,9 +150,60 @@ fn velocities() {
         "the mass matrix ∂²L/∂v² is singular for every state",
     );
     case(
-        "coord «x»; L = x * dot(x); discretize midpoint;",
+        "coord «x», y; L = x * dot(x) + dot(y)^2; discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `dot(x)` stands in `L` in the first power alone",
     );
+    for first_order in [
+        "coord x; «L» = x * dot(x);",
+        "param a = 1, b = 2; coord x, y; «L» = (ln(y) / x + y) * dot(x) - (a * x + b * y - ln(x) - 2 * ln(y));",
+        "coord x, y; let s = 1 + x^2 + y^2; «L» = s * (x * dot(y) - y * dot(x)) - cos(x) - sin(y);",
+    ] {
+        case(
+            &format!("{first_order} discretize midpoint;"),
+            "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `L` is linear in the velocities; systems of first order",
+        );
+    }
+    case(
+        "param k = 1; coord x, «y»; L = dot(x)^2 / 2 - k * (x - y)^2 / 2; dissipation = dot(y)^2 / 2; discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `y` has no kinetic energy, and coordinates without mass",
+    );
+    for homogeneous in [
+        "param m = 1, c = 3e8; coord T, x; «L» = -m * c * sqrt(c^2 * dot(T)^2 - dot(x)^2);",
+        "coord x, y; «L» = sqrt(dot(x)^2 + dot(y)^2) / y;",
+        "coord x, y; «L» = dot(x)^2 / dot(y) + dot(y) * x;",
+    ] {
+        case(
+            &format!("{homogeneous} discretize midpoint;"),
+            "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `L` is homogeneous of degree 1 in the velocities",
+        );
+    }
+    case(
+        "coord x, y; «L» = (dot(x) - dot(y))^2 / 2 - x^2; discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: every direction of motion needs kinetic energy",
+    );
+}
+
+/// The expression is named that has a value but no derivative.
+#[test]
+fn derivatives_that_do_not_exist() {
+    for (summand, said) in [
+        (
+            "0^dot(x)",
+            "`pow(0, dot(x))` has no derivative with respect to `dot(x)`\nhelp: its derivative divides by zero",
+        ),
+        ("3 * sin(2 * x) * 0^x", "`pow(0, x)` has no derivative with respect to `x`"),
+        ("x * (-2)^t", "`pow(-2, t)` has no derivative with respect to `t`"),
+        ("asin(x / sqrt(x^2))", "`asin(x/sqrt(x^2))` has no derivative with respect to `x`"),
+    ] {
+        case(&format!("coord x; «L» = dot(x)^2 / 2 - {summand}; discretize midpoint;"), said);
+    }
+    case(
+        "coord «x»; L = dot(x)^2 / 2; force x = x + (-1)^dot(x); discretize midpoint;",
+        "`pow(-1, dot(x))` has no deriv",
+    );
+    case(&format!("dissipation = «0»^dot(x); {REST}"), "this expression has no value");
+    let time_scale = errors(&format!("struct System {{ time_scale = 1 + 0^x; {REST} }}"));
+    assert!(time_scale[0].1.starts_with("`pow(0, x)` has no derivative with respect to `x`"), "{time_scale:?}");
 }
 
 #[test]

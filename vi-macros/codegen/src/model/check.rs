@@ -46,7 +46,8 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let (Some(lagrangian), Some(rule)) = (lagrangian, rule) else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
-    let singular = mass::check(pool, &coordinates, lagrangian, system.lagrangians[0].name.span());
+    let lagrangian_span = system.lagrangians[0].name.span();
+    let singular = mass::check(pool, (&coordinates, &parameters), lagrangian, lagrangian_span);
     // What an exhausted pool says means nothing.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
@@ -57,6 +58,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         parameters,
         coordinates,
         lagrangian,
+        lagrangian_span,
         forced,
         forces,
         time_scale,

@@ -7,6 +7,7 @@
 
 use super::Parameter;
 use super::context::Context;
+use super::probe;
 use crate::messages::Message;
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator};
@@ -14,11 +15,9 @@ use std::collections::BTreeMap;
 use vi_expr::{Expr, Node, Pool};
 
 /// Points at which the power is evaluated.
-const PROBES: u32 = 32;
+const POINTS: u32 = 32;
 /// Points that have to have a power, for its sign to be known.
 const LEAST: usize = 2;
-/// The largest power of ten by which a coordinate, a velocity or the time differs from 1.
-const DECADES: f64 = 6.0;
 
 /// Reports an R that acts as a constant force or adds energy.
 pub(super) fn check(
@@ -97,13 +96,13 @@ fn is_fed(pool: &Pool<Symbol>, losses: &[Expr], moving: Option<usize>, parameter
     let of_moving = moving.map_or(losses, |index| &losses[index..=index]);
     let first = moving.unwrap_or(0);
     let mut positive = 0;
-    for probe in 0..PROBES {
+    for point in 0..POINTS {
         let mut drawn = BTreeMap::new();
         let mut value = |symbol: &Symbol| match symbol {
             Symbol::Parameter { index, .. } => parameters.get(*index).map_or(f64::NAN, |parameter| parameter.default),
             Symbol::Continuous(Variable::Velocity(index)) if moving.is_some_and(|moving| moving != *index) => 0.0,
             other => {
-                let number = draw(probe, drawn.len());
+                let number = probe::of_any_size(point, drawn.len());
                 *drawn.entry(other.clone()).or_insert(number)
             }
         };
@@ -121,11 +120,4 @@ fn is_fed(pool: &Pool<Symbol>, losses: &[Expr], moving: Option<usize>, parameter
         positive += usize::from(power > error);
     }
     positive >= LEAST
-}
-
-/// The entry `index` of a fixed sequence of numbers of both signs and of all sizes: the multiples of the golden ratio and of √2.
-fn draw(probe: u32, index: usize) -> f64 {
-    let position = u32::try_from(index).map_or(0.0, f64::from).mul_add(f64::from(PROBES), f64::from(probe) + 1.0);
-    let size = 10.0_f64.powf(DECADES * (2.0 * (position * 0.618_033_988_749_894_9).fract() - 1.0));
-    if (position * std::f64::consts::SQRT_2).fract() < 0.5 { -size } else { size }
 }

@@ -135,6 +135,9 @@ fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr],
         *force = context.pool.sub(*force, loss);
         losses.push(loss);
     }
+    if losses.iter().any(|loss| context.pool.is_undefined(*loss)) && !context.is_too_large() {
+        context.errors.at(first.value.span, &Message::NoValue);
+    }
     if context.errors.is_empty() {
         dissipation::check(context, &first.value, (rayleigh, &losses), parameters);
     }
