@@ -934,7 +934,7 @@ fn mistakes_in_a_file_are_shown_at_their_places() {
     }
     // However deep it is nested, and however many mistakes one line holds.
     let nested = format!("lagrangian! {{ struct A {{ L = {}1{}; }} }}", "(".repeat(12_000), ")".repeat(12_000));
-    let unused: String = (0..4000).map(|i| format!("param a{i} = 1; ")).collect();
+    let unused = (0..4000).map(|i| format!("param a{i} = 1; ")).collect::<Vec<_>>().concat();
     let many = format!("lagrangian! {{ struct A {{ {unused} coord x; L = dot(x)^2; discretize midpoint; }} }}");
     for (text, message) in [(nested, "error: this expression is nested"), (many, "error: 3970 more mistakes are not")] {
         fs::write(&file, text).expect("the file");

@@ -12,6 +12,18 @@ use vi_expr::TooLarge;
 /// Messages that are shown of one system; a last one counts those after them.
 const SHOWN: usize = 30;
 
+/// Where attributes stand.
+const ATTRIBUTES: &str = "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`";
+
+/// What Rayleigh functions of friction are.
+const FRICTION: &str = "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(dot(x))` for dry friction; a driving force belongs in `force x = …;`";
+
+/// What to do about a Rayleigh function that adds energy.
+const OTHER_SIGN: &str = "write it with the other sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`";
+
+/// What to do about an expression without a derivative.
+const OTHERWISE: &str = "its derivative divides by zero, or holds the logarithm of zero or of a negative number, for every state; write it otherwise";
+
 /// Why an expression does not see a name that the system declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Absence {
@@ -390,10 +402,7 @@ impl Message {
             Self::Reserved { name } => another_name(name),
             Self::ReservedType { .. } => "generated code uses this type; choose another name".to_owned(),
             Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
-            Self::AttributeOfClause => {
-                "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`"
-                    .to_owned()
-            }
+            Self::AttributeOfClause => ATTRIBUTES.to_owned(),
             Self::Unknown { name, near } => name_for(name, near.as_ref()),
             Self::Absent { absence, .. } => absence.help(),
             Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
@@ -430,14 +439,8 @@ impl Message {
             Self::NoDissipation => {
                 "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
             }
-            Self::ConstantDissipation => {
-                "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(dot(x))` for dry friction; a driving force belongs in `force x = …;`"
-                    .to_owned()
-            }
-            Self::FeedingDissipation => {
-                "write it with the other sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`"
-                    .to_owned()
-            }
+            Self::ConstantDissipation => FRICTION.to_owned(),
+            Self::FeedingDissipation => OTHER_SIGN.to_owned(),
             Self::SecondTimeScale => "write `time_scale` once".to_owned(),
             Self::VelocityInTimeScale { .. } => "use positions, time, constants and parameters".to_owned(),
             Self::TimeScaleNotPositive => "dt = g dτ: g is positive wherever the system moves".to_owned(),
@@ -480,10 +483,7 @@ impl Message {
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
-            Self::NoDerivative { .. } => {
-                "its derivative divides by zero, or holds the logarithm of zero or of a negative number, for every state; write it otherwise"
-                    .to_owned()
-            }
+            Self::NoDerivative { .. } => OTHERWISE.to_owned(),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLong { .. } => "write what repeats with arrays and `sum`".to_owned(),

@@ -317,7 +317,7 @@ fn clauses() {
     case(&format!("param a «1»; {REST}"), "expected `=`");
     case(&format!("param «1» = 1; {REST}"), "expected a name");
     case(&format!("param «r#type» = 1; {REST}"), "the name `r#type` is reserved");
-    case("coord x; L = dot(x)^2 «,» 1; discretize midpoint;", "expected an operator or `;`");
+    case("coord x; L = dot(x)^2 «,» x; discretize midpoint;", "expected an operator or `;`");
     case("coord x; L = dot(x)^2 * «;» discretize midpoint;", "expected a number, a name or `(`");
     case("coord x; L = dot(x)^2 * (x«,» x); discretize midpoint;", "expected an operator or `)`");
     case("coord x; L = dot(x)^2 * hypot(x «;» x); discretize midpoint;", "expected an operator, `,` or `)`");
@@ -479,6 +479,69 @@ fn habits() {
         "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1); discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint; the language has no constr",
     );
+}
+
+/// What other tools have and this language has not: the message says so, or what to write.
+#[test]
+fn what_is_not_supported_is_said() {
+    let delay = "`x` is a coordinate, not a function\nhelp: write `x` for its value at the time `t`, `x * (…)` for a product; delays";
+    says("«x»(t - m)", delay);
+    says("«x»(0)", delay);
+    case(
+        "coord q[2], x; L = dot(x)^2 + dot(q[0])^2 - «q»(1) * x; discretize midpoint;",
+        "`q` is a coordinate, not a fun",
+    );
+    says("«delay»(x, 1)", "unknown function `delay`\nhelp: delays are not supported");
+    says(
+        "«product»(i in 0..3, i * x)",
+        "`product` has no range\nhelp: `sum` alone has a range: write the factors one by one",
+    );
+    says("sin(«prod»(i in 0..3, i * x))", "`prod` has no range\nhelp: `sum` alone has a range: write the factors");
+    says("«max»(i in 0..3, i * x)", "`max` has no range\nhelp: `sum` alone has a range, as in `sum(i in 0..8, q[i])`");
+    for derivative in ["diff(x^2, x)", "grad(x)", "partial(x, t)"] {
+        let name = derivative.split('(').next().unwrap_or_default();
+        let help = "write `dot(a)` for a derivative by time; derivatives of `L` by coordinates are taken for you, so that a potential `V`";
+        says(&derivative.replacen(name, &format!("«{name}»"), 1), &format!("unknown function `{name}`\nhelp: {help}"));
+    }
+    for (function, help) in [
+        ("randn", "random numbers are not supported: make the force a `param`, and set it between steps"),
+        ("noise", "random numbers are not supported"),
+        ("integral", "integrals are not supported: write the value as a formula"),
+        ("erf", "special functions are not supported: write a formula that is close to it"),
+        ("besselj", "special functions are not supported"),
+        ("Re", "complex numbers are not supported"),
+    ] {
+        says(&format!("«{function}»()"), &format!("unknown function `{function}`\nhelp: {help}"));
+    }
+    let complex = "complex numbers are not supported: write real and imaginary part as two coordinates";
+    says("exp(«im» * x)", &format!("unknown name `im`\nhelp: {complex}"));
+    says("exp(«1i» * x)", &format!("the number `1` runs into `i`\nhelp: {complex}"));
+    says("exp(2 «i» * x)", &format!("an operator is missing between `2` and `i`\nhelp: {complex}"));
+    says(
+        "exp(«i» * x)",
+        "unknown name `i`\nhelp: an index has its range, as in `sum(i in 0..3, q[i])`; else declare it with `param`, `const` or \
+         `coord`; complex numbers are not supported",
+    );
+    let degrees = "angles are in radians: write `30 * pi / 180` for 30 degrees";
+    says("x * sin(30 «deg»)", &format!("an operator is missing between `30` and `deg`\nhelp: {degrees}"));
+    says("x * sin(«30deg»)", &format!("the number `30` runs into `deg`\nhelp: {degrees}"));
+    says("x * sin(30 * «degrees»)", &format!("unknown name `degrees`\nhelp: {degrees}"));
+    let unit = "a number has no unit\nhelp: leave the brackets out: units are not written; choose one system of units";
+    says("9.81 «[»m / s^2] * x", unit);
+    clause("param a = 1.0 «[»kg];", unit);
+    for comma in ["L = 0«,»5 * dot(x)^2;", "L = dot(x)^2 * (1 + 0«,»5);"] {
+        case(&format!("coord x; {comma} discretize midpoint;"), "a decimal fraction has a point\nhelp: write `1.5`");
+    }
+    case(&format!("{REST} check {{ x = 0, «5»; h = 1; }}"), "a decimal fraction has a point\nhelp: write `1.5`");
+    for name in ["H", "hamiltonian"] {
+        case(
+            &format!("coord q; «{name}» = p^2 / 2 + q^2 / 2; L = dot(q)^2; discretize midpoint;"),
+            &format!(
+                "unknown clause `{name}`\nhelp: write the Lagrangian, a function of coordinates and velocities: `L = "
+            ),
+        );
+    }
+    says("«p»^2 / 2", "unknown name `p`\nhelp: declare it with `param`, `const` or `coord`; a momentum is written by");
 }
 
 /// What people tried, each with what they are told to write: one message, which alone leads on.
@@ -971,7 +1034,7 @@ fn only_the_first_messages_are_shown() {
         let names = |prefix: &'static str| (0..count).map(move |i| format!("{prefix}{i}"));
         let unused = names("a").map(|name| format!("{name} = 1")).collect::<Vec<_>>().join(", ");
         let unknown = names("b").collect::<Vec<_>>().join(" + ");
-        let clauses = names("c").map(|name| format!("{name} 1;")).collect::<String>();
+        let clauses = names("c").map(|name| format!("{name} 1;")).collect::<Vec<_>>().concat();
         for body in [
             format!("param {unused}; {REST}"),
             format!("coord x; L = dot(x)^2 + {unknown}; discretize midpoint;"),

@@ -141,7 +141,9 @@ fn number(point: u32, index: usize, symbol: &Symbol, parameters: &[Parameter]) -
         return size * probe::near_one(point, index);
     }
     let default = match symbol {
-        Symbol::Parameter { index, .. } if point % 2 == 0 => parameters.get(*index).map(|parameter| parameter.default),
+        Symbol::Parameter { index, .. } if point.is_multiple_of(2) => {
+            parameters.get(*index).map(|parameter| parameter.default)
+        }
         _ => None,
     };
     default.filter(|default| *default != 0.0).unwrap_or_else(|| probe::of_any_size(point, index))

@@ -312,6 +312,9 @@ fn check(span: Span, input: ParseStream) -> Result<Check> {
         if comma.is_none() && semicolon.is_none() && !inner.is_empty() {
             return Err(unfitting::end_of_definition(&inner, start, "an operator, `,` or `;`"));
         }
+        if comma.is_some() && inner.peek(syn::Lit) {
+            return Err(error(inner.span(), &Message::Habit(Habit::DecimalComma)));
+        }
     }
     Ok(Check { span, entries })
 }
