@@ -8,14 +8,14 @@ use crate::linear::{self, Matrix};
 use crate::newton::{self, Equations, Failure, worst};
 use crate::node::Node;
 use crate::real::{Real, Rounded, Scalar};
-use crate::state::State;
+use crate::state::{Numbers, State};
 use crate::vector::Vector;
 use nalgebra::SVector;
 
 impl<const N: usize, T: Real> State<N, T> {
     /// The state at time `t` with coordinates `q` and velocities `v`: `p = ∂L/∂v(t, q, v)`.
-    pub fn at<S: Lagrangian<N, T>>(system: &S, t: T, q: impl Into<SVector<T, N>>, v: impl Into<SVector<T, N>>) -> Self {
-        let (q, v) = (q.into(), v.into());
+    pub fn at<S: Lagrangian<N, T>>(system: &S, t: T, q: impl Numbers<N, T>, v: impl Numbers<N, T>) -> Self {
+        let (q, v) = (q.vector(), v.vector());
         Self { t, q, p: system.momentum(t, &q, &v) }
     }
 }

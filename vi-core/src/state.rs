@@ -17,6 +17,25 @@ pub struct State<const N: usize, T = f64> {
     pub p: SVector<T, N>,
 }
 
+/// N numbers, one for each coordinate of a system: an array, an [`SVector`], or what else is one.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not one number for each of {N} coordinate(s)",
+    label = "the system has {N} coordinate(s)",
+    note = "write an array or a vector of so many numbers: `[0.5, 1.0]` for two coordinates"
+)]
+pub trait Numbers<const N: usize, T = f64> {
+    /// The vector of these numbers.
+    fn vector(self) -> SVector<T, N>;
+}
+
+#[diagnostic::do_not_recommend]
+impl<const N: usize, T, V: Into<SVector<T, N>>> Numbers<N, T> for V {
+    #[inline]
+    fn vector(self) -> SVector<T, N> {
+        self.into()
+    }
+}
+
 /// The pair of nodes between which one discrete Lagrangian lives: `(t0, q0) → (t1, q1)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval<const N: usize, T = f64> {

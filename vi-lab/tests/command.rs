@@ -923,7 +923,7 @@ fn mistakes_in_a_file_are_shown_at_their_places() {
     assert!(errors.contains("declares no system with `lagrangian!`"), "{errors}");
     // What Rust cannot read is shown at its place too.
     for (text, message) in [
-        ("fn 1() {}\n", ":1:4\n  |\n1 | fn 1() {}\n  |    ^\n"),
+        ("fn `() {}\n", ":1:4\n  |\n1 | fn `() {}\n  |    ^\n"),
         ("lagrangian! {\n    L = x²;\n}\n", ":2:10\n  |\n2 |     L = x²;\n  |          ^\n  = help: write `^2`\n"),
         ("lagrangian! {\n    L = (x;\n}\n", ":3:1\n  |\n3 | }\n  | ^\n  = help: write `)` before it, or remove one\n"),
     ] {
@@ -931,6 +931,18 @@ fn mistakes_in_a_file_are_shown_at_their_places() {
         let (status, output, errors) = lab(&["expand", path(&file)]);
         assert_eq!((status, output.as_str()), (Some(1), ""), "{errors}");
         assert!(errors.ends_with(message), "{errors}");
+    }
+    // However deep it is nested, and however many mistakes one line holds.
+    let nested = format!("lagrangian! {{ struct A {{ L = {}1{}; }} }}", "(".repeat(12_000), ")".repeat(12_000));
+    let unused = (0..4000).map(|i| format!("param a{i} = 1; ")).collect::<Vec<_>>().concat();
+    let many = format!("lagrangian! {{ struct A {{ {unused} coord x; L = dot(x)^2; discretize midpoint; }} }}");
+    for (text, message) in [(nested, "error: this expression is nested"), (many, "error: 3970 more mistakes are not")] {
+        fs::write(&file, text).expect("the file");
+        for command in ["expand", "explain"] {
+            let (status, output, errors) = lab(&[command, path(&file)]);
+            assert_eq!((status, output.as_str()), (Some(1), ""), "{command}");
+            assert!(errors.contains(message) && errors.len() < 20_000, "{} bytes", errors.len());
+        }
     }
     fs::remove_file(&file).expect("the file can be removed");
     let (status, _, errors) = lab(&["expand", path(&file)]);

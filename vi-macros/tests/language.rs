@@ -172,3 +172,43 @@ fn every_entry_of_a_long_array_acts_in_its_place() {
     // Measured 1.3e-14, of momenta up to 17.
     assert!(residual < 3e-14, "{residual:e}");
 }
+
+lagrangian! {
+    /// A pole on a cart that is pushed: the push is a parameter that is zero until a controller sets it.
+    struct CartPole {
+        param M = 1.0, m = 0.2, l = 0.5, g = 9.81;
+        param u = 0.0;
+        coord x, a;
+        L = (M + m) * dot(x)^2 / 2 + m * l * dot(x) * dot(a) * cos(a) + m * l^2 * dot(a)^2 / 2 - m * g * l * cos(a);
+        force x = u;
+        discretize midpoint, trapezoidal;
+        check { u = 1.0, a = 0.5, dot(x) = 0.3; h = 0.002; }
+    }
+}
+
+lagrangian! {
+    /// Springs between three masses, by an adjacency matrix of which the upper triangle alone is used.
+    struct Graph {
+        const N = 3;
+        param k[N * N] = 0.0, m[N] = 1.0;
+        coord q[N];
+        let stretch[i in 0..N] = sum(j in i + 1..N, k[N * i + j] * (q[j] - q[i])^2);
+        L = sum(i in 0..N, m[i] * dot(q[i])^2 / 2 - stretch[i] / 2);
+        discretize midpoint;
+        check { k[1] = 40.0, k[5] = 30.0, q[i in 0..N] = i^2 / 10; m[0] = 2.0; h = 0.002; }
+    }
+}
+
+#[test]
+fn entries_of_a_parameter_may_be_unused() {
+    let mut graph = Graph::default();
+    assert_eq!(<Graph as Lagrangian<3>>::PARAMETERS.len(), 12);
+    let (q, v) = (SVector::from([0.0, 1.0, 3.0]), SVector::zeros());
+    // The spring from 1 to 2 is stretched by 2; k[7] is of the triangle that is not used.
+    for (name, stiffness, potential) in [("k[5]", 0.0, 0.0), ("k[5]", 3.0, 6.0), ("k[7]", 5.0, 6.0)] {
+        *graph.parameter_mut(name).expect("an entry") = stiffness;
+        let found = -graph.lagrangian(0.0, &q, &v);
+        // Exact: a product of small integers.
+        assert!((found - potential).abs() <= 0.0, "{name}: {found}");
+    }
+}

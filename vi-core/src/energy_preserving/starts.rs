@@ -12,7 +12,7 @@ use crate::called::Called;
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::Scalar;
-use crate::state::State;
+use crate::state::{Numbers, State};
 use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
@@ -35,12 +35,12 @@ where
     pub fn from_midpoint(
         system: S,
         t0: T,
-        q0: impl Into<SVector<T, N>>,
-        v0: impl Into<SVector<T, N>>,
+        q0: impl Numbers<N, T>,
+        v0: impl Numbers<N, T>,
         h0: T,
     ) -> Result<Self, StepError> {
         check_step("the step h0", h0)?;
-        let (q, v) = (q0.into(), v0.into());
+        let (q, v) = (q0.vector(), v0.vector());
         let mut start = Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero());
         start.shift(h0 * T::real(-0.5), &v);
         Self::after(system, start, h0, v)
@@ -54,10 +54,10 @@ where
     /// [`EnergyPreserving::from_midpoint`].
     pub fn from_points(
         system: S,
-        (t0, q0): (T, impl Into<SVector<T, N>>),
-        (t1, q1): (T, impl Into<SVector<T, N>>),
+        (t0, q0): (T, impl Numbers<N, T>),
+        (t1, q1): (T, impl Numbers<N, T>),
     ) -> Result<Self, StepError> {
-        let (h, q, q1) = (t1 - t0, q0.into(), q1.into());
+        let (h, q, q1) = (t1 - t0, q0.vector(), q1.vector());
         check_step("the interval t1 − t0", h)?;
         let v = (q1 - q).map(|distance| distance / h);
         let mut integrator = Self::after(system, Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero()), h, v)?;
@@ -77,10 +77,10 @@ where
         state: State<N, T>,
         energy: T,
         h: T,
-        v: impl Into<SVector<T, N>>,
+        v: impl Numbers<N, T>,
     ) -> Result<Self, StepError> {
         check_step("the step h", h)?;
-        let (node, v) = (Node::new(state, energy), v.into());
+        let (node, v) = (Node::new(state, energy), v.vector());
         let mut start = node;
         start.shift(-h, &v);
         let mut integrator = Self::after(system, start, h, v)?;

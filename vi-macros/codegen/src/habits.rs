@@ -70,6 +70,12 @@ pub enum Habit {
     InclusiveRange,
     /// `dot(q)[0]`.
     IndexBehind,
+    /// `1.0 [kg]`.
+    UnitInBrackets,
+    /// `product(i in 0..3, q[i])`.
+    RangeOf { function: String },
+    /// `x(t - 1)`, of a coordinate.
+    CoordinateWithArguments { name: String },
     /// A clause, or a line of a rule, without `;` at its end.
     MissingSemicolon { after: String },
     /// A definition without `=`.
@@ -120,6 +126,9 @@ impl Habit {
             Self::AddedForce => "a force is written once".to_owned(),
             Self::InclusiveRange => "a range stops before its end".to_owned(),
             Self::IndexBehind => "an index stands behind a name only".to_owned(),
+            Self::UnitInBrackets => "a number has no unit".to_owned(),
+            Self::RangeOf { function } => format!("`{function}` has no range"),
+            Self::CoordinateWithArguments { name } => format!("`{name}` is a coordinate, not a function"),
             Self::MissingSemicolon { after } => format!("`;` is missing behind `{after}`"),
             Self::MissingValue { name, .. } => format!("`{name}` has no value"),
             Self::ValueOfCoordinate => "a coordinate is declared without a value".to_owned(),
@@ -145,9 +154,8 @@ impl Habit {
             Self::ProductInName { product, .. } => format!("write `{product}` for a product"),
             Self::RuleWithArguments => format!("write `discretize {};`; {GAUSS}", rules::RULES[0].name),
             Self::RuleWithSign => format!("write `discretize {};`", rules::RULES[0].name),
-            Self::MissingOperator { left, right, is_number: true } => {
-                format!("write `{left} * {right}` for a product; units are not written")
-            }
+            Self::MissingOperator { left, right, is_number: true } => suffix(right)
+                .unwrap_or_else(|| format!("write `{left} * {right}` for a product; units are not written")),
             Self::MissingOperator { left, right, .. } => format!("write `{left} * {right}` for a product"),
             Self::FunctionWithoutParentheses { name, argument } => {
                 format!("write its argument in parentheses: `{name}({argument})`")
@@ -158,9 +166,8 @@ impl Habit {
             Self::Type => {
                 "write `param m = 1.0;`, `coord x;`, `let a = …;`: every number is of one type, that of the run".to_owned()
             }
-            Self::NumberSuffix { digits, suffix } => {
-                format!("write `{digits} * {suffix}` for a product; units are not written")
-            }
+            Self::NumberSuffix { digits, suffix: word } => suffix(word)
+                .unwrap_or_else(|| format!("write `{digits} * {word}` for a product; units are not written")),
             Self::TypeOfNumber { digits, .. } => format!("write `{digits}`: numbers are exact and have no type"),
             Self::Conversion => "leave `as` out; an index is a number, as in `i / 2`".to_owned(),
             Self::PointWithoutDigits { number } => format!("write `{number}`"),
@@ -181,6 +188,17 @@ impl Habit {
             Self::ColonEquals => "write `=` alone".to_owned(),
             Self::AddedForce => "write `force x = …;`, all forces on `x` added up in one line".to_owned(),
             Self::InclusiveRange => "write `0..N + 1` for the indices 0 to N".to_owned(),
+            Self::UnitInBrackets => "leave the brackets out: units are not written; choose one system of units for all numbers".to_owned(),
+            Self::RangeOf { function } if PRODUCTS.contains(&function.as_str()) => {
+                "`sum` alone has a range: write the factors one by one, `q[0] * q[1] * q[2]`; of positive ones the product is \
+                 `exp(sum(i in 0..8, ln(q[i])))`"
+                    .to_owned()
+            }
+            Self::RangeOf { .. } => "`sum` alone has a range, as in `sum(i in 0..8, q[i])`".to_owned(),
+            Self::CoordinateWithArguments { name } => format!(
+                "write `{name}` for its value at the time `t`, `{name} * (…)` for a product; delays, its values at other times, are not \
+                 supported"
+            ),
             Self::IndexBehind => "write `dot(q[0])` for the velocity of `q[0]`, and name other arrays with `let`".to_owned(),
             Self::MissingSemicolon { .. } => {
                 "every clause ends with `;`; entries of one list are separated by `,`".to_owned()
@@ -216,13 +234,21 @@ impl Habit {
 const TYPES: [&str; 14] =
     ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
+/// Products over a range.
+const PRODUCTS: [&str; 3] = ["product", "prod", "Π"];
+
 /// Clauses.
-const CLAUSES: [(&[&str], &str); 12] = [
+const CLAUSES: [(&[&str], &str); 13] = [
     (&["parameter", "parameters", "params"], "write `param a = 1.0;`"),
     (&["coordinate", "coordinates", "var", "dof"], "write `coord x, y;`"),
     (&["constant", "constants", "static"], "write `const g = 9.81;`"),
     (&["lagrangian", "Lagrangian", "Lagrange", "Lag"], "write `L = …;`"),
     (&["l"], "write `L = …;` for the Lagrangian, `let l = …;` to name a part"),
+    (
+        &["H", "hamiltonian", "Hamiltonian"],
+        "write the Lagrangian, a function of coordinates and velocities: `L = m * dot(q)^2 / 2 - V;` for `H = p^2 / (2 * m) + V`; \
+         Hamiltonians are not supported",
+    ),
     (&["rayleigh", "Rayleigh", "damping", "friction"], "write `dissipation = …;`, Rayleigh's function"),
     (&["constraint", "constraints", "constrain", "subject", "holonomic"], CONSTRAINT),
     (
@@ -236,7 +262,7 @@ const CLAUSES: [(&[&str], &str); 12] = [
 ];
 
 /// Functions.
-const FUNCTIONS: [(&[&str], &str); 25] = [
+const FUNCTIONS: [(&[&str], &str); 30] = [
     (&["log"], "write `ln(a)` for the natural logarithm, `ln(a) / ln(b)` for the one to the base b"),
     (&["log10"], "write `ln(a) / ln(10)`"),
     (&["log2"], "write `ln(a) / ln(2)`"),
@@ -262,19 +288,73 @@ const FUNCTIONS: [(&[&str], &str); 25] = [
     (&["fabs", "norm"], "write `abs(a)` for a number, `sqrt(a^2 + b^2)` for a vector"),
     (&["sgn", "signum"], "write `sign(a)`"),
     (&["heaviside", "step", "theta"], "write `(1 + sign(a)) / 2`"),
+    (
+        &["rand", "randn", "random", "noise", "normal", "uniform", "wiener"],
+        "random numbers are not supported: make the force a `param`, and set it between steps with `set_parameters`",
+    ),
+    (&["integral", "integrate", "int", "quad"], "integrals are not supported: write the value as a formula"),
+    (
+        &[
+            "erf",
+            "erfc",
+            "gamma",
+            "Gamma",
+            "lgamma",
+            "digamma",
+            "beta",
+            "zeta",
+            "airy",
+            "besselj",
+            "bessely",
+            "besseli",
+            "besselk",
+            "besselj0",
+            "besselj1",
+            "j0",
+            "j1",
+            "jn",
+            "ellipk",
+            "ellipe",
+            "ellipj",
+            "legendre",
+            "hypergeom",
+            "lambertw",
+            "factorial",
+        ],
+        "special functions are not supported: write a formula that is close to it where the system moves, as a polynomial",
+    ),
+    (&["complex", "Complex", "re", "Re", "im", "Im", "real", "imag", "conj", "arg"], COMPLEX),
+    (
+        &["delay", "delayed", "lag", "history"],
+        "delays are not supported: an expression depends on the time and the state at one time",
+    ),
 ];
 
-/// Derivatives by time, which are one function here.
-const DERIVATIVES: [&str; 7] = ["diff", "der", "ddt", "d", "D", "derivative", "prime"];
+/// Derivatives by time, which are one function here, and by coordinates.
+const DERIVATIVES: [&str; 12] =
+    ["diff", "der", "ddt", "d", "D", "derivative", "prime", "grad", "gradient", "partial", "pdiff", "Diff"];
+
+/// What to do about numbers with an imaginary part.
+const COMPLEX: &str = "complex numbers are not supported: write real and imaginary part as two coordinates, and `exp(i x)` by `cos(x)` and `sin(x)`";
+
+/// What to do about an angle in degrees.
+pub(crate) const DEGREES: &str = "angles are in radians: write `30 * pi / 180` for 30 degrees";
 
 /// Names.
-const NAMES: [(&[&str], &str); 6] = [
+const NAMES: [(&[&str], &str); 9] = [
     (&["π", "PI", "Pi", "M_PI"], "write `pi`"),
     (&["e"], "write `exp(x)` for e^x, `exp(1)` for the number"),
     (&["time"], "write `t`"),
     (
         &["i", "j", "k"],
-        "an index has its range, as in `sum(i in 0..3, q[i])`; else declare it with `param`, `const` or `coord`",
+        "an index has its range, as in `sum(i in 0..3, q[i])`; else declare it with `param`, `const` or `coord`; complex numbers are not \
+         supported",
+    ),
+    (&["im", "I"], COMPLEX),
+    (&["deg", "degree", "degrees"], DEGREES),
+    (
+        &["p", "momentum"],
+        "declare it with `param`, `const` or `coord`; a momentum is written by the velocity, as `m * dot(x)`",
     ),
     (&["dt", "ddt"], "write `dot(x)` for the derivative of `x` by time"),
     (&["lambda", "λ", "multiplier"], CONSTRAINT),
@@ -363,9 +443,20 @@ pub(crate) fn clause(word: &str) -> Option<String> {
 /// What a function by another name is called.
 pub(crate) fn function(name: &str) -> Option<String> {
     if DERIVATIVES.contains(&name) {
-        return Some("write `dot(a)` for a derivative by time; derivatives of `L` are taken for you".to_owned());
+        let help = "write `dot(a)` for a derivative by time; derivatives of `L` by coordinates are taken for you, so that a potential \
+            `V` acts by `- V` in `L`";
+        return Some(help.to_owned());
     }
     find(&FUNCTIONS, name)
+}
+
+/// What letters behind a number are, if they are neither a product nor a unit to leave out.
+fn suffix(letters: &str) -> Option<String> {
+    match letters {
+        "i" | "j" | "im" => Some(COMPLEX.to_owned()),
+        "deg" | "degree" | "degrees" => Some(DEGREES.to_owned()),
+        _ => None,
+    }
 }
 
 /// What a rule by another name is called, or where its order is chosen.

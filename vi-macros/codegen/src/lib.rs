@@ -66,7 +66,7 @@ pub fn derive(system: &syntax::System) -> syn::Result<Derivations> {
 /// The stages by the rule of this place in the list of the system.
 fn derive_by(system: &syntax::System, place: usize) -> syn::Result<Derived> {
     let mut pool = Pool::bounded(limits::WORK);
-    let model = check::model(&mut pool, system, place)?;
+    let model = check::model(&mut pool, system, place).map_err(messages::bounded)?;
     let system = discrete::system::system(&mut pool, &model)?;
     let program = program::program(&mut pool, &model, &system)?;
     let findings = found::findings(&model, &system, &program);

@@ -6,7 +6,23 @@
 use crate::habits::{self, Habit};
 use crate::rules::{self, RULES};
 use proc_macro2::Span;
+use std::collections::BTreeSet;
 use vi_expr::TooLarge;
+
+/// Messages that are shown of one system; a last one counts those after them.
+const SHOWN: usize = 30;
+
+/// Where attributes stand.
+const ATTRIBUTES: &str = "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`";
+
+/// What Rayleigh functions of friction are.
+const FRICTION: &str = "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(dot(x))` for dry friction; a driving force belongs in `force x = …;`";
+
+/// What to do about a Rayleigh function that adds energy.
+const OTHER_SIGN: &str = "write it with the other sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`";
+
+/// What to do about an expression without a derivative.
+const OTHERWISE: &str = "its derivative divides by zero, or holds the logarithm of zero or of a negative number, for every state; write it otherwise";
 
 /// Why an expression does not see a name that the system declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,6 +57,19 @@ impl Absence {
         }
         .to_owned()
     }
+}
+
+/// Why a mass matrix is singular for every state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Singular {
+    /// This coordinate adds nothing to it.
+    Massless(String, Massless),
+    /// L is linear in all velocities: the equations are of first order.
+    FirstOrder,
+    /// L is homogeneous of degree 1 in the velocities: v·L_v = L, so that M v = 0.
+    Homogeneous,
+    /// Some directions of motion have no kinetic energy.
+    Dependent,
 }
 
 /// How a coordinate stands in L that adds nothing to the mass matrix.
@@ -116,6 +145,10 @@ pub enum Message {
     SecondDissipation,
     /// A Rayleigh function without velocities.
     NoDissipation,
+    /// A term of a Rayleigh function that is linear in the velocities.
+    ConstantDissipation,
+    /// A Rayleigh function by which the motion gains energy.
+    FeedingDissipation,
     /// A second line `time_scale = …;`.
     SecondTimeScale,
     /// A time scale that depends on velocities, by this name.
@@ -138,9 +171,9 @@ pub enum Message {
     MissingStep,
     /// A check with a step that is zero or negative.
     StepNotPositive,
-    /// A line of a check for a name that is no coordinate.
+    /// A line of a check for a name that is neither a coordinate nor a parameter.
     CheckOfOther { name: String, near: Option<String> },
-    /// A second line of a check for one coordinate or velocity.
+    /// A second line of a check for one coordinate, velocity or parameter.
     SecondEntry { name: String },
     /// No line `coord …;`.
     MissingCoordinates,
@@ -151,7 +184,7 @@ pub enum Message {
     /// L does not depend on any velocity.
     NoVelocity,
     /// The mass matrix has no inverse anywhere.
-    SingularMass { missing: Option<(String, Massless)> },
+    SingularMass { why: Singular },
     /// A rule by a name that does not exist.
     UnknownRule { name: String, near: Option<String> },
     /// A rule that a list names twice.
@@ -180,6 +213,8 @@ pub enum Message {
     NotDecimal,
     /// A number out of the range of `f64`.
     NumberRange,
+    /// A part of L or of a force without a derivative that the equations need.
+    NoDerivative { expression: String, by: String },
     /// A coefficient of the equations that no `f64` holds.
     CoefficientRange,
     /// Parentheses nested too deep.
@@ -194,6 +229,8 @@ pub enum Message {
     TooLarge(TooLarge),
     /// Text after the system.
     AfterSystem,
+    /// So many more messages, which are not shown.
+    More { count: usize },
     /// A mistake of this compiler, found by checking its own output.
     Internal { what: &'static str },
 }
@@ -242,16 +279,31 @@ fn with_arguments(name: &str, takes: usize) -> String {
 }
 
 /// What to do about a direction without kinetic energy.
-fn move_with_energy(missing: Option<&(String, Massless)>) -> String {
-    match missing {
-        Some((name, Massless::Multiplier)) => format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT),
-        Some((name, Massless::Absent)) => {
-            format!("`{name}` has no kinetic energy: add a term with `dot({name})`, or make it a `param`")
+fn move_with_energy(why: &Singular) -> String {
+    match why {
+        Singular::Massless(name, Massless::Multiplier) => {
+            format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT)
         }
-        Some((name, Massless::Linear)) => format!(
+        Singular::Massless(name, Massless::Absent) => format!(
+            "`{name}` has no kinetic energy, and coordinates without mass are not supported: add a term with `dot({name})^2`, or make \
+             `{name}` a `param`"
+        ),
+        Singular::Massless(name, Massless::Linear) => format!(
             "`dot({name})` stands in `L` in the first power alone, which is no kinetic energy: add a term with `dot({name})^2`"
         ),
-        None => "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned(),
+        Singular::FirstOrder => {
+            "`L` is linear in the velocities; systems of first order, dq/dt = f(q), are not supported: every coordinate needs a kinetic \
+             energy, as in `m * dot(x)^2 / 2`"
+                .to_owned()
+        }
+        Singular::Homogeneous => {
+            "`L` is homogeneous of degree 1 in the velocities, so that its motion has no speed: let the time `t` take the place of one \
+             coordinate, as in `-m * c^2 * sqrt(1 - dot(x)^2 / c^2)`"
+                .to_owned()
+        }
+        Singular::Dependent => {
+            "every direction of motion needs kinetic energy; remove coordinates that depend on others".to_owned()
+        }
     }
 }
 
@@ -290,6 +342,10 @@ impl Message {
             Self::UnusedParameter { name } => format!("the parameter `{name}` acts on nothing"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
             Self::NoDissipation => "`dissipation` does not depend on any velocity".to_owned(),
+            Self::ConstantDissipation => {
+                "a term of `dissipation` is linear in velocities: its force is constant".to_owned()
+            }
+            Self::FeedingDissipation => "`dissipation` adds energy: its power `-v * ∂R/∂v` is positive".to_owned(),
             Self::SecondTimeScale => "a second `time_scale`".to_owned(),
             Self::VelocityInTimeScale { name } => format!("a time scale cannot depend on the velocities in `{name}`"),
             Self::TimeScaleNotPositive => "the time scale is not positive".to_owned(),
@@ -301,7 +357,7 @@ impl Message {
             Self::SecondCheck => "a second `check`".to_owned(),
             Self::MissingStep => "the check has no step".to_owned(),
             Self::StepNotPositive => "the step `h` is not positive".to_owned(),
-            Self::CheckOfOther { name, .. } => format!("`{name}` is not a coordinate"),
+            Self::CheckOfOther { name, .. } => format!("`{name}` is neither a coordinate nor a parameter"),
             Self::SecondEntry { name } => format!("`{name}` is given twice"),
             Self::MissingCoordinates => "the system has no coordinates".to_owned(),
             Self::ForceOnOther { name, .. } => format!("a force on `{name}`, which is not a coordinate"),
@@ -322,6 +378,9 @@ impl Message {
             Self::Habit(habit) => habit.what(),
             Self::NotDecimal => "not a decimal number".to_owned(),
             Self::NumberRange => "this number is outside the range of `f64`".to_owned(),
+            Self::NoDerivative { expression, by } => {
+                format!("`{expression}` has no derivative with respect to `{by}`")
+            }
             Self::CoefficientRange => "the equations have a coefficient outside the range of `f64`".to_owned(),
             Self::TooDeep { limit } => format!("this expression is nested deeper than {limit} levels"),
             Self::TooLong { limit } => format!("the system is longer than {limit} tokens"),
@@ -330,6 +389,7 @@ impl Message {
             Self::TooLarge(TooLarge::Terms { limit }) => format!("the system grows over {limit} terms"),
             Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
+            Self::More { count } => format!("{count} more mistakes are not shown"),
             Self::Internal { what } => format!("internal error: the operations of `{what}` do not compute its formula"),
         }
     }
@@ -342,10 +402,7 @@ impl Message {
             Self::Reserved { name } => another_name(name),
             Self::ReservedType { .. } => "generated code uses this type; choose another name".to_owned(),
             Self::SecondDerive { name } => format!("remove `{name}`; other traits may be derived"),
-            Self::AttributeOfClause => {
-                "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`"
-                    .to_owned()
-            }
+            Self::AttributeOfClause => ATTRIBUTES.to_owned(),
             Self::Unknown { name, near } => name_for(name, near.as_ref()),
             Self::Absent { absence, .. } => absence.help(),
             Self::UnknownFunction { name, near } => habits::function(name).unwrap_or_else(|| did_you_mean(
@@ -382,6 +439,8 @@ impl Message {
             Self::NoDissipation => {
                 "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
             }
+            Self::ConstantDissipation => FRICTION.to_owned(),
+            Self::FeedingDissipation => OTHER_SIGN.to_owned(),
             Self::SecondTimeScale => "write `time_scale` once".to_owned(),
             Self::VelocityInTimeScale { .. } => "use positions, time, constants and parameters".to_owned(),
             Self::TimeScaleNotPositive => "dt = g dτ: g is positive wherever the system moves".to_owned(),
@@ -395,16 +454,16 @@ impl Message {
             Self::StepNotPositive => "give a step with which the system moves well, as in `h = 0.01;`".to_owned(),
             Self::CheckOfOther { near, .. } => did_you_mean(
                 near.as_ref(),
-                "a check gives coordinates, `dot(…)` of them, the time `t` and the step `h`",
+                "a check gives coordinates, `dot(…)` of them, parameters, the time `t` and the step `h`",
             ),
-            Self::SecondEntry { .. } => "give each coordinate and each velocity once".to_owned(),
+            Self::SecondEntry { .. } => "give each coordinate, velocity and parameter once".to_owned(),
             Self::MissingCoordinates => "declare them: `coord x, y;`".to_owned(),
             Self::ForceOnOther { near, .. } => {
                 did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`")
             }
             Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
-            Self::SingularMass { missing } => move_with_energy(missing.as_ref()),
+            Self::SingularMass { why } => move_with_energy(why),
             Self::UnknownRule { name, near } => rule_for(name, near.as_ref()),
             Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
             Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
@@ -424,6 +483,7 @@ impl Message {
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
+            Self::NoDerivative { .. } => OTHERWISE.to_owned(),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLong { .. } => "write what repeats with arrays and `sum`".to_owned(),
@@ -432,15 +492,18 @@ impl Message {
                 "use fewer coordinates or a simpler Lagrangian".to_owned()
             }
             Self::AfterSystem => "one `lagrangian!` holds one `struct`".to_owned(),
+            Self::More { .. } => "correct those above, and compile again".to_owned(),
             Self::Internal { .. } => "please report this system".to_owned(),
         }
     }
 }
 
-/// The errors of one stage, in the order in which they were found.
+/// The errors of one stage or of a part of it, in the order in which they were found.
 #[derive(Debug, Default)]
 pub struct Errors {
     combined: Option<syn::Error>,
+    /// What was said.
+    texts: BTreeSet<String>,
 }
 
 impl Errors {
@@ -451,6 +514,7 @@ impl Errors {
 
     /// Adds an error made elsewhere.
     pub fn add(&mut self, error: syn::Error) {
+        self.texts.insert(error.to_string());
         match &mut self.combined {
             Some(combined) => combined.combine(error),
             None => self.combined = Some(error),
@@ -464,9 +528,7 @@ impl Errors {
             Err(error) => error,
         };
         for one in error {
-            let text = one.to_string();
-            let mut said = self.combined.iter().flat_map(Clone::clone);
-            if !said.any(|said| said.to_string() == text) {
+            if !self.texts.contains(&one.to_string()) {
                 self.add(one);
             }
         }
@@ -479,7 +541,7 @@ impl Errors {
         self.combined.is_none()
     }
 
-    /// The product of the stage, if nothing was found wrong.
+    /// The product, if nothing was found wrong.
     ///
     /// # Errors
     /// All that was found.
@@ -489,6 +551,24 @@ impl Errors {
             None => Ok(product),
         }
     }
+}
+
+/// The first [`SHOWN`] messages of a system, and how many more there are: each is printed with its line of text, which may be long.
+#[must_use]
+pub(crate) fn bounded(errors: syn::Error) -> syn::Error {
+    let count = errors.clone().into_iter().count();
+    if count <= SHOWN + 1 {
+        return errors;
+    }
+    let mut first = Errors::default();
+    for (index, one) in errors.into_iter().take(SHOWN + 1).enumerate() {
+        if index < SHOWN {
+            first.add(one);
+        } else {
+            first.at(one.span(), &Message::More { count: count - SHOWN });
+        }
+    }
+    first.combined.unwrap_or_else(|| error(Span::call_site(), &Message::More { count }))
 }
 
 /// One error at a token.

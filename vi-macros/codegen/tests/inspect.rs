@@ -271,6 +271,14 @@ mod inner {
     let names = found.into_iter().map(|tokens| parse::system(tokens).expect("a system").name.to_string());
     assert_eq!(names.collect::<Vec<_>>(), ["A", "B", "C"]);
     assert!(source::declarations("fn (").is_err());
+    // Not in the arguments of other macros.
+    for none in
+        ["macro_rules! m { () => { lagrangian! { $a } } }", "quote!(lagrangian! {})", "use vi_core::lagrangian;"]
+    {
+        assert!(source::declarations(none).expect("tokens").is_empty(), "{none}");
+    }
+    let script = source::declarations("#!/usr/bin/env rust\nlagrangian! { struct A { coord x; } }").expect("tokens");
+    assert_eq!(script[0].clone().into_iter().next().expect("a token").span().start().line, 2);
 }
 
 #[test]
@@ -293,6 +301,44 @@ error: a force on `y`, which is not a coordinate
 ";
     let shown = report::report("a.rs", text, &error);
     assert!(shown.starts_with(wanted), "{shown}");
+}
+
+/// Of a long line what stands about the token is shown.
+#[test]
+fn a_long_line_is_shown_in_part() {
+    let said = |names: usize, wrong: &str| {
+        let terms = " + x".repeat(names);
+        let text = format!(
+            "lagrangian! {{ struct A {{ coord x; L = dot(x)^2{terms} + {wrong}{terms}; discretize midpoint; }} }}"
+        );
+        let tokens = source::declarations(&text).expect("tokens").remove(0);
+        report::report("a.rs", &text, &stage(tokens, Stage::Rust).expect_err("wrong"))
+    };
+    let shown = said(10_000, "y");
+    let (line, carets) = (shown.lines().nth(3).expect("the line"), shown.lines().nth(4).expect("the carets"));
+    assert_eq!((line.chars().count(), carets.chars().count()), ("1 | ".len() + 122, "1 | ".len() + 62));
+    assert!(line.starts_with("1 | …") && line.ends_with('…') && carets.ends_with(" ^"), "{shown}");
+    assert_eq!(line.chars().nth("1 | ".len() + 61), Some('y'));
+    // A long token is marked as far as it is seen.
+    let shown = said(10_000, &"y".repeat(190));
+    assert!(shown.lines().skip(2).all(|line| line.chars().count() <= 127), "{shown}");
+    // At the ends of a line there is nothing to leave out.
+    let shown = said(5, "y");
+    assert!(!shown.contains('…'), "{shown}");
+}
+
+#[test]
+fn nesting_is_bounded_in_a_file() {
+    let nest = |inner: &str| format!("{}{inner}{}", "(".repeat(12_000), ")".repeat(12_000));
+    let system =
+        |term: &str| format!("lagrangian! {{ struct A {{ coord x; L = dot(x)^2 + {term}; discretize midpoint; }} }}");
+    for tokens in source::declarations(&format!("fn main() {{ {} }}\n{}", nest("1"), system("x"))).expect("tokens") {
+        assert!(stage(tokens, Stage::Syntax).is_ok(), "what stands around a system does not matter");
+    }
+    let text = system(&nest("x"));
+    let tokens = source::declarations(&text).expect("tokens").remove(0);
+    let shown = report::report("a.rs", &text, &explain(tokens).err().expect("too deep"));
+    assert!(shown.starts_with("error: this expression is nested deeper than 100 levels\n --> a.rs:1:"), "{shown}");
 }
 
 #[test]

@@ -36,6 +36,13 @@ fn a_regular_matrix_of_any_sizes_is_regular() {
         "coord x, y; L = 1e-20 * dot(x) * dot(y);",
         "coord x, y; L = sqrt(1 - dot(x)^2 - dot(y)^2);",
         "param c = 3e8; coord x; L = -1e-18 * sqrt(1 - dot(x)^2 / c^2);",
+        // Nearly homogeneous.
+        "param m = 1, c = 3e8; coord T, x; L = -m * c * sqrt(c^2 * dot(T)^2 - dot(x)^2) + m * dot(T)^2;",
+        "coord x, y; L = (dot(x)^2 + dot(y)^2)^0.51;",
+        "coord x, y; L = dot(x)^2.001 / dot(y);",
+        // By default without mass.
+        "param m = 0; coord x; L = m * dot(x)^2;",
+        "param m = 0, c = 2; coord T, x; L = m * (sqrt(c^2 * dot(T)^2 - dot(x)^2) + dot(x)^2);",
     ] {
         assert_eq!(said(clauses), None, "{clauses}");
     }
@@ -58,6 +65,11 @@ fn a_matrix_that_is_singular_everywhere_is_found() {
         // Where half of the points that are tried have no value.
         "coord x, y; L = sqrt(x) * (dot(x) + dot(y))^2;",
         "coord x, y; L = sqrt(-x) * (dot(x) + dot(y))^2;",
+        // Homogeneous of degree 1, with a root that few points have.
+        "param m = 1, c = 3e8; coord T, x; L = -m * c * sqrt(c^2 * dot(T)^2 - dot(x)^2);",
+        "param m = 1; coord T, x, y, z; L = -m * sqrt(dot(T)^2 - dot(x)^2 - dot(y)^2 - dot(z)^2);",
+        "param M = 1; coord T, r; L = -sqrt((1 - 2 * M / r) * dot(T)^2 - dot(r)^2 / (1 - 2 * M / r));",
+        "coord x, y; L = dot(x)^2 / dot(y);",
     ] {
         let said = said(clauses).unwrap_or_else(|| panic!("{clauses} is accepted"));
         assert!(said.starts_with("the mass matrix ∂²L/∂v² is singular for every state\nhelp: "), "{clauses}: {said}");

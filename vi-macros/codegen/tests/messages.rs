@@ -150,9 +150,60 @@ fn velocities() {
         "the mass matrix ∂²L/∂v² is singular for every state",
     );
     case(
-        "coord «x»; L = x * dot(x); discretize midpoint;",
+        "coord «x», y; L = x * dot(x) + dot(y)^2; discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `dot(x)` stands in `L` in the first power alone",
     );
+    for first_order in [
+        "coord x; «L» = x * dot(x);",
+        "param a = 1, b = 2; coord x, y; «L» = (ln(y) / x + y) * dot(x) - (a * x + b * y - ln(x) - 2 * ln(y));",
+        "coord x, y; let s = 1 + x^2 + y^2; «L» = s * (x * dot(y) - y * dot(x)) - cos(x) - sin(y);",
+    ] {
+        case(
+            &format!("{first_order} discretize midpoint;"),
+            "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `L` is linear in the velocities; systems of first order",
+        );
+    }
+    case(
+        "param k = 1; coord x, «y»; L = dot(x)^2 / 2 - k * (x - y)^2 / 2; dissipation = dot(y)^2 / 2; discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `y` has no kinetic energy, and coordinates without mass",
+    );
+    for homogeneous in [
+        "param m = 1, c = 3e8; coord T, x; «L» = -m * c * sqrt(c^2 * dot(T)^2 - dot(x)^2);",
+        "coord x, y; «L» = sqrt(dot(x)^2 + dot(y)^2) / y;",
+        "coord x, y; «L» = dot(x)^2 / dot(y) + dot(y) * x;",
+    ] {
+        case(
+            &format!("{homogeneous} discretize midpoint;"),
+            "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `L` is homogeneous of degree 1 in the velocities",
+        );
+    }
+    case(
+        "coord x, y; «L» = (dot(x) - dot(y))^2 / 2 - x^2; discretize midpoint;",
+        "the mass matrix ∂²L/∂v² is singular for every state\nhelp: every direction of motion needs kinetic energy",
+    );
+}
+
+/// The expression is named that has a value but no derivative.
+#[test]
+fn derivatives_that_do_not_exist() {
+    for (summand, said) in [
+        (
+            "0^dot(x)",
+            "`pow(0, dot(x))` has no derivative with respect to `dot(x)`\nhelp: its derivative divides by zero",
+        ),
+        ("3 * sin(2 * x) * 0^x", "`pow(0, x)` has no derivative with respect to `x`"),
+        ("x * (-2)^t", "`pow(-2, t)` has no derivative with respect to `t`"),
+        ("asin(x / sqrt(x^2))", "`asin(x/sqrt(x^2))` has no derivative with respect to `x`"),
+    ] {
+        case(&format!("coord x; «L» = dot(x)^2 / 2 - {summand}; discretize midpoint;"), said);
+    }
+    case(
+        "coord «x»; L = dot(x)^2 / 2; force x = x + (-1)^dot(x); discretize midpoint;",
+        "`pow(-1, dot(x))` has no deriv",
+    );
+    case(&format!("dissipation = «0»^dot(x); {REST}"), "this expression has no value");
+    let time_scale = errors(&format!("struct System {{ time_scale = 1 + 0^x; {REST} }}"));
+    assert!(time_scale[0].1.starts_with("`pow(0, x)` has no derivative with respect to `x`"), "{time_scale:?}");
 }
 
 #[test]
@@ -266,7 +317,7 @@ fn clauses() {
     case(&format!("param a «1»; {REST}"), "expected `=`");
     case(&format!("param «1» = 1; {REST}"), "expected a name");
     case(&format!("param «r#type» = 1; {REST}"), "the name `r#type` is reserved");
-    case("coord x; L = dot(x)^2 «,» 1; discretize midpoint;", "expected an operator or `;`");
+    case("coord x; L = dot(x)^2 «,» x; discretize midpoint;", "expected an operator or `;`");
     case("coord x; L = dot(x)^2 * «;» discretize midpoint;", "expected a number, a name or `(`");
     case("coord x; L = dot(x)^2 * (x«,» x); discretize midpoint;", "expected an operator or `)`");
     case("coord x; L = dot(x)^2 * hypot(x «;» x); discretize midpoint;", "expected an operator, `,` or `)`");
@@ -428,6 +479,69 @@ fn habits() {
         "coord «λ», x, y; L = (dot(x)^2 + dot(y)^2) / 2 + λ * (x^2 + y^2 - 1); discretize midpoint;",
         "the mass matrix ∂²L/∂v² is singular for every state\nhelp: `λ` multiplies a constraint; the language has no constr",
     );
+}
+
+/// What other tools have and this language has not: the message says so, or what to write.
+#[test]
+fn what_is_not_supported_is_said() {
+    let delay = "`x` is a coordinate, not a function\nhelp: write `x` for its value at the time `t`, `x * (…)` for a product; delays";
+    says("«x»(t - m)", delay);
+    says("«x»(0)", delay);
+    case(
+        "coord q[2], x; L = dot(x)^2 + dot(q[0])^2 - «q»(1) * x; discretize midpoint;",
+        "`q` is a coordinate, not a fun",
+    );
+    says("«delay»(x, 1)", "unknown function `delay`\nhelp: delays are not supported");
+    says(
+        "«product»(i in 0..3, i * x)",
+        "`product` has no range\nhelp: `sum` alone has a range: write the factors one by one",
+    );
+    says("sin(«prod»(i in 0..3, i * x))", "`prod` has no range\nhelp: `sum` alone has a range: write the factors");
+    says("«max»(i in 0..3, i * x)", "`max` has no range\nhelp: `sum` alone has a range, as in `sum(i in 0..8, q[i])`");
+    for derivative in ["diff(x^2, x)", "grad(x)", "partial(x, t)"] {
+        let name = derivative.split('(').next().unwrap_or_default();
+        let help = "write `dot(a)` for a derivative by time; derivatives of `L` by coordinates are taken for you, so that a potential `V`";
+        says(&derivative.replacen(name, &format!("«{name}»"), 1), &format!("unknown function `{name}`\nhelp: {help}"));
+    }
+    for (function, help) in [
+        ("randn", "random numbers are not supported: make the force a `param`, and set it between steps"),
+        ("noise", "random numbers are not supported"),
+        ("integral", "integrals are not supported: write the value as a formula"),
+        ("erf", "special functions are not supported: write a formula that is close to it"),
+        ("besselj", "special functions are not supported"),
+        ("Re", "complex numbers are not supported"),
+    ] {
+        says(&format!("«{function}»()"), &format!("unknown function `{function}`\nhelp: {help}"));
+    }
+    let complex = "complex numbers are not supported: write real and imaginary part as two coordinates";
+    says("exp(«im» * x)", &format!("unknown name `im`\nhelp: {complex}"));
+    says("exp(«1i» * x)", &format!("the number `1` runs into `i`\nhelp: {complex}"));
+    says("exp(2 «i» * x)", &format!("an operator is missing between `2` and `i`\nhelp: {complex}"));
+    says(
+        "exp(«i» * x)",
+        "unknown name `i`\nhelp: an index has its range, as in `sum(i in 0..3, q[i])`; else declare it with `param`, `const` or \
+         `coord`; complex numbers are not supported",
+    );
+    let degrees = "angles are in radians: write `30 * pi / 180` for 30 degrees";
+    says("x * sin(30 «deg»)", &format!("an operator is missing between `30` and `deg`\nhelp: {degrees}"));
+    says("x * sin(«30deg»)", &format!("the number `30` runs into `deg`\nhelp: {degrees}"));
+    says("x * sin(30 * «degrees»)", &format!("unknown name `degrees`\nhelp: {degrees}"));
+    let unit = "a number has no unit\nhelp: leave the brackets out: units are not written; choose one system of units";
+    says("9.81 «[»m / s^2] * x", unit);
+    clause("param a = 1.0 «[»kg];", unit);
+    for comma in ["L = 0«,»5 * dot(x)^2;", "L = dot(x)^2 * (1 + 0«,»5);"] {
+        case(&format!("coord x; {comma} discretize midpoint;"), "a decimal fraction has a point\nhelp: write `1.5`");
+    }
+    case(&format!("{REST} check {{ x = 0, «5»; h = 1; }}"), "a decimal fraction has a point\nhelp: write `1.5`");
+    for name in ["H", "hamiltonian"] {
+        case(
+            &format!("coord q; «{name}» = p^2 / 2 + q^2 / 2; L = dot(q)^2; discretize midpoint;"),
+            &format!(
+                "unknown clause `{name}`\nhelp: write the Lagrangian, a function of coordinates and velocities: `L = "
+            ),
+        );
+    }
+    says("«p»^2 / 2", "unknown name `p`\nhelp: declare it with `param`, `const` or `coord`; a momentum is written by");
 }
 
 /// What people tried, each with what they are told to write: one message, which alone leads on.
@@ -602,6 +716,9 @@ fn arrays_of_parameters() {
         "param m[2] = 1.0",
         "param m[N] = [1, N^2]",
         "param a = 2, m[2] = [1, 2,],; let b = a; dissipation = b * dot(x)^2",
+        // Entries that are not used, as of an adjacency matrix.
+        "param m[3] = 1",
+        "param m[2] = 1, a[9] = 0; let springs = sum(i in 0..3, a[3 * i] * x^2); force x = -springs",
     ] {
         assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
     }
@@ -626,7 +743,6 @@ fn arrays_of_parameters() {
     case(&system("param m[2] = [1, «exp»(1000)]"), "the value of `m` is not finite");
     case(&system("param «m»[2]"), "`m` has no value\nhelp: write `m = 1.0`");
     case(&system("param m[2] = 1, «m» = 2"), "the name `m` is declared twice");
-    case(&system("param «m»[3] = 1"), "the parameter `m[2]` acts on nothing");
     case(&system("param m[2] = 1, «k»[4] = 1"), "the parameter `k` acts on nothing");
     case(&system("param m[2] = 1; let a = m[«2»]"), "`m[2]` is out of range 0..2\nhelp: the indices are 0 to 1");
     case(&system("param m[2] = 1; let a = «m»"), "`m` is an array\nhelp: write one entry, `m[0]`, or a sum over it");
@@ -642,6 +758,73 @@ fn dissipation() {
     let system = |line: &str| format!("coord x; L = dot(x)^2; {line} discretize midpoint;");
     case(&system("dissipation = dot(x)^2; «dissipation» = dot(x)^2;"), "a second `dissipation`");
     case(&system("«dissipation» = x^2;"), "`dissipation` does not depend on any velocity");
+}
+
+/// A power of known sign.
+#[test]
+fn dissipation_takes_energy() {
+    let system = |rayleigh: &str| {
+        format!(
+            "param c = 0.3, w = 2, K[4] = [2, 1, 1, 2], e = 1e-3, d = -1; coord x, y; let v[i in 0..2] = dot(x) * (1 - i) + dot(y) * i; \
+             let drag = c * w * dot(x); L = (1 + c^2 + w^2 + e^2 + d^2 + K[0]) * (dot(x)^2 + dot(y)^2); dissipation = {rayleigh}; discretize midpoint;"
+        )
+    };
+    for linear in [
+        "«c» * dot(x)",
+        "«-»c * dot(x)",
+        "c * dot(x)^2 / 2 + «w» * dot(y)",
+        "c * dot(x)^2 - «sin»(t) * dot(x)",
+        "dot(y)^2 + «drag»",
+        "«c» * (dot(x) - dot(y))",
+        "«x» * dot(x)",
+    ] {
+        case(
+            &system(linear),
+            "a term of `dissipation` is linear in velocities: its force is constant\nhelp: write `c * dot(x)^2 / 2` for viscous",
+        );
+    }
+    for feeding in [
+        "«-»c * dot(x)^2 / 2",
+        "dot(y)^2 - «c» * dot(x)^2 / 2",
+        "«d» * dot(x)^2",
+        "«-»1 * (dot(x)^2 + dot(y)^2)",
+        "«-»abs(dot(x))^3",
+        "«-»sqrt(dot(x)^2 + e^2)",
+        "«-»exp(x) * dot(x)^4 + c * dot(y)^2",
+        "«-»(dot(x) * dot(y))^2",
+        "«-»sum(i in 0..2, v[i]^2)",
+    ] {
+        case(
+            &system(feeding),
+            "`dissipation` adds energy: its power `-v * ∂R/∂v` is positive\nhelp: write it with the other sign",
+        );
+    }
+    for right in [
+        "c * dot(x)^2 / 2",
+        "-d * dot(x)^2",
+        "c * (dot(x) - dot(y))^2 / 2",
+        // Relative to a belt, to a wind that changes.
+        "c * (dot(x) - w)^2 / 2",
+        "c * (dot(x) - w * sin(t))^4",
+        "sum(i in 0..2, sum(j in 0..2, K[2 * i + j] * v[i] * v[j])) / 2",
+        "c * abs(dot(x)) + abs(dot(y))^3",
+        "c * sqrt(dot(x)^2 + e^2)",
+        "c * sqrt(dot(x)^2)",
+        "c * (dot(x)^2 + dot(y)^2)^(3/4)",
+        "c * e * ln(cosh(dot(x) / e))",
+        // Van der Pol's, and others that take and give.
+        "c * (x^2 - 1) * dot(x)^2 / 2",
+        "c * (1 - x^2) * dot(x)^2 / 2",
+        "sin(t) * dot(x)^2",
+        "-cos(t) * dot(x)^2",
+        "(x^2 - 1e4) * dot(x)^2",
+        "c * dot(x) * dot(y)",
+        "c * dot(x)^4 - w * dot(x)^2",
+        "0 * c * dot(x) + dot(y)^2",
+        "c * x^2 * dot(x)^2 / (1 + x^2)",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
+    }
 }
 
 #[test]
@@ -705,15 +888,18 @@ fn checks() {
     case(&system("check { h = «-»1; }"), "the step `h` is not positive");
     case(
         "coord angle; L = dot(angle)^2; discretize midpoint; check { «angel» = 1; h = 1; }",
-        "`angel` is not a coordinate\nhelp: did you mean `angle`?",
+        "`angel` is neither a coordinate nor a parameter\nhelp: did you mean `angle`?",
     );
-    case(&system("check { «mass» = 1; h = 1; }"), "`mass` is not a coordinate\nhelp: a check gives coordinates");
-    case(&system("check { «a» = 1; h = 1; }"), "`a` is not a coordinate\nhelp: a check gives coordinates");
-    case(&system("check { «h» = 2; h = 1; }"), "`h` is not a coordinate");
+    let other =
+        "is neither a coordinate nor a parameter\nhelp: a check gives coordinates, `dot(…)` of them, parameters,";
+    for name in ["mass", "N", "half"] {
+        case(&system(&format!("let half = a / 2; check {{ «{name}» = 1; h = 1; }}")), &format!("`{name}` {other}"));
+    }
+    case(&system("check { «h» = 2; h = 1; }"), &format!("`h` {other}"));
     case(&system("check { dot(«a») = 1; h = 1; }"), "`dot(a)`: `a` is not a coordinate");
-    case(&system("check { «sin»(x) = 1; h = 1; }"), "expected a coordinate, `dot(…)`, `t` or `h`");
+    case(&system("check { «sin»(x) = 1; h = 1; }"), "expected a coordinate, `dot(…)`, a parameter, `t` or `h`");
     case(&system("check { dot(x «x») = 1; h = 1; }"), "expected `)`");
-    case(&system("check { x = 1, «x» = 2; h = 1; }"), "`x` is given twice\nhelp: give each coordinate");
+    case(&system("check { x = 1, «x» = 2; h = 1; }"), "`x` is given twice\nhelp: give each coordinate, velocity");
     case(&system("check { dot(x) = 1; dot(«x») = 2; h = 1; }"), "`x` is given twice");
     case(&system("check { t = 1; «t» = 2; h = 1; }"), "`t` is given twice");
     case(&system("check { q[i in 0..N] = i; «q»[0] = 1; h = 1; }"), "`q` is given twice");
@@ -730,7 +916,39 @@ fn checks() {
     case(&system("check «;»"), "expected `{` and a place");
     let two = errors(&format!("struct System {{ {} }}", system("check { y = 1; z = 2; }")));
     let said: Vec<&str> = two.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
-    assert_eq!(said, ["the check has no step", "`y` is not a coordinate", "`z` is not a coordinate"]);
+    let nor = |name: &str| format!("`{name}` is neither a coordinate nor a parameter");
+    assert_eq!(said, ["the check has no step".to_owned(), nor("y"), nor("z")]);
+}
+
+/// Parameters beside coordinates.
+#[test]
+fn parameters_of_a_check() {
+    let system = |check: &str| {
+        let parameters = "param mass = 1, h = 2, k[3] = 0";
+        let lagrangian = "L = mass * dot(x)^2 - h * sum(i in 0..3, k[i]) * x^2";
+        format!("{parameters}; coord x; {lagrangian}; discretize midpoint; check {{ {check} }}")
+    };
+    for right in [
+        "mass = 2, x = 1; h = 1;",
+        "h = 3; h = 1;",
+        "k[0] = 1, k[i in 1..3] = i; h = 1;",
+        "mass = -1; dot(x) = 1; t = 2; h = 1;",
+    ] {
+        assert_eq!(errors(&format!("struct System {{ {} }}", system(right))), [], "{right}");
+    }
+    case(&system("«mas» = 1; h = 1;"), "`mas` is neither a coordinate nor a parameter\nhelp: did you mean `mass`?");
+    case(
+        &system("mass = 1, «mass» = 1; h = 1;"),
+        "`mass` is given twice\nhelp: give each coordinate, velocity and param",
+    );
+    case(&system("k[1] = 1, «k»[i in 0..3] = i; h = 1;"), "`k` is given twice");
+    case(&system("«k» = 1; h = 1;"), "`k` is an array\nhelp: write one entry, `k[0]`");
+    case(&system("«mass»[0] = 1; h = 1;"), "`mass` is not an array");
+    case(&system("k[«3»] = 1; h = 1;"), "`k[3]` is out of range 0..3\nhelp: the indices are 0 to 2");
+    case(&system("k[i in 0..«4»] = 1; h = 1;"), "`k[3]` is out of range 0..3");
+    case(&system("dot(«mass») = 1; h = 1;"), "`dot(mass)`: `mass` is not a coordinate");
+    case(&system("mass = «h»; h = 1;"), "`mass` is not a constant");
+    case(&system("mass = «exp»(1000); h = 1;"), "the value of `mass` is not finite");
 }
 
 #[test]
@@ -808,6 +1026,31 @@ fn depth_and_size_are_bounded() {
     let chain = format!("struct System {{ coord x; let a0 = x; {lets} L = dot(x)^2 + a1999; discretize midpoint; }}");
     let found = errors(&chain);
     assert!(found.is_empty() || found[0].1.starts_with("the system grows over"), "{:?}", found[0]);
+}
+
+#[test]
+fn only_the_first_messages_are_shown() {
+    for count in [31, 4000, 20_000] {
+        let names = |prefix: &'static str| (0..count).map(move |i| format!("{prefix}{i}"));
+        let unused = names("a").map(|name| format!("{name} = 1")).collect::<Vec<_>>().join(", ");
+        let unknown = names("b").collect::<Vec<_>>().join(" + ");
+        let clauses = names("c").map(|name| format!("{name} 1;")).collect::<Vec<_>>().concat();
+        for body in [
+            format!("param {unused}; {REST}"),
+            format!("coord x; L = dot(x)^2 + {unknown}; discretize midpoint;"),
+            format!("{REST} {clauses}"),
+        ] {
+            let found = errors(&format!("struct System {{ {body} }}"));
+            let (_, last) = &found[found.len() - 1];
+            if count == 31 {
+                assert_eq!(found.len(), 31);
+                assert!(!last.contains("more mistakes"), "{last}");
+                continue;
+            }
+            let wanted = format!("{} more mistakes are not shown\nhelp: correct those above", count - 30);
+            assert!(found.len() == 31 && last.starts_with(&wanted), "{} messages, at last {last}", found.len());
+        }
+    }
 }
 
 #[test]

@@ -139,6 +139,15 @@ impl Fields {
         &self.definitions[place]
     }
 
+    /// The first partial derivative of L or of a force that has no value for any state: of what, the expression, and the last variable.
+    pub(super) fn undefined(&self, pool: &Pool<Symbol>) -> Option<(Quantity, Expr, Variable)> {
+        let place = self.definitions.iter().position(|definition| pool.is_undefined(definition.expr))?;
+        let (quantity, derivatives) = self.known.get_index(place)?;
+        let (last, basic) = derivatives.split_last()?;
+        let basic = self.known.get_index_of(&(*quantity, basic.to_vec()))?;
+        Some((*quantity, self.definitions.get(basic)?.expr, *last))
+    }
+
     fn known(&self, field: &Field) -> Option<&Definition> {
         let place = self.known.get_index_of(&(field.quantity, field.derivatives.clone()))?;
         self.definitions.get(place)

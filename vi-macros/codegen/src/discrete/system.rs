@@ -2,6 +2,7 @@
 //!
 //! In: a [`Model`]. Out: a [`DiscreteSystem`], or the message that a rule is written wrongly or the system too large.
 
+use super::continuous::{Continuous, TimeScale};
 use super::fields::Fields;
 use super::forces::discrete_forces;
 use super::interval::in_step;
@@ -11,9 +12,12 @@ use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Rule, rule};
 use crate::rules::{NamedRule, RULES};
-use crate::symbol::Symbol;
+use crate::symbol::{Quantity, Symbol, Variable};
 use syn::Result;
 use vi_expr::{Expr, Pool, TooLarge};
+
+/// Characters of an expression that a message shows.
+const CHARACTERS: usize = 100;
 
 /// Discretizes a model by its rule.
 ///
@@ -23,6 +27,7 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
     let mut fields = Fields::new(pool, model);
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
+    every_derivative_exists(pool, &fields, &continuous, model)?;
     let rule = known_rule(pool, model)?;
     let slots = slots::slots(pool, &mut fields, model, &model.rule).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
@@ -30,7 +35,39 @@ pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> 
     let equations = step::equations(pool, &mut fields, &slots).map_err(too_large)?;
     let point_derivatives = continuous::point_derivatives(pool, &mut fields, model.dimension()).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
+    every_derivative_exists(pool, &fields, &continuous, model)?;
     Ok(DiscreteSystem { rule, continuous, point_derivatives, fields, slots, equations })
+}
+
+/// A derivative that has no value for any state, as that of `0^x`, is told with the smallest expression that has none.
+fn every_derivative_exists(
+    pool: &mut Pool<Symbol>,
+    fields: &Fields,
+    continuous: &Continuous,
+    model: &Model,
+) -> Result<()> {
+    let (span, whole, by) = match (fields.undefined(pool), undefined_time_scale(pool, continuous)) {
+        (Some((Quantity::Lagrangian, whole, by)), _) => (model.lagrangian_span, whole, by),
+        (Some((Quantity::Force(coordinate), whole, by)), _) => (model.coordinates[coordinate].name.span(), whole, by),
+        (None, Some((whole, by))) => (model.name.span(), whole, by),
+        (None, None) => return Ok(()),
+    };
+    bounded(pool).map_err(|found| error(model.name.span(), &Message::TooLarge(found)))?;
+    let by = Symbol::Continuous(by);
+    let part = pool.reachable(&[whole]).into_iter().find(|part| {
+        let slope = pool.derivative(*part, &mut |pool, symbol| if *symbol == by { pool.one() } else { pool.zero() });
+        pool.is_undefined(slope)
+    });
+    let expression = pool.render_within(CHARACTERS, part.unwrap_or(whole), &|symbol| model.spell(symbol));
+    Err(error(span, &Message::NoDerivative { expression, by: model.spell(&by) }))
+}
+
+/// The time scale, and the variable by which its derivative has no value for any state.
+fn undefined_time_scale(pool: &Pool<Symbol>, continuous: &Continuous) -> Option<(Expr, Variable)> {
+    let TimeScale { g, g_dq, g_dt } = continuous.time_scale.as_ref()?;
+    let by_coordinate = g_dq.iter().enumerate().map(|(index, slope)| (Variable::Coordinate(index), *slope));
+    let mut slopes = by_coordinate.chain([(Variable::Time, *g_dt)]);
+    slopes.find(|(_, slope)| pool.is_undefined(*slope)).map(|(by, _)| (*g, by))
 }
 
 /// The rule of the table that the system's rule is: by its name, or written out.

@@ -23,10 +23,23 @@ pub(super) fn tests(source: &Source, further: &[Source], conditions: &[&Attribut
     let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
     let (t, h) = (number(state.t), number(state.h));
     let (q, v) = (state.q.iter().map(|entry| number(*entry)), state.v.iter().map(|entry| number(*entry)));
-    let tests = tests_by_rule(source, &quote!(super::#name::default()), &quote!(place()));
+    let parameters: Vec<_> = state.parameters.iter().map(|(index, value)| set(source, *index, *value)).collect();
+    let (system, own, of_further) = if parameters.is_empty() {
+        (None, quote!(super::#name::default()), quote!(super::super::#name::default()))
+    } else {
+        let system = quote! {
+            fn system() -> super::#name {
+                let mut system = super::#name::default();
+                #(#parameters)*
+                system
+            }
+        };
+        (Some(system), quote!(system()), quote!(super::system()))
+    };
+    let tests = tests_by_rule(source, &own, &quote!(place()));
     let by_further = further.iter().map(|source| {
         let rule = format_ident!("{}", source.model.rule.title());
-        let tests = tests_by_rule(source, &quote!(super::super::#name::default()), &quote!(super::place()));
+        let tests = tests_by_rule(source, &of_further, &quote!(super::place()));
         quote!(mod #rule { #(#tests)* })
     });
     Some(quote! {
@@ -39,10 +52,17 @@ pub(super) fn tests(source: &Source, further: &[Source], conditions: &[&Attribut
                 ::vi_core::check::Place { t: #t, q: [#(#q),*].into(), v: [#(#v),*].into(), h: #h }
             }
 
+            #system
             #(#tests)*
             #(#by_further)*
         }
     })
+}
+
+/// Gives a parameter of `system` a value.
+fn set(source: &Source, index: usize, value: f64) -> Option<TokenStream> {
+    let (place, value) = (source.model.parameters.get(index)?.place(), number(value));
+    Some(quote!(system.#place = #value;))
 }
 
 /// One test for each check that applies to the steps by the rule.

@@ -221,8 +221,8 @@ fn stub(system: &System) -> TokenStream {
     let (marker, marker_value) = marker(names.is_empty());
     let size = Size::of(system);
     let by_rules = rules(system).into_iter().map(|rule| stub_steps(name, &size, rule.as_ref()));
-    let lagrangian = stub_lagrangian(name, &size);
-    let traits = quote!(#lagrangian #(#by_rules)*);
+    let (parameters, lagrangian) = (stub_parameters(name, &size), stub_lagrangian(name, &size));
+    let traits = quote!(#parameters #lagrangian #(#by_rules)*);
     let (derived, conditions) = (derived(), conditions(&system.attributes).collect::<Vec<_>>());
     quote! {
         #(#conditions)*
@@ -272,17 +272,22 @@ fn plain_length(system: &System, length: &Expression) -> Option<usize> {
     if let Kind::Number(number) = number { number.to_usize() } else { None }
 }
 
-/// The rules of a system, each as the last argument of a trait: first its own, by default, then those of its list that there are.
+/// The rules of a system, each as the last argument of a trait: first its own, by default, then the further ones of its list; all that
+/// there are if the list cannot be read, or has other names.
 fn rules(system: &System) -> Vec<Option<TokenStream>> {
-    let mut rules = vec![None];
-    if let Some(Discretization::Named(names)) = system.discretizations.first() {
-        let known = RULES.iter().filter(|rule| names.iter().skip(1).any(|name| name == rule.name));
-        rules.extend(known.map(|rule| {
-            let marker = format_ident!("{}", rule.marker);
-            Some(quote!(, ::vi_core::rules::#marker))
-        }));
-    }
-    rules
+    let names = match system.discretizations.first() {
+        Some(Discretization::Written(_)) => return vec![None],
+        Some(Discretization::Named(names)) => names.as_slice(),
+        None => &[],
+    };
+    let is_known = |name: &Ident| RULES.iter().any(|rule| name == rule.name);
+    let is_read = !names.is_empty() && names.iter().all(is_known);
+    let further = RULES.iter().filter(|rule| !is_read || names.iter().skip(1).any(|name| name == rule.name));
+    let argument = further.map(|rule| {
+        let marker = format_ident!("{}", rule.marker);
+        Some(quote!(, ::vi_core::rules::#marker))
+    });
+    [None].into_iter().chain(argument).collect()
 }
 
 /// The number of coordinates of a stub, as it stands in types.
@@ -297,6 +302,26 @@ impl Size {
         match dimension(system) {
             Some(dimension) => Self { generic: None, n: quote!(#dimension) },
             None => Self { generic: Some(quote!(const N: ::core::primitive::usize,)), n: quote!(N) },
+        }
+    }
+}
+
+/// The stub of what does not depend on L: parameters, other numbers, and a time scale, since its clause may be the one that is wrong.
+fn stub_parameters(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
+    let none = quote!({ loop {} });
+    quote! {
+        impl<T: ::vi_core::real::Real> #name<T> {
+            #[allow(dead_code, missing_docs)]
+            pub fn convert<U: ::vi_core::real::Real>(&self) -> #name<U> #none
+        }
+        impl<T: ::vi_core::real::Real> ::vi_core::lagrangian::Parameters<T> for #name<T> {
+            fn parameter_mut(&mut self, _: &str) -> ::core::option::Option<&mut T> #none
+        }
+        impl<#generic T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<#n, T> for #name<T> {}
+        impl<#generic> ::vi_core::stepping::Batch<#n> for #name<f64> {
+            type Rows<const W: ::core::primitive::usize> = Self;
+            fn rows<const W: ::core::primitive::usize>(_: &[Self; W]) -> Self #none
+            fn from_rows<const W: ::core::primitive::usize>(_: &Self, _: ::core::primitive::usize) -> Self #none
         }
     }
 }
@@ -367,6 +392,10 @@ fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStrea
             fn extended_residual(#from) -> ::vi_core::stepping::ExtendedResidual<#n, T> #none
             fn extended_derivatives(#from) -> ::vi_core::stepping::ExtendedDerivatives<#n, T, Self::Jacobian, Self::StepMatrix> #none
             fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none
+        }
+        impl<#generic> ::vi_core::stepping::Convertible<#n #rule> for #name<f64> {
+            type In<T: ::vi_core::real::Real> = #name<T>;
+            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> #none
         }
     }
 }

@@ -7,6 +7,12 @@ use super::unreadable::{self, Unreadable};
 use proc_macro2::LineColumn;
 use std::fmt::Write as _;
 
+/// Characters of a line that are shown.
+const WIDTH: usize = 120;
+
+/// What stands for the rest of a line.
+const CUT: &str = "…";
+
 /// All mistakes of a file, each a paragraph.
 #[must_use]
 pub fn report(file: &str, text: &str, error: &syn::Error) -> String {
@@ -29,18 +35,41 @@ fn paragraph(file: &str, text: &str, error: &syn::Error) -> String {
 /// The message for a token from its start to its end.
 fn at(file: &str, text: &str, message: &str, [start, end]: [LineColumn; 2]) -> String {
     let (wrong, helps) = message.split_once('\n').unwrap_or((message, ""));
-    let line = text.lines().nth(start.line.saturating_sub(1)).unwrap_or_default();
+    let line: Vec<char> = text.lines().nth(start.line.saturating_sub(1)).unwrap_or_default().chars().collect();
     let margin = " ".repeat(start.line.to_string().len());
     // A token of several lines is marked to the end of its first.
-    let stop = if end.line == start.line { end.column } else { line.chars().count() };
-    let carets = "^".repeat(stop.saturating_sub(start.column).max(1));
-    // Tabs stay tabs, so that the carets stand where the token does.
-    let before: String = line.chars().take(start.column).map(|c| if c == '\t' { c } else { ' ' }).collect();
+    let stop = if end.line == start.line { end.column } else { line.len() };
+    let Excerpt { shown, before, carets } = excerpt(&line, start.column, stop);
     let mut report = format!("error: {wrong}\n{margin}--> {file}:{}:{}\n", start.line, start.column + 1);
     // Writing to a string does not fail.
-    let _ = write!(report, "{margin} |\n{} | {line}\n{margin} | {before}{carets}\n", start.line);
+    let _ = write!(report, "{margin} |\n{} | {shown}\n{margin} | {before}{carets}\n", start.line);
     for help in helps.lines() {
         let _ = writeln!(report, "{margin} = {help}");
     }
     report
+}
+
+/// A line with carets under a token.
+struct Excerpt {
+    /// The line, or its characters about the token.
+    shown: String,
+    /// What stands before the carets.
+    before: String,
+    carets: String,
+}
+
+/// The excerpt of a line whose token is that of these columns.
+fn excerpt(line: &[char], start: usize, stop: usize) -> Excerpt {
+    let start = start.min(line.len());
+    let from = if line.len() > WIDTH { start.saturating_sub(WIDTH / 2).min(line.len() - WIDTH) } else { 0 };
+    let to = line.len().min(from + WIDTH);
+    let [left, right] = [from > 0, to < line.len()].map(|is_cut| if is_cut { CUT } else { "" });
+    let shown: String = line[from..to].iter().collect();
+    // Tabs stay tabs, so that the carets stand where the token does.
+    let before = left.chars().chain(line[from..start].iter().copied()).map(|c| if c == '\t' { c } else { ' ' });
+    Excerpt {
+        before: before.collect(),
+        carets: "^".repeat(stop.min(to).saturating_sub(start).max(1)),
+        shown: format!("{left}{shown}{right}"),
+    }
 }

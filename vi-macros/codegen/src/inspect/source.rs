@@ -1,29 +1,52 @@
 //! The declarations in a file of Rust.
 //!
 //! In: the text of a file. Out: the tokens of each `lagrangian!` in it, in order, wherever it stands: in modules, in
-//! functions, under any path that ends in that name. Their spans are places in the text.
+//! functions, under any path that ends in that name; not in the arguments of other macros. Their spans are places in the text.
+//! The file is searched as tokens with a stack of its own, so that no nesting in it is too deep.
 
-use proc_macro2::TokenStream;
-use syn::visit::Visit;
+use proc_macro2::{TokenStream, TokenTree};
+use syn::Result;
 
 /// The tokens of each `lagrangian!` in a file.
 ///
 /// # Errors
-/// What is no Rust.
-pub fn declarations(text: &str) -> syn::Result<Vec<TokenStream>> {
-    let file = syn::parse_file(text)?;
-    let mut found = Declarations::default();
-    found.visit_file(&file);
-    Ok(found.0)
-}
-
-#[derive(Default)]
-struct Declarations(Vec<TokenStream>);
-
-impl<'a> Visit<'a> for Declarations {
-    fn visit_macro(&mut self, called: &'a syn::Macro) {
-        if called.path.segments.last().is_some_and(|last| last.ident == "lagrangian") {
-            self.0.push(called.tokens.clone());
+/// What Rust's lexer refuses.
+pub fn declarations(text: &str) -> Result<Vec<TokenStream>> {
+    let tokens: TokenStream = without_shebang(text).parse()?;
+    let mut found = Vec::new();
+    let mut open = vec![tokens.into_iter()];
+    while let Some(innermost) = open.last_mut() {
+        let Some(token) = innermost.next() else {
+            open.pop();
+            continue;
+        };
+        match token {
+            TokenTree::Group(group) => open.push(group.stream().into_iter()),
+            TokenTree::Ident(name) => {
+                let arguments = arguments(innermost);
+                found.extend(arguments.filter(|_| name == "lagrangian"));
+            }
+            _ => {}
         }
     }
+    Ok(found)
+}
+
+/// The arguments of a macro behind its name, `!(…)` or `! name(…)`; the tokens up to and with them are taken.
+fn arguments(behind: &mut proc_macro2::token_stream::IntoIter) -> Option<TokenStream> {
+    let mut ahead = behind.clone();
+    let is_call = matches!(ahead.next(), Some(TokenTree::Punct(mark)) if mark.as_char() == '!');
+    let argument = match ahead.next().filter(|_| is_call)? {
+        TokenTree::Ident(_) => ahead.next()?,
+        other => other,
+    };
+    let TokenTree::Group(group) = argument else { return None };
+    *behind = ahead;
+    Some(group.stream())
+}
+
+/// The text from the end of its line `#!…` on, if it begins with one.
+fn without_shebang(text: &str) -> &str {
+    let has_one = text.starts_with("#!") && !text[2..].trim_start().starts_with('[');
+    text.find('\n').filter(|_| has_one).map_or(text, |end| &text[end..])
 }

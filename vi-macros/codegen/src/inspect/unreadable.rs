@@ -3,6 +3,7 @@
 //! In: a text that Rust's lexer refuses; the macro never sees such a system. Out: the first place that is wrong, and what to write there: a bracket
 //! without its partner, a sign of paper.
 
+use crate::habits::{DEGREES, Habit};
 use proc_macro2::LineColumn;
 
 /// A place that is wrong.
@@ -18,8 +19,15 @@ pub(super) struct Unreadable {
 pub(super) fn unreadable(text: &str) -> Option<Unreadable> {
     let mut open: Vec<(char, LineColumn)> = Vec::new();
     let mut scanner = Scanner::new(text);
+    let mut before = ' ';
     while let Some((place, letter)) = scanner.next() {
+        let follows_name = before.is_alphanumeric() || matches!(before, ')' | ']' | '\'');
+        before = letter;
         match letter {
+            '\'' if follows_name => {
+                let message = format!("{}\nhelp: {}", Habit::Prime.what(), Habit::Prime.help());
+                return Some(Unreadable { place, message });
+            }
             '(' | '[' | '{' => open.push((letter, place)),
             ')' | ']' | '}' => match open.pop() {
                 Some((opening, _)) if closing(opening) == letter => {}
@@ -61,6 +69,7 @@ fn closing(opening: char) -> char {
 /// What is written for a sign of paper.
 fn sign(letter: char) -> Option<&'static str> {
     let help = match letter {
+        '°' => DEGREES,
         '²' => "write `^2`",
         '³' => "write `^3`",
         '⁰'..='⁹' | '¹' => "write a power with `^`, as in `x^4`",
@@ -158,10 +167,24 @@ mod tests {
         told("// (\n/* ) */ \"}\\\"]\" [", 2, 16, "`[` is not closed");
         assert_eq!(unreadable("a { b(c[1]) } // ²"), None);
         assert_eq!(unreadable("a { '(' }"), None);
+        assert_eq!(unreadable("fn f<'a>(a: &'a str) -> &'static str"), None);
+    }
+
+    #[test]
+    fn primes_are_told() {
+        for (text, column) in [("L = q'^2 / 2;", 6), ("L = q'' * q;", 6), ("L = x'(t)^2;", 6), ("L = q[0]' - 1;", 9)] {
+            told(text, 1, column, "a prime is no derivative\nhelp: write `dot(x)` for the velocity of `x`");
+        }
     }
 
     #[test]
     fn signs_of_paper_are_told() {
+        told(
+            "x * sin(30°)",
+            1,
+            11,
+            "`°` is no sign of the language\nhelp: angles are in radians: write `30 * pi / 180`",
+        );
         told("L = m * x²;", 1, 10, "`²` is no sign of the language\nhelp: write `^2`");
         for (text, help) in [("½ * x", "write `1/2`"), ("√(x)", "write `sqrt(x)`"), ("a − b", "write the hyphen `-`")]
         {

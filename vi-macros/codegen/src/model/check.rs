@@ -30,11 +30,11 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     context.scope.expect(lets.iter().map(|named| &named.name), Absence::Below);
     context.lets(lets);
     let lagrangian = context.lagrangian(&system.lagrangians, &system.name);
-    let forces = force::forces(&mut context, &system.forces, &system.dissipations, coordinates.len());
+    let forces = force::forces(&mut context, &system.forces, &system.dissipations, &parameters, coordinates.len());
     let forced = forces.iter().any(|force| !context.pool.is_zero(*force));
     let time_scale = time_scale::time_scale(&mut context, &system.time_scales);
     let rule = rule::rule(&mut context, system, place, coordinates.len(), forced);
-    let check_state = check_state::check_state(&mut context, &system.checks, coordinates.len());
+    let check_state = check_state::check_state(&mut context, &system.checks, &parameters, coordinates.len());
     if context.errors.is_empty() {
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
@@ -46,7 +46,8 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     let (Some(lagrangian), Some(rule)) = (lagrangian, rule) else {
         return Err(error(system.name.span(), &Message::MissingLagrangian));
     };
-    let singular = mass::check(pool, &coordinates, lagrangian, system.lagrangians[0].name.span());
+    let lagrangian_span = system.lagrangians[0].name.span();
+    let singular = mass::check(pool, (&coordinates, &parameters), lagrangian, lagrangian_span);
     // What an exhausted pool says means nothing.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
@@ -57,6 +58,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         parameters,
         coordinates,
         lagrangian,
+        lagrangian_span,
         forced,
         forces,
         time_scale,
@@ -216,18 +218,18 @@ impl Context<'_> {
         Some(lagrangian)
     }
 
-    /// A parameter that none of L, f, the time scale and the rule depends on is a mistake of spelling or of thought. Of an array in which no
-    /// entry acts the name is told, else the first entry that does not.
+    /// A parameter that none of L, f, the time scale and the rule depends on is a mistake of spelling or of thought. So is an array if
+    /// they depend on none of its entries; of an adjacency matrix, say, some may be unused.
     fn every_parameter_acts(&mut self, parameters: &[Parameter], acting: &[Expr]) {
         let acting = self.pool.symbols_of(acting);
+        if self.is_too_large() {
+            return;
+        }
         let acts = |(before, parameter): (usize, &Parameter)| acting.contains(&parameter.symbol(before));
         let acts: Vec<(&Parameter, bool)> = parameters.iter().zip(parameters.iter().enumerate().map(acts)).collect();
         for field in acts.chunk_by(|(left, _), (right, _)| left.name == right.name) {
-            if let Some((parameter, _)) = field.iter().find(|(_, acts)| !acts)
-                && !self.is_too_large()
-            {
-                let some_act = field.iter().any(|(_, acts)| *acts);
-                let name = if some_act { parameter.text() } else { parameter.name.to_string() };
+            if let Some((parameter, _)) = field.first().filter(|_| field.iter().all(|(_, acts)| !acts)) {
+                let name = parameter.name.to_string();
                 self.errors.at(parameter.name.span(), &Message::UnusedParameter { name });
             }
         }

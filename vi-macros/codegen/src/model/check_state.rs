@@ -1,10 +1,12 @@
 //! The state at which a system is checked.
 //!
-//! In: the clauses `check { x = 1, dot(x) = 0; h = 0.01; }`. Out: one [`CheckState`] of numbers; entries that are not named are
-//! zero. The last plain `h` is the step, so that a coordinate may be called h too.
+//! In: the clauses `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`. Out: one [`CheckState`] of numbers; coordinates and velocities that
+//! are not named are zero, and parameters have their defaults. The last plain `h` is the step, so that a coordinate or a parameter may
+//! be called h too.
 
+use super::Parameter;
 use super::context::Context;
-use super::force;
+use super::force::{self, Entries};
 use crate::messages::Message;
 use crate::syntax::{self, Definition, Entry};
 
@@ -17,12 +19,26 @@ pub struct CheckState {
     pub q: Vec<f64>,
     /// Velocities.
     pub v: Vec<f64>,
+    /// Values of parameters that differ from their defaults, by their numbers in ascending order.
+    pub parameters: Vec<(usize, f64)>,
     /// Step, positive.
     pub h: f64,
 }
 
+/// Entries of a check, each once.
+struct Given {
+    q: Vec<Option<f64>>,
+    v: Vec<Option<f64>>,
+    parameters: Vec<Option<f64>>,
+}
+
 /// The state of the first clause; a second clause is a mistake.
-pub(super) fn check_state(context: &mut Context, written: &[syntax::Check], dimension: usize) -> Option<CheckState> {
+pub(super) fn check_state(
+    context: &mut Context,
+    written: &[syntax::Check],
+    parameters: &[Parameter],
+    dimension: usize,
+) -> Option<CheckState> {
     let (first, others) = written.split_first()?;
     for other in others {
         context.errors.at(other.span, &Message::SecondCheck);
@@ -34,18 +50,18 @@ pub(super) fn check_state(context: &mut Context, written: &[syntax::Check], dime
         context.errors.at(first.span, &Message::MissingStep);
     }
     let mut t = None;
-    let mut q = vec![None; dimension];
-    let mut v = vec![None; dimension];
-    for (index, Entry { velocity, definition }) in first.entries.iter().enumerate() {
+    let [q, v] = [vec![None; dimension], vec![None; dimension]];
+    let mut given = Given { q, v, parameters: vec![None; parameters.len()] };
+    for (index, entry) in first.entries.iter().enumerate() {
         if Some(index) == last {
             continue;
         }
-        let twice = if !velocity && definition.indices.is_none() && definition.name == "t" {
+        let definition = &entry.definition;
+        let twice = if plain(entry) && definition.name == "t" {
             let (_, number) = context.number(&definition.value, &definition.name);
             t.replace(number).is_some()
         } else {
-            let numbers = if *velocity { &mut v } else { &mut q };
-            fill(context, definition, *velocity, numbers)
+            fill(context, entry, parameters, &mut given)
         };
         if twice {
             let name = definition.name.to_string();
@@ -53,7 +69,14 @@ pub(super) fn check_state(context: &mut Context, written: &[syntax::Check], dime
         }
     }
     let numbers = |entries: Vec<Option<f64>>| entries.into_iter().map(Option::unwrap_or_default).collect();
-    Some(CheckState { t: t.unwrap_or_default(), q: numbers(q), v: numbers(v), h: h? })
+    let of_parameters = (0..).zip(given.parameters).filter_map(|(index, value)| Some((index, value?))).collect();
+    Some(CheckState {
+        t: t.unwrap_or_default(),
+        q: numbers(given.q),
+        v: numbers(given.v),
+        parameters: of_parameters,
+        h: h?,
+    })
 }
 
 fn plain(entry: &Entry) -> bool {
@@ -70,15 +93,38 @@ fn step(context: &mut Context, written: &Definition) -> f64 {
 }
 
 /// Gives the entries of one line their numbers; whether one of them had a number before.
-fn fill(context: &mut Context, written: &Definition, velocity: bool, numbers: &mut [Option<f64>]) -> bool {
-    let other = |name: String, near| {
-        if velocity { Message::DotOfOther { name } } else { Message::CheckOfOther { name, near } }
+fn fill(context: &mut Context, Entry { velocity, definition }: &Entry, of: &[Parameter], given: &mut Given) -> bool {
+    let is_parameter = |known: &str| of.iter().any(|parameter| parameter.name == known);
+    let other = |Context { scope, pool, .. }: &Context, name: String| {
+        if *velocity {
+            return Message::DotOfOther { name };
+        }
+        let near = scope.near_of(pool, &name, |known| scope.is_coordinate(known) || is_parameter(known));
+        Message::CheckOfOther { name, near }
     };
-    let Some(entries) = force::entries(context, written, &other) else { return false };
+    let name = definition.name.to_string();
+    let coordinates = Entries::of_coordinate(context, &name);
+    let (entries, numbers) = match coordinates.or_else(|| of_parameter(of, &name).filter(|_| !velocity)) {
+        None => (None, &mut given.q),
+        some if coordinates.is_none() => (some, &mut given.parameters),
+        some if *velocity => (some, &mut given.v),
+        some => (some, &mut given.q),
+    };
+    let Some(values) = force::values(context, definition, entries, &other) else { return false };
     let mut twice = false;
-    for (coordinate, value) in entries {
-        let number = context.finite(value, written.value.span, &written.name).unwrap_or_default();
-        twice |= numbers[coordinate].replace(number).is_some();
+    for (entry, value) in values {
+        let number = context.finite(value, definition.value.span, &definition.name).unwrap_or_default();
+        twice |= numbers[entry].replace(number).is_some();
     }
     twice
+}
+
+/// The parameters of this name.
+fn of_parameter(parameters: &[Parameter], name: &str) -> Option<Entries> {
+    let mut of_name = (0..).zip(parameters).filter(|(_, parameter)| parameter.name == name);
+    let (first, parameter) = of_name.next()?;
+    Some(match parameter.index {
+        None => Entries::One(first),
+        Some(_) => Entries::Array { first, length: 1 + of_name.count() },
+    })
 }

@@ -6,11 +6,14 @@
 //! f_i = (line of x_i) − ∂R/∂v_i        R(t,q,v) is Rayleigh's function
 //! ```
 
+use super::Parameter;
 use super::context::Context;
+use super::dissipation;
 use super::scope::Meaning;
 use crate::messages::{Message, error};
 use crate::symbol::{Symbol, Variable};
 use crate::syntax::{Definition, Indices};
+use proc_macro2::Span;
 use syn::Result;
 use vi_expr::Expr;
 
@@ -19,14 +22,18 @@ pub(super) fn forces(
     context: &mut Context,
     lines: &[Definition],
     dissipations: &[Definition],
+    parameters: &[Parameter],
     dimension: usize,
 ) -> Vec<Expr> {
     let mut forces: Vec<Option<Expr>> = vec![None; dimension];
     for line in lines {
-        let Some(entries) = entries(context, line, &|name, near| Message::ForceOnOther { name, near }) else {
-            continue;
+        let coordinates = Entries::of_coordinate(context, &line.name.to_string());
+        let on_other = |context: &Context, name: String| {
+            let near = context.scope.near_of(context.pool, &name, |known| context.scope.is_coordinate(known));
+            Message::ForceOnOther { name, near }
         };
-        for (coordinate, value) in entries {
+        let Some(values) = values(context, line, coordinates, &on_other) else { continue };
+        for (coordinate, value) in values {
             if forces[coordinate].replace(value).is_some() {
                 context.errors.at(line.name.span(), &Message::SecondForce { name: line.name.to_string() });
                 break;
@@ -35,60 +42,84 @@ pub(super) fn forces(
     }
     let zero = context.pool.zero();
     let mut forces: Vec<Expr> = forces.into_iter().map(|force| force.unwrap_or(zero)).collect();
-    dissipate(context, dissipations, &mut forces);
+    dissipate(context, dissipations, &mut forces, parameters);
     forces
 }
 
-/// What a line says that is about no coordinate: its name, and the coordinate nearest to it.
-pub(super) type Other<'a> = &'a dyn Fn(String, Option<String>) -> Message;
+/// What a name stands for whose entries a line gives values: their numbers.
+#[derive(Clone, Copy)]
+pub(super) enum Entries {
+    One(usize),
+    Array { first: usize, length: usize },
+}
 
-/// The coordinates that a line is about, with their values.
-pub(super) fn entries(context: &mut Context, line: &Definition, other: Other) -> Option<Vec<(usize, Expr)>> {
+impl Entries {
+    /// The coordinates of this name.
+    pub(super) fn of_coordinate(context: &Context, name: &str) -> Option<Self> {
+        match context.scope.meaning(name)? {
+            Meaning::Coordinate(coordinate) => Some(Self::One(*coordinate)),
+            Meaning::Coordinates { first, length } => Some(Self::Array { first: *first, length: *length }),
+            _ => None,
+        }
+    }
+}
+
+/// What is said of a line of this name that is about no entries.
+pub(super) type Other<'a> = &'a dyn Fn(&Context, String) -> Message;
+
+/// The entries that a line is about, with their values.
+pub(super) fn values(
+    context: &mut Context,
+    line: &Definition,
+    entries: Option<Entries>,
+    other: Other,
+) -> Option<Vec<(usize, Expr)>> {
     let name = line.name.to_string();
-    let wanted = match (context.scope.meaning(&name).cloned(), &line.indices) {
-        (Some(Meaning::Coordinate(coordinate)), None) => Ok(vec![(coordinate, context.value(&line.value))]),
-        (Some(Meaning::Coordinates { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
-        (Some(Meaning::Wrong), _) => Ok(Vec::new()),
-        (Some(Meaning::Coordinate(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
-        (Some(Meaning::Coordinates { .. }), Some(indices)) => array_entries(context, line, indices),
-        _ => {
+    let wanted = match (entries, &line.indices) {
+        (Some(Entries::One(entry)), None) => Ok(vec![(entry, context.value(&line.value))]),
+        (Some(Entries::Array { .. }), None) => Err(error(line.name.span(), &Message::ArrayWithoutIndex { name })),
+        (Some(Entries::One(_)), Some(_)) => Err(error(line.name.span(), &Message::NotArray { name })),
+        (Some(Entries::Array { first, length }), Some(indices)) => {
+            array_values(context, line, indices, &|index, span| match usize::try_from(index) {
+                Ok(index) if index < length => Ok(first + index),
+                _ => {
+                    let (name, end) = (name.clone(), i64::try_from(length).unwrap_or(i64::MAX));
+                    Err(error(span, &Message::IndexRange { name, index, first: 0, end }))
+                }
+            })
+        }
+        (None, _) if context.scope.meaning(&name) == Some(&Meaning::Wrong) => Ok(Vec::new()),
+        (None, _) => {
             // The value may be wrong too.
             context.value(&line.value);
-            let near = context.scope.near_coordinate(context.pool, &name);
-            Err(error(line.name.span(), &other(name, near)))
+            Err(error(line.name.span(), &other(context, name)))
         }
     };
     context.report(wanted)
 }
 
-fn array_entries(context: &mut Context, line: &Definition, indices: &Indices) -> Result<Vec<(usize, Expr)>> {
+/// The values of some entries of an array, each with its number by `entry`, which is given an index and its place.
+fn array_values(
+    context: &mut Context,
+    line: &Definition,
+    indices: &Indices,
+    entry: &dyn Fn(i64, Span) -> Result<usize>,
+) -> Result<Vec<(usize, Expr)>> {
     let Context { scope, pool, .. } = context;
-    let range = match indices {
+    match indices {
         Indices::One(index) => {
             let value = scope.expression(pool, &line.value)?;
-            return Ok(scope
-                .coordinate_entry(pool, &line.name, index)?
-                .map(|entry| (entry, value))
-                .into_iter()
-                .collect());
+            Ok(vec![(entry(scope.integer(pool, index)?, index.span)?, value)])
         }
-        Indices::Range(range) => range,
-    };
-    let Some(Meaning::Coordinates { first, length }) = scope.meaning(&line.name.to_string()).cloned() else {
-        return Ok(Vec::new());
-    };
-    scope.each(pool, range, &mut |scope, pool, index| {
-        let value = scope.expression(pool, &line.value)?;
-        if let Some(index) = usize::try_from(index).ok().filter(|index| *index < length) {
-            return Ok((first + index, value));
-        }
-        let (name, end) = (line.name.to_string(), i64::try_from(length).unwrap_or(i64::MAX));
-        Err(error(range.to.span, &Message::IndexRange { name, index, first: 0, end }))
-    })
+        Indices::Range(range) => scope.each(pool, range, &mut |scope, pool, index| {
+            let value = scope.expression(pool, &line.value)?;
+            Ok((entry(index, range.to.span)?, value))
+        }),
+    }
 }
 
 /// Adds −∂R/∂v.
-fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr]) {
+fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr], parameters: &[Parameter]) {
     let Some((first, others)) = written.split_first() else { return };
     for other in others {
         context.errors.at(other.name.span(), &Message::SecondDissipation);
@@ -98,11 +129,16 @@ fn dissipate(context: &mut Context, written: &[Definition], forces: &mut [Expr])
     if context.errors.is_empty() && !context.pool.depends_on(rayleigh, &moves) {
         context.errors.at(first.name.span(), &Message::NoDissipation);
     }
+    let mut losses = Vec::with_capacity(forces.len());
     for (index, force) in forces.iter_mut().enumerate() {
-        let velocity = Symbol::Continuous(Variable::Velocity(index));
-        let loss = context.pool.derivative(rayleigh, &mut |pool, symbol| {
-            if *symbol == velocity { pool.one() } else { pool.zero() }
-        });
+        let loss = dissipation::slope(context.pool, rayleigh, index);
         *force = context.pool.sub(*force, loss);
+        losses.push(loss);
+    }
+    if losses.iter().any(|loss| context.pool.is_undefined(*loss)) && !context.is_too_large() {
+        context.errors.at(first.value.span, &Message::NoValue);
+    }
+    if context.errors.is_empty() {
+        dissipation::check(context, &first.value, (rayleigh, &losses), parameters);
     }
 }

@@ -3,34 +3,68 @@
 //! In: L. Out: nothing, or the message that M is singular for every state. M is evaluated at points drawn from a fixed sequence;
 //! where a pivot is zero but for rounding at all of them, M is singular everywhere, but for a chance of nothing. Sizes do not
 //! matter: rows and columns are scaled to entries of about 1, so that masses of 1 and 1e-12 are as good as two of 1, and the points
-//! are of several sizes, so that an angle of 1e15 times a coordinate is known to its digits at one of them.
+//! are of several sizes, so that an angle of 1e15 times a coordinate is known to its digits at one of them, and a root such as
+//! sqrt(c^2*dot(T)^2 - dot(x)^2) has a value at some.
 
-use super::Coordinate;
-use crate::messages::{Massless, Message, error};
+use super::{Coordinate, Parameter, probe};
+use crate::messages::{Massless, Message, Singular, error};
 use crate::symbol::{Symbol, Variable};
 use proc_macro2::Span;
 use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Pool, Rounded};
 
-/// Sizes of the points at which the matrix is evaluated; every other point is one of positive symbols, the others are of both signs.
-const PROBES: [f64; 10] = [1.0, 1.0, 1.0, 1.0, 1e-8, 1e-8, 1e-16, 1e-16, 1e-40, 1e-40];
+/// Points at which the matrix is evaluated, as long as it has no value or is singular.
+const POINTS: u32 = 42;
+/// Sizes of the first of them; every other point is one of positive symbols, the others are of both signs.
+const SIZES: [f64; 10] = [1.0, 1.0, 1.0, 1.0, 1e-8, 1e-8, 1e-16, 1e-16, 1e-40, 1e-40];
 /// How many times the rounding of the entries, per row, a pivot may be that is zero.
 const MARGIN: f64 = 64.0;
 /// Rounds of scaling, each of which takes the square root of how far a row is from its size: ratios of 1e300 become ratios of 1.2.
 const ROUNDS: usize = 12;
 
-/// Checks that M is not singular for every state.
-pub(super) fn check(pool: &mut Pool<Symbol>, coordinates: &[Coordinate], lagrangian: Expr, span: Span) -> Result<()> {
+/// Checks that M is not singular for every state. One with an entry that has no value for any state is left to those who ask for its
+/// derivatives.
+pub(super) fn check(
+    pool: &mut Pool<Symbol>,
+    (coordinates, parameters): (&[Coordinate], &[Parameter]),
+    lagrangian: Expr,
+    span: Span,
+) -> Result<()> {
     let dimension = coordinates.len();
-    let mass = mass(pool, lagrangian, dimension);
-    let empty = mass.chunks(dimension).position(|row| row.iter().all(|entry| pool.is_zero(*entry)));
-    if empty.is_none() && !is_singular(pool, &mass, dimension) {
+    let Some((momenta, mass)) = mass(pool, lagrangian, dimension) else { return Ok(()) };
+    let is_empty = |row: &[Expr]| row.iter().all(|entry| pool.is_zero(*entry));
+    let empty = mass.chunks(dimension).position(is_empty);
+    if empty.is_none() && !is_singular(pool, &mass, dimension, parameters) {
         return Ok(());
     }
-    let missing = empty.map(|row| (coordinates[row].text(), massless(pool, lagrangian, row)));
-    let span = empty.map_or(span, |row| coordinates[row].name.span());
-    Err(error(span, &Message::SingularMass { missing }))
+    let (why, span) = match empty {
+        Some(_) if is_empty(&mass) => (Singular::FirstOrder, span),
+        Some(row) => {
+            let why = Singular::Massless(coordinates[row].text(), massless(pool, lagrangian, row));
+            (why, coordinates[row].name.span())
+        }
+        None if is_homogeneous(pool, lagrangian, &momenta, parameters) => (Singular::Homogeneous, span),
+        None => (Singular::Dependent, span),
+    };
+    Err(error(span, &Message::SingularMass { why }))
+}
+
+/// Whether v·L_v = L, but for rounding, at every point at which both have a value, and at some.
+fn is_homogeneous(pool: &mut Pool<Symbol>, lagrangian: Expr, momenta: &[Expr], parameters: &[Parameter]) -> bool {
+    let product = |(index, momentum): (usize, &Expr)| {
+        let velocity = pool.symbol(Symbol::Continuous(Variable::Velocity(index)));
+        pool.mul(velocity, *momentum)
+    };
+    let products: Vec<Expr> = momenta.iter().enumerate().map(product).collect();
+    let sum = pool.sum(&products);
+    let energy = pool.sub(sum, lagrangian);
+    let mut energies = Vec::new();
+    for point in 0..POINTS {
+        energies.extend(values(pool, &[energy], point, parameters));
+    }
+    let mut known = energies.iter().filter(|energy| !energy.value.is_nan()).peekable();
+    known.peek().is_some() && known.all(|energy| energy.value.abs() <= MARGIN * energy.error)
 }
 
 /// How a coordinate stands in L whose row of M is zero. One of Lagrange's multipliers it is where L is λ g(t, q) and terms without λ.
@@ -52,14 +86,15 @@ fn massless(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> Massless {
     }
 }
 
-/// M, row by row.
-fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Vec<Expr> {
+/// L_v, and M row by row; none if an entry has no value for any state.
+fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(Vec<Expr>, Vec<Expr>)> {
     let velocity = |index| Symbol::Continuous(Variable::Velocity(index));
     let by_velocity = |pool: &mut Pool<Symbol>, expr: Expr, index: usize| {
         let velocity = velocity(index);
         pool.derivative(expr, &mut |pool, symbol| if *symbol == velocity { pool.one() } else { pool.zero() })
     };
     let mut mass = vec![pool.zero(); dimension * dimension];
+    let mut momenta = Vec::with_capacity(dimension);
     for row in 0..dimension {
         let momentum = by_velocity(pool, lagrangian, row);
         let symbols = pool.symbols(momentum);
@@ -68,19 +103,17 @@ fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Vec<Expr
             mass[row * dimension + column] = entry;
             mass[column * dimension + row] = entry;
         }
+        momenta.push(momentum);
     }
-    mass
+    let is_defined = !momenta.iter().chain(&mass).any(|entry| pool.is_undefined(*entry));
+    is_defined.then_some((momenta, mass))
 }
 
-/// Whether M is singular at every probe at which it has a value, and has one at some.
-fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize) -> bool {
+/// Whether M is singular at every point at which it has a value, and has one at some.
+fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize, parameters: &[Parameter]) -> bool {
     let mut singular_somewhere = false;
-    for (probe, size) in (0..).zip(PROBES) {
-        let mut values = BTreeMap::new();
-        let entries = pool.evaluate_rounded(mass, &mut |symbol| {
-            let drawn = size * draw(probe, values.len());
-            *values.entry(symbol.clone()).or_insert(drawn)
-        });
+    for point in 0..POINTS {
+        let entries = values(pool, mass, point, parameters);
         if entries.iter().any(|entry| entry.value.is_nan()) {
             continue;
         }
@@ -92,41 +125,57 @@ fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize) -> bool {
     singular_somewhere
 }
 
-/// The entry `index` of a fixed sequence in (0.1, 1.1) that looks random, the multiples of the golden ratio; at every other probe the
-/// sign is that of another one.
-fn draw(probe: u32, index: usize) -> f64 {
-    let position = u32::try_from(index).map_or(0.0, f64::from).mul_add(16.0, f64::from(probe) + 1.0);
-    let size = 0.1 + (position * 0.618_033_988_749_894_9).fract();
-    let negative = probe % 2 == 1 && (position * std::f64::consts::SQRT_2).fract() < 0.5;
-    if negative { -size } else { size }
+/// The values of expressions at a point.
+fn values(pool: &Pool<Symbol>, exprs: &[Expr], point: u32, parameters: &[Parameter]) -> Vec<Rounded> {
+    let mut values = BTreeMap::new();
+    pool.evaluate_rounded(exprs, &mut |symbol| {
+        let drawn = number(point, values.len(), symbol, parameters);
+        *values.entry(symbol.clone()).or_insert(drawn)
+    })
 }
 
-/// Elimination with row pivoting of the matrix, scaled.
+/// The number of a symbol at a point: at the first points all are of one size, at the others each is of its own, and at every other one
+/// of these parameters are what they are by default.
+fn number(point: u32, index: usize, symbol: &Symbol, parameters: &[Parameter]) -> f64 {
+    if let Some(size) = usize::try_from(point).ok().and_then(|point| SIZES.get(point)) {
+        return size * probe::near_one(point, index);
+    }
+    let default = match symbol {
+        Symbol::Parameter { index, .. } if point.is_multiple_of(2) => {
+            parameters.get(*index).map(|parameter| parameter.default)
+        }
+        _ => None,
+    };
+    default.filter(|default| *default != 0.0).unwrap_or_else(|| probe::of_any_size(point, index))
+}
+
+/// Elimination of the matrix, scaled, with the largest entry that is left as pivot: then no step enlarges the errors of the entries much.
 fn is_regular(entries: &[Rounded], dimension: usize) -> bool {
     let scales = scales(entries, dimension);
     let scaled = |place: usize, number: f64| number * scales[place / dimension] * scales[place % dimension];
     let mut matrix: Vec<f64> = entries.iter().enumerate().map(|(place, entry)| scaled(place, entry.value)).collect();
     let errors = entries.iter().enumerate().map(|(place, entry)| scaled(place, entry.error));
-    let rows = u32::try_from(dimension).map_or(f64::INFINITY, f64::from);
-    let zero = MARGIN * rows * errors.fold(f64::EPSILON, f64::max);
-    for column in 0..dimension {
-        let at = |row: usize| row * dimension + column;
-        let pivot = (column..dimension).max_by(|a, b| matrix[at(*a)].abs().total_cmp(&matrix[at(*b)].abs()));
-        let Some(pivot) = pivot.filter(|row| matrix[at(*row)].abs() > zero) else {
+    let count = u32::try_from(dimension).map_or(f64::INFINITY, f64::from);
+    let zero = MARGIN * count * errors.fold(f64::EPSILON, f64::max);
+    let (mut rows, mut columns): (Vec<usize>, Vec<usize>) = ((0..dimension).collect(), (0..dimension).collect());
+    while !rows.is_empty() {
+        let size = |row: usize, column: usize| matrix[row * dimension + column].abs();
+        let places = rows.iter().flat_map(|row| columns.iter().map(|column| (*row, *column)));
+        let largest = places.max_by(|left, right| size(left.0, left.1).total_cmp(&size(right.0, right.1)));
+        let Some((pivot, of)) = largest.filter(|(row, column)| size(*row, *column) > zero) else {
             return false;
         };
-        for entry in column..dimension {
-            matrix.swap(pivot * dimension + entry, column * dimension + entry);
-        }
-        for row in column + 1..dimension {
-            let factor = matrix[at(row)] / matrix[at(column)];
+        rows.retain(|row| *row != pivot);
+        for row in &rows {
+            let factor = matrix[row * dimension + of] / matrix[pivot * dimension + of];
             if factor == 0.0 {
                 continue;
             }
-            for entry in column..dimension {
-                matrix[row * dimension + entry] -= factor * matrix[column * dimension + entry];
+            for column in &columns {
+                matrix[row * dimension + column] -= factor * matrix[pivot * dimension + column];
             }
         }
+        columns.retain(|column| *column != of);
     }
     true
 }

@@ -7,9 +7,11 @@
 pub mod check;
 mod check_state;
 mod context;
+mod dissipation;
 mod force;
 mod mass;
 mod point;
+mod probe;
 mod resolve;
 pub(crate) mod rule;
 mod scope;
@@ -20,7 +22,7 @@ pub use point::Point;
 pub use rule::{DiscreteForces, Rule};
 
 use crate::symbol::Symbol;
-use proc_macro2::Ident;
+use proc_macro2::{Ident, Span};
 use vi_expr::Expr;
 
 /// Characters of a number in words that is written without a power of ten.
@@ -40,6 +42,8 @@ pub struct Model {
     pub coordinates: Vec<Coordinate>,
     /// L(t, q, v).
     pub lagrangian: Expr,
+    /// Where L is declared.
+    pub lagrangian_span: Span,
     /// f(t, q, v), one component per coordinate; zero where none is declared.
     pub forces: Vec<Expr>,
     /// Whether a force is declared that is not identically zero.

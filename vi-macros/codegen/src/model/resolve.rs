@@ -346,6 +346,9 @@ impl Scope {
             if name == "ddot" {
                 return Err(error(function.span(), &Message::Acceleration { name: "ddot(…)".to_owned() }));
             }
+            if self.is_coordinate(&name) {
+                return Err(error(function.span(), &Message::Habit(Habit::CoordinateWithArguments { name })));
+            }
             if self.is_declared(&name) {
                 let product = Habit::MissingOperator { left: name, right: "(…)".to_owned(), is_number: false };
                 return Err(error(function.span(), &Message::Habit(product)));

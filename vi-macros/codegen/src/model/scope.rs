@@ -253,11 +253,6 @@ impl Scope {
         other.or_else(|| self.near_of(pool, name, is_meant))
     }
 
-    /// The coordinate nearest to a misspelt name.
-    pub(super) fn near_coordinate(&self, pool: &Pool<Symbol>, name: &str) -> Option<String> {
-        self.near_of(pool, name, |known| self.is_coordinate(known))
-    }
-
     /// The functions of the language, and those that only expressions of this scope have.
     pub(super) fn functions(&self) -> impl Iterator<Item = &'static str> {
         let own = self.names.values().filter_map(|meaning| match meaning {
@@ -269,7 +264,8 @@ impl Scope {
         Function::ALL.into_iter().map(Function::name).chain(["sqrt", "sum"]).chain(own)
     }
 
-    fn near_of(&self, pool: &Pool<Symbol>, name: &str, is_meant: impl Fn(&str) -> bool) -> Option<String> {
+    /// The nearest to a misspelt name of the declared names that may be meant.
+    pub(super) fn near_of(&self, pool: &Pool<Symbol>, name: &str, is_meant: impl Fn(&str) -> bool) -> Option<String> {
         pool.spend(self.names.len() * (COMPARISON + name.len() * name.len()));
         let known = self.names.keys().map(String::as_str).filter(|known| is_meant(known));
         if pool.is_exhausted() { None } else { nearest(name, known) }

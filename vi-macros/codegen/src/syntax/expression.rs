@@ -238,6 +238,9 @@ impl Expression {
             }
             return Ok(Self { span, kind: Kind::Sum(Box::new(range), Box::new(summand)) });
         }
+        if inner.peek(syn::Ident) && inner.peek2(Token![in]) {
+            return Err(error(span, &Message::Habit(Habit::RangeOf { function: name.to_string() })));
+        }
         let arguments = Self::list(&inner, depth + 1, "an operator, `,` or `)`")?;
         Ok(Self { span, kind: Kind::Call(name, arguments) })
     }

@@ -119,7 +119,7 @@ pub struct Rule {
     pub lines: Vec<Definition>,
 }
 
-/// `check { x = 1, dot(x) = 0; h = 0.01; }`: where the system is checked.
+/// `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`: where the system is checked.
 pub struct Check {
     /// Where the word `check` stands.
     pub span: Span,

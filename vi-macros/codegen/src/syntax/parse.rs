@@ -10,7 +10,7 @@ use super::{
     System,
 };
 use crate::habits::Habit;
-use crate::messages::{Errors, Message, error, nearest};
+use crate::messages::{Errors, Message, bounded, error, nearest};
 use num_traits::Zero;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use syn::buffer::Cursor;
@@ -43,7 +43,7 @@ const CLAUSE_DEPTH: usize = 3;
 /// # Errors
 /// Every clause that cannot be read, at the token that does not fit.
 pub fn system(tokens: TokenStream) -> Result<System> {
-    read(tokens, &mut None)
+    read(tokens, &mut None).map_err(bounded)
 }
 
 /// What can be read of a system whose clauses may be wrong: its head, and the clauses that are right.
@@ -312,6 +312,9 @@ fn check(span: Span, input: ParseStream) -> Result<Check> {
         if comma.is_none() && semicolon.is_none() && !inner.is_empty() {
             return Err(unfitting::end_of_definition(&inner, start, "an operator, `,` or `;`"));
         }
+        if comma.is_some() && inner.peek(syn::Lit) {
+            return Err(error(inner.span(), &Message::Habit(Habit::DecimalComma)));
+        }
     }
     Ok(Check { span, entries })
 }
@@ -324,7 +327,7 @@ fn entry(input: ParseStream) -> Result<Entry> {
     }
     let dot = name(input)?;
     if dot != "dot" {
-        return Err(error(dot.span(), &Message::Expected { what: "a coordinate, `dot(…)`, `t` or `h`" }));
+        return Err(error(dot.span(), &Message::Expected { what: "a coordinate, `dot(…)`, a parameter, `t` or `h`" }));
     }
     let inner;
     syn::parenthesized!(inner in input);

@@ -50,11 +50,16 @@ pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) ->
             sign @ ('%' | '!') => Some(Habit::NoOperator { sign }),
             ':' if input.peek(Token![::]) => Some(Habit::Path),
             ':' => Some(Habit::Type),
+            ',' if behind.literal().is_some() && is_number(previous.as_ref()) && is_one_number(what) => {
+                Some(Habit::DecimalComma)
+            }
             _ => None,
         },
         TokenTree::Ident(word) if word == "as" => Some(Habit::Conversion),
         TokenTree::Literal(literal) if literal.to_string().starts_with('\'') => Some(Habit::Prime),
-        TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket => Some(Habit::IndexBehind),
+        TokenTree::Group(group) if group.delimiter() == Delimiter::Bracket => {
+            Some(if is_number(previous.as_ref()) { Habit::UnitInBrackets } else { Habit::IndexBehind })
+        }
         TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => None,
         TokenTree::Ident(_) | TokenTree::Literal(_) | TokenTree::Group(_) => {
             previous.map(|left| missing_operator(&left, &next, behind))
@@ -144,6 +149,16 @@ impl Previous {
     fn text(&self) -> String {
         operand_text(self.name.as_ref(), &self.token)
     }
+}
+
+/// Whether two numbers with a comma between them are one: in brackets they are two indices, and in a range its ends.
+fn is_one_number(what: &str) -> bool {
+    what.starts_with("an operator") && !what.ends_with("`]`")
+}
+
+/// Whether a number ends before a token.
+fn is_number(previous: Option<&Previous>) -> bool {
+    previous.is_some_and(|previous| matches!(previous.token, TokenTree::Literal(_)))
 }
 
 /// What stands before the next token, of the tokens from `start` on.

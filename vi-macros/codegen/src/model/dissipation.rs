@@ -1,0 +1,123 @@
+//! Whether Rayleigh's function takes energy out of the motion.
+//!
+//! In: R as written and as an expression, its derivatives by the velocities. Out: nothing, or the message at the first summand that is
+//! wrong. A term that is linear in the velocities is a force that does not depend on them. And where the power −v·∂R/∂v is positive,
+//! beyond rounding, at every point of a fixed sequence, R adds energy: with all velocities, or with one of them alone. Parameters have
+//! their defaults; everything else is of any sign and of sizes from 1e-6 to 1e6, so that an R of either sign is accepted.
+
+use super::Parameter;
+use super::context::Context;
+use super::probe;
+use crate::messages::Message;
+use crate::symbol::{Symbol, Variable};
+use crate::syntax::{Expression, Kind, Operator};
+use std::collections::BTreeMap;
+use vi_expr::{Expr, Node, Pool};
+
+/// Points at which the power is evaluated.
+const POINTS: u32 = 32;
+/// Points that have to have a power, for its sign to be known.
+const LEAST: usize = 2;
+
+/// Reports an R that acts as a constant force or adds energy.
+pub(super) fn check(
+    context: &mut Context,
+    written: &Expression,
+    (rayleigh, losses): (Expr, &[Expr]),
+    parameters: &[Parameter],
+) {
+    let wrong = wrong(context.pool, rayleigh, losses, parameters);
+    let Some(message) = wrong.filter(|_| !context.is_too_large()) else { return };
+    let span = summands(written).into_iter().find(|(is_negative, summand)| {
+        let Ok(value) = context.scope.expression(context.pool, summand) else { return false };
+        let value = if *is_negative { context.pool.neg(value) } else { value };
+        let losses: Vec<Expr> = (0..losses.len()).map(|index| slope(context.pool, value, index)).collect();
+        self::wrong(context.pool, value, &losses, parameters).as_ref() == Some(&message)
+    });
+    context.errors.at(span.map_or(written.span, |(_, summand)| summand.span), &message);
+}
+
+/// The derivative by the velocity of this coordinate.
+pub(super) fn slope(pool: &mut Pool<Symbol>, rayleigh: Expr, coordinate: usize) -> Expr {
+    let velocity = Symbol::Continuous(Variable::Velocity(coordinate));
+    pool.derivative(rayleigh, &mut |pool, symbol| if *symbol == velocity { pool.one() } else { pool.zero() })
+}
+
+/// The summands of an expression as it is written, and whether a minus stands before them.
+fn summands(written: &Expression) -> Vec<(bool, &Expression)> {
+    match &written.kind {
+        Kind::Chain(first, rest) => {
+            let rest = rest.iter().map(|(operator, summand)| (*operator, summand));
+            let signed = [(Operator::Plus, &**first)].into_iter().chain(rest);
+            signed
+                .map(|(operator, summand)| match operator {
+                    Operator::Plus => Some((false, summand)),
+                    Operator::Minus => Some((true, summand)),
+                    Operator::Times | Operator::Over => None,
+                })
+                .collect::<Option<_>>()
+                .unwrap_or_default()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// What is wrong with an R of these derivatives.
+fn wrong(pool: &mut Pool<Symbol>, rayleigh: Expr, losses: &[Expr], parameters: &[Parameter]) -> Option<Message> {
+    let terms = match pool.node(rayleigh) {
+        Node::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
+        _ => vec![rayleigh],
+    };
+    if terms.into_iter().any(|term| is_linear(pool, term)) {
+        return Some(Message::ConstantDissipation);
+    }
+    let alone = losses.iter().enumerate().filter(|(_, loss)| !pool.is_zero(**loss)).map(|(index, _)| Some(index));
+    let adds_energy = [None].into_iter().chain(alone).any(|moving| is_fed(pool, losses, moving, parameters));
+    adds_energy.then_some(Message::FeedingDissipation)
+}
+
+/// Whether a term is linear in the velocities: a derivative by one of them is there, and none depends on any.
+fn is_linear(pool: &mut Pool<Symbol>, term: Expr) -> bool {
+    let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
+    let mut is_there = false;
+    for symbol in pool.symbols(term) {
+        let Symbol::Continuous(Variable::Velocity(index)) = symbol else { continue };
+        let slope = slope(pool, term, index);
+        if pool.depends_on(slope, &is_velocity) {
+            return false;
+        }
+        is_there |= !pool.is_zero(slope);
+    }
+    is_there
+}
+
+/// Whether the power is positive wherever it has a value, with the velocity of one coordinate other than zero, or all of them.
+fn is_fed(pool: &Pool<Symbol>, losses: &[Expr], moving: Option<usize>, parameters: &[Parameter]) -> bool {
+    let of_moving = moving.map_or(losses, |index| &losses[index..=index]);
+    let first = moving.unwrap_or(0);
+    let mut positive = 0;
+    for point in 0..POINTS {
+        let mut drawn = BTreeMap::new();
+        let mut value = |symbol: &Symbol| match symbol {
+            Symbol::Parameter { index, .. } => parameters.get(*index).map_or(f64::NAN, |parameter| parameter.default),
+            Symbol::Continuous(Variable::Velocity(index)) if moving.is_some_and(|moving| moving != *index) => 0.0,
+            other => {
+                let number = probe::of_any_size(point, drawn.len());
+                *drawn.entry(other.clone()).or_insert(number)
+            }
+        };
+        let values = pool.evaluate_rounded(of_moving, &mut value);
+        let velocity = |index: usize| Symbol::Continuous(Variable::Velocity(index));
+        let speeds: Vec<f64> = (first..first + of_moving.len()).map(|index| value(&velocity(index))).collect();
+        let (mut power, mut error) = (0.0, 0.0);
+        for (speed, loss) in speeds.into_iter().zip(values) {
+            power -= speed * loss.value;
+            error += speed.abs() * (loss.error + f64::EPSILON * loss.value.abs());
+        }
+        if power <= error {
+            return false;
+        }
+        positive += usize::from(power > error);
+    }
+    positive >= LEAST
+}

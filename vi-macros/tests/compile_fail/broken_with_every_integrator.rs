@@ -1,0 +1,61 @@
+//! Whatever is made of a broken system, its mistake alone is said.
+
+use vi_core::derivatives::{Covector, Lyapunov, Objective, Tangent, Variation, gradient};
+use vi_core::lagrangian::Parameters;
+use vi_core::rules::{By, Trapezoidal};
+use vi_core::stepping::Batch;
+use vi_core::{
+    Called, Composition, DiscreteLagrangian, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Integrator,
+    Lagrangian, ScaledGauss, Scheme, State, lagrangian,
+};
+
+lagrangian! {
+    struct Oscillator {
+        param m = 1.0, k[2] = 1.0;
+        coord x;
+        L = mm * dot(x)^2 / 2 - k[0] * x^2;
+        timescale = 1 + x^2;
+        discretize midpoint, trapezoidal;
+    }
+}
+
+struct End;
+
+impl<I> Objective<I, 1> for End {
+    fn slope(&self, _: u64, _: &State<1>) -> Covector<1> {
+        Covector::zero()
+    }
+}
+
+fn side_by_side<S: Batch<1>>(system: S) {
+    let _ = S::from_rows(&S::rows(&[system; 4]), 0);
+}
+
+fn main() -> Result<(), vi_core::StepError> {
+    let mut system = Oscillator { m: 2.0, ..Oscillator::default() };
+    *system.parameter_mut("k[0]").expect("a parameter") = 3.0;
+    let start = State::at(&system, 0.0, [1.0], [0.0]);
+    let fixed = || FixedStep::new(system, start, 0.1).expect("a start");
+    fixed().propagate_until(1.0)?;
+    FixedStep::new(By::new(&system, Trapezoidal), start, 0.1)?.step()?;
+    Composition::new(&system, Scheme::KAHAN_LI_8, start, 0.1)?.propagate_until(1.0)?;
+    Gauss::<_, 1, 4>::new(system, start, 0.1)?.propagate_until(1.0)?;
+    Gauss::<_, 1, 4>::new(By::new(system, Trapezoidal), start, 0.1)?.step()?;
+    Gauss::<_, 1, 4>::new(Called(system), start, 0.1)?.step()?;
+    ScaledGauss::<_, 1, 4>::new(system, start, 0.1)?.propagate_until(1.0)?;
+    EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1)?.propagate_until(1.0)?;
+    EnergyPreservingGauss::<_, 1, 2>::new(system, start, 0.1)?.propagate_until(1.0)?;
+    vi_core::gauss::energy::step_density::<_, 1, 2>(&system, &start)?;
+    Tangent::new(fixed(), Variation::of_state()).step()?;
+    Tangent::new(Gauss::<_, 1, 4>::new(system, start, 0.1)?, Variation::of_state()).step()?;
+    Tangent::new(EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1)?, Variation::of_state()).step()?;
+    Lyapunov::new(fixed(), 1).advance(10)?;
+    gradient(&fixed(), 10, 3, &End)?;
+    let _ = Variation::<1>::of_parameter::<Oscillator>("m");
+    vi_core::check::derivatives(&system, &vi_core::check::Place { t: 0.0, q: [1.0].into(), v: [0.0].into(), h: 0.1 }).expect("right");
+    let single = system.convert::<f32>();
+    let _ = single.energy(0.0, &[1.0_f32].into(), &[0.0].into()) + single.k[1];
+    let _ = start.energy(&system)? + DiscreteLagrangian::<1>::ld(&system, &vi_core::Interval { t0: 0.0, q0: [0.0].into(), t1: 1.0, q1: [1.0].into() });
+    side_by_side(system);
+    Ok(())
+}

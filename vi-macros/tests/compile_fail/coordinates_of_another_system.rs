@@ -1,0 +1,20 @@
+//! As many numbers as the system has coordinates, in whatever form.
+
+use vi_core::{EnergyPreserving, SVector, State, lagrangian};
+
+lagrangian! {
+    struct Pendulum {
+        coord x;
+        L = dot(x)^2 / 2 + cos(x);
+        discretize midpoint;
+    }
+}
+
+fn main() {
+    let system = Pendulum::default();
+    let _ = State::at(&system, 0.0, SVector::from([1.0]), [0.0]);
+    let _ = State::at(&system, 0.0, [1.0, 2.0], [0.0]);
+    let _ = State::at(&system, 0.0, [1.0], SVector::from([0.0, 1.0]));
+    let _ = State::at(&system, 0.0, 1.0, [0.0]);
+    let _ = EnergyPreserving::from_midpoint(&system, 0.0, [1.0], [0.0, 2.0], 0.1);
+}
