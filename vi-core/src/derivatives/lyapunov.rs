@@ -68,10 +68,11 @@ impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
         Ok(())
     }
 
-    /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step.
+    /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step. Those of a run backwards in time are of
+    /// the motion backwards: rates by the time that has passed, whatever its sign.
     #[must_use]
     pub fn exponents(&self) -> Vec<f64> {
-        let t = self.end - self.start;
+        let t = (self.end - self.start).abs();
         self.growth.iter().map(|(growth, low)| (growth + low) / t).collect()
     }
 
