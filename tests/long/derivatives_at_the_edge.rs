@@ -227,6 +227,16 @@ fn an_exponent_without_a_bound_is_told() {
     let failure = exponents.advance(3);
     assert!(is_not_finite(&failure, "Lyapunov exponent"), "{failure:?}");
     assert!(exponents.exponents().iter().all(|exponent| exponent.is_nan()), "{:?}", exponents.exponents());
+    // Backwards in time they are those of the motion backwards, the largest first: λ² − c λ − k = 0.
+    let start = State { t: 0.0, q: SVector::from([1e-9]), p: SVector::from([0.0]) };
+    let run = Gauss::<_, 1, 4>::new(Hill { k: 1.0, c: 0.5 }, start, -0.1).expect("valid");
+    let mut backwards = Lyapunov::new(run, 2).expect("two");
+    backwards.advance(200).expect("no step fails");
+    let [largest, smallest] = backwards.exponents()[..] else { panic!("two exponents") };
+    let root = (0.25_f64 * 0.25 + 1.0).sqrt();
+    // Measured 1.3e-2, a term of order 1/t; their sum to rounding.
+    assert!((largest - 0.25 - root).abs() < 0.02 && (smallest - 0.25 + root).abs() < 0.02, "{largest} {smallest}");
+    assert!((largest + smallest - 0.5).abs() < 1e-12, "{largest} {smallest}");
     // One direction alone loses length once, and keeps it then.
     let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
     let mut largest = Lyapunov::new(run, 1).expect("one");

@@ -11,6 +11,7 @@ mod gauss_stiff;
 mod hunt;
 mod invariants;
 mod iterations;
+mod motions;
 mod robustness;
 mod solvability;
 #[path = "../support/mod.rs"]

@@ -195,7 +195,9 @@ mod tests {
     #[test]
     fn a_value_that_is_lost_is_not_left_out() {
         let mut drift = Drift::default();
-        [1.0, 3.0, 2.0].into_iter().for_each(|value| drift.push(value));
+        for value in [1.0, 3.0, 2.0] {
+            drift.push(value);
+        }
         assert_eq!(drift.largest.to_bits(), 2.0_f64.to_bits());
         drift.push(f64::NAN);
         drift.push(1.0);
