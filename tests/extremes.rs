@@ -1,6 +1,11 @@
 //! States and parameters at the ends of what numbers can tell: each gives a step, or an error that names what is wrong.
 
-use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, State, StepError, energy_preserving, lagrangian};
+use vi_core::collocation::Collocation;
+use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::{
+    EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, SVector, State, StepError,
+    energy_preserving, lagrangian,
+};
 use vi_systems::{HarmonicOscillator, Pendulum};
 
 #[test]
@@ -28,6 +33,63 @@ fn without_a_mass_there_is_no_step() {
         let both = EnergyPreserving::from_midpoint(system, 0.0, [0.3], [v], 0.01).map(|run| run.state());
         assert!(matches!(both, Err(StepError::Singular { .. })), "{both:?}");
     }
+}
+
+/// Systems whose mass matrix is the unit matrix, and whose potential has no finite slope at the origin.
+macro_rules! slopeless {
+    ($($name:ident($($coordinate:ident),+): $potential:expr;)+) => {
+        $(lagrangian! {
+            struct $name { coord $($coordinate),+; L = ($(dot($coordinate)^2 +)+ 0) / 2 - $potential; discretize midpoint; }
+        })+
+
+        #[test]
+        fn where_a_slope_is_lost_the_mass_matrix_is_not_blamed() {
+            $(loses_its_slope($name::default());)+
+        }
+    };
+}
+
+slopeless! {
+    Inverse(x): 1 / x;
+    Root(x): sqrt(x);
+    Logarithm(x): ln(x);
+    Distance(x, y): hypot(x, y);
+    Angle(x, y): atan2(x, y);
+}
+
+/// Asserts that whatever is asked at the origin is not finite there: no shorter step helps.
+fn loses_its_slope<S, const N: usize>(system: S)
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N> + core::fmt::Debug,
+{
+    let zero = SVector::zeros();
+    let start = State { t: 0.0, q: zero, p: zero };
+    let outcomes = [
+        system.acceleration(0.0, &zero, &zero).err(),
+        system.step_density(0.0, &zero, &zero).err(),
+        Gauss::<_, N, 4>::new(system, start, 0.01).and_then(|mut run| run.step()).err(),
+        EnergyPreservingGauss::<_, N, 2>::new(system, start, 0.01).and_then(|mut run| run.step()).err(),
+    ];
+    let are_lost = outcomes.iter().all(|error| matches!(error, Some(StepError::NonFinite { .. })));
+    assert!(are_lost, "{system:?}: {outcomes:?}");
+}
+
+lagrangian! {
+    /// A force whose slope is not finite at x = 0.
+    struct Kinked {
+        coord x;
+        L = dot(x)^2 / 2 - x^(3/2);
+        discretize midpoint;
+    }
+}
+
+#[test]
+fn a_step_density_that_is_lost_is_told() {
+    // The acceleration is finite, and its slope is not.
+    let (zero, slow) = (SVector::from([0.0]), SVector::from([1.0]));
+    let density = Kinked::default().step_density(0.0, &zero, &slow);
+    assert!(matches!(density, Err(StepError::NonFinite { quantity: "step density", .. })), "{density:?}");
+    assert_eq!(Kinked::default().acceleration(0.0, &zero, &slow), Ok(zero));
 }
 
 #[test]

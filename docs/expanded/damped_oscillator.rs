@@ -189,10 +189,12 @@ const _: () = {
             q: &::vi_core::SVector<T, 1>,
             v: &::vi_core::SVector<T, 1>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
             let [x_ddot]: [T; 1] = self.acceleration(t, q, v)?.into();
             let [x_dot]: [T; 1] = (*v).into();
             let [x]: [T; 1] = (*q).into();
-            ::core::result::Result::Ok(
+            ::vi_core::support::step_density(
+                time,
                 self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
             )
         }

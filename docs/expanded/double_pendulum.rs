@@ -265,6 +265,7 @@ const _: () = {
             q: &::vi_core::SVector<T, 2>,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
             let [θ1_ddot, θ2_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
             let [θ1_dot, θ2_dot]: [T; 2] = (*v).into();
             let [θ1, θ2]: [T; 2] = (*q).into();
@@ -287,7 +288,7 @@ const _: () = {
                 - θ1_dot
                     * (s5 * (θ2_dot * θ2_dot) * s3 - θ1_dot * (s7 + s8 * cos1) - s12
                         - s13);
-            ::core::result::Result::Ok(s15 - s14)
+            ::vi_core::support::step_density(time, s15 - s14)
         }
 
         #[inline]

@@ -202,6 +202,7 @@ const _: () = {
             q: &::vi_core::SVector<T, 2>,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
             let [x_ddot, y_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
             let [x_dot, y_dot]: [T; 2] = (*v).into();
             let [x, y]: [T; 2] = (*q).into();
@@ -224,7 +225,7 @@ const _: () = {
                 + y_dot
                     * (s10 * x_dot * real(3.0)
                         + self.mu * y_dot * (s2 * s8 * real(3.0) - s7));
-            ::core::result::Result::Ok(-s12)
+            ::vi_core::support::step_density(time, -s12)
         }
 
         #[inline]

@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, SMatrix};
 use vi_core::composition::{Composition, Scheme};
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
-use vi_core::{EnergyPreserving, Fallback, FixedStep, Gauss, SVector, State, StepError, lagrangian, nalgebra};
+use vi_core::{
+    EnergyPreserving, Fallback, FixedStep, Gauss, Integrator, SVector, State, StepError, lagrangian, nalgebra,
+};
 
 lagrangian! {
     /// A force that is zero at x = 0, where its slope has no bound.
@@ -37,7 +39,7 @@ fn a_slope_without_a_bound_is_told() {
     assert!(is_told(failure), "{failure:?}");
     assert_eq!(tangent.step().map(drop), failure);
     assert!(is_told(gradient(&run, 1, 1, &Last).map(drop)));
-    assert!(is_told(Lyapunov::new(run, 1).advance(1)));
+    assert!(is_told(Lyapunov::new(run, 1).expect("one").advance(1)));
 }
 
 lagrangian! {
@@ -62,7 +64,7 @@ fn has_none(outcome: &Result<(), StepError>, t: f64, word: &str) -> bool {
 }
 
 /// Only the last step of a run is differentiated, and only by the parameters that its system has.
-fn differentiates_its_last_step<I: Differentiable<1>>(mut run: I) {
+fn differentiates_its_last_step<I: Differentiable<1, System = Hill>>(mut run: I) {
     let start = *run.node();
     let states = Variation::of_state;
     assert!(has_none(&run.vary(&start, &mut states()), start.t, "last"), "before any step");
@@ -75,6 +77,12 @@ fn differentiates_its_last_step<I: Differentiable<1>>(mut run: I) {
     let many = Variation { parameters: vec![0.0; 3], ..Variation::zero() };
     assert!(has_none(&run.vary(&after, &mut [many]), after.t, "more parameters"));
     run.vary(&after, &mut states()).expect("the last step");
+    // The last step had other parameters: its derivative by the new ones would be wrong.
+    run.set_parameters(|hill| hill.k *= 2.0).expect("regular");
+    assert!(has_none(&run.vary(&after, &mut states()), after.t, "before the parameters change"), "other parameters");
+    let changed = *run.node();
+    run.step().expect("solvable");
+    run.vary(&changed, &mut states()).expect("the last step, with the new parameters");
     // The last step ends at a given time, to which it is equal but for rounding.
     let before = *run.node();
     run.propagate_until(before.t + 1.25 * run.h()).expect("solvable");
@@ -97,14 +105,59 @@ fn only_the_last_step_is_differentiated() {
     // Second derivatives too.
     let mut run = fixed;
     let first = *run.node();
-    let one = Variation::of_coordinate(0);
+    let one = Variation::of_coordinate(0).expect("a coordinate");
     let second = |run: &FixedStep<Hill, 1>, other: &Variation<1>| run.second_variation(&first, &one, other).map(drop);
     assert!(has_none(&second(&run, &one), 0.7, "last"));
     run.step().expect("solvable");
     second(&run, &one).expect("the last step");
     assert!(has_none(&second(&run, &Variation { parameters: vec![0.0; 3], ..one.clone() }), 0.7, "more parameters"));
+    let mut changed = run.clone();
+    changed.set_parameters(|hill| hill.k *= 2.0).expect("regular");
+    assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
+    // A run that is stored then knows it too.
+    let changed = FixedStep::restart(*changed.system(), changed.checkpoint()).expect("its own system");
+    assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
     run.step().expect("solvable");
     assert!(has_none(&second(&run, &one), 0.7, "last"));
+}
+
+#[test]
+fn names_and_indices_that_do_not_exist_are_told() {
+    let unknown = Err(StepError::UnknownParameter { system: "Hill", parameters: &["k", "c"] });
+    assert_eq!(Variation::<1>::of_parameter::<Hill>("kk"), unknown);
+    let text = unknown.map_err(|error| error.to_string());
+    assert_eq!(text, Err("`Hill` has no parameter of the name that was given; its parameters are `k`, `c`".to_owned()));
+    let input = |outcome: Result<Variation<1>, StepError>| match outcome {
+        Err(StepError::InvalidInput { input, value, .. }) => (input, value),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(input(Variation::of_coordinate(99)), ("the index of a coordinate", 99.0));
+    assert_eq!(input(Variation::of_momentum(1)), ("the index of a momentum", 1.0));
+    assert_eq!(
+        Variation::<1>::of_coordinate(0).map(|of| vec![of, Variation::of_momentum(0).expect("one")]),
+        Ok(Variation::of_state())
+    );
+    let run = FixedStep::new(Hill::default(), State { t: 0.0, q: [0.3].into(), p: [0.1].into() }, 0.1).expect("valid");
+    for count in [0, 3] {
+        let refused = Lyapunov::new(run.clone(), count).map(drop);
+        assert!(matches!(refused, Err(StepError::InvalidInput { .. })), "{count}: {refused:?}");
+    }
+    // A gradient with respect to a name that does not exist would shift the columns after it.
+    let misspelt = gradient(&run, 1, 1, &Misspelt).map(drop);
+    assert!(matches!(misspelt, Err(StepError::UnknownParameter { system: "Hill", .. })), "{misspelt:?}");
+}
+
+/// Wants the gradient with respect to a parameter that does not exist, and to one that does.
+struct Misspelt;
+
+impl<I> Objective<I, 1> for Misspelt {
+    fn parameters(&self) -> &[&str] {
+        &["kk", "c"]
+    }
+
+    fn slope(&self, _step: u64, _state: &State<1>) -> Covector<1> {
+        Covector { q: SVector::repeat(1.0), ..Covector::zero() }
+    }
 }
 
 lagrangian! {
@@ -154,7 +207,8 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
     let before = *run.node();
     run.step().expect("solvable");
     let huge = Variation { q: SVector::from([1e155]), parameters: vec![1e155], ..Variation::zero() };
-    assert!(run.second_variation(&before, &Variation::of_coordinate(0), &Variation::of_coordinate(0)).is_ok());
+    let one = Variation::of_coordinate(0).expect("a coordinate");
+    assert!(run.second_variation(&before, &one, &one).is_ok());
     assert!(is_not_finite(&run.second_variation(&before, &huge, &huge), "variation"));
     let large = Variation { q: SVector::from([1e154]), parameters: vec![1e154], ..Variation::zero() };
     assert!(is_not_finite(&run.second_variation(&before, &large, &large), "variation"));
@@ -169,13 +223,23 @@ fn an_exponent_without_a_bound_is_told() {
     // The step ends at rest from everywhere, c h = 2: nothing is left of one direction.
     let start = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([1.0]) };
     let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
-    let mut exponents = Lyapunov::new(run, 2);
+    let mut exponents = Lyapunov::new(run, 2).expect("two");
     let failure = exponents.advance(3);
     assert!(is_not_finite(&failure, "Lyapunov exponent"), "{failure:?}");
     assert!(exponents.exponents().iter().all(|exponent| exponent.is_nan()), "{:?}", exponents.exponents());
+    // Backwards in time they are those of the motion backwards, the largest first: λ² − c λ − k = 0.
+    let start = State { t: 0.0, q: SVector::from([1e-9]), p: SVector::from([0.0]) };
+    let run = Gauss::<_, 1, 4>::new(Hill { k: 1.0, c: 0.5 }, start, -0.1).expect("valid");
+    let mut backwards = Lyapunov::new(run, 2).expect("two");
+    backwards.advance(200).expect("no step fails");
+    let [largest, smallest] = backwards.exponents()[..] else { panic!("two exponents") };
+    let root = (0.25_f64 * 0.25 + 1.0).sqrt();
+    // Measured 1.3e-2, a term of order 1/t; their sum to rounding.
+    assert!((largest - 0.25 - root).abs() < 0.02 && (smallest - 0.25 + root).abs() < 0.02, "{largest} {smallest}");
+    assert!((largest + smallest - 0.5).abs() < 1e-12, "{largest} {smallest}");
     // One direction alone loses length once, and keeps it then.
     let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
-    let mut largest = Lyapunov::new(run, 1);
+    let mut largest = Lyapunov::new(run, 1).expect("one");
     largest.advance(1000).expect("a length is left");
     assert!(largest.exponents()[0].abs() < 0.01, "{:?}", largest.exponents());
 }

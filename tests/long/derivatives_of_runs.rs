@@ -97,7 +97,7 @@ fn variations_are_those_of_a_run_in_dual_numbers() {
     let system = Everything { a: 1.1, c: 0.3, w: 0.9 };
     let start = State::at(&system, 0.2, [0.6, -0.4], [0.3, 0.5]);
     let mut variations = Variation::of_state();
-    variations.extend(["a", "c", "w"].into_iter().filter_map(Variation::of_parameter::<Everything>));
+    variations.extend(["a", "c", "w"].map(|name| Variation::of_parameter::<Everything>(name).expect("a parameter")));
     variations.push(Variation { t: 1.0, ..Variation::zero() });
     assert_eq!(variations.len(), 8);
     let mut tangent = Tangent::new(FixedStep::new(system, start, 0.1).expect("valid"), variations.clone());
@@ -158,7 +158,7 @@ where
         run.state()
     };
     let mut variations = Variation::of_state();
-    variations.extend(Variation::of_parameter::<I::System>(name));
+    variations.push(Variation::of_parameter::<I::System>(name).expect("a parameter"));
     let mut tangent = Tangent::new(begin(&zeros, &zeros, 0.0), variations.clone());
     for _ in 0..steps {
         tangent.step().expect("solvable");
@@ -227,7 +227,7 @@ fn an_energy_preserving_step_varies_in_its_length() {
     let zeros = SVector::zeros();
     let mut variations = Variation::of_state();
     variations.push(Variation { energy: 1.0, ..Variation::zero() });
-    variations.extend(Variation::of_parameter::<Everything>("a"));
+    variations.push(Variation::of_parameter::<Everything>("a").expect("a parameter"));
     let mut tangent = Tangent::new(begin(zeros, zeros, 0.0, 0.0), variations.clone());
     for _ in 0..4 {
         tangent.step().expect("solvable");
@@ -269,7 +269,7 @@ fn second_variations_are_differences_of_first_ones() {
     let system = |a: f64| Everything { a: 1.4 + a, ..Everything::default() };
     let start = State { t: 0.1, q: SVector::from([0.6, -0.4]), p: SVector::from([0.3, 0.5]) };
     let mut directions = Variation::of_state();
-    directions.extend(Variation::of_parameter::<Everything>("a"));
+    directions.push(Variation::of_parameter::<Everything>("a").expect("a parameter"));
     let mut worst = 0.0_f64;
     let mut largest = 0.0_f64;
     for one in &directions {
@@ -332,7 +332,8 @@ fn adjoint_and_tangent_agree() {
         // However many runs are kept.
         assert!(all.iter().all(|other| *other == found));
         let mut variations = Variation::of_state();
-        variations.extend(["a", "c", "w"].into_iter().filter_map(Variation::of_parameter::<Everything>));
+        variations
+            .extend(["a", "c", "w"].map(|name| Variation::of_parameter::<Everything>(name).expect("a parameter")));
         variations.push(of_time());
         let mut forward = vec![0.0; variations.len()];
         let mut run = run.clone();
@@ -428,7 +429,7 @@ fn exponents_of_a_saddle() {
     let pendulum = Pendulum { m: 1.3, l: 0.5, g: 4.5 };
     let top = State::at(&pendulum, 0.0, [core::f64::consts::PI], [0.0]);
     let run = Gauss::<_, 1, 6>::new(pendulum, State { p: SVector::zeros(), ..top }, 0.1).expect("valid");
-    let mut lyapunov = Lyapunov::new(run, 2);
+    let mut lyapunov = Lyapunov::new(run, 2).expect("two");
     let mut growth = [[0.0; 2]; 2];
     for part in &mut growth {
         lyapunov.advance(40).expect("solvable");
@@ -467,7 +468,7 @@ fn separated<I: Integrator<N>, const N: usize>(run: &I, steps: u32) -> f64 {
 #[test]
 fn exponents_of_chaotic_motion() {
     fn both<I: Differentiable<N>, const N: usize>(run: &I, steps: u32) -> (Vec<f64>, f64) {
-        let mut lyapunov = Lyapunov::new(run.clone(), 2 * N);
+        let mut lyapunov = Lyapunov::new(run.clone(), 2 * N).expect("all");
         lyapunov.advance(u64::from(steps)).expect("solvable");
         (lyapunov.exponents(), separated(run, steps))
     }
@@ -567,7 +568,7 @@ fn exponents_of_steps_that_find_their_length_are_those_of_the_tangent_map() {
     // Where time and force act, a direction is that of the time and of the energy too.
     let run =
         EnergyPreserving::from_midpoint(Everything::default(), 0.1, [0.6, -0.4], [0.3, 0.5], 0.02).expect("valid");
-    let mut lyapunov = Lyapunov::new(run.clone(), 4);
+    let mut lyapunov = Lyapunov::new(run.clone(), 4).expect("all");
     lyapunov.advance(20).expect("solvable");
     let (end, map) = tangent_map(run.clone(), 20);
     let found = lyapunov.exponents().iter().sum::<f64>() * (end.t() - run.t());

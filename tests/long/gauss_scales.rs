@@ -80,12 +80,13 @@ fn velocities_that_begin_far_too_large_are_solved_for() {
 #[test]
 fn stages_beyond_the_range_of_numbers_are_no_solution() {
     // The first sweep leads beyond 1e308, where the pole has no force: standing still would solve the sums of the step.
-    let outcome = first::<_, 1, 1>(Pole::default(), [1e-160], [0.0], 1e-3);
-    assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "{outcome:?}");
     let outcome = first::<_, 1, 3>(Pole::default(), [1e-150], [1e-3], 1e-3);
     assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "{outcome:?}");
-    let outcome = first::<_, 1, 1>(Pole::default(), [0.0], [0.0], 1e-3);
-    assert!(matches!(outcome, Err(StepError::NonFinite { .. })), "{outcome:?}");
+    // The force at the node is beyond it already: no shorter step helps.
+    for x in [1e-160, 0.0] {
+        let outcome = first::<_, 1, 1>(Pole::default(), [x], [0.0], 1e-3);
+        assert!(matches!(outcome, Err(StepError::NonFinite { .. })), "{outcome:?}");
+    }
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod hunt;
 mod invariants;
 mod iterations;
 mod kept_energies;
+mod motions;
 mod robustness;
 mod solvability;
 #[path = "../support/mod.rs"]

@@ -256,6 +256,11 @@ where
         self.substeps.iter().map(Steps::v)
     }
 
+    /// Whether the last step was taken with the parameters that the system has.
+    pub(crate) fn has_parameters_of_last(&self) -> bool {
+        self.substeps.iter().all(Steps::has_parameters_of_last)
+    }
+
     /// Largest residual of the substeps of the last whole step, measured at the velocities that were taken, in roundings; see
     /// [`FixedStep::residual`](crate::FixedStep::residual). Zero before the first step.
     pub fn residual(&self) -> f64 {
@@ -318,7 +323,8 @@ where
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
         let system = changed(&self.system, change)?;
         self.state().velocity(&system)?;
-        *self = Self::prepared(system, self.scheme, self.run());
+        let substeps = self.substeps.iter().map(|substep| substep.with_other_parameters()).collect();
+        *self = Self::prepared(system, self.scheme, Run { substeps, ..self.run() });
         Ok(())
     }
 

@@ -146,6 +146,13 @@ pub enum StepError {
         /// Why, and what to do.
         because: &'static str,
     },
+    /// The system has no parameter of the name that was given.
+    UnknownParameter {
+        /// Name of the system.
+        system: &'static str,
+        /// The names that its parameters have.
+        parameters: &'static [&'static str],
+    },
     /// A checkpoint was taken of another system, or with another value of a parameter.
     OtherSystem {
         /// Name of the system that was to be restarted.
@@ -236,6 +243,9 @@ impl fmt::Display for Reason<'_> {
             StepError::NoDerivative { t, because } => {
                 write!(f, "the step from t = {t:.9} cannot be differentiated: {because}")
             }
+            StepError::UnknownParameter { system, .. } => {
+                write!(f, "`{system}` has no parameter of the name that was given")
+            }
             StepError::OtherSystem { system, parameter: None, .. } => {
                 write!(f, "the checkpoint is of another system than `{system}`, or of another rule")
             }
@@ -287,13 +297,18 @@ impl fmt::Display for StepError {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
             }
             Self::Ambiguous { .. } => f.write_str("; L is not defined at rest and has a branch on each side of it: take one that is defined on one side alone"),
+            Self::UnknownParameter { parameters, .. } if !parameters.is_empty() => {
+                write!(f, "; its parameters are `{}`", parameters.join("`, `"))
+            }
             Self::OtherSystem { parameter: None, .. } => {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
-            Self::Singular { .. } | Self::NonFinite { .. } | Self::NoDerivative { .. } | Self::InvalidInput { .. } => {
-                Ok(())
-            }
+            Self::Singular { .. }
+            | Self::NonFinite { .. }
+            | Self::NoDerivative { .. }
+            | Self::UnknownParameter { .. }
+            | Self::InvalidInput { .. } => Ok(()),
         }
     }
 }

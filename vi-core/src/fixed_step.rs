@@ -189,6 +189,11 @@ where
         self.run.steps.h
     }
 
+    /// Whether the last step was taken with the parameters that the system has.
+    pub(crate) fn has_parameters_of_last(&self) -> bool {
+        self.run.steps.has_parameters_of_last()
+    }
+
     /// Velocity of the last interval, `(q1 − q0)/h` without its cancellation; before the first step the velocity that
     /// belongs to the momenta.
     pub fn v(&self) -> SVector<T, N> {
@@ -236,7 +241,8 @@ where
     fn set_parameters(&mut self, change: impl FnOnce(&mut S)) -> Result<(), StepError> {
         let system = changed(&self.system, change)?;
         self.state().velocity(&system)?;
-        *self = Self::prepared(system, self.run);
+        let steps = self.run.steps.with_other_parameters();
+        *self = Self::prepared(system, Run { steps, ..self.run });
         Ok(())
     }
 

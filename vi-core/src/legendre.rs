@@ -63,14 +63,28 @@ impl<const N: usize, T: Scalar> State<N, T> {
 /// The acceleration a with `mass · a = applied`.
 ///
 /// # Errors
-/// [`StepError::Singular`] where the mass matrix cannot be inverted at the time `t`.
+/// [`StepError::NonFinite`] where a slope of L or f is not finite at the time `t`, [`StepError::Singular`] where the mass matrix cannot be
+/// inverted.
 #[inline]
 pub fn acceleration<T: Real, const N: usize>(
     t: T,
     mass: &impl Matrix<N, T>,
     applied: &SVector<T, N>,
 ) -> Result<SVector<T, N>, StepError> {
-    linear::solve(mass, applied).ok_or(StepError::Singular { t: t.to_f64(), matrix: "mass matrix" })
+    solved(mass, applied).map_err(|failure| match failure {
+        Failure::NonFinite => StepError::NonFinite { t: t.to_f64(), quantity: "acceleration", expression: None },
+        other => other.at(t.to_f64(), 0.0, "mass matrix"),
+    })
+}
+
+/// The step density, where it is finite.
+///
+/// # Errors
+/// [`StepError::NonFinite`] where it is not, at the time `t`.
+#[inline]
+pub fn step_density<T: Real>(t: T, density: T) -> Result<T, StepError> {
+    let lost = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
+    if density.is_finite() { Ok(density) } else { Err(lost) }
 }
 
 /// The v with `mass · v = momentum`, the momentum less that at rest.

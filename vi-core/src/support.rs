@@ -2,7 +2,7 @@
 
 pub use crate::compensated::two_sum;
 pub use crate::fixed_step::check_step;
-pub use crate::legendre::{acceleration, velocity, velocity_by_mass};
+pub use crate::legendre::{acceleration, step_density, velocity, velocity_by_mass};
 pub use crate::predictor::weights;
 pub use crate::stepping::{extended_rounding, momentum_rounding};
 

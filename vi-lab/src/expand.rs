@@ -3,9 +3,9 @@
 //! In: a file of Rust. Out: the product of one stage for each `lagrangian!` in it. Mistakes in a system are shown at their
 //! places, and the systems after it are expanded all the same.
 
+use crate::place;
 use clap::{Args, ValueEnum};
 use proc_macro2::TokenStream;
-use std::fs;
 use std::path::{Path, PathBuf};
 use vi_codegen::inspect::{self, report, source};
 use vi_report::failure::Failure;
@@ -56,7 +56,7 @@ pub(crate) fn expand(arguments: &Arguments) -> Result<String, Failure> {
 /// Makes a text of every system in a file.
 pub(super) fn each(file: &Path, mut show: impl FnMut(TokenStream) -> syn::Result<String>) -> Result<String, Failure> {
     let name = file.display().to_string();
-    let text = fs::read_to_string(file).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    let text = place::text(file)?;
     let declarations = source::declarations(&text)
         .map_err(|error| Failure::System { shown: String::new(), wrong: report::unreadable(&name, &text, &error) })?;
     if declarations.is_empty() {

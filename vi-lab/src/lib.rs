@@ -13,7 +13,7 @@
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
 //! | `lyapunov` | `vi-lab lyapunov`: how fast neighbouring motions part |
 //! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
-//! | `npy`, `place` | the head of an array file; where a file can be written |
+//! | `npy`, `place` | the head of an array file; which files can be read and written |
 //! | `vi_report` | what all of them show and say; the systems by name |
 
 mod expand;
@@ -33,6 +33,7 @@ use std::process::ExitCode;
 use vi_report::catalogue;
 pub use vi_report::catalogue::Own;
 use vi_report::failure::Failure;
+use vi_report::machine::visible;
 pub use vi_runs::ready::Entry;
 use vi_studies::{paper, stability};
 
@@ -129,12 +130,12 @@ pub fn main() -> ExitCode {
         Err(Failure::System { shown, wrong }) => {
             // The command shows what is right first. It reports the mistakes also where nobody reads standard output.
             let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
-            let _ = write!(io::stderr(), "{wrong}");
+            let _ = write!(io::stderr(), "{}", visible(&wrong));
             ExitCode::FAILURE
         }
         Err(failure) => {
             // Standard error may be closed; the exit status says the same.
-            let _ = writeln!(io::stderr(), "error: {failure}");
+            let _ = writeln!(io::stderr(), "error: {}", visible(&failure.to_string()));
             ExitCode::from(failure.exit_status())
         }
     }
@@ -159,7 +160,7 @@ fn act(action: Action) -> Result<(), Failure> {
     }
 }
 
-/// Writes a text and a line end to standard output.
+/// Writes a text and a line end to standard output, its control characters escaped.
 fn print(text: &str) -> Result<(), Failure> {
-    writeln!(io::stdout(), "{text}").map_err(Failure::standard_output)
+    writeln!(io::stdout(), "{}", visible(text)).map_err(Failure::standard_output)
 }

@@ -15,7 +15,7 @@ use vi_runs::plan::Method;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Columns: t, and the exponents λ1, λ2, … as their means up to t, in units of one over time. A chaotic motion has λ1 > 0; without force and time they come in pairs λ and −λ, \
-and one pair is zero. An estimate differs from its limit by a term of order 1/t, and by the fluctuations of the motion.")]
+and one pair is zero. With a negative --h they are those of the motion backwards in time: in units of one over the time that has passed. An estimate differs from its limit by a term of order 1/t, and by the fluctuations of the motion.")]
 pub(crate) struct Arguments {
     /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
     #[arg(value_name = "SYSTEM|SCENE.toml")]

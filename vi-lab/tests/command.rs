@@ -1,5 +1,10 @@
 //! The command `vi-lab` as a user meets it: output, exit status, messages, files.
 
+#[path = "command/ends.rs"]
+mod ends;
+#[cfg(unix)]
+#[path = "command/hostile.rs"]
+mod hostile;
 #[path = "command/sweep.rs"]
 mod sweep;
 
@@ -742,10 +747,11 @@ fn a_scene_is_run_and_the_command_line_overrides_it() {
     let (status, csv, errors) = lab(&["run", scene]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     assert!(csv.contains("# parameters: m = 1, k = 4, c = 0.02\n"));
-    let last = rows(&csv).pop().expect("rows");
-    assert!(last[0] >= 100.0 && last[0] < 100.1, "ends at {}", last[0]);
-    // h/h0 at t = 100 for ζ = 0.005, mathematics of the step law: 2.712.
-    assert!((last[5] / 0.01 - 2.712).abs() < 5e-4, "{}", last[5]);
+    let rows_to_end = rows(&csv);
+    let [.., before, last] = &rows_to_end[..] else { panic!("{csv}") };
+    assert_eq!(last[0].to_bits(), 100.0_f64.to_bits());
+    // The last step is as long as is left. h/h0 at t = 100 for ζ = 0.005, mathematics of the step law: 2.712.
+    assert!((before[5] / 0.01 - 2.712).abs() < 5e-4 && last[5] < before[5], "{before:?}, {last:?}");
     let (status, csv, _) = lab(&["run", scene, "--steps", "3", "--method", "fixed", "--set", "c=0.5"]);
     assert_eq!((status, rows(&csv).len()), (Some(0), 4));
     assert!(csv.contains("# parameters: m = 1, k = 4, c = 0.5\n"));
@@ -824,6 +830,17 @@ fn every_method_is_compared_and_a_run_that_ends_says_why() {
     let page = fs::read_to_string(out.join("index.html")).expect("the page");
     let said = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step leads forward from t = ";
     assert!(page.contains(said) && page.contains("(debug build") | page.contains("(release build"), "the page says so");
+    fs::remove_dir_all(out).expect("the folder can be removed");
+}
+
+#[test]
+fn where_nothing_can_be_compared_the_command_says_why() {
+    let out = temporary("rest");
+    let rest = ["work-precision", "pendulum", "--q", "0", "--v", "0", "--quick", "--out", path(&out)];
+    let (status, output, errors) = lab(&rest);
+    assert_eq!((status, output.as_str()), (Some(2), ""), "{errors}");
+    let why = "error: on pendulum no run has an error to compare: errors are relative to the largest coordinate and momentum, and one of them is zero on the whole way\n";
+    assert_eq!(errors, format!("{why}{} has all runs\n", path(&out.join("index.html"))));
     fs::remove_dir_all(out).expect("the folder can be removed");
 }
 

@@ -60,7 +60,7 @@ pub trait Objective<I, const N: usize> {
     fn prepare(&self, _step: u64, _run: &mut I) -> Result<(), StepError> {
         Ok(())
     }
-    /// Names of the parameters by which the gradient is wanted; one that the system does not have gets no column, and those after it move up.
+    /// Names of the parameters with respect to which the gradient is wanted: a column each.
     fn parameters(&self) -> &[&str] {
         &[]
     }
@@ -82,7 +82,7 @@ pub struct Gradient<const N: usize> {
 /// the nodes between two of them. Steps between are taken twice: with `kept = steps` none is.
 ///
 /// # Errors
-/// That of the step that fails, of its derivative, or of its inputs; [`StepError::NonFinite`] where the gradient is beyond the range of numbers, or a slope of the objective is
+/// That of the step that fails, of its derivative, or of its inputs; [`StepError::UnknownParameter`] for a name that no parameter has; [`StepError::NonFinite`] where the gradient is beyond the range of numbers, or a slope of the objective is
 /// no number.
 pub fn gradient<I, const N: usize>(
     run: &I,
@@ -93,6 +93,8 @@ pub fn gradient<I, const N: usize>(
 where
     I: Differentiable<N>,
 {
+    let named = objective.parameters().iter().map(|name| Variation::of_parameter::<I::System>(name));
+    let of_parameters: Vec<_> = named.collect::<Result<_, _>>()?;
     let stride = stride(steps, kept);
     let mut stations = vec![run.clone()];
     let mut ahead = run.clone();
@@ -113,7 +115,7 @@ where
         directions.push(Variation { t: 1.0, ..Variation::zero() });
     }
     let of_state = directions.len();
-    directions.extend(objective.parameters().iter().filter_map(|name| Variation::of_parameter::<I::System>(name)));
+    directions.extend(of_parameters);
     let are_varied = directions.len() > of_state;
     let mut variations = directions.clone();
     let mut parameters = Vec::new();

@@ -28,14 +28,23 @@ pub struct Lyapunov<I, const N: usize> {
 }
 
 impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
-    /// The `count` largest exponents of a run, 2N at most. The first directions are fixed, so that two runs give the same.
-    #[must_use]
-    pub fn new(run: I, count: usize) -> Self {
+    /// The `count` largest exponents of a run. The first directions are fixed, so that two runs give the same.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] unless `count` is 1 to 2N.
+    pub fn new(run: I, count: usize) -> Result<Self, StepError> {
+        if count == 0 || count > 2 * N {
+            #[allow(clippy::cast_precision_loss)] // for the message
+            let value = count as f64;
+            let allowed = "1 to twice the number of coordinates";
+            return Err(StepError::InvalidInput { input: "the number of Lyapunov exponents", allowed, value });
+        }
         let start = run.t();
-        let count = count.min(2 * N);
-        let mut variations: Vec<Variation<N>> = (0..count).map(oblique).collect();
+        let mut variations = Variation::of_state();
+        variations.truncate(count);
+        variations.iter_mut().for_each(turn);
         orthogonalize(&mut variations);
-        Self { tangent: Tangent::new(run, variations), start, end: start, growth: vec![(0.0, 0.0); count] }
+        Ok(Self { tangent: Tangent::new(run, variations), start, end: start, growth: vec![(0.0, 0.0); count] })
     }
 
     /// Takes so many steps.
@@ -59,10 +68,11 @@ impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
         Ok(())
     }
 
-    /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step.
+    /// The estimates, the largest first as a rule, in units of one over time; not a number before the first step. Those of a run backwards in time are of
+    /// the motion backwards: rates by the time that has passed, whatever its sign.
     #[must_use]
     pub fn exponents(&self) -> Vec<f64> {
-        let t = self.end - self.start;
+        let t = (self.end - self.start).abs();
         self.growth.iter().map(|(growth, low)| (growth + low) / t).collect()
     }
 
@@ -72,16 +82,13 @@ impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
     }
 }
 
-/// A direction that no coordinate has alone: a start in an invariant plane would not leave it.
-fn oblique<const N: usize>(index: usize) -> Variation<N> {
-    let mut variation: Variation<N> =
-        if index < N { Variation::of_coordinate(index) } else { Variation::of_momentum(index - N) };
+/// Turns a direction away from the coordinate or momentum that it is of: a direction in an invariant plane would not leave it.
+fn turn<const N: usize>(variation: &mut Variation<N>) {
     let mut part = 0.1;
     for entry in variation.q.iter_mut().chain(variation.p.iter_mut()) {
         *entry += part;
         part *= -0.9;
     }
-    variation
 }
 
 /// Makes directions orthogonal, of length one, in order, and returns the lengths that they had.

@@ -27,7 +27,8 @@ pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> 
     ///
     /// # Errors
     /// [`StepError::Singular`] where the equations of the step do not determine how its solution varies; [`StepError::NonFinite`] where its derivative is infinite, or beyond the
-    /// range of numbers; [`StepError::NoDerivative`] where `before` is not the node at which the last step began, or a variation has more parameters than the system.
+    /// range of numbers; [`StepError::NoDerivative`] where `before` is not the node at which the last step began, the parameters have changed since, or a variation has more
+    /// parameters than the system.
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
 }
 
@@ -50,24 +51,25 @@ fn is_last<const N: usize>(end: &Node<N>, reached: &Node<N>) -> bool {
     is_in_time && end.q == reached.q && end.q_low == reached.q_low
 }
 
-/// Checks that the step `(v, h)` from the node `before` led to the node `reached`.
+/// Checks that the step `(v, h)` from the node `before` led to the node `reached`, and that its parameters are those of the system.
 ///
 /// # Errors
 /// [`StepError::NoDerivative`] where it did not.
 fn check_last<const N: usize>(
     before: &Node<N>,
-    h: f64,
-    v: &SVector<f64, N>,
+    (h, v): (f64, &SVector<f64, N>),
     reached: &Node<N>,
+    has_its_parameters: bool,
 ) -> Result<(), StepError> {
     let mut end = *before;
     end.shift(h, v);
-    if is_last(&end, reached) { Ok(()) } else { Err(not_last(before.t)) }
+    if has_its_parameters && is_last(&end, reached) { Ok(()) } else { Err(not_last(before.t)) }
 }
 
-/// The node given is not the one at which the last step began.
+/// The node given is not the one at which the last step began, or that step had other parameters.
 pub(crate) fn not_last(t: f64) -> StepError {
-    StepError::NoDerivative { t, because: "the run did not take it last; give the node at which its last step began" }
+    let because = "the run did not take it last with the parameters that it has; give the node at which its last step began, before the parameters change";
+    StepError::NoDerivative { t, because }
 }
 
 /// A number that varies in W directions, its value a number that may vary itself.
@@ -170,7 +172,7 @@ where
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let v = self.v();
-        check_last(before, self.h(), &v, self.node())?;
+        check_last(before, (self.h(), &v), self.node(), self.has_parameters_of_last())?;
         vary(self.system(), before, self.h(), &v, variations)
     }
 }
@@ -191,7 +193,7 @@ where
         other: &Variation<N>,
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
         let (h, v) = (self.h(), self.v());
-        check_last(before, h, &v, self.node())?;
+        check_last(before, (h, &v), self.node(), self.has_parameters_of_last())?;
         // Where the matrix has an inverse, it is the variations that are beyond the range of numbers.
         let unsolved = || {
             let equation = self.system().momentum_equation(before, h, &v);
@@ -246,6 +248,9 @@ where
     S: FixedStepping<N> + Convertible<N>,
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        if !self.has_parameters_of_last() {
+            return Err(not_last(before.t));
+        }
         let mut node = *before;
         for (weight, v) in self.scheme().weights.iter().zip(self.velocities()) {
             let h = weight * self.h();
@@ -273,7 +278,7 @@ where
         }
         let h = self.h();
         let v = self.v();
-        check_last(before, h, &v, self.node())?;
+        check_last(before, (h, &v), self.node(), self.has_parameters_of_last())?;
         let derivatives = self.system().extended_derivatives(before, h, &v);
         let ExtendedDerivatives { momentum, residual_dh, increment_dh, energy_dq, energy_dv, energy_dh, .. } =
             &derivatives;

@@ -35,7 +35,7 @@ pub struct Variation<const N: usize> {
     pub q: SVector<f64, N>,
     /// Of the momenta.
     pub p: SVector<f64, N>,
-    /// Of the energy that an energy-preserving run keeps; of no meaning to others.
+    /// Of the energy that an energy-preserving run keeps; of no meaning to others. [`crate::Integrator::set_parameters`] changes it by that of `H_new − H_old`.
     pub energy: f64,
     /// Of the parameters, in the order of [`Lagrangian::PARAMETERS`]; those beyond the end do not change. The same all along a run.
     pub parameters: Vec<f64>,
@@ -48,43 +48,61 @@ impl<const N: usize> Variation<N> {
         Self { t: 0.0, q: SVector::zeros(), p: SVector::zeros(), energy: 0.0, parameters: Vec::new() }
     }
 
-    /// The direction of a coordinate, by its index; none beyond the last.
-    #[must_use]
-    pub fn of_coordinate(index: usize) -> Self {
-        let mut variation = Self::zero();
-        if let Some(entry) = variation.q.get_mut(index) {
-            *entry = 1.0;
-        }
-        variation
+    /// The direction of a coordinate, by its index from 0.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an index that no coordinate has.
+    pub fn of_coordinate(index: usize) -> Result<Self, StepError> {
+        Self::of_entry(index, "the index of a coordinate", |variation| &mut variation.q)
     }
 
-    /// The direction of a momentum, by its index; none beyond the last.
-    #[must_use]
-    pub fn of_momentum(index: usize) -> Self {
+    /// The direction of a momentum, by its index from 0.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an index that no momentum has.
+    pub fn of_momentum(index: usize) -> Result<Self, StepError> {
+        Self::of_entry(index, "the index of a momentum", |variation| &mut variation.p)
+    }
+
+    /// The direction of one entry of a vector.
+    fn of_entry(
+        index: usize,
+        input: &'static str,
+        vector: impl Fn(&mut Self) -> &mut SVector<f64, N>,
+    ) -> Result<Self, StepError> {
         let mut variation = Self::zero();
-        if let Some(entry) = variation.p.get_mut(index) {
-            *entry = 1.0;
-        }
-        variation
+        #[allow(clippy::cast_precision_loss)] // for the message
+        let value = index as f64;
+        let allowed = "below the number of coordinates";
+        let beyond = StepError::InvalidInput { input, allowed, value };
+        *vector(&mut variation).get_mut(index).ok_or(beyond)? = 1.0;
+        Ok(variation)
     }
 
     /// The directions of all coordinates, and then of all momenta: the variations are the columns of the tangent map.
     #[must_use]
     pub fn of_state() -> Vec<Self> {
-        (0..N).map(Self::of_coordinate).chain((0..N).map(Self::of_momentum)).collect()
+        let mut variations = vec![Self::zero(); 2 * N];
+        for (index, variation) in variations.iter_mut().enumerate() {
+            let (vector, index) = if index < N { (&mut variation.q, index) } else { (&mut variation.p, index - N) };
+            vector[index] = 1.0;
+        }
+        variations
     }
 
-    /// The direction of a parameter of the system S, by its name; `None` where it has none of this name.
+    /// The direction of a parameter of the system S, by its name.
     ///
     /// Time, coordinates, momenta and the energy that is kept stay. Where the start is given by other numbers, velocities or the step of `from_midpoint`, what they
     /// change by with the parameter belongs into `p` and `energy` of the variation.
-    #[must_use]
-    pub fn of_parameter<S: Lagrangian<N>>(name: &str) -> Option<Self> {
-        let index = S::PARAMETERS.iter().position(|known| *known == name)?;
-        let mut variation = Self::zero();
-        variation.parameters = vec![0.0; S::PARAMETERS.len()];
-        variation.parameters[index] = 1.0;
-        Some(variation)
+    ///
+    /// # Errors
+    /// [`StepError::UnknownParameter`] for a name that no parameter of S has.
+    pub fn of_parameter<S: Lagrangian<N>>(name: &str) -> Result<Self, StepError> {
+        let parameters: Vec<f64> = S::PARAMETERS.iter().map(|known| if *known == name { 1.0 } else { 0.0 }).collect();
+        if parameters.iter().all(|slope| *slope == 0.0) {
+            return Err(StepError::UnknownParameter { system: S::NAME, parameters: S::PARAMETERS });
+        }
+        Ok(Self { parameters, ..Self::zero() })
     }
 
     /// Refuses what is not finite: the derivative of a force may be infinite where the force is not, and what varies along a chaotic run may leave the range of numbers.

@@ -44,6 +44,7 @@ where
         let brought = state.energy(&system)? - state.energy(&self.system)?;
         self.system = system;
         self.run.node.add_energy(brought);
+        self.run.last.is_step = false;
         self.failure = None;
         Ok(())
     }

@@ -22,6 +22,8 @@ pub(super) struct Last<const N: usize, T> {
     pub(super) density: T,
     /// Change of v since the interval before.
     pub(super) change: SVector<T, N>,
+    /// Whether it is a step, taken with the parameters that the system has.
+    pub(super) is_step: bool,
 }
 
 impl<const N: usize, T: Real> Last<N, T> {

@@ -103,7 +103,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
             residual: T::real(residual),
             method,
         };
-        let last = Last { v, h, previous: last.h, density, change: v - last.v };
+        let last = Last { v, h, previous: last.h, density, change: v - last.v, is_step: true };
         (node, last, step)
     }
 
@@ -235,7 +235,7 @@ impl<const N: usize, T: Scalar> Run<N, T> {
     /// Lets the next step follow the velocity at hand as if the last one had the length and the density of `interval`.
     pub(super) fn resume_after(&mut self, interval: &Last<N, T>) {
         let v = self.last.v;
-        self.last = Last { v, previous: interval.h, change: SVector::zeros(), ..*interval };
+        self.last = Last { v, previous: interval.h, change: SVector::zeros(), is_step: false, ..*interval };
         self.prediction = Prediction::new(v, interval.h);
     }
 

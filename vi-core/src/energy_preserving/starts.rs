@@ -116,5 +116,5 @@ fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     let (t_mid, q_mid) = start.midpoint(h, &v);
     // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
     let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
-    Ok(Run::new(node, Last { v, h, previous: h, density, change: acceleration * h }))
+    Ok(Run::new(node, Last { v, h, previous: h, density, change: acceleration * h, is_step: false }))
 }

@@ -110,6 +110,11 @@ where
         self.run.fallback
     }
 
+    /// Whether the last interval is a step, taken with the parameters that the system has.
+    pub(crate) fn has_parameters_of_last(&self) -> bool {
+        self.run.last.is_step
+    }
+
     /// How often the run has changed its method, and what that cost.
     pub fn switches(&self) -> Switches<T> {
         self.run.switches

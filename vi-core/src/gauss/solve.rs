@@ -11,7 +11,7 @@ use super::run::Run;
 use super::separable::Separable;
 use super::stages::{AtStages, LOOPED, Stages, constant_mass, mass, stage};
 use super::sweep::{self, Equations, Increment, Pause, Sweeps};
-use crate::collocation::Collocation;
+use crate::collocation::{Collocation, Point};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::{Lane, Lanes};
@@ -185,8 +185,8 @@ fn finished<const N: usize, const S: usize>(mut equations: impl Equations<N, S>,
     Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
 }
 
-/// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or a part of L or f is not
-/// finite, which the system names. None where they can.
+/// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or L, f or a slope of L is not
+/// finite at the node or half a step from it; the system names the part of L or f. None where they can.
 #[cold]
 pub(super) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
     let v = match node.state().velocity(system) {
@@ -195,5 +195,11 @@ pub(super) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &N
     };
     let lost = StepError::NonFinite { t: node.t, quantity: "force at a stage", expression: None };
     let explained = lost.explained(system, node, h, &v);
-    matches!(explained, StepError::NonFinite { expression: Some(_), .. }).then_some(explained)
+    let is_named = matches!(explained, StepError::NonFinite { expression: Some(_), .. });
+    let has_slopes = |h: f64| {
+        let (t, q) = node.midpoint(h, &v);
+        let Point { momentum, force, .. } = system.point(t, &q, &v);
+        momentum.iter().chain(&force).all(|entry| entry.is_finite())
+    };
+    (is_named || !has_slopes(0.0) || !has_slopes(h)).then_some(explained)
 }

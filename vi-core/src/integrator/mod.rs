@@ -121,7 +121,7 @@ pub trait Integrator<const N: usize>: Clone {
     /// An energy-preserving run goes on with what the change brought: `E` gains `H_new − H_old` at the node.
     ///
     /// What is said of the last step, as its discrete energy and its path, is by the new parameters from then on. Of Gauss steps nothing is said but the
-    /// cubic path between the nodes, until the next step.
+    /// cubic path between the nodes, until the next step. The last step has no derivative from then on: call [`crate::derivatives::Differentiable::vary`] before.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] for a parameter that is not finite; [`StepError::Singular`], [`StepError::NotConverged`] or [`StepError::NonFinite`] where the

@@ -1,5 +1,6 @@
 //! What made a file: versions, command line, machine.
 
+use std::borrow::Cow;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,13 +61,26 @@ pub fn command_line() -> String {
     core::iter::once(quoted(&program())).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
+/// A text for a terminal: line ends and tabs stay, other control characters, by which names and files could change what it shows, are escaped.
+#[must_use]
+pub fn visible(text: &str) -> Cow<'_, str> {
+    escaped(text, |letter| letter.is_control() && !matches!(letter, '\n' | '\t'))
+}
+
+/// A text with some of its characters escaped.
+fn escaped(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(&is_escaped) {
+        return Cow::Borrowed(text);
+    }
+    let one = |letter: char| if is_escaped(letter) { letter.escape_default().collect() } else { letter.to_string() };
+    text.chars().map(one).collect()
+}
+
 /// An argument as one word of one line.
 fn quoted(argument: &str) -> String {
     let needs_quotes = argument.is_empty() || argument.contains(|letter: char| letter.is_whitespace());
-    let visible =
-        |letter: char| if letter.is_control() { letter.escape_default().collect() } else { letter.to_string() };
-    let argument: String = argument.chars().map(visible).collect();
-    if needs_quotes { format!("'{argument}'") } else { argument }
+    let argument = escaped(argument, char::is_control);
+    if needs_quotes { format!("'{argument}'") } else { argument.into_owned() }
 }
 
 /// The processor's name, where the system tells it.
@@ -84,5 +98,12 @@ mod tests {
     fn an_argument_is_one_word_of_one_line() {
         let shown = ["kepler", "a b.csv", "", "x\ny"].map(quoted);
         assert_eq!(shown, ["kepler", "'a b.csv'", "''", "'x\\ny'"]);
+    }
+
+    #[test]
+    fn a_text_cannot_steer_the_terminal() {
+        let raw = "line\n\ttab \u{1b}[31mred\u{1b}[0m \r\u{7}\u{9b}2J\u{7f} π";
+        assert_eq!(visible(raw), "line\n\ttab \\u{1b}[31mred\\u{1b}[0m \\r\\u{7}\\u{9b}2J\\u{7f} π");
+        assert!(matches!(visible("plain\n"), Cow::Borrowed(_)));
     }
 }

@@ -59,5 +59,5 @@ where
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;
     let run = Gauss::<S, N, STAGES>::new(system, State::at(&system, plan.t, q, v), plan.h)?;
-    Ok(Box::new(Lyapunov::new(run, count)))
+    Ok(Box::new(Lyapunov::new(run, count)?))
 }

@@ -127,6 +127,12 @@ pub trait Simulation {
     /// # Errors
     /// That of the integrator.
     fn advance(&mut self) -> Result<(), StepError>;
+    /// Takes one step toward the time `end`, which lies ahead. A step that would lead beyond is as long as is left instead, and ends at `end` exactly; it has no
+    /// discrete energy.
+    ///
+    /// # Errors
+    /// That of the integrator.
+    fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
 
     /// Goes on to the time `end`, and gives `take` the point of each crossing of a section on the way, in their order: located by
     /// steps of the exact length, which h tells. Their discrete energy is none.
@@ -355,13 +361,18 @@ struct Run<'a, I, const N: usize> {
     uncounted: Option<fn(&I) -> u64>,
     /// What steps with a shift keep.
     shifted: Option<fn(&I) -> ShiftedEnergy>,
+    /// Length of the last step, if it was shorter than those of the run.
+    shortened: Option<f64>,
 }
+
+/// Part of a step by which its length may be off and it still counts as the next step of the run.
+const ROUNDED: f64 = 1e-9;
 
 impl<'a, I: Integrator<N> + 'a, const N: usize> Run<'a, I, N> {
     /// A run whose system counts its evaluations, and which keeps H best at the nodes.
     fn new(integrator: I, evaluations: &'a Cell<u64>) -> Self {
         let at_the_node = |run: &I| Ok((run.t(), run.energy()?));
-        Self { integrator, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None }
+        Self { integrator, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None, shortened: None }
     }
 
     /// The same, its type erased.
@@ -391,7 +402,7 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     }
 
     fn h(&self) -> f64 {
-        self.integrator.h()
+        self.shortened.unwrap_or_else(|| self.integrator.h())
     }
 
     fn energy(&self) -> Result<f64, StepError> {
@@ -399,7 +410,8 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     }
 
     fn discrete_energy(&self) -> Option<f64> {
-        self.integrator.discrete_energy()
+        // A step of another length is none of those whose energy is kept.
+        if self.shortened.is_some() { None } else { self.integrator.discrete_energy() }
     }
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
@@ -413,6 +425,30 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     fn advance(&mut self) -> Result<(), StepError> {
         self.integrator.step_apart()?;
         self.count(&self.integrator);
+        self.shortened = None;
+        Ok(())
+    }
+
+    fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
+        let (left, h) = (self.integrator.time_to(end), self.integrator.h());
+        let rounding = (f64::EPSILON * end.abs()).min(ROUNDED * h.abs());
+        let is_beyond = |left: f64| left * h.signum() < -rounding;
+        if is_beyond(left - self.integrator.longest()) {
+            // Steps that find their length have to be taken to know it.
+            let ahead = if I::LONGEST > 1.0 { Some(self.integrator.after_a_step()?) } else { None };
+            let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
+                self.integrator.end_at(end)?;
+                self.shortened = Some(left);
+                return Ok(());
+            };
+            self.integrator = ahead;
+            self.count(&self.integrator);
+        } else {
+            self.advance()?;
+        }
+        if self.integrator.time_to(end).abs() <= rounding {
+            self.integrator.set_time(end);
+        }
         Ok(())
     }
 

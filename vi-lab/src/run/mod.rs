@@ -29,7 +29,9 @@ use extent::Extent;
 use request::Output;
 pub(crate) use request::{Length, Request};
 use shift::Wanted;
+use std::io::{self, Write as _};
 use std::path::PathBuf;
+use vi_core::StepError;
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};
@@ -71,8 +73,8 @@ Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of
 discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
 term of order h², with Gauss steps of S stages by one of order h^2S. H and E of the first two differ by h²D/8 to leading order, D the step density. \
 With --shift D* a column E' comes before h: E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3, which is kept then, while E and H swing. A run of fixed or Gauss steps has no interval \
-before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). H is empty where no velocity belongs to the momenta. h is the \
-length of the step that led to the node.
+before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). The last step to --until T is as long as is left, and has no E if that is shorter. H is empty if no velocity belongs to the momenta; \
+standard error says in how many rows. h is the length of the step that led to the node.
 
 --plot draws the rows that --every leaves: energies less H at the start, every coordinate over time and with its momentum, up to 24 of them, and \
 the path of two in their plane. A long run takes no more memory than a short one: stretches of it keep their extremes, a phase portrait becomes dots.
@@ -119,7 +121,7 @@ pub(crate) struct Arguments {
     /// Number of steps, such as 1e6 [default: 1000]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) steps: Option<u64>,
-    /// Steps until this time is reached
+    /// Ends at this time exactly
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = number)]
     pub(crate) until: Option<f64>,
     /// Sets a parameter; may be given once for each
@@ -190,10 +192,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         request.plan.shift = Some(Shift::Of(of.shift));
     }
     resolution::check_state(&request)?;
+    if request.length.is_before(simulation.as_ref()) {
+        return Err(Failure::Input(format!("the first node, at t = {}, lies beyond --until", short(simulation.t()))));
+    }
     let mut sinks = sinks(&request)?;
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
-    let mut course = Course { request: &request, extent, sinks: &mut sinks, steps: 0, rows: 0, written: 0 };
+    let mut course = Course::new(&request, extent, &mut sinks);
     let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
+    if let Some(note) = course.note() {
+        // Standard error may be closed; the rows are whole.
+        let _ = writeln!(io::stderr(), "{note}");
+    }
     // Whatever ended the run, and where one of the outputs failed too, each gets what can still be written.
     sinks.iter_mut().fold(outcome, |outcome, sink| match (outcome, sink.finish()) {
         (Err(first), Err(second)) => Err(Failure::both(first, second)),
@@ -226,9 +235,23 @@ struct Course<'a> {
     rows: u64,
     /// The number of steps that led to the row written last.
     written: u64,
+    /// Rows without H, and why the first of them has none.
+    lost: u64,
+    first_lost: Option<StepError>,
 }
 
-impl Course<'_> {
+impl<'a> Course<'a> {
+    /// A run at its start.
+    fn new(request: &'a Request, extent: Extent, sinks: &'a mut [Box<dyn Sink>]) -> Self {
+        Self { request, extent, sinks, steps: 0, rows: 0, written: 0, lost: 0, first_lost: None }
+    }
+
+    /// What to say of rows without H.
+    fn note(&self) -> Option<String> {
+        let why = self.first_lost?;
+        Some(format!("note: {} of {} rows have no H, the first because {}", self.lost, self.rows, why.reason()))
+    }
+
     /// Steps to the end, and writes the nodes that are asked for, and the last.
     fn follow(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
         let Request { plan, length, every, .. } = self.request;
@@ -258,7 +281,7 @@ impl Course<'_> {
         if let Some(signal) = signal() {
             return Err(Failure::Interrupted { signal, reached: format!("{} steps at t = {}", self.steps, short(t)) });
         }
-        simulation.advance().map_err(|error| {
+        self.request.length.advance(simulation).map_err(|error| {
             let node = simulation.row();
             let general = || advice(&error, &self.request.plan).map(str::to_owned);
             let advice = ways_out::of(self.request, &error, &node).or_else(general);
@@ -280,6 +303,10 @@ impl Course<'_> {
         self.rows += 1;
         self.written = self.steps;
         let row = simulation.row();
+        if row.energy.is_none() {
+            self.lost += 1;
+            self.first_lost = self.first_lost.or_else(|| simulation.energy().err());
+        }
         self.sinks.iter_mut().try_for_each(|sink| sink.write(&row))
     }
 }
@@ -299,7 +326,6 @@ mod tests {
     use super::*;
     use core::cell::RefCell;
     use std::rc::Rc;
-    use vi_core::StepError;
     use vi_runs::simulation::Section;
 
     /// A run that cannot go on after three steps, at t = 1.5.
@@ -307,6 +333,8 @@ mod tests {
         t: f64,
         /// What the fourth step does.
         fourth: Result<(), StepError>,
+        /// The nodes from this time on have no H.
+        lost: f64,
     }
 
     impl Simulation for Ending {
@@ -327,7 +355,8 @@ mod tests {
         }
 
         fn energy(&self) -> Result<f64, StepError> {
-            Ok(1.0)
+            let singular = StepError::Singular { t: self.t, matrix: "mass matrix" };
+            if self.t < self.lost { Ok(1.0) } else { Err(singular) }
         }
 
         fn discrete_energy(&self) -> Option<f64> {
@@ -340,6 +369,10 @@ mod tests {
                 return Ok(());
             }
             self.fourth
+        }
+
+        fn advance_to(&mut self, _: f64) -> Result<(), StepError> {
+            self.advance()
         }
 
         fn cross(&mut self, _: &Section, _: f64, _: &mut dyn FnMut(Row)) -> Result<(), StepError> {
@@ -370,8 +403,9 @@ mod tests {
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let kept = Kept::default();
         let mut sinks: [Box<dyn Sink>; 1] = [Box::new(kept.clone())];
-        let mut course = Course { request: &request, extent, sinks: &mut sinks, steps: 0, rows: 0, written: 0 };
-        let failure = course.follow(&mut Ending { t: 0.0, fourth }, signal).expect_err("the run ends early");
+        let mut course = Course::new(&request, extent, &mut sinks);
+        let failure =
+            course.follow(&mut Ending { t: 0.0, fourth, lost: f64::INFINITY }, signal).expect_err("the run ends early");
         (failure, kept.0.borrow().iter().map(|row| row.t).collect())
     }
 
@@ -387,6 +421,21 @@ mod tests {
                  last good state: t = 1.5, q = [1.5], p = [0.0], H = 1, h = 0.5, after 3 steps"
             );
         }
+    }
+
+    #[test]
+    fn rows_without_an_energy_are_told() {
+        let arguments = Arguments { target: Some("double-well".to_owned()), steps: Some(3), ..Arguments::default() };
+        let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
+        let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
+        let note = |lost| {
+            let mut course = Course::new(&request, extent, &mut []);
+            course.follow(&mut Ending { t: 0.0, fourth: Ok(()), lost }, &|| None).expect("three steps");
+            course.note()
+        };
+        assert_eq!(note(2.0), None);
+        let told = "note: 2 of 4 rows have no H, the first because the mass matrix is singular at t = 1.000000000";
+        assert_eq!(note(1.0).as_deref(), Some(told));
     }
 
     #[test]

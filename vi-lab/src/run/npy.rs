@@ -6,8 +6,9 @@
 
 use super::{BLOCK, Request, Sink, energies, method};
 use crate::npy::{ROOM, head};
+use crate::place;
 use serde_json::json;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
@@ -32,9 +33,9 @@ impl Npy {
         let mut npy =
             Self { path: path.to_owned(), file, columns: request.columns().len(), rows: 0, block: Vec::new() };
         npy.flush()?;
-        let mut beside = path.as_os_str().to_owned();
-        beside.push(".json");
-        fs::write(&beside, format!("{:#}\n", description(request))).map_err(|error| Failure::file(&beside, error))?;
+        let description = format!("{:#}\n", description(request));
+        let beside = place::beside(path, "json");
+        place::replace(&beside, &description).map_err(|error| Failure::file(&beside, error))?;
         Ok(npy)
     }
 

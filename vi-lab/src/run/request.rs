@@ -9,12 +9,13 @@ use crate::sweep::scene::Sweep;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use vi_core::StepError;
 use vi_report::catalogue;
 use vi_report::failure::Failure;
 use vi_report::input::number;
 use vi_report::numbers::short;
 use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Start};
-use vi_runs::simulation::Row;
+use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
 /// Steps of a run that is not told otherwise.
@@ -45,7 +46,7 @@ pub(crate) struct Request {
 pub(crate) enum Length {
     /// After this many steps.
     Steps(u64),
-    /// At the first node at or after this time.
+    /// At this time.
     Until(f64),
 }
 
@@ -54,9 +55,24 @@ impl Length {
     pub(crate) fn is_reached(self, t: f64, h: f64, steps: u64) -> bool {
         match self {
             Self::Steps(wanted) => steps >= wanted,
-            // A billionth of a step forgives the rounding of a sum of fixed steps.
-            Self::Until(end) => (end - t) * h.signum() <= 1e-9 * h.abs(),
+            Self::Until(end) => (end - t) * h.signum() <= 0.0,
         }
+    }
+
+    /// Takes one step of a run toward its end.
+    ///
+    /// # Errors
+    /// That of the integrator.
+    pub(crate) fn advance(self, run: &mut dyn Simulation) -> Result<(), StepError> {
+        match self {
+            Self::Steps(_) => run.advance(),
+            Self::Until(end) => run.advance_to(end),
+        }
+    }
+
+    /// Whether the end lies before the node at which a run starts: that of --start midpoint is half a step late.
+    pub(crate) fn is_before(self, run: &dyn Simulation) -> bool {
+        matches!(self, Self::Until(end) if (end - run.t()) * run.h() < 0.0)
     }
 
     /// The part of a run that is done, between 0 and 1.

@@ -20,10 +20,11 @@
 //! With a table `[sweep]` it is many runs: see `sweep/scene.rs`.
 
 use super::shift::{self, Wanted};
+use crate::place;
 use crate::sweep::scene::Sweep;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::fs;
+use std::path::Path;
 use vi_report::failure::Failure;
 use vi_report::input::count_of_scene;
 use vi_runs::plan::{Method, Start};
@@ -83,7 +84,7 @@ impl Scene {
     /// # Errors
     /// [`Failure::Input`] where it cannot be read, or is not a scene.
     pub(super) fn read(path: &str) -> Result<Self, Failure> {
-        let text = fs::read_to_string(path).map_err(|error| Failure::Input(format!("{path}: {error}")))?;
+        let text = place::text(Path::new(path))?;
         Self::parse(&text).map_err(|message| Failure::Input(format!("{path}: {message}")))
     }
 

@@ -50,10 +50,17 @@ struct Extremes {
 }
 
 /// The first value, and the largest distance from it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Drift {
-    first: f64,
+    first: Option<f64>,
     largest: f64,
+}
+
+impl Drift {
+    fn push(&mut self, value: f64) {
+        let first = *self.first.get_or_insert(value);
+        self.largest = extreme(self.largest, (value - first).abs(), f64::max);
+    }
 }
 
 impl Course {
@@ -61,7 +68,7 @@ impl Course {
     pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Simulation)) -> Self {
         let dimension = member.plan.q.len();
         let none = Extremes { low: f64::INFINITY, high: f64::NEG_INFINITY };
-        let drifts = [Drift { first: f64::NAN, largest: f64::NAN }; 2];
+        let drifts = [Drift::default(); 2];
         let mut course =
             Self { ending: Ending::REACHED, steps: 0, last: None, extremes: vec![none; dimension + 1], drifts };
         let evaluations = Cell::new(0);
@@ -70,6 +77,7 @@ impl Course {
             Err(_) => Err(Ending::WRONG_INPUT),
         };
         match begun {
+            Ok(simulation) if member.length.is_before(simulation.as_ref()) => course.ending = Ending::WRONG_INPUT,
             Ok(mut simulation) => {
                 course.ending = course.follow(member, simulation.as_mut(), show);
                 course.last = Some(simulation.row());
@@ -97,7 +105,7 @@ impl Course {
             if self.steps == most {
                 break Ending::TOO_SHORT;
             }
-            if let Err(error) = run.advance() {
+            if let Err(error) = length.advance(run) {
                 break Ending::of(error);
             }
             self.steps += 1;
@@ -121,16 +129,17 @@ impl Course {
 
     /// Looks at the node reached last.
     fn watch(&mut self, run: &dyn Simulation) {
+        // Of nodes without H there are no extremes, rather than those of the others.
         let energy = run.energy().unwrap_or(f64::NAN);
         for (extremes, value) in self.extremes.iter_mut().zip(run.q().iter().copied().chain([energy])) {
-            extremes.low = extremes.low.min(value);
-            extremes.high = extremes.high.max(value);
+            extremes.low = extreme(extremes.low, value, f64::min);
+            extremes.high = extreme(extremes.high, value, f64::max);
         }
-        for (drift, value) in self.drifts.iter_mut().zip([energy, run.discrete_energy().unwrap_or(f64::NAN)]) {
-            if drift.first.is_nan() {
-                drift.first = value;
-            }
-            drift.largest = drift.largest.max((value - drift.first).abs());
+        let [of_energy, of_discrete_energy] = &mut self.drifts;
+        of_energy.push(energy);
+        // Some nodes have no interval.
+        if let Some(energy) = run.discrete_energy() {
+            of_discrete_energy.push(energy);
         }
     }
 
@@ -170,6 +179,29 @@ impl Course {
 
     /// Largest distances of H and E from their first values.
     pub(super) fn errors(&self) -> impl Iterator<Item = f64> + '_ {
-        self.drifts.iter().map(|drift| drift.largest)
+        self.drifts.iter().map(|drift| drift.first.map_or(f64::NAN, |_| drift.largest))
+    }
+}
+
+/// The smaller or larger of two numbers; not a number once one is none.
+fn extreme(of: f64, value: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
+    if of.is_nan() || value.is_nan() { f64::NAN } else { choose(of, value) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_lost_is_not_left_out() {
+        let mut drift = Drift::default();
+        for value in [1.0, 3.0, 2.0] {
+            drift.push(value);
+        }
+        assert_eq!(drift.largest.to_bits(), 2.0_f64.to_bits());
+        drift.push(f64::NAN);
+        drift.push(1.0);
+        assert!(drift.largest.is_nan() && extreme(f64::NAN, 1.0, f64::min).is_nan());
+        assert_eq!(extreme(f64::INFINITY, 1.0, f64::min).to_bits(), 1.0_f64.to_bits());
     }
 }

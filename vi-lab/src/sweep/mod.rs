@@ -28,10 +28,11 @@ mod shard;
 mod sink;
 mod study;
 
+use crate::place::beside;
 use clap::Args;
 use part::Growing;
 use shard::Shard;
-use sink::{Format, beside};
+use sink::Format;
 use std::env;
 use std::path::PathBuf;
 use study::Study;

@@ -9,6 +9,7 @@
 
 use super::shape::Shape;
 use super::shard::Shard;
+use crate::place;
 use core::num::NonZeroU64;
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
@@ -124,6 +125,9 @@ impl Growing {
     /// it cannot be read or written.
     pub(super) fn resume(path: &Path, heading: &Heading) -> Result<Self, Failure> {
         let failed = |error| Failure::file(path, error);
+        if path.exists() {
+            place::check_regular(path)?;
+        }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
@@ -188,6 +192,9 @@ impl Part {
     /// [`Failure::Input`] where the file is no part, [`Failure::File`] where it cannot be read.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
         let failed = |error| Failure::file(path, error);
+        if path.exists() {
+            place::check_regular(path)?;
+        }
         let file = File::open(path).map_err(failed)?;
         let length = file.metadata().map_err(failed)?.len();
         let mut reader = BufReader::with_capacity(1 << 16, file);

@@ -6,7 +6,7 @@
 
 use super::method::Method;
 use super::study::{Point, Run};
-use std::fs;
+use crate::place;
 use std::path::Path;
 use vi_report::failure::Failure;
 
@@ -22,8 +22,7 @@ pub(super) fn runs(path: &Path, system: &str) -> Result<Vec<Run>, Failure> {
     if path.file_stem().is_none_or(|stem| stem != system) {
         return Err(Failure::Input(format!("the runs of a rival on {system} stand in {system}.csv, not in {shown}")));
     }
-    let text = fs::read_to_string(path).map_err(|error| Failure::Input(format!("{shown}: {error}")))?;
-    parse(&text).map_err(|message| Failure::Input(format!("{shown}: {message}")))
+    parse(&place::text(path)?).map_err(|message| Failure::Input(format!("{shown}: {message}")))
 }
 
 /// The runs of a text, or what is wrong with which line.

@@ -129,6 +129,28 @@ impl Findings {
         seconds.min_by(f64::total_cmp)
     }
 
+    /// Why no method has a price, if none has.
+    pub(super) fn uncompared(&self) -> Option<String> {
+        let has_price = |method| PRICED.into_iter().any(|error| self.price(method, error).is_some());
+        if self.methods().any(has_price) {
+            return None;
+        }
+        let floor = self.agreement.floor();
+        Some(match self.missing() {
+            _ if floor.is_nan() => {
+                "errors are relative to the largest coordinate and momentum, and one of them is zero on the whole way"
+                    .to_owned()
+            }
+            _ if PRICED.into_iter().all(|error| error < floor) => format!(
+                "the reference at t = {} is known to {} only; give a start of a more regular motion with --q and --v",
+                self.until,
+                scientific(floor)
+            ),
+            reasons if reasons.is_empty() => format!("all errors are above {}", scientific(PRICED[0])),
+            reasons => reasons.join(" "),
+        })
+    }
+
     /// Who is the fastest, error by error, as prose.
     pub(super) fn winners(&self) -> String {
         let mut sentences = Vec::new();
@@ -295,6 +317,26 @@ mod tests {
         // The axis spans the three decades from 1e-15, with a margin of 4 % at both ends, over 596 pixels.
         assert!((places[0] - places[1] - 2.0 / (3.0 * 1.08) * 596.0).abs() < 0.02, "{places:?}");
         assert!(figure.csv.contains("\"energy-preserving\",1e-14,1e-3,2e-3\n"), "{}", figure.csv);
+    }
+
+    #[test]
+    fn why_nothing_can_be_compared_is_said() {
+        let found = findings();
+        assert_eq!(found.uncompared(), None);
+        let without = |is_kept: fn(&Run) -> bool| Findings {
+            runs: found.runs.iter().filter(|run| is_kept(run)).cloned().collect(),
+            ..found.clone()
+        };
+        // A run that ended, and one that lost the motion.
+        let why = without(|run| run.setting > 0.1 || run.setting < 0.05).uncompared().expect("nothing is compared");
+        assert!(why.contains("ended early; at h₀ = 0.2000: no energy-preserving step leads forward"), "{why}");
+        let lost = without(|run| run.setting < 0.05);
+        let of_agreement = |composed| Findings { agreement: Agreement { composed, ..found.agreement }, ..lost.clone() };
+        let why = of_agreement(0.3).uncompared().expect("nothing is compared");
+        assert!(why.starts_with("the reference at t = 10 is known to 0.300 only; "), "{why}");
+        let rest = Agreement { composed: f64::NAN, rival: f64::NAN, ..found.agreement };
+        let why = Findings { agreement: rest, ..lost }.uncompared().expect("nothing is compared");
+        assert!(why.ends_with("one of them is zero on the whole way"), "{why}");
     }
 
     #[test]

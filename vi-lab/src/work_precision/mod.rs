@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
 /// Makes the page and its files, and returns the price of an error as text, and where the page is.
 ///
 /// # Errors
-/// [`Failure::Input`] for a system that does not exist or whose motion cannot be followed, [`Failure::File`] where a file
+/// [`Failure::Input`] for a system that does not exist, whose motion cannot be followed, or on which no method can be compared, [`Failure::File`] where a file
 /// cannot be written.
 pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     let machine = Machine::here();
@@ -88,7 +88,14 @@ pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
         format!("What the figures do not show. {}", escape(&missing.join(" ")))
     });
     report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, or the tolerance of DOP853.")?;
-    Ok(format!("{}\n{}", found.prices().text(), report.finish(&machine)?.display()))
+    let page = report.finish(&machine)?;
+    match found.uncompared() {
+        None => Ok(format!("{}\n{}", found.prices().text(), page.display())),
+        Some(why) => Err(Failure::Input(format!(
+            "on {name} no run has an error to compare: {why}\n{} has all runs",
+            page.display()
+        ))),
+    }
 }
 
 /// The entry of the system, with the start that is asked for.

@@ -8,10 +8,10 @@ use std::thread::sleep;
 use std::time::Duration;
 
 /// A folder for one test, with a scene in it; it goes with the value.
-struct Folder(PathBuf);
+pub(super) struct Folder(PathBuf);
 
 impl Folder {
-    fn new(name: &str, scene: &str) -> Self {
+    pub(super) fn new(name: &str, scene: &str) -> Self {
         let folder = Self(temporary(name));
         fs::create_dir_all(&folder.0).expect("a folder");
         fs::write(folder.0.join("scene.toml"), scene).expect("a scene");
@@ -19,11 +19,17 @@ impl Folder {
     }
 
     /// A file in it.
-    fn at(&self, name: &str) -> String {
+    pub(super) fn at(&self, name: &str) -> String {
         path(&self.0.join(name)).to_owned()
     }
 
-    fn scene(&self) -> String {
+    /// A file with a text.
+    pub(super) fn file(&self, name: &str, text: &str) -> String {
+        fs::write(self.0.join(name), text).expect("the file is written");
+        self.at(name)
+    }
+
+    pub(super) fn scene(&self) -> String {
         self.at("scene.toml")
     }
 
@@ -31,7 +37,13 @@ impl Folder {
         fs::read(self.0.join(name)).expect("the file")
     }
 
-    fn text(&self, name: &str) -> String {
+    /// Whether a file is left that stood in for another.
+    fn has_temporary(&self) -> bool {
+        let files = fs::read_dir(&self.0).expect("the folder");
+        files.flatten().any(|file| file.file_name().to_string_lossy().contains(".tmp"))
+    }
+
+    pub(super) fn text(&self, name: &str) -> String {
         String::from_utf8(self.read(name)).expect("text")
     }
 
@@ -297,7 +309,7 @@ fn a_disk_that_is_full_keeps_the_chunks_before() {
     folder.sweep("full.csv", &["--shard", "0/1"]);
     let (status, errors) = run(&["merge", &part, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
-    assert!(errors.starts_with(&format!("error: {output}")) && !folder.0.join("full.csv.tmp").exists(), "{errors}");
+    assert!(errors.starts_with(&format!("error: {output}")) && !folder.has_temporary(), "{errors}");
     folder.sweep("full.csv", &[]);
     for table in ["", ".section", ".series"] {
         assert_eq!(folder.text(&format!("full{table}.csv")), folder.text(&format!("whole{table}.csv")));

@@ -516,6 +516,7 @@ const _: () = {
             q: &::vi_core::SVector<T, 10>,
             v: &::vi_core::SVector<T, 10>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
             let a = &self.acceleration(t, q, v)?.data.0[0];
             let v = &(*v).data.0[0];
             let q = &(*q).data.0[0];
@@ -584,7 +585,8 @@ const _: () = {
                 + sin1 * (1..10).fold(s4[0].1, |sum, i| sum + s4[i].1)
                     * real(0.3333333333333333)
                 - v[0] * (s12[0] - v[0] * (s9[0] * real(3.0) + s10[0]) - s11[0]);
-            ::core::result::Result::Ok(
+            ::vi_core::support::step_density(
+                time,
                 (0..8).fold(s17, |sum, i| sum - s15[i])
                     - v[9] * (s13[8] - v[9] * (s9[8] * real(3.0) + s10[9]) - s11[9])
                     + (1..10).fold(s16[0], |sum, i| sum + s16[i]) * cos1

@@ -250,6 +250,7 @@ const _: () = {
             q: &::vi_core::SVector<T, 2>,
             v: &::vi_core::SVector<T, 2>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
             let [q_0_ddot, q_1_ddot]: [T; 2] = self.acceleration(t, q, v)?.into();
             let [q_0_dot, q_1_dot]: [T; 2] = (*v).into();
             let [q_0, q_1]: [T; 2] = (*q).into();
@@ -337,7 +338,7 @@ const _: () = {
             let mut values = [T::real(0.0); 11];
             step_density_part_1(system, &inputs, &mut values);
             step_density_part_2(system, &inputs, &mut values);
-            ::core::result::Result::Ok(values[0])
+            ::vi_core::support::step_density(time, values[0])
         }
 
         #[inline]

@@ -10,8 +10,8 @@ mod parquet;
 
 use super::part::Description;
 use super::shape::Shape;
-use crate::place;
-use std::fs::{self, File};
+use crate::place::{self, Temporary, beside};
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
@@ -41,15 +41,6 @@ pub(super) struct Target {
     path: PathBuf,
     sink: Box<dyn Sink>,
     temporary: Temporary,
-}
-
-/// A file that is removed, where it has not been given its place.
-struct Temporary(PathBuf);
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
-    }
 }
 
 impl Format {
@@ -89,19 +80,19 @@ impl Target {
     /// [`Failure::File`] where it cannot be made.
     pub(super) fn create(path: &Path, study: &Description, shape: &Shape, rows: u64) -> Result<Self, Failure> {
         let format = Format::of(path)?;
-        let temporary = Temporary(beside(path, "tmp"));
-        let created = File::create(&temporary.0).and_then(|file| -> io::Result<Box<dyn Sink>> {
-            Ok(match format {
+        let created = Temporary::create(path).and_then(|(temporary, file)| -> io::Result<(Temporary, Box<dyn Sink>)> {
+            let sink: Box<dyn Sink> = match format {
                 Format::Csv => Box::new(csv::Csv::begin(file, study, shape)?),
                 Format::Npy => {
-                    fs::write(beside(path, "json"), npy::description(study, shape))?;
+                    place::replace(&beside(path, "json"), &npy::description(study, shape))?;
                     Box::new(npy::Npy::begin(file, shape, rows)?)
                 }
                 #[cfg(feature = "parquet")]
                 Format::Parquet => Box::new(parquet::Parquet::begin(file, study, shape)?),
-            })
+            };
+            Ok((temporary, sink))
         });
-        let sink = created.map_err(|error| Failure::file(path, error))?;
+        let (temporary, sink) = created.map_err(|error| Failure::file(path, error))?;
         Ok(Self { path: path.to_owned(), sink, temporary })
     }
 
@@ -119,15 +110,7 @@ impl Target {
     /// [`Failure::File`] where it cannot be written.
     pub(super) fn finish(self) -> Result<(), Failure> {
         let Self { path, sink, temporary } = self;
-        let finished = sink.finish().and_then(|file| file.sync_all()).and_then(|()| fs::rename(&temporary.0, &path));
+        let finished = sink.finish().and_then(|file| file.sync_all()).and_then(|()| temporary.finish());
         finished.map_err(|error| Failure::file(&path, error))
     }
-}
-
-/// A path with one more ending.
-pub(super) fn beside(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".");
-    name.push(ending);
-    PathBuf::from(name)
 }

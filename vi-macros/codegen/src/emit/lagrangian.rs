@@ -190,8 +190,9 @@ fn step_density(source: &Source, density: Expr) -> TokenStream {
             q: &::vi_core::SVector<T, #dimension>,
             v: &::vi_core::SVector<T, #dimension>,
         ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
             #inputs #statements
-            ::core::result::Result::Ok(#result)
+            ::vi_core::support::step_density(time, #result)
         }
     }
 }

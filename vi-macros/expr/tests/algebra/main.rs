@@ -3,6 +3,7 @@
 //! - `rules`: a table `input => output` of the canonical forms, and what the text of an expression looks like;
 //! - `derivatives`: every function against central differences;
 //! - `random`: random expressions against exact and floating-point dual numbers that know nothing of canonical forms;
+//! - `identities`: value and slope where an identity fails;
 //! - `limits`: deep, wide and huge expressions, and what has no value;
 //! - `rounding`: errors of values against identities;
 //! - `passes`: substitution, expansion and the queries.
@@ -10,6 +11,7 @@
 //! `notation` reads the text that the tables are written in; `tree` makes the random expressions.
 
 mod derivatives;
+mod identities;
 mod limits;
 mod notation;
 mod passes;

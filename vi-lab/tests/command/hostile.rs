@@ -1,0 +1,85 @@
+//! Inputs and files that are not what they seem.
+
+use super::lab;
+use super::sweep::Folder;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn control_characters_are_printed_as_escapes() {
+    let folder = Folder::new("escapes", "");
+    let told = |arguments: &[&str]| {
+        let (status, output, errors) = lab(arguments);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{errors:?}");
+        let is_raw = errors.contains(|letter: char| letter.is_control() && letter != '\n');
+        assert!(!is_raw && errors.contains("\\u{"), "{errors:?}");
+    };
+    for text in [
+        "system = \"\\u001b[31mred\"\n",
+        "system = \"kepler\"\n[parameters]\n\"\\u001b]0;title\\u0007\" = 1.0\n",
+        "system = \"kepler\"\n\"\\u009b2J\" = 1.0\n",
+        "system = \"kepler\"\nmethod = \"\\u001b[2Jfixed\\r\"\n",
+    ] {
+        told(&["run", &folder.file("scene.toml", text)]);
+    }
+    for command in ["run", "expand"] {
+        told(&[command, &folder.at("\u{1b}[31mno.toml")]);
+    }
+    // A mistake in a system shows its lines.
+    let text = "lagrangian! { struct P { coord x; L = dot(x)^2 / 2 + y; /* \u{1b}[31m */ discretize midpoint; } }";
+    let (status, output, errors) = lab(&["explain", &folder.file("system.rs", text)]);
+    assert!(status == Some(1) && !errors.contains('\u{1b}') && !output.contains('\u{1b}'), "{errors:?}");
+    assert!(errors.contains("\\u{1b}[31m"), "{errors:?}");
+}
+
+/// One run.
+const SWEEP: &str = "system = \"kepler\"\nsteps = 1\n[sweep]\nover = [{ name = \"mu\", values = [1.0] }]\n";
+
+#[test]
+fn what_is_read_must_be_a_file() {
+    let folder = Folder::new("pipes", SWEEP);
+    let pipe = |name: &str| {
+        let file = folder.at(name);
+        let made = Command::new("mkfifo").arg(&file).status().expect("mkfifo runs");
+        assert!(made.success());
+        file
+    };
+    let [scene, source, rival, part] = ["a.toml", "a.rs", "kepler.csv", "a.csv.0-of-1.part"].map(pipe);
+    let output = folder.at("a.csv");
+    // Each would wait for a writer for ever.
+    let cases: [(&[&str], &str); 8] = [
+        (&["run", &scene], &scene),
+        (&["sweep", &scene, "-o", &output], &scene),
+        (&["lyapunov", &scene], &scene),
+        (&["expand", &source], &source),
+        (&["explain", &source], &source),
+        (&["work-precision", "kepler", "--rival", &rival], &rival),
+        (&["merge", &part, "-o", &output], &part),
+        (&["sweep", &folder.scene(), "-o", &output], &part),
+    ];
+    for (arguments, file) in cases {
+        let (status, output, errors) = lab(arguments);
+        assert_eq!((status, output.as_str()), (Some(2), ""), "{arguments:?}");
+        assert_eq!(errors, format!("error: {file} is no regular file; give the name of one\n"), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_link_beside_an_output_is_not_followed() {
+    let folder = Folder::new("links", SWEEP);
+    let victim = folder.file("victim", "mine");
+    let link = |name: &str| symlink(&victim, folder.at(name)).expect("a link");
+    ["a.csv.tmp", "a.npy.tmp", "a.npy.json", "b.npy.json"].into_iter().for_each(link);
+    for arguments in [
+        ["sweep", &folder.scene(), "-o", &folder.at("a.csv")].as_slice(),
+        &["sweep", &folder.scene(), "-o", &folder.at("a.npy")],
+        &["run", "kepler", "--steps", "1", "-o", &folder.at("b.npy")],
+    ] {
+        let (status, _, errors) = lab(arguments);
+        assert_eq!((status, errors.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+    assert_eq!(folder.text("victim"), "mine");
+    let description = folder.text("b.npy.json");
+    assert!(description.contains("\"system\": \"Kepler\"") && !Path::new(&folder.at("b.npy.json")).is_symlink());
+}
