@@ -234,6 +234,16 @@ impl Real for Bounded {
         let larger = if self.value >= other.value { self } else { other };
         Self { error: self.error.max(other.error), ..larger }
     }
+    /// Where the base may be zero or not, nothing is known.
+    fn zero_where(self, base: Self, _derivatives: u8) -> Self {
+        let value = if base.value == 0.0 { 0.0 } else { self.value };
+        let error = match (base.value == 0.0, base.is_seen()) {
+            (true, _) if base.error == 0.0 => 0.0,
+            (false, true) => self.error,
+            _ => f64::INFINITY,
+        };
+        Self { value, error }
+    }
     fn is_finite(self) -> bool {
         self.value.is_finite()
     }

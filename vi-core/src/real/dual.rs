@@ -291,13 +291,22 @@ impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
         let value = self.value.pow(exponent.value);
         let by_base = self.slope.chain(exponent.value * self.value.pow(exponent.value - T::one()));
         // A fixed exponent needs no logarithm, which a base below zero does not have.
-        if exponent.slope.is_zero() {
+        // Neither does x^y ln x at x = 0, which is 0 as x^y is.
+        if exponent.slope.is_zero() || value.is_zero() {
             return Self { value, slope: by_base };
         }
         Self { value, slope: by_base + exponent.slope.chain(value * self.value.ln()) }
     }
     fn max(self, other: Self) -> Self {
         if self.value.to_f64() >= other.value.to_f64() { self } else { other }
+    }
+    fn zero_where(self, base: Self, derivatives: u8) -> Self {
+        if base.to_f64() != 0.0 {
+            return self;
+        }
+        let zero = T::zero();
+        let factor = derivatives.checked_sub(1).map_or(T::real(f64::NAN), |others| zero.zero_where(zero, others));
+        Self { value: zero.zero_where(zero, derivatives), slope: D::zero().times(factor) }
     }
     fn is_positive(self) -> bool {
         self.value.is_positive()
