@@ -350,6 +350,15 @@ mod tests {
     }
 
     #[test]
+    fn a_limit_is_known_where_its_base_is() {
+        let infinite = Bounded::exact(f64::INFINITY);
+        assert_eq!(infinite.zero_where(Bounded::exact(0.0), 0), Bounded::exact(0.0));
+        assert_eq!(Bounded::once(0.1).zero_where(Bounded::once(0.3), 0), Bounded::once(0.1));
+        let doubtful = |value| Bounded { value, error: 1e-3 };
+        assert!([0.0, 1e-4].into_iter().all(|value| !infinite.zero_where(doubtful(value), 0).is_seen()));
+    }
+
+    #[test]
     fn nothing_is_known_where_a_denominator_may_be_zero() {
         let doubtful = Bounded { value: 1e-3, error: 1e-3 };
         for result in [doubtful.recip(), doubtful.ln(), Bounded::exact(1.0) / doubtful] {

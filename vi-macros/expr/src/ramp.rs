@@ -1,7 +1,7 @@
 //! Ramps: what is zero on one side of a point and starts there.
 //!
 //! In: `c |u| ± c u`, and products of such. Out: `c u (sign(u) ± 1)`, the same number wherever it is evaluated, but exactly 0 on
-//! one side however u is rounded, and with a derivative whose factor `sign(u) ± 1` is 0 there too.
+//! one side however u is rounded, and with a derivative whose factor `sign(u) ± 1` is 0 there too. Of a symbol u both hold as it is.
 
 use std::hash::Hash;
 
@@ -26,8 +26,8 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let shared = self.shared_node(expr);
         let Node::Sum(sum) = &*shared else { return expr };
         for (term, coefficient) in &sum.terms {
-            let Some((argument, factors)) = self.absolute_value(*term) else { continue };
-            let odd = self.powers(factors);
+            let Some((argument, mut factors)) = self.absolute_value(*term) else { continue };
+            let odd = self.powers(factors.clone());
             let odd = self.scale(odd, coefficient);
             let rest = self.combination([(expr, Rational::one()), (*term, -coefficient.clone())]);
             let opposite = self.neg(odd);
@@ -35,7 +35,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 let side = if rest == odd { Rational::one() } else { -Rational::one() };
                 let sign = self.call(Function::Sign, &[argument]);
                 let jump = self.combination([(sign, Rational::one()), (Expr::ONE, side)]);
-                return self.mul(odd, jump);
+                factors.push((jump, Rational::one()));
+                let ramp = self.powers(factors);
+                return self.scale(ramp, coefficient);
             }
         }
         expr
@@ -51,7 +53,8 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             .iter_mut()
             .find(|(base, exponent)| exponent.is_one() && matches!(self.node(*base), Node::Call(Function::Abs, _)))?;
         let Node::Call(_, arguments) = self.node(*base) else { return None };
-        *base = *arguments.first()?;
-        Some((*base, factors))
+        let argument = arguments.first().filter(|argument| !matches!(self.node(**argument), Node::Symbol(_)))?;
+        *base = *argument;
+        Some((*argument, factors))
     }
 }
