@@ -241,12 +241,12 @@ fn where_the_forces_are_finite_and_the_energy_is_not_no_energy_is_told() {
 }
 
 lagrangian! {
-    /// A drag whose slope has no value at rest, so far as its formula goes.
+    /// A drag whose slope is infinite at rest.
     struct Drag {
         param c = 0.3;
         coord x;
         L = dot(x)^2 / 2 - x^2 / 2;
-        force x = -c * abs(dot(x))^(1/2) * dot(x);
+        force x = -c * abs(dot(x))^(1/2) * sign(dot(x));
         discretize midpoint;
     }
 }

@@ -11,6 +11,7 @@ mod extremes;
 mod flow;
 mod forms;
 mod integrators;
+mod limits;
 mod loops;
 mod orders;
 mod predicted;

@@ -128,6 +128,13 @@ pub trait Real:
     /// The larger of two numbers.
     #[must_use]
     fn max(self, other: Self) -> Self;
+    /// The number itself, and 0 where `base` is zero: the limit of a product whose factors are zero and infinite there.
+    /// So many of its derivatives have the limit 0 too; of a derivative beyond these, numbers that carry one know nothing.
+    #[must_use]
+    #[inline(always)]
+    fn zero_where(self, base: Self, _derivatives: u8) -> Self {
+        if base.is_zero() { Self::zero() } else { self }
+    }
     /// Whether it is finite.
     fn is_finite(self) -> bool;
     /// Whether it is above zero.

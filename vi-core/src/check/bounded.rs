@@ -234,6 +234,16 @@ impl Real for Bounded {
         let larger = if self.value >= other.value { self } else { other };
         Self { error: self.error.max(other.error), ..larger }
     }
+    /// Where the base may be zero or not, nothing is known.
+    fn zero_where(self, base: Self, _derivatives: u8) -> Self {
+        let value = if base.value == 0.0 { 0.0 } else { self.value };
+        let error = match (base.value == 0.0, base.is_seen()) {
+            (true, _) if base.error == 0.0 => 0.0,
+            (false, true) => self.error,
+            _ => f64::INFINITY,
+        };
+        Self { value, error }
+    }
     fn is_finite(self) -> bool {
         self.value.is_finite()
     }
@@ -337,6 +347,15 @@ mod tests {
         let nothing = tenth * Bounded::real(3.0) - Bounded::real(0.3);
         assert!(nothing.value != 0.0 && !nothing.is_seen(), "{nothing:?}");
         assert!(Bounded::real(0.5).error == 0.0 && tenth.error > 0.0);
+    }
+
+    #[test]
+    fn a_limit_is_known_where_its_base_is() {
+        let infinite = Bounded::exact(f64::INFINITY);
+        assert_eq!(infinite.zero_where(Bounded::exact(0.0), 0), Bounded::exact(0.0));
+        assert_eq!(Bounded::once(0.1).zero_where(Bounded::once(0.3), 0), Bounded::once(0.1));
+        let doubtful = |value| Bounded { value, error: 1e-3 };
+        assert!([0.0, 1e-4].into_iter().all(|value| !infinite.zero_where(doubtful(value), 0).is_seen()));
     }
 
     #[test]

@@ -291,13 +291,22 @@ impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
         let value = self.value.pow(exponent.value);
         let by_base = self.slope.chain(exponent.value * self.value.pow(exponent.value - T::one()));
         // A fixed exponent needs no logarithm, which a base below zero does not have.
-        if exponent.slope.is_zero() {
+        // Neither does x^y ln x at x = 0, which is 0 as x^y is.
+        if exponent.slope.is_zero() || value.is_zero() {
             return Self { value, slope: by_base };
         }
         Self { value, slope: by_base + exponent.slope.chain(value * self.value.ln()) }
     }
     fn max(self, other: Self) -> Self {
         if self.value.to_f64() >= other.value.to_f64() { self } else { other }
+    }
+    fn zero_where(self, base: Self, derivatives: u8) -> Self {
+        if base.to_f64() != 0.0 {
+            return self;
+        }
+        let zero = T::zero();
+        let factor = derivatives.checked_sub(1).map_or(T::real(f64::NAN), |others| zero.zero_where(zero, others));
+        Self { value: zero.zero_where(zero, derivatives), slope: D::zero().times(factor) }
     }
     fn is_positive(self) -> bool {
         self.value.is_positive()
@@ -310,5 +319,50 @@ impl<T: Real, D: Slope<T>> Real for Dual<T, D> {
     }
     fn to_f64(self) -> f64 {
         self.value.to_f64()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::{Lane, Lanes, Rounded, Series};
+
+    /// Value, slope, and the slope of the slope of what is zero where a base is.
+    fn parts(derivatives: u8, base: f64) -> [f64; 3] {
+        type Second = Dual<Dual<f64>>;
+        let number = |value| Second { value: Dual { value, slope: 2.0 }, slope: Dual { value: 3.0, slope: 4.0 } };
+        let limit = number(f64::NAN).zero_where(number(base), derivatives);
+        [limit.value.value, limit.slope.value, limit.slope.slope]
+    }
+
+    #[test]
+    fn a_limit_has_the_derivatives_that_vanish_with_it() {
+        let known = |derivatives| parts(derivatives, 0.0).map(|part| part == 0.0);
+        assert_eq!(known(0), [true, false, false]);
+        assert_eq!(known(1), [true, true, false]);
+        assert_eq!([known(2), known(u8::MAX)], [[true; 3]; 2]);
+        assert!(parts(2, 1e-300)[0].is_nan());
+        assert!(Dual::variable(f64::NAN).zero_where(Dual::variable(0.0), 0).slope.is_nan());
+    }
+
+    #[test]
+    fn every_number_takes_the_limit() {
+        let infinite = Rounded::exact(f64::INFINITY).zero_where(Rounded::nearest(0.0), 0);
+        assert_eq!((infinite.to_f64(), infinite.error()), (0.0, 0.0));
+        let series = Series::variable(f64::NAN);
+        assert_eq!(series.zero_where(Series::fixed(0.0), 0), Series::fixed(0.0));
+        let limit = series.zero_where(Series::variable(0.0), 2);
+        assert_eq!(limit.truncated(2), Series::fixed(0.0));
+        assert!(limit.derivative(3).is_nan());
+        assert_eq!(Lane::<true>::new(f64::NAN).zero_where(Lane::new(-0.0), 0).get(), 0.0);
+        assert_eq!(Lanes::<2, false>([f64::NAN, 3.0]).zero_where(Lanes([0.0, 1.0]), 0).0, [0.0, 3.0]);
+        assert_eq!(f32::NAN.zero_where(0.0, 0), 0.0);
+    }
+
+    #[test]
+    fn a_power_of_zero_does_not_change_with_its_exponent() {
+        let power = Dual::fixed(0.0).pow(Dual::variable(1.5));
+        assert_eq!((power.value, power.slope), (0.0, 0.0));
+        assert!(!Real::is_finite(Dual::fixed(0.0).pow(Dual::variable(-0.5))));
     }
 }

@@ -159,6 +159,11 @@ impl<const FUSED: bool> Real for Lane<FUSED> {
         (Self::new(s), Self::new(c))
     }
     #[inline(always)]
+    fn zero_where(self, base: Self, _derivatives: u8) -> Self {
+        // A choice between numbers, and no branch.
+        Self::new(if base.get() == 0.0 { 0.0 } else { self.get() })
+    }
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.get().is_finite()
     }

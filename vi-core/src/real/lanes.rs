@@ -137,6 +137,10 @@ impl<const W: usize, const FUSED: bool> Real for Lanes<W, FUSED> {
         (sines, cosines)
     }
     #[inline(always)]
+    fn zero_where(self, base: Self, _derivatives: u8) -> Self {
+        self.pairs(base, |number, base| if base == 0.0 { 0.0 } else { number })
+    }
+    #[inline(always)]
     fn is_finite(self) -> bool {
         self.all(f64::is_finite)
     }

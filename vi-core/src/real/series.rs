@@ -244,6 +244,14 @@ impl Real for Series {
     fn max(self, other: Self) -> Self {
         if self.value() >= other.value() { self } else { other }
     }
+    /// Of a base that does not change the limit holds along the motion; else as many terms are known as derivatives.
+    fn zero_where(self, base: Self, derivatives: u8) -> Self {
+        if base.value() != 0.0 {
+            return self;
+        }
+        let known = if base.is_fixed() { TERMS } else { usize::from(derivatives) };
+        Self::from_fn(|k| if k <= known { 0.0 } else { f64::NAN })
+    }
     fn is_finite(self) -> bool {
         self.terms.iter().all(|term| term.is_finite())
     }

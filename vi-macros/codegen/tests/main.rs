@@ -11,3 +11,4 @@ mod operations;
 mod reference;
 mod rules;
 mod scope;
+mod vanishing;

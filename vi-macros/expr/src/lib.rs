@@ -33,7 +33,7 @@
 //! | `effort` | work, counted and bounded |
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
-//! | `derivative`, `substitute`, `expand` | new expressions from old |
+//! | `derivative`, `substitute`, `expand`, `ramp` | new expressions from old |
 //! | `evaluate`, `rounding`, `render` | values, values with their errors, text |
 //!
 //! No pass recurses: children are older than parents, so each is a loop in the order of creation.
@@ -49,6 +49,7 @@ mod node;
 mod number;
 mod pool;
 mod product;
+mod ramp;
 mod render;
 mod rounding;
 mod substitute;

@@ -86,24 +86,29 @@ impl Formula {
                 let inner = a.within(Atom);
                 Self { tokens: quote!(-#inner), binding: Negative, operations: a.operations + 1 }
             }
-            Operation::SquareRoot(a) => Self::method(&operand(*a), "sqrt", None),
-            Operation::Reciprocal(a) => Self::method(&operand(*a), "recip", None),
+            Operation::SquareRoot(a) => Self::method(&operand(*a), "sqrt", &[]),
+            Operation::Reciprocal(a) => Self::method(&operand(*a), "recip", &[]),
             // The methods of `Real` are named as the functions of the language are.
-            Operation::Call(function, a) => Self::method(&operand(*a), function.name(), None),
+            Operation::Call(function, a) => Self::method(&operand(*a), function.name(), &[]),
             Operation::Call2(function, a, b) => {
                 let (a, b) = (operand(*a), operand(*b));
-                Self::method(&a, function.name(), Some(&b))
+                Self::method(&a, function.name(), &[b])
+            }
+            Operation::ZeroWhere(a, b, derivatives) => {
+                let derivatives = Literal::u8_unsuffixed(*derivatives);
+                let (a, b) = (operand(*a), operand(*b));
+                Self::method(&a, "zero_where", &[b, Self::atom(quote!(#derivatives), 0)])
             }
             // Inputs are named by the caller.
             Operation::Input(_) => Self::constant(f64::NAN),
         }
     }
 
-    fn method(on: &Self, name: &str, argument: Option<&Self>) -> Self {
+    fn method(on: &Self, name: &str, arguments: &[Self]) -> Self {
         let (receiver, name) = (on.within(Binding::Atom), format_ident!("{name}"));
-        let tokens = argument.map(Self::tokens);
-        let operations = on.operations + argument.map_or(0, |argument| argument.operations) + 1;
-        Self::atom(quote!(#receiver.#name(#tokens)), operations)
+        let tokens = arguments.iter().map(Self::tokens);
+        let operations = on.operations + arguments.iter().map(|argument| argument.operations).sum::<usize>() + 1;
+        Self::atom(quote!(#receiver.#name(#(#tokens),*)), operations)
     }
 }
 

@@ -39,6 +39,7 @@ fn function(derived: &Derived, of: &Function) -> String {
             Operation::Reciprocal(a) => format!("1 / {}", operand(a)),
             Operation::Call(called, a) => format!("{}({})", called.name(), operand(a)),
             Operation::Call2(called, a, b) => format!("{}({}, {})", called.name(), operand(a), operand(b)),
+            Operation::ZeroWhere(a, b, _) => format!("{}, or 0 where {} = 0", operand(a), operand(b)),
         };
         if operation.is_work() {
             worked += 1;

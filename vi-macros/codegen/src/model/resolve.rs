@@ -128,7 +128,7 @@ impl Scope {
             Kind::Negative(operand) => self.value(pool, operand)?.map(|operand| pool.neg(operand)),
             Kind::Power(base, exponent) => {
                 let operands = self.each_of(pool, [&**base, exponent], Self::expression)?;
-                Value::Number(pool.call(Function::Pow, &operands))
+                Value::Number(power(pool, operands[0], operands[1]))
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
         };
@@ -361,8 +361,12 @@ impl Scope {
         }
         let values = self.each_of(pool, arguments, Self::expression)?;
         Ok(Value::Number(match known {
+            Some(Function::Pow) => power(pool, values[0], values[1]),
             Some(function) => pool.call(function, &values),
-            None => pool.power(values[0], &Rational::new(1.into(), 2.into())),
+            None => {
+                let half = pool.number(Rational::new(1.into(), 2.into()));
+                power(pool, values[0], half)
+            }
         }))
     }
 
@@ -473,6 +477,13 @@ fn is_nothing(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
     let is_constant = !pool.depends_on(divisor, &|_| true);
     let values = if is_constant { pool.evaluate_rounded(&[divisor], &mut |_| f64::NAN) } else { Vec::new() };
     values.first().is_some_and(|found| found.value.abs() <= found.error)
+}
+
+/// `base^exponent`. A root that starts at a point gets the form of its base that is exactly zero before it.
+fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr {
+    let is_root = !pool.as_number(exponent).is_some_and(Rational::is_integer);
+    let base = if is_root { pool.with_ramps(base) } else { base };
+    pool.call(Function::Pow, &[base, exponent])
 }
 
 /// L or a component of f itself, at a point of the rule.

@@ -7,8 +7,8 @@ use super::lowering::{Known, Lowering};
 use super::results::{FunctionId, Output, Results};
 use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
-use super::{Function, Program};
-use crate::discrete::{DiscreteSystem, Fields, TimeScale};
+use super::{Function, Program, vanishing};
+use crate::discrete::{Continuous, DiscreteSystem, Fields, TimeScale};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
@@ -57,7 +57,10 @@ impl<'a> Assembly<'a> {
                 arguments.insert((index, variable), step_velocity(pool, argument).unwrap_or(argument));
             }
         }
-        Self { pool, fields: &system.fields, arguments, known: Known::default() }
+        let Continuous { lagrangian, force, .. } = &system.continuous;
+        let sources: Vec<Expr> = [lagrangian].into_iter().chain(force).copied().collect();
+        let known = Known { products: vanishing::Known::of(pool, &sources), ..Known::default() };
+        Self { pool, fields: &system.fields, arguments, known }
     }
 
     /// An expression without fields: derivatives of L and f at the points, whose arguments stay closed unless they
@@ -85,7 +88,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn rounding_scales(&mut self, exprs: &[Expr]) -> Vec<Expr> {
-        exprs.iter().map(|expr| rounding_scale(self.pool, *expr)).collect()
+        exprs.iter().map(|expr| rounding_scale(self.pool, &mut self.known.products, *expr)).collect()
     }
 
     /// A function that computes these quantities, each given by its rows.

@@ -8,6 +8,7 @@
 use super::lowering::{Dependence, Factor, Known, Lowering, SumForm};
 use super::operations::{Operation, OperationId, Operations};
 use super::results::Results;
+use super::vanishing::{ALL, Limits};
 use crate::symbol::Symbol;
 use num_traits::{One, Signed, Zero};
 use vi_expr::{Expr, Node, Rational, Sum};
@@ -212,9 +213,32 @@ impl Lowering<'_> {
         }
     }
 
-    /// coefficient·Π base^exponent.
+    /// coefficient·Π base^exponent, zero where that is its limit.
     fn product(&mut self, factors: &[(Expr, Rational)], coefficient: &Rational) -> OperationId {
-        let mut gathered = Gathered { number: Self::number(coefficient), ..Gathered::default() };
+        let Some(Limits { vanishing, others, steps }) = self.known.products.limits(self.pool, factors) else {
+            return self.product_with(factors, coefficient, Vec::new());
+        };
+        let values = vanishing.into_iter().map(|limit| {
+            let product = self.product_with(&limit.factors, &Rational::one(), Vec::new());
+            let base = self.value(limit.base);
+            self.operations.add(Operation::ZeroWhere(product, base, limit.derivatives))
+        });
+        let values = values.collect();
+        let product = self.product_with(&others, coefficient, values);
+        steps.into_iter().fold(product, |product, step| {
+            let step = self.value(step);
+            self.operations.add(Operation::ZeroWhere(product, step, ALL))
+        })
+    }
+
+    /// coefficient·Π base^exponent·Π varying.
+    fn product_with(
+        &mut self,
+        factors: &[(Expr, Rational)],
+        coefficient: &Rational,
+        varying: Vec<OperationId>,
+    ) -> OperationId {
+        let mut gathered = Gathered { number: Self::number(coefficient), varying, ..Gathered::default() };
         for (base, exponent) in factors {
             self.gather(&mut gathered, *base, exponent);
         }

@@ -2,9 +2,10 @@
 //!
 //! In: the pool, the arguments of the points, and what was found out about expressions for other functions. Out: a [`Lowering`], whose
 //! passes stand in files of their own: `lower` takes expressions apart, `sums` says how a sum is written, `powers` what becomes of
-//! exponents, `angles` of sines.
+//! exponents, `angles` of sines, `vanishing` of products whose factors are zero and infinite.
 
 use super::operations::{OperationId, Operations};
+use super::vanishing;
 use crate::symbol::{Symbol, Variable};
 use num_traits::{Signed, ToPrimitive};
 use std::collections::BTreeMap;
@@ -30,6 +31,7 @@ pub(super) struct Known {
     /// Values of expressions that depend on nothing.
     pub(super) numbers: Table<Expr, f64>,
     pub(super) sum_forms: Table<Expr, SumForm>,
+    pub(super) products: vanishing::Known,
 }
 
 /// The lowering of one function.

@@ -15,6 +15,7 @@ mod powers;
 mod results;
 mod rounding_scale;
 mod sums;
+mod vanishing;
 mod verify;
 
 pub use assemble::program;

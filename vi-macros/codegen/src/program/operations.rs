@@ -47,6 +47,8 @@ pub enum Operation {
     Call(Function, OperationId),
     /// A function of two operands.
     Call2(Function, OperationId, OperationId),
+    /// a, and 0 where b is 0; there so many of its derivatives are 0 too
+    ZeroWhere(OperationId, OperationId, u8),
 }
 
 /// Operations, operands before results.
@@ -186,6 +188,10 @@ impl Operations {
                 (_, Some(1.0)) => Some(*a),
                 _ => None,
             },
+            Operation::ZeroWhere(a, b, derivatives) => match self.get(*b) {
+                Negate(b) => Some(self.add(Operation::ZeroWhere(*a, *b, *derivatives))),
+                _ => None,
+            },
             _ => None,
         }
     }
@@ -201,7 +207,8 @@ impl Operation {
             | Self::Subtract(a, b)
             | Self::Multiply(a, b)
             | Self::Divide(a, b)
-            | Self::Call2(_, a, b) => (Some(*a), Some(*b)),
+            | Self::Call2(_, a, b)
+            | Self::ZeroWhere(a, b, _) => (Some(*a), Some(*b)),
         };
         first.into_iter().chain(second)
     }
@@ -220,6 +227,7 @@ impl Operation {
             Self::Reciprocal(_) => Self::Reciprocal(none),
             Self::Call(function, _) => Self::Call(*function, none),
             Self::Call2(function, ..) => Self::Call2(*function, none, none),
+            Self::ZeroWhere(_, _, derivatives) => Self::ZeroWhere(none, none, *derivatives),
         }
     }
 
@@ -234,7 +242,7 @@ impl Operation {
     pub fn cost(&self) -> usize {
         match self {
             Self::Constant(_) | Self::Input(_) => 0,
-            Self::Negate(_) | Self::Add(..) | Self::Subtract(..) | Self::Multiply(..) => 1,
+            Self::Negate(_) | Self::Add(..) | Self::Subtract(..) | Self::Multiply(..) | Self::ZeroWhere(..) => 1,
             Self::Divide(..) | Self::SquareRoot(_) | Self::Reciprocal(_) => 4,
             Self::Call(..) | Self::Call2(..) => 12,
         }

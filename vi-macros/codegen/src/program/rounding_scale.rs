@@ -1,8 +1,10 @@
 //! The rounding scale of a residual: what it is a sum of.
 //!
 //! In: a residual r. Out: Σ |coefficient|·|term|, where a sum inside a term counts term by term too, down to [`DEPTH`] levels. A residual
-//! below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out.
+//! below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out. A product that has a limit where
+//! a factor is infinite counts as a whole.
 
+use super::vanishing::Known;
 use crate::symbol::Symbol;
 use num_traits::{One, Signed, Zero};
 use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
@@ -11,38 +13,40 @@ use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
 const DEPTH: u32 = 4;
 
 /// The sum of the absolute values of the terms of an expression.
-pub(super) fn rounding_scale(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
-    term_by_term(pool, expr, DEPTH)
+pub(super) fn rounding_scale(pool: &mut Pool<Symbol>, known: &mut Known, expr: Expr) -> Expr {
+    term_by_term(pool, known, expr, DEPTH)
 }
 
-fn term_by_term(pool: &mut Pool<Symbol>, expr: Expr, depth: u32) -> Expr {
+fn term_by_term(pool: &mut Pool<Symbol>, known: &mut Known, expr: Expr, depth: u32) -> Expr {
     match pool.node(expr).clone() {
-        Node::Sum(sum) if depth > 0 => terms(pool, &sum, depth - 1),
-        Node::Product(product) => factors(pool, &product, depth),
+        Node::Sum(sum) if depth > 0 => terms(pool, known, &sum, depth - 1),
+        Node::Product(product) if known.limits(pool, &product.factors).is_none() => {
+            factors(pool, known, &product, depth)
+        }
         _ => absolute(pool, expr),
     }
 }
 
-fn terms(pool: &mut Pool<Symbol>, sum: &Sum, depth: u32) -> Expr {
+fn terms(pool: &mut Pool<Symbol>, known: &mut Known, sum: &Sum, depth: u32) -> Expr {
     let mut found = vec![pool.number(sum.constant.abs())];
     for (expr, coefficient) in &sum.terms {
         if is_low(pool, *expr) {
             continue;
         }
-        let absolute = term_by_term(pool, *expr, depth);
+        let absolute = term_by_term(pool, known, *expr, depth);
         found.push(pool.scale(absolute, &coefficient.abs()));
     }
     pool.sum(&found)
 }
 
 /// The product of the scales of its factors: of a sum s to the power n `n |s|^(n−1)` times that of s, by which it changes.
-fn factors(pool: &mut Pool<Symbol>, product: &Product, depth: u32) -> Expr {
+fn factors(pool: &mut Pool<Symbol>, known: &mut Known, product: &Product, depth: u32) -> Expr {
     let (mut sums, mut others) = (Vec::new(), Vec::new());
     for (base, exponent) in &product.factors {
         let is_power_of_sum =
             matches!(pool.node(*base), Node::Sum(_)) && exponent.is_integer() && exponent.is_positive();
         if is_power_of_sum {
-            let scale = term_by_term(pool, *base, depth);
+            let scale = term_by_term(pool, known, *base, depth);
             sums.push(pool.scale(scale, exponent));
             others.push(pool.power(*base, &(exponent - Rational::one())));
         } else {

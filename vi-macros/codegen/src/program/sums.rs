@@ -66,7 +66,9 @@ impl Lowering<'_> {
     fn common_factor(&mut self, sum: &Sum) -> Option<SumForm> {
         let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
         let varies = sum.terms.iter().any(|(term, _)| self.dependence(*term) > Dependence::Parameters);
-        for (term, _) in &sum.terms {
+        // A term that is zero in the limit of all its factors keeps them.
+        let (whole, terms): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| self.has_limit(*term));
+        for (term, _) in &terms {
             for base in self.bases(*term) {
                 if !varies || self.dependence(base) > Dependence::Parameters {
                     *counts.entry(base).or_default() += 1;
@@ -80,16 +82,16 @@ impl Lowering<'_> {
         if count < 2 {
             return None;
         }
-        let exponents = sum.terms.iter().filter_map(|(term, _)| self.exponent(*term, base));
+        let exponents = terms.iter().filter_map(|(term, _)| self.exponent(*term, base));
         let exponent = exponents.min().unwrap_or_else(Rational::one);
         let inverse = self.pool.power(base, &-exponent.clone());
-        let (mut inside, mut rest) = (Vec::new(), Sum { constant: sum.constant.clone(), terms: Vec::new() });
-        for (term, coefficient) in &sum.terms {
-            if self.exponent(*term, base).is_some() {
-                let scaled = self.pool.scale(*term, coefficient);
+        let (mut inside, mut rest) = (Vec::new(), Sum { constant: sum.constant.clone(), terms: whole });
+        for (term, coefficient) in terms {
+            if self.exponent(term, base).is_some() {
+                let scaled = self.pool.scale(term, &coefficient);
                 inside.push(self.pool.mul(scaled, inverse));
             } else {
-                rest.terms.push((*term, coefficient.clone()));
+                rest.terms.push((term, coefficient));
             }
         }
         let factor = self.pool.power(base, &exponent);
@@ -98,6 +100,12 @@ impl Lowering<'_> {
         }
         let (inside, rest) = (self.pool.sum(&inside), self.pool_sum(&rest));
         Some(SumForm::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
+    }
+
+    /// Whether a term is a product with a limit where a factor is infinite.
+    fn has_limit(&mut self, term: Expr) -> bool {
+        let Node::Product(product) = self.pool.node(term).clone() else { return false };
+        self.known.products.limits(self.pool, &product.factors).is_some()
     }
 
     /// Whether a bare sum is among the terms: it would dissolve in their sum, and its differences with it. e²/2 + e³/3 stays as

@@ -93,6 +93,13 @@ impl Function {
                 Operation::Reciprocal(a) => of(a).recip(),
                 Operation::Call(function, a) => function.value(of(a), 0.0),
                 Operation::Call2(function, a, b) => function.value(of(a), of(b)),
+                Operation::ZeroWhere(a, b, _) => {
+                    if of(b) == 0.0 {
+                        0.0
+                    } else {
+                        of(a)
+                    }
+                }
             };
             values.insert(id, value);
         }

@@ -178,6 +178,25 @@ fn functions() {
 }
 
 #[test]
+fn ramps() {
+    for (sum, product) in [
+        ("abs(x - y) - x + y", "(x - y)*(sign(x - y) - 1)"),
+        ("3*abs(x - y)/2 + 3*(x - y)/2", "(x - y)*(sign(x - y) + 1)*(3/2)"),
+        ("z*abs(x*y) - z*x*y", "x*y*z*(sign(x*y) - 1)"),
+        ("z*(abs(x + 1) + x + 1)", "z*(x + 1)*(sign(x + 1) + 1)"),
+        // A symbol is as good as it is; the others are no ramps.
+        ("abs(x) - x", "abs(x) - x"),
+        ("abs(x - y) - x - y", "abs(x - y) - x - y"),
+        ("abs(x - y) - 2*(x - y)", "abs(x - y) - 2*(x - y)"),
+        ("abs(x - y)", "abs(x - y)"),
+    ] {
+        let mut pool = Pool::new();
+        let (expr, wanted) = (read(&mut pool, sum), read(&mut pool, product));
+        assert_eq!(pool.with_ramps(expr), wanted, "{sum}");
+    }
+}
+
+#[test]
 fn without_a_value() {
     check(
         "1/0 => 1/0
