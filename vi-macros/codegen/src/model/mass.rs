@@ -69,7 +69,7 @@ fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Vec<Expr
             mass[column * dimension + row] = entry;
         }
     }
-    mass
+    pool.collect_constants(&mass)
 }
 
 /// Whether M is singular at every probe at which it has a value, and has one at some.

@@ -27,8 +27,6 @@ pub(super) enum Dependence {
 #[derive(Default)]
 pub(super) struct Known {
     pub(super) dependences: Table<Expr, Dependence>,
-    /// Values of expressions that depend on nothing.
-    pub(super) numbers: Table<Expr, f64>,
     pub(super) sum_forms: Table<Expr, SumForm>,
 }
 
