@@ -64,14 +64,25 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
         let mut parts = Vec::new();
         for Group { factor, terms, constants } in groups {
-            if terms.len() == 1 {
-                parts.extend(terms);
-                continue;
-            }
+            let is_rounded = match constants.as_slice() {
+                // Rounded with the coefficient where it is out of the range of numbers alone.
+                [(constant, _)] if self.constant(*constant).is_ok() => {
+                    parts.extend(terms);
+                    continue;
+                }
+                [_] => true,
+                _ => factor == Expr::ONE,
+            };
             let constant = self.combination(constants);
-            parts.push((self.collected_term(constant, factor), Rational::one()));
+            let constant = if is_rounded { self.rounded(constant) } else { self.signed(constant) };
+            parts.push((self.mul(constant, factor), Rational::one()));
         }
         self.combination(parts)
+    }
+
+    /// A product without its constant factors; 1 for a constant that is no exact number.
+    pub fn without_constants(&mut self, expr: Expr) -> Expr {
+        if self.has_irrational && self.has_constant(expr) { self.split(expr, &|child| child).1 } else { expr }
     }
 
     /// Constant and symbolic factor of a term.
@@ -89,18 +100,20 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         (constant, self.powers(symbolic.into_iter().map(|(base, exponent)| (new(base), exponent))))
     }
 
-    /// `constant·factor`, a constant alone rounded.
-    fn collected_term(&mut self, constant: Expr, factor: Expr) -> Expr {
-        if factor != Expr::ONE {
-            return match self.constant_sign(constant) {
-                Ok(Ordering::Equal) => Expr::ZERO,
-                Ok(_) => self.mul(constant, factor),
-                Err(_) => Expr::UNDEFINED,
-            };
-        }
+    /// A constant as the nearest `f64`.
+    fn rounded(&mut self, constant: Expr) -> Expr {
         match self.constant(constant).ok().and_then(Rational::from_float) {
             Some(number) => self.number(number),
             None => Expr::UNDEFINED,
+        }
+    }
+
+    /// A constant as it is, 0 if its terms cancel.
+    fn signed(&mut self, constant: Expr) -> Expr {
+        match self.constant_sign(constant) {
+            Ok(Ordering::Equal) => Expr::ZERO,
+            Ok(_) => constant,
+            Err(_) => Expr::UNDEFINED,
         }
     }
 }

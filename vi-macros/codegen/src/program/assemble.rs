@@ -55,7 +55,8 @@ impl<'a> Assembly<'a> {
         for (index, point) in points.iter().enumerate() {
             for (variable, argument) in point.arguments() {
                 let argument = step_velocity(pool, argument).unwrap_or(argument);
-                arguments.extend(pool.collect_constants(&[argument]).first().map(|argument| ((index, variable), *argument)));
+                arguments
+                    .extend(pool.collect_constants(&[argument]).first().map(|argument| ((index, variable), *argument)));
             }
         }
         Self { pool, fields: &system.fields, arguments, known: Known::default() }
