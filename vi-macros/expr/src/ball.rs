@@ -163,8 +163,8 @@ impl Ball {
             member.to_f64()
         };
         let (low, high) = (round(&self.middle - &self.radius)?, round(&self.middle + &self.radius)?);
-        let even = if low.to_bits() % 2 == 0 { low } else { high };
-        if low == high { Some(low) } else { exact.then_some(even) }
+        let even = if low.to_bits().is_multiple_of(2) { low } else { high };
+        if low.to_bits() == high.to_bits() { Some(low) } else { exact.then_some(even) }
     }
 }
 

@@ -80,9 +80,9 @@ fn series(
         let (next, divisor) = divisors(terms);
         let term = &power / divisor;
         if alternates && terms % 2 == 1 {
-            sum -= term
+            sum -= term;
         } else {
-            sum += term
+            sum += term;
         }
         power = ((power * by) >> fraction) / next;
         terms += 1;
