@@ -121,6 +121,8 @@ pub enum Message {
     DivisionByZero,
     /// An expression that has a value nowhere, as `ln(-1)`.
     NoValue,
+    /// A constant whose digits cancel further than it is computed.
+    Undecided,
     /// A number that has to be an integer.
     NotInteger,
     /// A length of an array out of bounds.
@@ -328,6 +330,7 @@ impl Message {
             Self::NotFinite { name } => format!("the value of `{name}` is not finite"),
             Self::DivisionByZero => "division by zero".to_owned(),
             Self::NoValue => "this expression has no value".to_owned(),
+            Self::Undecided => "more than 4096 bits are needed to round this constant".to_owned(),
             Self::NotInteger => "this has to be a constant integer".to_owned(),
             Self::Length { given, .. } => format!("an array of {given} coordinates"),
             Self::ParametersLength { given, .. } => format!("an array of {given} parameters"),
@@ -425,6 +428,7 @@ impl Message {
             Self::NotFinite { .. } | Self::NoValue => {
                 "look for a division by zero, or a root or logarithm of a negative number".to_owned()
             }
+            Self::Undecided => "write it in a form whose terms do not cancel, or as a number".to_owned(),
             Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
             Self::ParametersLength { limit, .. } => format!("an array of parameters has 1 to {limit} entries"),

@@ -60,8 +60,9 @@ fn systems_of_many_coordinates_that_grow_fast_are_refused() {
 #[test]
 fn what_is_large_and_simple_passes() {
     for clauses in [
-        "L = dot(x)^2 + 1 / 3^100000 * x;",
-        "L = dot(x)^2 + (1/3)^2000 * (1/7)^1000 * x;",
+        "L = dot(x)^2 + 3^99800 / 3^100000 * x;",
+        "L = dot(x)^2 + (1/3)^2000 * 7^1000 * x;",
+        "L = dot(x)^2 + exp(-exp(exp(3))) * exp(exp(exp(3)) + 1) * x;",
         "L = dot(x)^2 + (1 + x + sin(x))^1000000000;",
         "L = dot(x)^2 + x^(123456789123456789/987654321987654321);",
         "L = dot(x)^2 + sum(i in 0..40000, i) * x;",
@@ -70,9 +71,15 @@ fn what_is_large_and_simple_passes() {
         let said = said(&format!("coord x; {clauses}"));
         assert!(!said.contains("compile_error"), "{clauses}: {said:.200}");
     }
-    for clauses in
-        ["L = dot(x)^2 + 2^2^2^2^2 * x;", "L = dot(x)^2 + x^9^9^9;", "L = dot(x)^2 + exp(exp(exp(exp(1)))) * x;"]
-    {
+    for clauses in [
+        "L = dot(x)^2 + 2^2^2^2^2 * x;",
+        "L = dot(x)^2 + x^9^9^9;",
+        "L = dot(x)^2 + exp(exp(exp(exp(1)))) * x;",
+        "L = dot(x)^2 + 1 / 3^100000 * x;",
+        "L = dot(x)^2 + (1/3)^2000 * (1/7)^1000 * x;",
+        "L = dot(x)^2 + exp(-800) * x;",
+        "L = dot(x)^2 + (x / 1e20)^20;",
+    ] {
         let tokens = format!("struct System {{ coord x; {clauses} discretize midpoint; }}").parse().expect("tokens");
         let said = vi_codegen::expand(tokens).to_string();
         assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{clauses}: {said:.200}");

@@ -1,6 +1,7 @@
 //! The tests of the compiler, one program: what they share is compiled once.
 
 mod arbitrary;
+mod constants;
 mod effort;
 mod families;
 mod forms;

@@ -223,8 +223,15 @@ fn constants() {
     case("const a = «exp»(1000); coord x; L = dot(x)^2; discretize midpoint;", "the value of `a` is not finite");
     case(
         "const a = sqrt(2) - 2; param b = «sqrt»(a); coord x; L = b * dot(x)^2; discretize midpoint;",
-        "the value of `b` is not finite",
+        "this expression has no value",
     );
+    case("coord x; L = dot(x)^2 - «sin»(10^2000) * x; discretize midpoint;", "more than 4096 bits are needed to round");
+    case("coord x; L = dot(x)^2 - sin(1 + «cos»(10^10^6)) * x; discretize midpoint;", "more than 4096 bits are needed");
+    let beyond = "this number is outside the range of `f64`\nhelp: choose other units";
+    case("coord x; L = dot(x)^2 - 1 / «exp»(exp(exp(10))) * x; discretize midpoint;", beyond);
+    case("coord x; L = dot(x)^2 - «exp»(-exp(exp(10))) * x; discretize midpoint;", beyond);
+    case("param a = «exp»(-800); coord x; L = a * dot(x)^2; discretize midpoint;", beyond);
+    case("coord x; L = dot(x)^2; discretize midpoint; check { x = «1e-200» * 1e-200; h = 1; }", beyond);
     case("coord x; L = dot(x)^2 * sin(«asin»(2)); discretize midpoint;", "this expression has no value");
     case("coord x; L = dot(x)^2 - x * «tan»(pi / 2); discretize midpoint;", "this expression has no value");
     case("const a = 1 / «0»; coord x; L = dot(x)^2; discretize midpoint;", "division by zero");

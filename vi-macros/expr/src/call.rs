@@ -4,6 +4,7 @@
 //! with an argument of canonical sign, so that `sin(a - b)` and `sin(b - a)` share.
 //! AFTER THIS an even or odd function never has an argument whose first coefficient is negative.
 
+use core::cmp::Ordering;
 use std::hash::Hash;
 
 use num_integer::Integer;
@@ -65,6 +66,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             _ => (Rational::one(), argument),
         };
         let value = self.exact_value(function, argument).or_else(|| self.value_at_quarter_turns(function, argument));
+        let value = value.or_else(|| self.without_constant(function, argument));
         let value = value.unwrap_or_else(|| self.intern(Node::Call(function, vec![argument])));
         self.scale(value, &(sign * factor))
     }
@@ -87,6 +89,26 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             }
             _ => None,
         }
+    }
+
+    /// `abs(c x) = ±c abs(x)` and `sign(c x) = ±sign(x)` for constants c that are no exact numbers.
+    fn without_constant(&mut self, function: Function, argument: Expr) -> Option<Expr> {
+        if !matches!(function, Function::Abs | Function::Sign) {
+            return None;
+        }
+        let (constant, rest) = self.split(argument, &|child| child);
+        if constant == Expr::ONE {
+            return None;
+        }
+        let sign = match self.constant_sign(constant).ok()? {
+            Ordering::Equal => return Some(Expr::ZERO),
+            Ordering::Less => -Rational::one(),
+            Ordering::Greater => Rational::one(),
+        };
+        let of_rest = self.call(function, &[rest]);
+        let factor = if function == Function::Abs { constant } else { Expr::ONE };
+        let signed = self.scale(factor, &sign);
+        Some(self.mul(signed, of_rest))
     }
 
     /// The sine, cosine or tangent of a whole number of quarter turns.

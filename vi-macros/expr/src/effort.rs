@@ -18,6 +18,11 @@ pub(crate) const MADE: usize = 4;
 /// Of an operand of an expression that is new.
 pub(crate) const KEPT: usize = 12;
 
+/// Of an operand of ball arithmetic, beside what its bits take.
+const PRECISE: usize = 100;
+/// Of a function in ball arithmetic, beside what its bits take.
+const FUNCTION: usize = 1000;
+
 /// More than an expression, or a pool, may take.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum TooLarge {
@@ -68,8 +73,10 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// What is found out about this pool's expressions without counting work, as a check of what was made may be.
     pub fn uncounted<R>(&self, find: impl FnOnce(&Self) -> R) -> R {
         let left = self.left.replace(usize::MAX);
+        let balls = self.balls.borrow().clone();
         let found = find(self);
         self.left.set(left);
+        self.balls.replace(balls);
         found
     }
 
@@ -85,6 +92,18 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// [`TooLarge::Work`].
     pub fn within_work(&self) -> Result<(), TooLarge> {
         if self.is_exhausted() { Err(TooLarge::Work { limit: self.limit }) } else { Ok(()) }
+    }
+
+    /// Counts sums and products of so many balls.
+    pub(crate) fn spend_on_balls(&self, bits: u64, operands: usize) {
+        let words = usize::try_from(bits / 64).unwrap_or(usize::MAX);
+        self.spend(operands.saturating_mul(PRECISE + words.saturating_mul(words)));
+    }
+
+    /// Counts an elementary function of a ball: as many terms as the bits say, each of which takes a time of their square.
+    pub(crate) fn spend_on_function(&self, bits: u64) {
+        let words = usize::try_from(bits / 64).unwrap_or(usize::MAX);
+        self.spend(FUNCTION + 2 * words.saturating_pow(3));
     }
 
     /// Counts an operation whose result is this number: common divisors take a time of the square of its bits.

@@ -1,14 +1,15 @@
 //! Values in floating point.
 //!
 //! In: expressions and the value of each symbol. Out: their values in `f64`, each shared node computed once.
-//! Meant for checks, not for speed; the undefined expression is NaN.
+//! Meant for checks, not for speed. Constants are rounded once; one without a value, or above all numbers, is NaN.
 
 use std::hash::Hash;
 
 use num_traits::ToPrimitive;
 
 use crate::effort::EVALUATED;
-use crate::{Expr, Node, Pool, Rational, Table};
+use crate::number::nearest;
+use crate::{Expr, NoConstant, Node, Pool, Rational, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
     /// Value of one expression.
@@ -22,42 +23,48 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     pub fn evaluate_all(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<f64> {
         let mut known = Table::default();
         for expr in self.visited(exprs, EVALUATED) {
-            let value = self.node_value(expr, &known, values);
-            known.insert(expr, value);
+            if !self.is_constant(expr) {
+                let value = self.node_value(expr, &known, values);
+                known.insert(expr, value);
+            }
         }
-        exprs.iter().map(|expr| value_of(&known, *expr)).collect()
+        exprs.iter().map(|expr| self.value_of(&known, *expr)).collect()
     }
 
-    /// Value of an expression whose operands have known values.
+    /// Value of an expression with symbols whose operands have known values.
     pub fn node_value(&self, expr: Expr, known: &Table<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
-        if self.is_undefined(expr) {
-            return f64::NAN;
-        }
+        let of = |expr: Expr| self.value_of(known, expr);
         match self.node(expr) {
-            Node::Number(value) => float(value),
-            Node::Pi => std::f64::consts::PI,
+            Node::Number(_) | Node::Pi => self.value_of(known, expr),
             Node::Symbol(symbol) => values(symbol),
             Node::Sum(sum) => {
-                let parts = sum.terms.iter().map(|(term, coefficient)| float(coefficient) * value_of(known, *term));
-                parts.sum::<f64>() + float(&sum.constant)
+                let parts = sum.terms.iter().map(|(term, coefficient)| nearest(coefficient) * of(*term));
+                parts.sum::<f64>() + nearest(&sum.constant)
             }
             Node::Product(product) => {
-                product.factors.iter().map(|(base, exponent)| raise(value_of(known, *base), exponent)).product()
+                product.factors.iter().map(|(base, exponent)| raise(of(*base), exponent)).product()
             }
             Node::Call(function, arguments) => {
-                let argument = |slot| arguments.get(slot).map_or(f64::NAN, |argument| value_of(known, *argument));
+                let argument = |slot| arguments.get(slot).map_or(f64::NAN, |argument| of(*argument));
                 function.value(argument(0), argument(1))
             }
         }
     }
-}
 
-fn value_of(known: &Table<Expr, f64>, expr: Expr) -> f64 {
-    known.get(expr).copied().unwrap_or(f64::NAN)
-}
-
-fn float(number: &Rational) -> f64 {
-    number.to_f64().unwrap_or(f64::NAN)
+    /// A value that is known, or that of a constant.
+    fn value_of(&self, known: &Table<Expr, f64>, expr: Expr) -> f64 {
+        if !self.is_constant(expr) {
+            return known.get(expr).copied().unwrap_or(f64::NAN);
+        }
+        if let Some(number) = self.as_number(expr) {
+            return nearest(number);
+        }
+        match self.constant(expr) {
+            Ok(value) => value,
+            Err(NoConstant::TooSmall) => 0.0,
+            Err(_) => f64::NAN,
+        }
+    }
 }
 
 /// Integer powers by multiplication, square roots by `sqrt`, the others by `powf`.
@@ -65,6 +72,6 @@ pub(crate) fn raise(base: f64, exponent: &Rational) -> f64 {
     match (exponent.numer().to_i32(), exponent.denom().to_u32()) {
         (Some(power), Some(1)) => base.powi(power),
         (Some(power), Some(2)) => base.sqrt().powi(power),
-        _ => base.powf(float(exponent)),
+        _ => base.powf(nearest(exponent)),
     }
 }

@@ -34,13 +34,19 @@
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand`, `ramp` | new expressions from old |
+//! | `ball`, `elementary`, `constant` | numbers and functions of any precision; constants, rounded once |
+//! | `collect` | terms that differ by constants as one |
 //! | `evaluate`, `rounding`, `render` | values, values with their errors, text |
 //!
 //! No pass recurses: children are older than parents, so each is a loop in the order of creation.
 
+mod ball;
 mod call;
+mod collect;
+mod constant;
 mod derivative;
 mod effort;
+mod elementary;
 mod evaluate;
 mod expand;
 mod function;
@@ -60,6 +66,7 @@ mod table;
 /// is one or two, which shows in a macro, built without optimisation. The hasher has no seed.
 pub type Distinct<T> = indexmap::IndexSet<T, core::hash::BuildHasherDefault<rustc_hash::FxHasher>>;
 pub use effort::TooLarge;
+pub use elementary::NoConstant;
 pub use function::Function;
 pub use node::{Expr, Node, Product, Rational, Sum};
 pub use pool::Pool;

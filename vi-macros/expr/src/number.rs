@@ -26,6 +26,11 @@ pub(crate) enum Power {
     Undefined,
 }
 
+/// The nearest `f64`.
+pub(crate) fn nearest(number: &Rational) -> f64 {
+    number.to_f64().unwrap_or(f64::NAN)
+}
+
 /// Bits of numerator and denominator together; an integer has none in its denominator.
 pub(crate) fn bits(number: &Rational) -> u64 {
     number.numer().bits() + number.denom().bits() - 1

@@ -4,7 +4,7 @@
 //! AFTER THIS a node never changes, and its children have smaller handles than itself, so that every pass is a loop over
 //! [`Pool::reachable`] in ascending order and no depth of nesting exhausts the stack.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::hash::Hash;
 use std::sync::Arc;
@@ -12,13 +12,20 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
+use crate::ball::Ball;
 use crate::effort::{KEPT, MADE};
-use crate::{Distinct, Expr, Node, Product, Rational};
+use crate::{Distinct, Expr, Node, Product, Rational, Table};
 
 /// Owner of expressions over symbols of type `S`.
 #[derive(Clone, Debug)]
 pub struct Pool<S> {
     nodes: Distinct<Arc<Node<S>>>,
+    /// Of each node, whether it has no symbols.
+    pub(crate) constant: Vec<bool>,
+    /// Some node is constant, and not an exact number.
+    pub(crate) has_irrational: bool,
+    /// Values of constant nodes, with the bits that were asked for.
+    pub(crate) balls: RefCell<Table<Expr, (u64, Ball)>>,
     /// Work that may be done, and what is left of it.
     pub(crate) limit: usize,
     pub(crate) left: Cell<usize>,
@@ -34,10 +41,18 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     /// Pool with the three expressions that every pool has: 0, 1 and the undefined one. Its work is not bounded.
     #[must_use]
     pub fn new() -> Self {
-        let mut pool = Self { nodes: Distinct::default(), limit: usize::MAX, left: Cell::new(usize::MAX) };
+        let mut pool = Self {
+            nodes: Distinct::default(),
+            constant: Vec::new(),
+            has_irrational: false,
+            balls: RefCell::default(),
+            limit: usize::MAX,
+            left: Cell::new(usize::MAX),
+        };
         pool.intern(Node::Number(Rational::zero()));
         pool.intern(Node::Number(Rational::one()));
         pool.intern(Node::Product(Product { factors: vec![(Expr::ZERO, -Rational::one())] }));
+        pool.has_irrational = false;
         pool
     }
 
@@ -191,6 +206,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             return Expr(known);
         }
         self.spend(KEPT * operands);
+        let constant = !matches!(node, Node::Symbol(_)) && !node.any_child(|child| !self.constant[child.0]);
+        self.constant.push(constant);
+        self.has_irrational |= constant && !matches!(node, Node::Number(_));
         Expr(self.nodes.insert_full(Arc::new(node)).0)
     }
 }

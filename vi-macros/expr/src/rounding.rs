@@ -7,10 +7,11 @@
 
 use std::hash::Hash;
 
-use num_traits::{Signed, ToPrimitive, Zero};
+use num_traits::{Signed, Zero};
 
 use crate::effort::EVALUATED;
 use crate::evaluate::raise;
+use crate::number::nearest;
 use crate::{Expr, Function, Node, Pool, Rational, Table};
 
 /// A value and its error.
@@ -33,7 +34,7 @@ impl Rounded {
     }
 
     fn number(number: &Rational) -> Self {
-        let value = number.to_f64().unwrap_or(f64::NAN);
+        let value = nearest(number);
         if value == 0.0 && !number.is_zero() { Self::LOST } else { Self::new(value, 0.0) }
     }
 
@@ -87,20 +88,27 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     pub fn evaluate_rounded(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<Rounded> {
         let mut known = Table::default();
         for expr in self.visited(exprs, 2 * EVALUATED) {
-            let value = self.rounded_node(expr, &known, values);
-            known.insert(expr, value);
+            if !self.is_constant(expr) {
+                let value = self.rounded_node(expr, &known, values);
+                known.insert(expr, value);
+            }
         }
-        exprs.iter().map(|expr| known.get(*expr).copied().unwrap_or(Rounded::LOST)).collect()
+        exprs.iter().map(|expr| self.rounded_of(&known, *expr)).collect()
+    }
+
+    /// A value that is known, or that of a constant.
+    fn rounded_of(&self, known: &Table<Expr, Rounded>, expr: Expr) -> Rounded {
+        if self.is_constant(expr) {
+            self.constant(expr).map_or(Rounded::LOST, |value| Rounded::new(value, 0.0))
+        } else {
+            known.get(expr).copied().unwrap_or(Rounded::LOST)
+        }
     }
 
     fn rounded_node(&self, expr: Expr, known: &Table<Expr, Rounded>, values: &mut dyn FnMut(&S) -> f64) -> Rounded {
-        let of = |expr: Expr| known.get(expr).copied().unwrap_or(Rounded::LOST);
-        if self.is_undefined(expr) {
-            return Rounded::LOST;
-        }
+        let of = |expr: Expr| self.rounded_of(known, expr);
         match self.node(expr) {
-            Node::Number(number) => Rounded::number(number),
-            Node::Pi => Rounded::new(std::f64::consts::PI, 0.0),
+            Node::Number(_) | Node::Pi => of(expr),
             Node::Symbol(symbol) => Rounded { value: values(symbol), error: 0.0 },
             Node::Sum(sum) => {
                 let term = |(term, number): &(Expr, Rational)| {

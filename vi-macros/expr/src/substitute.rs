@@ -33,7 +33,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     }
 
     /// The same operation on other operands.
-    fn rebuild(&mut self, node: &Node<S>, new: &dyn Fn(Expr) -> Expr) -> Expr {
+    pub(crate) fn rebuild(&mut self, node: &Node<S>, new: &dyn Fn(Expr) -> Expr) -> Expr {
         match node {
             Node::Number(value) => self.number(value.clone()),
             Node::Pi => self.pi(),

@@ -193,17 +193,21 @@ fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {
     TimeScale { g, g_dq, g_dt: by(Variable::Time) }
 }
 
-fn watched(pool: &Pool<Symbol>, model: &Model) -> Vec<Expr> {
+fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
     let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
     let one = Rational::from_integer(1.into());
-    let (parts, others): (Vec<Expr>, Vec<Expr>) = pool.reachable(&wholes).into_iter().partition(|expr| {
-        match pool.node(*expr) {
-            Node::Symbol(_) | Node::Call(..) => true,
-            // A product of positive powers is finite where its factors are, short of overflow.
-            Node::Product(product) => product.factors.iter().any(|(_, exponent)| *exponent < one),
-            Node::Number(_) | Node::Pi | Node::Sum(_) => false,
-        }
-    });
+    // Parts of constants may be out of the range of numbers.
+    let is_part = |expr: &Expr| !pool.is_constant(*expr) || pool.as_number(*expr).is_some();
+    let (parts, others): (Vec<Expr>, Vec<Expr>) =
+        pool.reachable(&wholes).into_iter().filter(is_part).partition(|expr| {
+            match pool.node(*expr) {
+                Node::Symbol(_) | Node::Call(..) => true,
+                // A product of positive powers is finite where its factors are, short of overflow.
+                Node::Product(product) => product.factors.iter().any(|(_, exponent)| *exponent < one),
+                Node::Number(_) | Node::Pi | Node::Sum(_) => false,
+            }
+        });
+    let parts: Vec<Expr> = parts.into_iter().map(|part| pool.without_constants(part)).collect();
     parts.into_iter().chain(others.into_iter().filter(|expr| wholes.contains(expr) && !pool.is_zero(*expr))).collect()
 }
 

@@ -11,7 +11,7 @@ use crate::symbol::{Symbol, Variable};
 use crate::syntax::{self, Default, Definition, Expression, Indices, System};
 use proc_macro2::Ident;
 use syn::Result;
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, NoConstant, Pool};
 
 /// Checks a system, whose expressions go into the pool, with the rule of this place in its list.
 ///
@@ -70,8 +70,11 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
 impl Context<'_> {
     fn constants(&mut self, constants: &[Definition]) {
         for constant in constants {
-            let (value, _) = self.number(&constant.value, &constant.name);
-            self.declare(&constant.name, Meaning::Number(value));
+            let value = self.value(&constant.value);
+            // What is smaller than all numbers may be multiplied before it is rounded.
+            let is_small = self.pool.constant(value) == Err(NoConstant::TooSmall);
+            let has_value = is_small || self.finite(value, constant.value.span, &constant.name).is_some();
+            self.declare(&constant.name, Meaning::Number(if has_value { value } else { self.pool.one() }));
         }
     }
 

@@ -10,7 +10,7 @@ use crate::symbol::Symbol;
 use crate::syntax::Expression;
 use proc_macro2::{Ident, Span};
 use syn::Result;
-use vi_expr::{Expr, Pool};
+use vi_expr::{Expr, NoConstant, Pool};
 
 /// What a system is checked with.
 pub(super) struct Context<'a> {
@@ -69,15 +69,18 @@ impl<'a> Context<'a> {
     /// The finite number that an expression stands for; where it has none, a report.
     pub(super) fn finite(&mut self, value: Expr, span: Span, name: &Ident) -> Option<f64> {
         let name = name.to_string();
-        if !self.pool.symbols(value).is_empty() {
+        if !self.pool.is_constant(value) {
             self.errors.at(span, &Message::NotConstant { name });
             return None;
         }
-        let number = self.pool.evaluate(value, &mut |_| f64::NAN);
-        if !number.is_finite() && !self.is_too_large() {
-            self.errors.at(span, &Message::NotFinite { name });
-            return None;
-        }
-        Some(number)
+        let said = match self.pool.constant(value) {
+            Ok(number) => return Some(number),
+            Err(_) if self.is_too_large() => return None,
+            Err(NoConstant::Undefined | NoConstant::TooLarge) => Message::NotFinite { name },
+            Err(NoConstant::TooSmall) => Message::NumberRange,
+            Err(NoConstant::Undecided) => Message::Undecided,
+        };
+        self.errors.at(span, &said);
+        None
     }
 }

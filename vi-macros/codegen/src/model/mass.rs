@@ -105,6 +105,7 @@ fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(
         }
         momenta.push(momentum);
     }
+    let mass = pool.collect_constants(&mass);
     let is_defined = !momenta.iter().chain(&mass).any(|entry| pool.is_undefined(*entry));
     is_defined.then_some((momenta, mass))
 }

@@ -10,10 +10,11 @@ use crate::limits::bounded;
 use crate::messages::{Errors, Message, error, nearest};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use crate::syntax::{Expression, Kind, Operator, Range};
+use core::cmp::Ordering;
 use num_traits::ToPrimitive;
 use proc_macro2::{Ident, Span};
 use syn::Result;
-use vi_expr::{Expr, Function, Pool, Rational};
+use vi_expr::{Expr, Function, NoConstant, Pool, Rational};
 
 /// Work of reading one part of an expression.
 const READING: usize = 8;
@@ -132,11 +133,21 @@ impl Scope {
             }
             Kind::Chain(first, rest) => self.chain(pool, first, rest)?,
         };
+        let mut wrong = None;
+        let value = value.map(|entry| {
+            settled(pool, entry).unwrap_or_else(|said| {
+                wrong = Some(said);
+                entry
+            })
+        });
         bounded(pool).map_err(|found| error(written.span, &Message::TooLarge(found)))?;
         if value.entries().iter().any(|entry| pool.is_undefined(*entry)) {
             return Err(error(written.span, &Message::NoValue));
         }
-        Ok(value)
+        match wrong {
+            Some(said) => Err(error(written.span, &said)),
+            None => Ok(value),
+        }
     }
 
     /// What is made of each part of an expression, in order.
@@ -461,10 +472,23 @@ impl Scope {
     }
 }
 
-/// Whether a divisor is zero whatever the state: the number 0, numbers that cancel but for their rounding, as sqrt(2) sqrt(3) − sqrt(6), or
-/// zero by h = t1 − t0.
+/// A constant with a known sign: 0 if its terms cancel, as in sqrt(2) sqrt(3) − sqrt(6). Other expressions as they are.
+fn settled(pool: &Pool<Symbol>, value: Expr) -> core::result::Result<Expr, Message> {
+    if !pool.is_constant(value) || pool.as_number(value).is_some() {
+        return Ok(value);
+    }
+    match pool.constant_sign(value) {
+        Ok(Ordering::Equal) => Ok(pool.zero()),
+        Ok(_) => Ok(value),
+        Err(NoConstant::Undefined) => Err(Message::NoValue),
+        Err(NoConstant::Undecided) => Err(Message::Undecided),
+        Err(NoConstant::TooLarge | NoConstant::TooSmall) => Err(Message::NumberRange),
+    }
+}
+
+/// Whether a divisor is zero whatever the state: the number 0, or zero by h = t1 − t0.
 fn is_nothing(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
-    if pool.is_zero(divisor) || pool.as_number(divisor).is_some() || pool.as_symbol(divisor).is_some() {
+    if pool.is_zero(divisor) || pool.is_constant(divisor) || pool.as_symbol(divisor).is_some() {
         return pool.is_zero(divisor);
     }
     if pool.depends_on(divisor, &|symbol| *symbol == Symbol::T1) {
@@ -474,9 +498,7 @@ fn is_nothing(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
         let over_step = pool.substitute(divisor, &mut |_, symbol| (*symbol == Symbol::T1).then_some(end));
         return pool.is_zero(over_step);
     }
-    let is_constant = !pool.depends_on(divisor, &|_| true);
-    let values = if is_constant { pool.evaluate_rounded(&[divisor], &mut |_| f64::NAN) } else { Vec::new() };
-    values.first().is_some_and(|found| found.value.abs() <= found.error)
+    false
 }
 
 /// `base^exponent`. A root that starts at a point gets the form of its base that is exactly zero before it.

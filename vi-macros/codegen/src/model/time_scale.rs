@@ -5,6 +5,7 @@
 use super::context::Context;
 use crate::messages::Message;
 use crate::syntax::Definition;
+use core::cmp::Ordering;
 use vi_expr::Expr;
 
 /// The time scale of a system, if it has one.
@@ -16,8 +17,8 @@ pub(super) fn time_scale(context: &mut Context, written: &[Definition]) -> Optio
     let mut scope = context.scope.of_time_scale(context.pool);
     let value = scope.expression(context.pool, &first.value);
     let value = context.report(value)?;
-    let is_number = context.pool.symbols(value).is_empty() && !context.is_too_large();
-    if is_number && context.pool.evaluate(value, &mut |_| f64::NAN) <= 0.0 {
+    let is_number = context.pool.is_constant(value) && !context.is_too_large();
+    if is_number && matches!(context.pool.constant_sign(value), Ok(Ordering::Less | Ordering::Equal)) {
         context.errors.at(first.value.span, &Message::TimeScaleNotPositive);
     }
     Some(value)

@@ -54,7 +54,9 @@ impl<'a> Assembly<'a> {
         let mut arguments = BTreeMap::new();
         for (index, point) in points.iter().enumerate() {
             for (variable, argument) in point.arguments() {
-                arguments.insert((index, variable), step_velocity(pool, argument).unwrap_or(argument));
+                let argument = step_velocity(pool, argument).unwrap_or(argument);
+                arguments
+                    .extend(pool.collect_constants(&[argument]).first().map(|argument| ((index, variable), *argument)));
             }
         }
         let Continuous { lagrangian, force, .. } = &system.continuous;
@@ -88,7 +90,15 @@ impl<'a> Assembly<'a> {
     }
 
     fn rounding_scales(&mut self, exprs: &[Expr]) -> Vec<Expr> {
-        exprs.iter().map(|expr| rounding_scale(self.pool, &mut self.known.products, *expr)).collect()
+        let collected = self.pool.collect_constants(exprs);
+        collected.into_iter().map(|expr| rounding_scale(self.pool, &mut self.known.products, expr)).collect()
+    }
+
+    /// The expressions, with constants that are rounded once.
+    fn collected(&mut self, expressions: &Results<Expr>) -> Results<Expr> {
+        let entries: Vec<Expr> = expressions.entries().copied().collect();
+        let mut collected = self.pool.collect_constants(&entries).into_iter();
+        expressions.map(|expr| collected.next().unwrap_or(*expr))
     }
 
     /// A function that computes these quantities, each given by its rows.
@@ -98,7 +108,7 @@ impl<'a> Assembly<'a> {
         quantities: Vec<(Output, Vec<Vec<Expr>>)>,
     ) -> core::result::Result<(Function, Expressions), TooLarge> {
         bounded(self.pool)?;
-        let expressions = Results::new(quantities);
+        let expressions = self.collected(&Results::new(quantities));
         let mut used = BTreeMap::new();
         for expr in expressions.entries() {
             for symbol in self.pool.symbols(*expr) {

@@ -5,7 +5,7 @@
 //! parameters and the step. In sums with terms of order h, those are added up first and joined to the large ones last,
 //! so that no digit of theirs is lost early.
 
-use super::lowering::{Dependence, Factor, Known, Lowering, SumForm};
+use super::lowering::{Dependence, Factor, Lowering, SumForm};
 use super::operations::{Operation, OperationId, Operations};
 use super::results::Results;
 use super::vanishing::{ALL, Limits};
@@ -36,10 +36,7 @@ impl Lowering<'_> {
         }
         let node = self.pool.node(expr).clone();
         let value = if self.dependence(expr) == Dependence::None {
-            let number = match &node {
-                Node::Number(number) => Self::number(number),
-                _ => self.value_of_number(expr),
-            };
+            let number = self.constant(expr);
             self.operations.constant(number)
         } else {
             match node {
@@ -54,20 +51,9 @@ impl Lowering<'_> {
         value
     }
 
-    /// The value of an expression that depends on nothing.
-    fn value_of_number(&mut self, expr: Expr) -> f64 {
-        let Known { numbers, .. } = self.known;
-        let mut open = vec![expr];
-        while let Some(last) = open.last().copied() {
-            let first = open.len();
-            self.pool.node(last).each_child(|child| open.extend((!numbers.contains(child)).then_some(child)));
-            if open.len() == first {
-                open.pop();
-                let value = self.pool.node_value(last, numbers, &mut |_| f64::NAN);
-                numbers.insert(last, value);
-            }
-        }
-        numbers.get(expr).copied().unwrap_or(f64::NAN)
+    /// The nearest `f64` to an expression that depends on nothing; NaN where no normal one is near, which is an error at the end.
+    fn constant(&self, expr: Expr) -> f64 {
+        self.pool.constant(expr).unwrap_or(f64::NAN)
     }
 
     /// What an expression depends on; its children are known but for those that lowering made.
@@ -238,7 +224,7 @@ impl Lowering<'_> {
         coefficient: &Rational,
         varying: Vec<OperationId>,
     ) -> OperationId {
-        let mut gathered = Gathered { number: Self::number(coefficient), varying, ..Gathered::default() };
+        let mut gathered = Gathered { varying, ..Gathered::of(coefficient) };
         for (base, exponent) in factors {
             self.gather(&mut gathered, *base, exponent);
         }
@@ -253,15 +239,14 @@ impl Lowering<'_> {
     fn gather(&mut self, into: &mut Gathered, base: Expr, exponent: &Rational) {
         let dependence = self.dependence(base);
         if dependence == Dependence::None {
-            let value = self.value_of_number(base);
-            into.number *= value.powf(Self::number(exponent));
+            into.constants.push(self.pool.power(base, exponent));
             return;
         }
         // A number before a sum is one with the coefficient.
         let value = match self.sum_form(base) {
             SumForm::Coefficient { coefficient, inside } if exponent.is_one() => {
                 match self.pool.as_number(coefficient).cloned() {
-                    Some(number) => into.number *= Self::number(&number),
+                    Some(number) => into.coefficient *= number,
                     None => into.parameters.push(self.value(coefficient)),
                 }
                 Factor::Above(self.value(inside))
@@ -278,7 +263,15 @@ impl Lowering<'_> {
 
     /// What is constant over a run first, so that the product with it is made once; unless the rest is there already.
     fn numerator(&mut self, of: Gathered) -> OperationId {
-        let Gathered { number, parameters, step, varying, .. } = of;
+        let Gathered { coefficient, constants, parameters, step, varying, .. } = of;
+        let number = if constants.is_empty() {
+            Self::number(&coefficient)
+        } else {
+            // Rounded once.
+            let product = self.pool.product(&constants);
+            let product = self.pool.scale(product, &coefficient);
+            self.constant(product)
+        };
         let plain = number.to_bits() == 1.0_f64.to_bits() && step.is_empty();
         let number = self.operations.constant(number);
         if !plain && !varying.is_empty() && parameters.len() + varying.len() > 1 {
@@ -309,13 +302,27 @@ impl Lowering<'_> {
 }
 
 /// The factors of a product, by what they depend on.
-#[derive(Default)]
 struct Gathered {
-    number: f64,
+    coefficient: Rational,
+    /// What depends on nothing.
+    constants: Vec<Expr>,
     parameters: Vec<OperationId>,
     /// What depends on h, but not on the state.
     step: Vec<OperationId>,
     varying: Vec<OperationId>,
     /// What is divided by.
     below: Vec<OperationId>,
+}
+
+impl Gathered {
+    fn of(coefficient: &Rational) -> Self {
+        Self {
+            coefficient: coefficient.clone(),
+            constants: Vec::new(),
+            parameters: Vec::new(),
+            step: Vec::new(),
+            varying: Vec::new(),
+            below: Vec::new(),
+        }
+    }
 }

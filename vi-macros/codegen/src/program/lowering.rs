@@ -28,8 +28,6 @@ pub(super) enum Dependence {
 #[derive(Default)]
 pub(super) struct Known {
     pub(super) dependences: Table<Expr, Dependence>,
-    /// Values of expressions that depend on nothing.
-    pub(super) numbers: Table<Expr, f64>,
     pub(super) sum_forms: Table<Expr, SumForm>,
     pub(super) products: vanishing::Known,
 }

@@ -90,14 +90,14 @@ impl Lowering<'_> {
         }
     }
 
-    /// The rational as the nearest `f64`.
+    /// The rational as the nearest `f64`; NaN, which is an error at the end, where that is no normal one.
     pub(super) fn number(value: &Rational) -> f64 {
         if value.is_zero() {
             0.0
         } else if value.is_one() {
             1.0
         } else {
-            value.to_f64().unwrap_or(f64::NAN)
+            value.to_f64().filter(|number| number.is_normal()).unwrap_or(f64::NAN)
         }
     }
 }

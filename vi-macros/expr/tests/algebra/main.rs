@@ -10,6 +10,7 @@
 //!
 //! `notation` reads the text that the tables are written in; `tree` makes the random expressions.
 
+mod constants;
 mod derivatives;
 mod identities;
 mod limits;

@@ -1,0 +1,138 @@
+//! Constant expressions: their values, rounded once.
+//!
+//! In: an expression without symbols. Out: the nearest `f64`, its sign, or why it has none ([`NoConstant`]). Ziv's strategy: the expression
+//! is computed in ball arithmetic, with twice the bits as long as the ball leaves a sign or the rounding open. What is below
+//! 2^-2000 of the terms that cancel in it is zero, as `sqrt(2)*sqrt(3) - sqrt(6)`.
+
+use core::cmp::Ordering;
+use std::hash::Hash;
+
+use num_bigint::BigInt;
+use num_traits::Zero;
+
+use crate::ball::Ball;
+use crate::elementary::{Elementary, NEGLIGIBLE, NoConstant, decided, nonzero};
+use crate::{Expr, Node, Pool, number};
+
+/// Bits of the first attempt.
+const FIRST_BITS: u64 = 128;
+/// Bits of the last attempt.
+const LAST_BITS: u64 = 4096;
+
+impl<S: Clone + Eq + Hash> Pool<S> {
+    /// Whether the expression has no symbols.
+    ///
+    /// # Panics
+    /// If the handle is of another, larger pool.
+    #[must_use]
+    pub fn is_constant(&self, expr: Expr) -> bool {
+        self.constant[expr.0]
+    }
+
+    /// The `f64` that is nearest to a constant expression.
+    ///
+    /// # Errors
+    /// The constant has no value, is out of the range of normal numbers, or would take more than 4096 bits.
+    pub fn constant(&self, expr: Expr) -> Result<f64, NoConstant> {
+        if let Some(number) = self.as_number(expr) {
+            return normal(number::nearest(number), number.is_zero());
+        }
+        self.attempts(|bits| {
+            let ball = self.ball(expr, bits)?;
+            let exact = ball.radius_magnitude() < ball.magnitude().saturating_sub(NEGLIGIBLE);
+            normal(ball.nearest(exact).ok_or(NoConstant::Undecided)?, ball.is_zero())
+        })
+    }
+
+    /// How a constant expression compares with 0.
+    ///
+    /// # Errors
+    /// The constant has no value, or its sign would take more than 4096 bits.
+    pub fn constant_sign(&self, expr: Expr) -> Result<Ordering, NoConstant> {
+        let sign = self.attempts(|bits| self.ball(expr, bits).map(|ball| ball.middle))?;
+        Ok(sign.cmp(&BigInt::zero()))
+    }
+
+    fn attempts<R>(&self, mut attempt: impl FnMut(u64) -> Result<R, NoConstant>) -> Result<R, NoConstant> {
+        let mut bits = FIRST_BITS;
+        loop {
+            match attempt(bits) {
+                Err(NoConstant::Undecided) if bits < LAST_BITS && !self.is_exhausted() => bits *= 2,
+                found => return found,
+            }
+        }
+    }
+
+    /// A ball around a constant, with a known sign. It is kept for expressions that contain this one.
+    fn ball(&self, expr: Expr, bits: u64) -> Result<Ball, NoConstant> {
+        let mut open = vec![expr];
+        while let Some(last) = open.last().copied() {
+            let first = open.len();
+            let missing = |child: Expr| self.known_ball(child, bits).is_none();
+            self.node(last).each_child(|child| open.extend(missing(child).then_some(child)));
+            if open.len() == first {
+                open.pop();
+                let ball = self.computed(last, bits)?;
+                self.balls.borrow_mut().insert(last, (bits, ball));
+            }
+        }
+        self.known_ball(expr, bits).ok_or(NoConstant::Undefined)
+    }
+
+    fn known_ball(&self, expr: Expr, bits: u64) -> Option<Ball> {
+        let balls = self.balls.borrow();
+        balls.get(expr).filter(|(known, _)| *known >= bits).map(|(_, ball)| ball.clone())
+    }
+
+    /// The ball of an expression whose operands have theirs.
+    fn computed(&self, expr: Expr, bits: u64) -> Result<Ball, NoConstant> {
+        let node = self.node(expr);
+        self.spend_on_balls(bits, 1 + node.operands());
+        if self.is_exhausted() || self.is_undefined(expr) {
+            return Err(NoConstant::Undefined);
+        }
+        let of = |child: Expr| self.known_ball(child, bits).ok_or(NoConstant::Undefined);
+        let functions = Elementary { bits };
+        match node {
+            Node::Number(value) => Ok(Ball::rational(value, bits)),
+            Node::Pi => Ok(functions.pi()),
+            Node::Symbol(_) => Err(NoConstant::Undefined),
+            Node::Sum(sum) => {
+                let mut total = Ball::rational(&sum.constant, bits);
+                let mut largest = total.magnitude();
+                for (term, coefficient) in &sum.terms {
+                    let part = of(*term)?.times(&Ball::rational(coefficient, bits), bits);
+                    largest = largest.max(part.magnitude());
+                    total = total.plus(&part, bits);
+                }
+                decided(total, largest)
+            }
+            Node::Product(product) => {
+                let mut total = Ball::integer(1);
+                for (base, exponent) in &product.factors {
+                    if *exponent.denom() > 2.into() {
+                        self.spend_on_function(bits);
+                    }
+                    total = nonzero(total.times(&functions.power(&of(*base)?, exponent)?, bits))?;
+                }
+                Ok(total)
+            }
+            Node::Call(function, arguments) => {
+                self.spend_on_function(bits);
+                let arguments = arguments.iter().map(|argument| of(*argument)).collect::<Result<Vec<_>, _>>()?;
+                functions.call(*function, &arguments)
+            }
+        }
+    }
+}
+
+/// A number rounded, if it is 0 or normal.
+fn normal(rounded: f64, is_zero: bool) -> Result<f64, NoConstant> {
+    if is_zero || rounded.is_normal() {
+        Ok(rounded)
+    } else if rounded.is_infinite() {
+        Err(NoConstant::TooLarge)
+    } else {
+        Err(NoConstant::TooSmall)
+    }
+}
