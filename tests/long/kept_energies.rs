@@ -91,7 +91,10 @@ fn a_step_without_a_power_is_refused() {
     }
     for h in [1e-307, 1e-200, 1e-160] {
         for error in [begin::<1>(h).err(), begin::<2>(h).err(), begin::<3>(h).err()] {
-            assert!(matches!(error, Some(StepError::InvalidInput { value, .. }) if value == h), "{h:e}: {error:?}");
+            assert!(
+                matches!(error, Some(StepError::InvalidInput { value, .. }) if value.to_bits() == h.to_bits()),
+                "{h:e}: {error:?}"
+            );
         }
     }
     for h in [1e-150, 1e-100, 1e-51, 1e-20] {
@@ -119,7 +122,7 @@ fn a_time_that_stands_still_is_an_error() {
     let start = State::at(&system, 1.0, [12.0], [0.0]);
     let mut run = ScaledGauss::<_, 1, 2>::new(system, start, 1e-3).expect("a start");
     let error = run.step().expect_err("g = e^-144");
-    assert!(matches!(error, StepError::TimeScale { t, g } if t == 1.0 && g > 0.0), "{error:?}");
+    assert!(matches!(error, StepError::TimeScale { t, g } if t.to_bits() == 1.0_f64.to_bits() && g > 0.0), "{error:?}");
     assert!(error.to_string().contains("the time stands still"), "{error}");
     assert_eq!(run.state(), start);
     assert_eq!(run.step().expect_err("the same error"), error);

@@ -39,6 +39,8 @@ struct Tableau<const S: usize> {
 }
 
 impl<const S: usize> Tableau<S> {
+    // A few stages.
+    #[allow(clippy::cast_precision_loss)]
     fn new() -> Self {
         let (one, two) = (Twice::real(1.0), Twice::real(2.0));
         // P_S and its derivative at x.

@@ -155,15 +155,15 @@ impl<T: Scalar> Phase<T> {
     ) -> Result<Self, StepError> {
         let bounded = |h: T| bounds.map_or(h, |bounds| bounds.clamp(h));
         let (length, shorter) = match (fallback, failure) {
-            (Fallback::Stop, _) => return Err(failure),
-            (_, StepError::StepBounds { found, h_min, .. }) => (bounded(T::real(found)), found < h_min),
-            (
+            (Fallback::Stop, _)
+            | (
                 _,
                 StepError::Singular { .. }
                 | StepError::NonFinite { .. }
                 | StepError::InvalidInput { .. }
                 | StepError::ShiftTooLarge { .. },
             ) => return Err(failure),
+            (_, StepError::StepBounds { found, h_min, .. }) => (bounded(T::real(found)), found < h_min),
             _ => (bounded(h), false),
         };
         Ok(Self { h: length, shorter, law_h: h, law_density: density, density_next: density, gap: T::zero() })
