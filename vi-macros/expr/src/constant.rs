@@ -11,7 +11,7 @@ use num_bigint::BigInt;
 use num_traits::Zero;
 
 use crate::ball::Ball;
-use crate::elementary::{Elementary, NEGLIGIBLE, NoConstant, decided, nonzero};
+use crate::elementary::{Elementary, LARGEST_ANGLE, NEGLIGIBLE, NoConstant, decided, nonzero};
 use crate::{Expr, Node, Pool, number};
 
 /// Bits of the first attempt.
@@ -111,15 +111,17 @@ impl<S: Clone + Eq + Hash> Pool<S> {
                 let mut total = Ball::integer(1);
                 for (base, exponent) in &product.factors {
                     if *exponent.denom() > 2.into() {
-                        self.spend_on_function(bits);
+                        self.spend_on_functions(bits, 2);
                     }
                     total = nonzero(total.times(&functions.power(&of(*base)?, exponent)?, bits))?;
                 }
                 Ok(total)
             }
             Node::Call(function, arguments) => {
-                self.spend_on_function(bits);
                 let arguments = arguments.iter().map(|argument| of(*argument)).collect::<Result<Vec<_>, _>>()?;
+                // Arguments are reduced with as many bits more as stand before their points.
+                let before_points = arguments.iter().map(Ball::magnitude).max().unwrap_or(0).clamp(0, LARGEST_ANGLE);
+                self.spend_on_functions(bits + before_points.unsigned_abs(), function.arity());
                 functions.call(*function, &arguments)
             }
         }
