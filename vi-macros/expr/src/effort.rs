@@ -100,10 +100,10 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.spend(operands.saturating_mul(PRECISE + words.saturating_mul(words)));
     }
 
-    /// Counts an elementary function of a ball: as many terms as the bits say, each of which takes a time of their square.
-    pub(crate) fn spend_on_function(&self, bits: u64) {
+    /// Counts elementary functions of balls: as many terms as the bits say, each of which takes a time of their square.
+    pub(crate) fn spend_on_functions(&self, bits: u64, functions: usize) {
         let words = usize::try_from(bits / 64).unwrap_or(usize::MAX);
-        self.spend(FUNCTION + 2 * words.saturating_pow(3));
+        self.spend(functions * (FUNCTION + 2 * words.saturating_pow(3)));
     }
 
     /// Counts an operation whose result is this number: common divisors take a time of the square of its bits.

@@ -22,7 +22,7 @@ pub(crate) const NEGLIGIBLE: i64 = 2000;
 /// Powers of two that numbers may have, in absolute value.
 const LARGEST: i64 = 1 << 40;
 /// Bits that a sine or cosine may have before its point.
-const LARGEST_ANGLE: i64 = 4096;
+pub(crate) const LARGEST_ANGLE: i64 = 4096;
 /// Bits of an integer power that is taken by squaring.
 const LARGEST_POWER: u32 = 1 << 16;
 /// Bits beyond the precision for the roundings of a series.
@@ -275,7 +275,7 @@ impl Elementary {
     /// Sine and cosine, not decided.
     fn sin_cos(self, x: &Ball) -> Result<(Ball, Ball), NoConstant> {
         let magnitude = x.magnitude().max(0);
-        if magnitude > LARGEST_ANGLE {
+        if magnitude > LARGEST_ANGLE || x.radius_magnitude() > -4 {
             return Err(NoConstant::Undecided);
         }
         let wide = self.with(magnitude + 8);
