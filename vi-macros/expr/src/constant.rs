@@ -12,7 +12,7 @@ use num_traits::Zero;
 
 use crate::ball::Ball;
 use crate::elementary::{Elementary, LARGEST_ANGLE, NEGLIGIBLE, NoConstant, decided, nonzero};
-use crate::{Expr, Node, Pool, number};
+use crate::{Expr, Function, Node, Pool, number};
 
 /// Bits of the first attempt.
 const FIRST_BITS: u64 = 128;
@@ -65,7 +65,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
 
     /// A ball around a constant, with a known sign. It is kept for expressions that contain this one.
     fn ball(&self, expr: Expr, bits: u64) -> Result<Ball, NoConstant> {
-        let mut open = vec![expr];
+        let mut open = if self.known_ball(expr, bits).is_some() { Vec::new() } else { vec![expr] };
         while let Some(last) = open.last().copied() {
             let first = open.len();
             let missing = |child: Expr| self.known_ball(child, bits).is_none();
@@ -119,9 +119,14 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             }
             Node::Call(function, arguments) => {
                 let arguments = arguments.iter().map(|argument| of(*argument)).collect::<Result<Vec<_>, _>>()?;
-                // Arguments are reduced with as many bits more as stand before their points.
-                let before_points = arguments.iter().map(Ball::magnitude).max().unwrap_or(0).clamp(0, LARGEST_ANGLE);
-                self.spend_on_functions(bits + before_points.unsigned_abs(), function.arity());
+                // An angle is reduced with as many bits more as stand before its point.
+                let more = match (function, arguments.as_slice()) {
+                    (Function::Sin | Function::Cos | Function::Tan, [angle]) => {
+                        angle.magnitude().clamp(0, LARGEST_ANGLE)
+                    }
+                    _ => 0,
+                };
+                self.spend_on_functions(bits + more.unsigned_abs(), function.arity());
                 functions.call(*function, &arguments)
             }
         }
