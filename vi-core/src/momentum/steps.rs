@@ -119,18 +119,6 @@ pub(crate) struct Solved<const N: usize, T> {
     predicted: bool,
 }
 
-/// What is known of the step that led to the node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-enum Last {
-    /// There was none.
-    None,
-    /// It has the velocity and the length at hand.
-    Taken,
-    /// The same, but the parameters have changed since.
-    OfOtherParameters,
-}
-
 /// Momentum steps of one length; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -143,14 +131,17 @@ pub(crate) struct Steps<const N: usize, T> {
     predictor: Predictor<N, T>,
     remainder: SVector<T, N>,
     measured: Measured<N, T>,
-    last: Last,
+    /// Whether a step was taken.
+    begun: bool,
+    /// Whether the parameters have changed since. One value of three in place of these two made a step of Kepler's problem a tenth longer.
+    changed: bool,
 }
 
 impl<const N: usize, T: Scalar> Steps<N, T> {
     /// Before the first step, with a guess of its velocity.
     pub(crate) fn new(h: T, guess: SVector<T, N>) -> Self {
         let (predictor, measured) = (Predictor::new(guess), Measured::none());
-        Self { h, predictor, remainder: SVector::zeros(), measured, last: Last::None }
+        Self { h, predictor, remainder: SVector::zeros(), measured, begun: false, changed: false }
     }
 
     /// The same, every number passed through `convert`.
@@ -161,7 +152,8 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
             predictor: self.predictor.map(convert),
             remainder: self.remainder.map(convert),
             measured: Measured { residual: residual.map(convert), scale: scale.map(convert) },
-            last: self.last,
+            begun: self.begun,
+            changed: self.changed,
         }
     }
 
@@ -172,18 +164,17 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
 
     /// The steps of the same system with other parameters.
     pub(crate) fn with_other_parameters(self) -> Self {
-        let last = if self.is_new() { Last::None } else { Last::OfOtherParameters };
-        Self { last, ..self }
+        Self { changed: true, ..self }
     }
 
     /// Whether there was no step yet.
     pub(crate) fn is_new(&self) -> bool {
-        self.last == Last::None
+        !self.begun
     }
 
     /// Whether the parameters are those of the last step.
     pub(crate) fn has_parameters_of_last(&self) -> bool {
-        self.last == Last::Taken
+        self.begun && !self.changed
     }
 
     /// Velocity of the last step; before the first one its guess.
@@ -335,7 +326,8 @@ impl<const N: usize, T: Scalar> Steps<N, T> {
     fn keep(&mut self, solved: &Solved<N, T>) {
         self.remainder = solved.remainder;
         self.measured = solved.measured;
-        self.last = Last::Taken;
+        self.begun = true;
+        self.changed = false;
     }
 }
 
