@@ -354,9 +354,9 @@ mod tests {
         let limit = series.zero_where(Series::variable(0.0), 2);
         assert_eq!(limit.truncated(2), Series::fixed(0.0));
         assert!(limit.derivative(3).is_nan());
-        assert_eq!(Lane::<true>::new(f64::NAN).zero_where(Lane::new(-0.0), 0).get(), 0.0);
-        assert_eq!(Lanes::<2, false>([f64::NAN, 3.0]).zero_where(Lanes([0.0, 1.0]), 0).0, [0.0, 3.0]);
-        assert_eq!(f32::NAN.zero_where(0.0, 0), 0.0);
+        assert_eq!(Lane::<true>::new(f64::NAN).zero_where(Lane::new(-0.0), 0), Lane::new(0.0));
+        assert_eq!(Lanes::<2, false>([f64::NAN, 3.0]).zero_where(Lanes([0.0, 1.0]), 0), Lanes([0.0, 3.0]));
+        assert_eq!(f32::NAN.zero_where(0.0, 0).to_bits(), 0);
     }
 
     #[test]

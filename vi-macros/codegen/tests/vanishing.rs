@@ -43,6 +43,8 @@ fn a_force_has_the_limits_of_its_products() {
         ("x * y / (x^2 + y^2)", vec![]),
         ("x * y / sqrt(x^2 - y^2)", vec![]),
         ("x * y / sqrt(x^2 + 1)", vec![]),
+        ("x * y / hypot(x, 2)", vec![]),
+        ("x * y / sqrt(hypot(x, a))", vec![0]),
         ("x * y / sqrt(x^2 * y^2 + x)", vec![]),
         ("x * y / sqrt(x^2 + sign(y)^2)", vec![]),
         // The sign is zero where it jumps, and nowhere else.
@@ -69,4 +71,9 @@ fn no_limit_is_taken_where_the_system_has_no_value() {
     let body = |potential: &str| format!("coord x, y; L = (dot(x)^2 + dot(y)^2) / 2 {potential}; {force}");
     assert_eq!(limits(FunctionId::MomentumEquation, &body("")), [0]);
     assert_eq!(limits(FunctionId::MomentumEquation, &body("+ 1 / sqrt(x^2 + y^2)")), [] as [u8; 0]);
+    // These have a value there, or may have one.
+    for potential in ["+ 1 / sqrt(x^2 + y^2 + a^2)", "- (x^2 + y^2)^a", "+ 1 / hypot(x, a)"] {
+        let body = format!("param a = 1.0; {}", body(potential));
+        assert!(limits(FunctionId::Force, &body).contains(&0), "{potential}");
+    }
 }

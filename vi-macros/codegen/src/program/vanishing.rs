@@ -133,7 +133,9 @@ impl Analysis<'_> {
         let mut others = factors.to_vec();
         let mut poles = Vec::new();
         for (power, exponent) in factors {
-            if let Some(pole) = self.pole(*power, exponent)
+            // Beside a term or with an exponent made of parameters it need not be infinite.
+            if let Some(pole) = self.pole(*power, exponent).filter(|_| exponent.is_negative())
+                && pole.zeros.fixed.is_empty()
                 && self.limit(*power, &pole, &mut others).is_none()
             {
                 poles.push(pole.zeros.vanishing.into_iter().map(|(u, _)| u).collect());
@@ -231,7 +233,12 @@ impl Analysis<'_> {
         match self.pool.node(base).clone() {
             _ if depth == 0 => return None,
             Node::Call(Function::Abs | Function::Hypot, arguments) => {
-                zeros.vanishing.extend(arguments.into_iter().map(|argument| (argument, one.clone())));
+                for argument in arguments {
+                    match self.nature(argument).change {
+                        Change::Constant => zeros.fixed.push(argument),
+                        _ => zeros.vanishing.push((argument, one.clone())),
+                    }
+                }
             }
             Node::Product(product) => self.add_zeros(&mut zeros, &product.factors, &one, depth)?,
             Node::Sum(sum) if sum.constant.is_zero() => {
@@ -242,7 +249,8 @@ impl Analysis<'_> {
             }
             _ => return None,
         }
-        (!zeros.vanishing.is_empty()).then_some(zeros)
+        let is_never_zero = zeros.fixed.iter().any(|fixed| self.pool.as_number(*fixed).is_some());
+        (!zeros.vanishing.is_empty() && !is_never_zero).then_some(zeros)
     }
 
     /// The zeros of one term more.
@@ -289,6 +297,10 @@ impl Analysis<'_> {
 
     /// With which power of a base an expression vanishes at its zeros, at least; 0 where that is not known.
     fn order(&mut self, expr: Expr, zeros: &Zeros, depth: u32) -> Rational {
+        self.pool.spend(zeros.vanishing.len());
+        if self.pool.is_exhausted() {
+            return Rational::zero();
+        }
         let orders = zeros.vanishing.iter().filter(|(u, _)| self.is_multiple(expr, *u)).map(|(_, power)| power.recip());
         let own = orders.max();
         if own.is_some() || depth == 0 || self.nature(expr).singular {
@@ -348,6 +360,7 @@ impl Analysis<'_> {
         let is_sign = |node: &Expr| matches!(self.pool.node(*node), Node::Call(Function::Sign, _));
         let signs: Vec<Expr> = nodes.iter().copied().filter(is_sign).collect();
         let few = u32::try_from(signs.len()).ok().filter(|count| *count <= SIGNS);
+        self.pool.spend(few.map_or(0, |count| 3_usize.pow(count)) * nodes.len());
         let (mut between, mut at_jump) = (few.is_none(), few.is_none());
         for number in 0..few.map_or(0, |count| 3_u32.pow(count)) {
             let values = (0..SIGNS).map(|place| f64::from(number / 3_u32.pow(place) % 3) - 1.0);
