@@ -49,7 +49,7 @@ fn main() -> Result<(), vi_core::StepError> {
     Tangent::new(fixed(), Variation::of_state()).step()?;
     Tangent::new(Gauss::<_, 1, 4>::new(system, start, 0.1)?, Variation::of_state()).step()?;
     Tangent::new(EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1)?, Variation::of_state()).step()?;
-    Lyapunov::new(fixed(), 1).advance(10)?;
+    Lyapunov::new(fixed(), 1)?.advance(10)?;
     gradient(&fixed(), 10, 3, &End)?;
     let _ = Variation::<1>::of_parameter::<Oscillator>("m");
     vi_core::check::derivatives(&system, &vi_core::check::Place { t: 0.0, q: [1.0].into(), v: [0.0].into(), h: 0.1 }).expect("right");

@@ -67,7 +67,9 @@ impl Lowering<'_> {
         let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
         let varies = sum.terms.iter().any(|(term, _)| self.dependence(*term) > Dependence::Parameters);
         // A term that is zero in the limit of all its factors keeps them.
-        let (whole, terms): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| self.has_limit(*term));
+        let Self { pool, known, .. } = self;
+        let (whole, terms): (Vec<_>, Vec<_>) =
+            sum.terms.iter().cloned().partition(|(term, _)| known.products.has_limit(pool, *term));
         for (term, _) in &terms {
             for base in self.bases(*term) {
                 if !varies || self.dependence(base) > Dependence::Parameters {
@@ -100,12 +102,6 @@ impl Lowering<'_> {
         }
         let (inside, rest) = (self.pool.sum(&inside), self.pool_sum(&rest));
         Some(SumForm::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
-    }
-
-    /// Whether a term is a product with a limit where a factor is infinite.
-    fn has_limit(&mut self, term: Expr) -> bool {
-        let Node::Product(product) = self.pool.node(term).clone() else { return false };
-        self.known.products.limits(self.pool, &product.factors).is_some()
     }
 
     /// Whether a bare sum is among the terms: it would dissolve in their sum, and its differences with it. e²/2 + e³/3 stays as

@@ -12,6 +12,7 @@
 
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use std::rc::Rc;
 use vi_expr::{Expr, Function, Node, Pool, Rational, Table};
 
 /// Signs whose values are tried one by one.
@@ -70,6 +71,8 @@ pub(super) struct Limits {
 #[derive(Default)]
 pub(super) struct Known {
     natures: Table<Expr, Nature>,
+    /// Where bases are zero, if a limit is looked for there.
+    zeros: Table<Expr, Option<Rc<Zeros>>>,
     /// Where L or f is infinite: where all expressions in `(t, q, v)` of one of these are zero. No limit is looked for there.
     poles: Vec<Vec<Expr>>,
 }
@@ -83,19 +86,86 @@ impl Known {
             let poles = Analysis { pool, known: &mut known }.poles(&product.factors);
             known.poles.extend(poles);
         }
+        // Those found before the last pole was.
+        known.zeros = Table::default();
         known
     }
 
     /// The limits of a product, if it has any.
     pub(super) fn limits(&mut self, pool: &mut Pool<Symbol>, factors: &[(Expr, Rational)]) -> Option<Limits> {
-        Analysis { pool, known: self }.limits(factors)
+        self.may_be_infinite(pool, factors).then(|| Analysis { pool, known: self }.limits(factors)).flatten()
+    }
+
+    /// Whether a term has a limit.
+    pub(super) fn has_limit(&mut self, pool: &mut Pool<Symbol>, term: Expr) -> bool {
+        let Node::Product(product) = pool.node(term) else { return false };
+        if !self.may_be_infinite(pool, &product.factors) {
+            return false;
+        }
+        let factors = product.factors.clone();
+        Analysis { pool, known: self }.limits(&factors).is_some()
+    }
+
+    /// Whether a factor of a product may be infinite, at a state where a limit is looked for.
+    fn may_be_infinite(&mut self, pool: &Pool<Symbol>, factors: &[(Expr, Rational)]) -> bool {
+        factors.len() > 1
+            && factors.iter().any(|(base, exponent)| {
+                let Nature { change, singular, .. } = self.nature(pool, *base);
+                singular || exponent.is_negative() && change == Change::Varying
+            })
+    }
+
+    /// How an expression changes; of everything below it this is known afterwards.
+    fn nature(&mut self, pool: &Pool<Symbol>, expr: Expr) -> Nature {
+        if let Some(known) = self.natures.get(expr) {
+            return *known;
+        }
+        let mut open = vec![expr];
+        while let Some(last) = open.last().copied() {
+            let first = open.len();
+            let natures = &self.natures;
+            pool.node(last).each_child(|child| open.extend((!natures.contains(child)).then_some(child)));
+            if open.len() == first {
+                open.pop();
+                self.natures.insert(last, self.nature_by_operands(pool, last));
+            }
+        }
+        self.natures.get(expr).copied().unwrap_or(LEAST_KNOWN)
+    }
+
+    fn nature_by_operands(&self, pool: &Pool<Symbol>, expr: Expr) -> Nature {
+        let mut nature = Nature { change: Change::Constant, singular: false, jumps: false };
+        let node = pool.node(expr);
+        node.each_child(|child| {
+            let of = self.natures.get(child).unwrap_or(&LEAST_KNOWN);
+            nature.change = nature.change.max(of.change);
+            nature.singular |= of.singular;
+            nature.jumps |= of.jumps;
+        });
+        let is_varying = |base: &Expr| self.natures.get(*base).is_some_and(|of| of.change == Change::Varying);
+        match node {
+            Node::Symbol(Symbol::Parameter { .. }) | Node::Number(_) | Node::Pi | Node::Sum(_) => {}
+            Node::Symbol(_) => nature.change = Change::Varying,
+            Node::Call(Function::Sign, _) => {
+                let change = nature.change.min(Change::Stepwise);
+                nature = Nature { change, singular: false, jumps: change == Change::Stepwise };
+            }
+            Node::Call(function, _) => {
+                nature.singular |= matches!(function, Function::Ln | Function::Pow);
+                nature.jumps |= *function == Function::Atan2;
+            }
+            Node::Product(product) => {
+                nature.singular |= product.factors.iter().any(|(base, e)| e.is_negative() && is_varying(base));
+            }
+        }
+        nature
     }
 }
 
 /// A power that may be infinite where its base is zero.
 struct Pole {
     base: Expr,
-    zeros: Zeros,
+    zeros: Rc<Zeros>,
     exponent: Expr,
 }
 
@@ -138,7 +208,7 @@ impl Analysis<'_> {
                 && pole.zeros.fixed.is_empty()
                 && self.limit(*power, &pole, &mut others).is_none()
             {
-                poles.push(pole.zeros.vanishing.into_iter().map(|(u, _)| u).collect());
+                poles.push(pole.zeros.vanishing.iter().map(|(u, _)| *u).collect());
             }
         }
         if self.steps(&others).is_empty() { poles } else { Vec::new() }
@@ -146,20 +216,20 @@ impl Analysis<'_> {
 
     /// The base and the exponent of a power whose exponent may be negative.
     fn pole(&mut self, power: Expr, exponent: &Rational) -> Option<Pole> {
-        let Nature { change, jumps, .. } = self.nature(power);
+        let Nature { change, jumps, .. } = self.known.nature(self.pool, power);
         if change < Change::Varying || jumps {
             return None;
         }
         if exponent.is_negative() {
-            let zeros = self.zeros(power, DEPTH)?;
+            let zeros = self.zeros(power)?;
             return Some(Pole { base: power, zeros, exponent: self.pool.number(exponent.clone()) });
         }
         let Node::Call(Function::Pow, arguments) = self.pool.node(power) else { return None };
         let [base, inner] = arguments[..] else { return None };
-        if self.nature(inner).change > Change::Constant {
+        if self.known.nature(self.pool, inner).change > Change::Constant {
             return None;
         }
-        let zeros = self.zeros(base, DEPTH)?;
+        let zeros = self.zeros(base)?;
         Some(Pole { base, zeros, exponent: self.pool.scale(inner, exponent) })
     }
 
@@ -177,14 +247,11 @@ impl Analysis<'_> {
         if factors.len() < 2 || known.as_ref().is_some_and(|order| !order.is_positive()) {
             return None;
         }
-        if self.is_at_pole(&pole.zeros) {
-            return None;
-        }
         *others = left;
         let in_distance = known.zip(self.least_power(&pole.zeros)).map(|(order, power)| order * power);
         // The largest integer below the order.
         let derivatives = in_distance.as_ref().and_then(|order| (order.ceil() - Rational::one()).to_u8()).unwrap_or(0);
-        let Zeros { fixed, coefficients, .. } = &pole.zeros;
+        let Zeros { fixed, coefficients, .. } = &*pole.zeros;
         // A square may underflow: then the product, of the order of |u|, is 0 as well as any other number. A root of |u| is not.
         let is_plain =
             fixed.is_empty() && coefficients.is_empty() && in_distance.is_some_and(|order| order >= Rational::one());
@@ -226,15 +293,25 @@ impl Analysis<'_> {
         self.pool.sum(&terms)
     }
 
+    /// Where a base is zero, if a limit is looked for there.
+    fn zeros(&mut self, base: Expr) -> Option<Rc<Zeros>> {
+        if let Some(known) = self.known.zeros.get(base) {
+            return known.clone();
+        }
+        let found = self.find_zeros(base, DEPTH).filter(|zeros| !self.is_at_pole(zeros)).map(Rc::new);
+        self.known.zeros.insert(base, found.clone());
+        found
+    }
+
     /// Where a base is zero, if none of its terms is negative.
-    fn zeros(&mut self, base: Expr, depth: u32) -> Option<Zeros> {
+    fn find_zeros(&mut self, base: Expr, depth: u32) -> Option<Zeros> {
         let one = Rational::one();
         let mut zeros = Zeros::default();
         match self.pool.node(base).clone() {
             _ if depth == 0 => return None,
             Node::Call(Function::Abs | Function::Hypot, arguments) => {
                 for argument in arguments {
-                    match self.nature(argument).change {
+                    match self.known.nature(self.pool, argument).change {
                         Change::Constant => zeros.fixed.push(argument),
                         _ => zeros.vanishing.push((argument, one.clone())),
                     }
@@ -261,7 +338,7 @@ impl Analysis<'_> {
         coefficient: &Rational,
         depth: u32,
     ) -> Option<()> {
-        let is_fixed = |(base, _): &(Expr, Rational)| self.nature(*base).change == Change::Constant;
+        let is_fixed = |(base, _): &(Expr, Rational)| self.known.nature(self.pool, *base).change == Change::Constant;
         let (fixed, moving): (Factors, Factors) = factors.iter().cloned().partition(is_fixed);
         let has_parameters = !fixed.is_empty();
         if moving.len() > 1 || moving.iter().any(|(_, exponent)| !exponent.is_positive()) {
@@ -280,7 +357,7 @@ impl Analysis<'_> {
             zeros.vanishing.push((*base, exponent.clone()));
             return Some(());
         }
-        let inner = self.zeros(*base, depth - 1)?;
+        let inner = self.find_zeros(*base, depth - 1)?;
         zeros.vanishing.extend(inner.vanishing.into_iter().map(|(u, power)| (u, power * exponent)));
         zeros.fixed.extend(inner.fixed);
         zeros.coefficients.extend(inner.coefficients);
@@ -303,7 +380,7 @@ impl Analysis<'_> {
         }
         let orders = zeros.vanishing.iter().filter(|(u, _)| self.is_multiple(expr, *u)).map(|(_, power)| power.recip());
         let own = orders.max();
-        if own.is_some() || depth == 0 || self.nature(expr).singular {
+        if own.is_some() || depth == 0 || self.known.nature(self.pool, expr).singular {
             return own.unwrap_or_else(Rational::zero);
         }
         let order = match self.pool.node(expr).clone() {
@@ -339,15 +416,11 @@ impl Analysis<'_> {
 
     /// What is zero where a product is zero around the state, although a factor of it is infinite there.
     fn steps(&mut self, factors: &[(Expr, Rational)]) -> Vec<Expr> {
-        let is_singular = factors.iter().any(|(base, exponent)| {
-            let Nature { change, singular, .. } = self.nature(*base);
-            singular || exponent.is_negative() && change == Change::Varying
-        });
-        if !is_singular {
+        if !self.known.may_be_infinite(self.pool, factors) {
             return Vec::new();
         }
         let is_step = |(base, exponent): &&(Expr, Rational)| {
-            exponent.is_positive() && self.nature(*base).change == Change::Stepwise
+            exponent.is_positive() && self.known.nature(self.pool, *base).change == Change::Stepwise
         };
         let steps: Vec<Expr> = factors.iter().filter(is_step).map(|(base, _)| *base).collect();
         steps.into_iter().filter_map(|step| self.zero_between_jumps(step)).collect()
@@ -392,50 +465,6 @@ impl Analysis<'_> {
         }
         // Not a number where a parameter counts.
         !known.get(expr).is_some_and(|value| value.abs() > ROUNDING)
-    }
-
-    /// How an expression changes; of everything below it this is known afterwards.
-    fn nature(&mut self, expr: Expr) -> Nature {
-        let mut open = vec![expr];
-        while let Some(last) = open.last().copied() {
-            let first = open.len();
-            let natures = &self.known.natures;
-            self.pool.node(last).each_child(|child| open.extend((!natures.contains(child)).then_some(child)));
-            if open.len() == first {
-                open.pop();
-                let nature = self.nature_by_operands(last);
-                self.known.natures.insert(last, nature);
-            }
-        }
-        self.known.natures.get(expr).copied().unwrap_or(LEAST_KNOWN)
-    }
-
-    fn nature_by_operands(&self, expr: Expr) -> Nature {
-        let mut nature = Nature { change: Change::Constant, singular: false, jumps: false };
-        let node = self.pool.node(expr);
-        node.each_child(|child| {
-            let of = self.known.natures.get(child).unwrap_or(&LEAST_KNOWN);
-            nature.change = nature.change.max(of.change);
-            nature.singular |= of.singular;
-            nature.jumps |= of.jumps;
-        });
-        let is_varying = |base: &Expr| self.known.natures.get(*base).is_some_and(|of| of.change == Change::Varying);
-        match node {
-            Node::Symbol(Symbol::Parameter { .. }) | Node::Number(_) | Node::Pi | Node::Sum(_) => {}
-            Node::Symbol(_) => nature.change = Change::Varying,
-            Node::Call(Function::Sign, _) => {
-                let change = nature.change.min(Change::Stepwise);
-                nature = Nature { change, singular: false, jumps: change == Change::Stepwise };
-            }
-            Node::Call(function, _) => {
-                nature.singular |= matches!(function, Function::Ln | Function::Pow);
-                nature.jumps |= *function == Function::Atan2;
-            }
-            Node::Product(product) => {
-                nature.singular |= product.factors.iter().any(|(base, e)| e.is_negative() && is_varying(base));
-            }
-        }
-        nature
     }
 }
 
