@@ -123,8 +123,8 @@ where
     let start = State::at(&system, 0.0, [1.0], [0.0]);
     let is_on_parabola = |state: &State<1>, name: &str| {
         let off = (state.q[0] - 1.0 + state.t * state.t / 2.0).abs().max((state.p[0] + state.t).abs());
-        // Measured: 3.5e-14, of energy-preserving steps, whose lengths are sums.
-        assert!(off < 1e-13, "{name}: {off:e} at {}", state.t);
+        // Measured: 5.6e-17.
+        assert!(off < 1e-16, "{name}: {off:e} at {}", state.t);
     };
     is_on_parabola(&after(FixedStep::new(system, start, 0.01)), "fixed");
     is_on_parabola(&after(Composition::new(system, Scheme::KAHAN_LI_6, start, 0.01)), "composition");
@@ -133,8 +133,8 @@ where
     for _ in 0..60 {
         let (t, q, v) = energy.step().expect("a step").midpoint;
         let off = (q[0] - 1.0 + t * t / 2.0).abs().max((v[0] + t).abs());
-        // The step h from a midpoint to the next: q(t) + h²/8 at most. Measured: 1.3e-5.
-        assert!(off < 2e-5, "energy-preserving: {off:e}");
+        // Measured: 1.2e-16.
+        assert!(off < 2e-16, "energy-preserving: {off:e}");
     }
     let mut ensemble = Ensemble::new(vec![system; 9], vec![start; 9], 0.01).expect("valid starts");
     ensemble.run(60);
@@ -197,7 +197,8 @@ fn the_curvature_of_the_floor_is_that_of_the_formula() {
     assert_eq!(SVector::<f64, 3>::from([at(0.3 + 1e-15), at(0.4), at(1e9)]), SVector::<f64, 3>::zeros());
     // −k n (n − 1) d^(n − 2)
     let wanted = -100.0 * 0.75 / 0.2_f64.sqrt();
-    assert!((at(0.1) / wanted - 1.0).abs() < 1e-14, "{:e}", at(0.1));
+    // Measured: 0.
+    assert!((at(0.1) / wanted - 1.0).abs() < 1e-15, "{:e}", at(0.1));
     // At the floor itself it is infinite on one side: no step begins there.
     assert!(!at(0.3).is_finite(), "{:e}", at(0.3));
     let floor = State { t: 0.0, q: [0.3].into(), p: [0.0].into() };
@@ -221,8 +222,8 @@ fn a_drag_at_rest_has_no_slope() {
         let across = half * x * y / speed;
         let wanted = [1.0 + half * (speed + x * x / speed), across, across, 1.0 + half * (speed + y * y / speed)];
         for (found, wanted) in found.iter().zip(wanted) {
-            // Measured: 1.3e-16 of it.
-            assert!((found - wanted).abs() <= 1e-15 * wanted.abs(), "{found:e}, {wanted:e} at {x:e}, {y:e}");
+            // Measured: 2.3e-16 of it.
+            assert!((found - wanted).abs() <= 3e-16 * wanted.abs(), "{found:e}, {wanted:e} at {x:e}, {y:e}");
         }
     }
     // Where the squares underflow the product is below 1e-160.
@@ -258,8 +259,8 @@ fn a_fall_from_rest_is_the_closed_form() {
         run.step().expect("a step");
     }
     let off = (run.state().p[1] + (2.0 * 0.3_f32.sqrt()).tanh() / 0.3_f32.sqrt()).abs();
-    // Measured: 3.7e-6, the error of the step.
-    assert!(off < 5e-6, "{off:e}");
+    // Measured: 3.3e-6, the error of the step.
+    assert!(off < 4e-6, "{off:e}");
     // Energy-preserving steps fall too.
     let mut run = EnergyPreserving::from_midpoint(system, 0.0, [0.0, 0.0], [0.0, 0.0], 0.01).expect("a velocity");
     for _ in 0..100 {
@@ -267,8 +268,8 @@ fn a_fall_from_rest_is_the_closed_form() {
     }
     let (state, root) = (run.state(), 0.3_f64.sqrt());
     let off = (state.p[1] + (state.t * root).tanh() / root).abs();
-    // Measured: 1.0e-5.
-    assert!(off < 2e-5, "{off:e}");
+    // Measured: 3.7e-6.
+    assert!(off < 4e-6, "{off:e}");
     // As in lanes.
     let mut alone = FixedStep::new(system, State::at(&system, 0.0, [0.0, 0.0], [0.0, 0.0]), 0.01).expect("a velocity");
     let mut ensemble = Ensemble::new(vec![system; 9], vec![alone.state(); 9], 0.01).expect("valid starts");
@@ -293,7 +294,8 @@ fn exponents_and_coefficients_that_are_parameters_are_tested_at_run_time() {
             run.step().expect("a step");
         }
         // The end of the fall: 1 = a^n v^(2n + 1).
-        assert!((run.v()[0] - 1.0).abs() < 1e-3, "{:e}", run.v()[0]);
+        // Measured: 1.1e-6, where it is slower.
+        assert!((run.v()[0] - 1.0).abs() < 2e-6, "{:e}", run.v()[0]);
     }
     for system in [
         Unlike { n: -0.5, ..Unlike::default() },
@@ -360,11 +362,12 @@ fn derivatives_of_a_free_fall_are_those_of_the_parabola() {
     ] {
         let wanted = [[1.0, 0.0], [0.6, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
         for (found, wanted) in found.iter().flatten().zip(wanted.iter().flatten()) {
-            // Measured: 3.4e-16.
+            // Measured: 7.8e-16.
             assert!((found - wanted).abs() < 1e-15, "{found:e}, {wanted:e}");
         }
     }
     let gradient = gradient(&run, 60, 8, &Height).expect("a derivative");
+    // Measured: 3.4e-16.
     assert!((gradient.start.q[0] - 1.0).abs() < 1e-15 && (gradient.start.p[0] - 0.6).abs() < 1e-15, "{gradient:?}");
     assert_eq!(gradient.parameters, vec![vec![0.0; 3]; 60]);
     // A second variation: of a parabola there is none.
