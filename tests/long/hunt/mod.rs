@@ -114,9 +114,8 @@ impl Row {
         let energy = (system.discrete_energy(node, h, v) - kept).abs() / f64::EPSILON;
         let work = v.component_mul(&at.increment.momentum).abs().sum();
         let of_rows = FLOOR * (own + work);
-        row.worst = row.worst.max(FLOOR * energy / (of_rows + FLOOR * analysis.energy));
-        let left = at.energy_residual + v.dot(&at.residual);
-        row.by[2] = row.by[2].max(left.abs() / (f64::EPSILON * analysis.energy));
+        // A rounding of the terms of L is one of this evaluation.
+        row.worst = row.worst.max(FLOOR * energy / (of_rows + FLOOR * analysis.energy + at.energy_scale));
         row
     }
 

@@ -14,7 +14,7 @@
 
 use crate::error::Residuals;
 use crate::linear::{self, Matrix};
-use crate::newton::{self, Equations, roundings, worst};
+use crate::newton::{self, Equations, FLOOR, roundings, worst};
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::{EnergyStepping, ExtendedResidual, ExtendedSystem, Rounding};
@@ -175,6 +175,8 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
         let scale = &scales.scale;
         let combined = roundings(measured.energy_residual, scale.energy_residual);
         let energy = roundings(energy_residual(measured, &trial.v), scale.energy);
+        // It follows from the rows: no iteration is for what it has within its floor.
+        let energy = if energy <= FLOOR { 0.0 } else { energy };
         [worst(&measured.residual, &scale.residual), worse(combined, energy)]
     }
 

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! accept     where |r_i| ≤ 4 ε (|p0_i| + |p1_i − p0_i|)  and  |c| ≤ (ε/2) (|E0| + |E1 − E0| + Σ_i |v_i p0_i|),
-//!            or the same parts of the sum of the absolute values of the terms of each row, if e = c + v·r is at its own floor too
+//!            or the same parts of the sum of the absolute values of the terms of each row, if e = c + v·r is at the first of these too
 //! ```
 //!
 //! `None` where three Newton steps do not come there, the length leaves its range or D changes its sign. What is left of the
@@ -16,7 +16,6 @@
 
 use super::equations::{Elimination, EnergyStep, energy_residual};
 use super::interval::{Last, RATIO};
-use crate::called::Called;
 use crate::newton::{FLOOR, are_at_floor, roundings, worst};
 use crate::node::Node;
 use crate::predictor::Predictor;
@@ -135,7 +134,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
                 continue;
             }
             let at = system.extended_residual(node, trial.h, &trial.v);
-            let Some((remainder, residual)) = self.measured(system, node, &trial, &at) else {
+            let Some((remainder, residual)) = self.measured(node, &trial, &at) else {
                 continue;
             };
             let VelocityStep { v, h } = trial;
@@ -152,9 +151,8 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
     /// What is left of the momentum rows with what was carried to them, and the largest residual in roundings, where every row is
     /// at the floor.
     #[inline(always)]
-    fn measured<S: EnergyStepping<N, T>>(
+    fn measured(
         &self,
-        system: &S,
         node: &Node<N, T>,
         trial: &VelocityStep<N, T>,
         at: &ExtendedResidual<N, T>,
@@ -171,26 +169,17 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
         let mut energy = node.p.iter().zip(trial.v.iter()).fold(own, |sum, (p, v)| sum + (*p * *v).abs());
         // Rows at this floor keep the energy itself: e = c + v·r.
         if !is_at_floor(&rows, energy) {
+            let terms = rows.iter().zip(trial.v.iter()).fold(own, |sum, (row, v)| sum + (*row * *v).abs());
+            let left = energy_residual(at, &trial.v).abs();
             // Where momenta or the energy vanish, what they are sums of need not.
             (rows, energy) = (at.scale, at.energy_scale);
-            if !(is_at_floor(&rows, energy) && is_energy_kept(&Called(*system), node, trial, at)) {
+            let is_kept = left <= terms * T::real(FLOOR * T::EPSILON);
+            if !(is_at_floor(&rows, energy) && is_kept) {
                 return None;
             }
         }
         Some((remainder, worse(worst(&at.residual, &rows), roundings(at.energy_residual, energy))))
     }
-}
-
-/// Whether the energy itself is at its floor: the terms of stiff rows cancel in it.
-#[cold]
-#[inline(never)]
-fn is_energy_kept<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
-    system: &S,
-    node: &Node<N, T>,
-    VelocityStep { v, h }: &VelocityStep<N, T>,
-    at: &ExtendedResidual<N, T>,
-) -> bool {
-    roundings(energy_residual(at, v), system.extended_rounding(node, *h, v).energy) <= FLOOR
 }
 
 /// Whether a change is less than a millionth of the trial that it leads to.
