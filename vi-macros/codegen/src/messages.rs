@@ -326,7 +326,7 @@ impl Message {
             Self::DotOfOther { name } => format!("`dot({name})`: `{name}` is not a coordinate"),
             Self::DotOfConstant { name } => format!("`dot({name})`: `{name}` does not change with time"),
             Self::Acceleration { name } => format!("an expression cannot depend on the acceleration `{name}`"),
-            Self::NotConstant { name } => format!("`{name}` is not a constant"),
+            Self::NotConstant { name } => format!("the value of `{name}` is not a constant"),
             Self::NotFinite { name } => format!("the value of `{name}` is not finite"),
             Self::DivisionByZero => "division by zero".to_owned(),
             Self::NoValue => "this expression has no value".to_owned(),

@@ -252,7 +252,7 @@ fn constants() {
         "`dissipation` has no value\nhelp: write `dissipation = …;`, one function for all coordinates",
     );
     case("coord x; L = dot(x)^2 * «0»^-1; discretize midpoint;", "this expression has no value");
-    case("const a = «t»; coord x; L = dot(x)^2; discretize midpoint;", "`a` is not a constant");
+    case("const a = «t»; coord x; L = dot(x)^2; discretize midpoint;", "the value of `a` is not a constant");
     case("coord x; L = dot(x)^2 * «2x»; discretize midpoint;", "the number `2` runs into `x`\nhelp: write `2 * x`");
     case("coord x; L = dot(x)^2 * «0x10»; discretize midpoint;", "not a decimal number");
     case("coord x; L = dot(x)^2 * «\"a\"»; discretize midpoint;", "not a decimal number");
@@ -913,10 +913,10 @@ fn checks() {
     case(&system("check { «q» = 1; h = 1; }"), "`q` is an array");
     case(&system("check { dot(«x»[0]) = 1; h = 1; }"), "`x` is not an array");
     case(&system("check { dot(q[i in 0..«4»]) = 1; h = 1; }"), "`q[3]` is out of range 0..3");
-    case(&system("check { x = «a»; h = 1; }"), "`x` is not a constant\nhelp: use numbers");
+    case(&system("check { x = «a»; h = 1; }"), "the value of `x` is not a constant\nhelp: use numbers");
     case(&system("check { x = «exp»(1000); h = 1; }"), "the value of `x` is not finite");
     case(&system("check { x = 1 / «0»; h = 1; }"), "division by zero");
-    case(&system("check { h = «x»; }"), "`h` is not a constant");
+    case(&system("check { h = «x»; }"), "the value of `h` is not a constant");
     case(&system("check { x = 1 «dot»(x) = 2; h = 1; }"), "an operator is missing between `1` and `dot(…)`");
     case(&system("check { x = «1» y = 2; h = 1; }"), "`;` is missing behind `1`");
     case(&system("check { x = 1 «{»} h = 1; }"), "expected an operator, `,` or `;`");
@@ -954,7 +954,7 @@ fn parameters_of_a_check() {
     case(&system("k[«3»] = 1; h = 1;"), "`k[3]` is out of range 0..3\nhelp: the indices are 0 to 2");
     case(&system("k[i in 0..«4»] = 1; h = 1;"), "`k[3]` is out of range 0..3");
     case(&system("dot(«mass») = 1; h = 1;"), "`dot(mass)`: `mass` is not a coordinate");
-    case(&system("mass = «h»; h = 1;"), "`mass` is not a constant");
+    case(&system("mass = «h»; h = 1;"), "the value of `mass` is not a constant");
     case(&system("mass = «exp»(1000); h = 1;"), "the value of `mass` is not finite");
 }
 
