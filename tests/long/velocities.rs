@@ -113,3 +113,52 @@ fn two_velocities_of_one_momentum_are_an_error() {
         assert!(Gauss::<_, 1, 2>::new(system, start, 0.01).is_err());
     }
 }
+
+lagrangian! {
+    struct Mixed {
+        param k = 1.0;
+        coord x, y;
+        L = -1 / dot(x) + dot(y) * ln(dot(y)) - k * x^2 / 2;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    struct Bent {
+        param k = 1.0;
+        coord x;
+        L = -1 / dot(x) + dot(x)^2 / 2 - k * x^2 / 2;
+        discretize midpoint;
+    }
+}
+
+lagrangian! {
+    struct Quadrant {
+        param k = 1.0;
+        coord x, y;
+        L = -ln(-dot(x)) + ln(dot(y)) - k * x^2 / 2;
+        discretize midpoint;
+    }
+}
+
+/// Two branches of one coordinate beside another that has one, and two branches of one sign.
+#[test]
+fn two_branches_among_others_are_an_error() {
+    for v in [[-0.5, 0.3], [1e-3, 0.3], [0.5, 2.0]] {
+        let start = State::at(&Mixed::default(), 0.0, [0.0, 0.0], v);
+        assert_eq!(start.velocity(&Mixed::default()).expect_err("two velocities"), StepError::Ambiguous { t: 0.0 });
+    }
+    for v in [0.5, -0.5, 0.1] {
+        let start = State::at(&Bent::default(), 0.0, [0.0], [v]);
+        assert_eq!(start.velocity(&Bent::default()).expect_err("two velocities"), StepError::Ambiguous { t: 0.0 });
+    }
+}
+
+#[test]
+fn every_choice_of_signs_is_searched() {
+    for v in [[-0.5, 0.3], [-1e-3, 20.0], [-4.0, 1e-3]] {
+        let start = State::at(&Quadrant::default(), 0.0, [0.1, 0.0], v);
+        let found = start.velocity(&Quadrant::default()).expect("a velocity");
+        assert!((0..2).all(|k| (found[k] - v[k]).abs() <= 1e-13 * v[k].abs()), "{v:?}: {found:?}");
+    }
+}

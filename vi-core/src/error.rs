@@ -106,7 +106,7 @@ pub enum StepError {
         /// Estimate of h ω, ω the fastest rate of the equations linearized in the middle of the step.
         stiffness: f64,
     },
-    /// The time scale g of `dt = g dτ` is not positive, not finite, or so small that a step does not change the time.
+    /// The time scale g of `dt = g dτ` is not positive, not finite, or so small that a step does not change the time or does not keep the energy.
     TimeScale {
         /// Time at which it was met.
         t: f64,
@@ -226,7 +226,10 @@ impl fmt::Display for Reason<'_> {
                 "the stages of the step from t = {t:.9} with h = {h:.3e} do not settle: they change by {change:.3e} roundings in iteration {iterations}, {contraction:.2} times the change before; h ω is about {stiffness:.3e}"
             ),
             StepError::TimeScale { t, g } if *g > 0.0 && g.is_finite() => {
-                write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, so small that the time stands still")
+                write!(
+                    f,
+                    "the time scale is g = {g:.3e} at t = {t:.9}, too small for the time to go on or the energy to stay"
+                )
             }
             StepError::TimeScale { t, g } => {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
@@ -262,7 +265,11 @@ impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.reason().fmt(f)?;
         match self {
-            Self::NoForwardStep { h, .. } | Self::DegenerateStep { h, .. } | Self::StepRatio { previous: h, .. } => {
+            Self::DegenerateStep { h, .. } => write!(
+                f,
+                "; `with_fallback(Fallback::FixedSteps)` or fixed steps of h = {h:.3e} go on, and so may longer steps, fewer stages, or `EnergyPreservingGauss` with another shift"
+            ),
+            Self::NoForwardStep { h, .. } | Self::StepRatio { previous: h, .. } => {
                 write!(
                     f,
                     "; `with_fallback(Fallback::FixedSteps)` or `FixedStep` with h = {h:.3e} goes on, and so does `EnergyPreservingGauss` with a shift, which `with_shift_from(duration)` measures"
@@ -288,7 +295,7 @@ impl fmt::Display for StepError {
             ),
             Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
             Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => {
-                f.write_str("; end the run before, or write a `time_scale` that does not vanish there")
+                f.write_str("; take shorter steps, end the run before, or write a `time_scale` that does not nearly vanish there")
             }
             Self::TimeScale { .. } => {
                 f.write_str("; take shorter steps, or write a `time_scale` that is positive there")

@@ -171,14 +171,17 @@ where
 /// Sizes of velocities from which a search starts where Newton's iteration finds none from rest: logarithms and roots are defined for one sign,
 /// and far from the root they send it out of their domain.
 const SCALES: [f64; 9] = [1.0, 0.1, 10.0, 1e-2, 1e2, 1e-4, 1e4, 1e-8, 1e8];
-/// Part of a velocity by which two are told apart.
+/// Parts of a velocity from which another one is looked for, and the part of it by which two are told apart.
+const PARTS: [f64; 3] = [1.0, 1.0 / 16.0, 16.0];
 const APART: f64 = 1e-6;
+/// Coordinates up to which every choice of their signs is tried; of more, those of all at once and of each alone.
+const FEW: usize = 4;
 
 /// The v with `∂L/∂v(t, q, v) = p` of a system, given also in numbers that carry a bound of their rounding, and its mass matrix: by
-/// Newton's iteration from rest. Where that has no value, or no slope, from p and from velocities of several sizes.
+/// Newton's iteration from rest. Where that has no value, or no slope, from p and from velocities of several sizes and signs.
 ///
 /// # Errors
-/// [`StepError::Ambiguous`] where the velocity of the other sign has the same momenta; [`StepError::Singular`], [`StepError::NonFinite`] or
+/// [`StepError::Ambiguous`] where another velocity that the search meets has the same momenta; [`StepError::Singular`], [`StepError::NonFinite`] or
 /// [`StepError::NotConverged`] from p where no guess leads to one.
 pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     system: &impl Lagrangian<N, T>,
@@ -191,15 +194,22 @@ pub fn velocity<const N: usize, T: Real, M: Matrix<N, T>>(
     if let Ok(v) = from(SVector::zeros()) {
         return Ok(v);
     }
-    let signs = p.map(|p| T::real(if p.to_f64() < 0.0 { -1.0 } else { 1.0 }));
-    let searched = || {
-        let directions = [SVector::repeat(T::one()), SVector::repeat(-T::one()), signs];
-        let mut guesses = SCALES.iter().flat_map(|scale| directions.map(|direction| direction * T::real(*scale)));
-        guesses.find_map(|guess| from(guess).ok())
-    };
-    let v = from(*p).or_else(|failure| searched().ok_or(failure));
+    let sized = || SCALES.iter().flat_map(|scale| signed(SVector::repeat(T::real(*scale))));
+    let v = from(*p).or_else(|failure| sized().find_map(|guess| from(guess).ok()).ok_or(failure));
     let v = v.map_err(|failure| failure.at(t.to_f64(), 0.0, "mass matrix"))?;
-    // L has no value at rest, and may have two branches: which of them is meant, momenta do not say.
-    let other = from(-v).is_ok_and(|other| (other - v).longest() > APART * v.longest());
-    if other { Err(StepError::Ambiguous { t: t.to_f64() }) } else { Ok(v) }
+    // L has no value at rest, and may have several branches: which of them is meant, momenta do not say.
+    let is_other = |guess| from(guess).is_ok_and(|other| (other - v).longest() > APART * v.longest());
+    let mut guesses = PARTS.iter().flat_map(|part| signed(v * T::real(*part))).chain(sized());
+    if guesses.any(is_other) { Err(StepError::Ambiguous { t: t.to_f64() }) } else { Ok(v) }
+}
+
+/// The vectors whose entries are those of `v` but for their signs.
+fn signed<const N: usize, T: Real>(v: SVector<T, N>) -> impl Iterator<Item = SVector<T, N>> {
+    let choices = if N <= FEW { 1 << N } else { N + 2 };
+    (0..choices).map(move |choice: usize| {
+        SVector::from_fn(|k, _| {
+            let is_turned = if N <= FEW { choice >> k & 1 == 1 } else { choice == N + 1 || choice == k + 1 };
+            if is_turned { -v[k] } else { v[k] }
+        })
+    })
 }

@@ -134,7 +134,10 @@ fn an_error_ends_in_what_to_do() {
     };
     let all = [
         (no_step, goes_on),
-        (degenerate, goes_on),
+        (
+            degenerate,
+            "; `with_fallback(Fallback::FixedSteps)` or fixed steps of h = 5.000e-1 go on, and so may longer steps, fewer stages, or `EnergyPreservingGauss` with another shift",
+        ),
         (ratio, goes_on),
         (
             gauss,

@@ -78,7 +78,9 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     #[cold]
     pub(super) fn is_preserved(&self, trial: &Trial<N, S>) -> Result<bool, StepError> {
         let rounding = f64::EPSILON * self.rounding_of(trial);
-        if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * trial.size) {
+        // At a turning point the energy at hand may be zero, and that of the motion is not.
+        let size = trial.size.max(self.course.largest_size);
+        if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
             return Ok(false);
         }
         if self.course.excess.abs() < Self::least_excess(rounding) { Err(self.degenerate()) } else { Ok(true) }

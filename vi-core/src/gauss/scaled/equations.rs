@@ -64,6 +64,8 @@ where
     force: Stages<N, S>,
     /// The largest H, and v·p, there: what an energy is a sum of.
     energy_scale: f64,
+    /// The largest `|H − E|` there.
+    excess: f64,
     roundings: AllRoundings<N>,
 }
 
@@ -108,6 +110,7 @@ where
             evaluated,
             force,
             energy_scale,
+            excess: 0.0,
             roundings,
         };
         equations.advance_clock();
@@ -158,6 +161,7 @@ where
         let mut g = [0.0; S];
         let mut gain = [0.0; S];
         let mut size = [0.0; S];
+        let mut missed = [0.0; S];
         for i in 0..S {
             let v = stage::<N, S, T>(&velocity, i);
             let at = self.system.scaled_point(T::real(clock.time[i]), &stage(&x, i), &v);
@@ -173,6 +177,7 @@ where
             g[i] = at.g.to_f64();
             gain[i] = (at.g * at.power + excess * at.g_dt).to_f64();
             size[i] = at.energy.to_f64().abs() + action.to_f64().abs();
+            missed[i] = excess.to_f64().abs();
             keep(i, &at.point.mass);
         }
         self.velocity = velocity;
@@ -181,6 +186,7 @@ where
         self.rates.g = g;
         self.rates.energy = gain;
         self.energy_scale = size.into_iter().fold(0.0, f64::max);
+        self.excess = missed.into_iter().fold(0.0, f64::max);
         let mut missing = [[0.0; S]; N];
         for k in 0..N {
             let gained = self.integral(&force[k], self.node.p_low[k]);
@@ -268,6 +274,12 @@ where
     #[inline(always)]
     pub(super) fn rates(&self) -> Rates<N, S> {
         self.rates
+    }
+
+    /// The largest `|H − E|` at the last evaluation, and the size of the terms of H.
+    #[inline(always)]
+    pub(super) fn excess(&self) -> [f64; 2] {
+        [self.excess, self.energy_scale]
     }
 
     /// Velocities at which the last sweep evaluated.

@@ -108,7 +108,7 @@ where
     ///
     /// # Errors
     /// [`StepError::StagesUnsettled`] where the stages do not come to rest: Δτ is too long for the fastest motion of the system;
-    /// [`StepError::TimeScale`] where g is not positive and finite at a stage, or at the state reached, or so small that the time stands still;
+    /// [`StepError::TimeScale`] where g is not positive and finite at a stage, or at the state reached, or too small for the time to go on or the energy to stay;
     /// [`StepError::NonFinite`]. The same error again after an error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         if let Some(failure) = self.failure {
@@ -136,7 +136,7 @@ where
             solved_plainly(&self.system, &self.run, None)
         };
         let run = self.run.after(&swept);
-        let is_solved = swept.is_at_floor() && run.is_sound(&self.system) && run.leaves(&self.run.node);
+        let is_solved = swept.is_at_floor() && run.is_sound(&self.system) && run.goes_on(&self.run, &swept);
         if is_solved { Ok(run) } else { self.solve_with_care(Some(&swept)) }
     }
 
@@ -169,7 +169,7 @@ where
             let Run { node, dtau, .. } = &self.run;
             after.convergence.change = rounding::residual(&self.system.convert::<Rounded>(), node, *dtau, solved);
         }
-        (after.convergence.is_at_floor() && after.is_sound(&self.system) && after.leaves(&self.run.node))
+        (after.convergence.is_at_floor() && after.is_sound(&self.system) && after.goes_on(&self.run, solved))
             .then_some(after)
     }
 
@@ -186,7 +186,7 @@ where
         if let Some(failure) = lost_force(&self.system, node, *h) {
             return failure;
         }
-        if after.convergence.is_at_floor() && !after.leaves(node) {
+        if after.convergence.is_at_floor() && !after.goes_on(&self.run, solved) {
             return StepError::TimeScale { t: node.t, g: solved.rates.g[0] };
         }
         let stiffness = self.newton.as_ref().map_or(f64::INFINITY, |newton| newton.stiffness());
@@ -263,6 +263,8 @@ struct Solved<const N: usize, const S: usize> {
     increment: Increment<N>,
     /// What time and energy gain.
     gains: [f64; 2],
+    /// The largest `|H − E|` at its stages, and the size of the terms of H there.
+    excess: [f64; 2],
     /// What the next step is extrapolated from.
     rates: Rates<N, S>,
     /// Velocities, times and energies at which the last sweep evaluated.
@@ -321,6 +323,7 @@ where
     Solved {
         increment: equations.increment(),
         gains: equations.gains(),
+        excess: equations.excess(),
         rates: equations.rates(),
         velocity: equations.velocity(),
         clock: equations.evaluated(),

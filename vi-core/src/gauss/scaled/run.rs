@@ -24,6 +24,8 @@ pub struct Run<const N: usize, const S: usize> {
     /// Length of the last step in scaled time, and in time; before the first one Δτ and `g Δτ`.
     pub(super) taken: f64,
     pub(super) h: f64,
+    /// The largest size of the terms of H, `|v·p| + |H|`, at the stages so far.
+    pub(super) size: f64,
     /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
     pub(super) velocities: SMatrix<f64, S, N>,
     /// The same of g and of dE/dτ, a column each.
@@ -44,7 +46,18 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let velocities = SMatrix::from_fn(|_, k| v[k]);
         let clock = SMatrix::from_fn(|_, column| if column == 0 { g } else { gain });
         let h = g * dtau;
-        Ok(Self { node, dtau, taken: dtau, h, velocities, clock, convergence: Convergence::NONE, pause: Pause::NONE })
+        let size = energy.abs() + v.dot(&node.p).abs();
+        Ok(Self {
+            node,
+            dtau,
+            taken: dtau,
+            h,
+            size,
+            velocities,
+            clock,
+            convergence: Convergence::NONE,
+            pause: Pause::NONE,
+        })
     }
 
     /// Rates at the stages of the last step.
@@ -102,8 +115,9 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
         let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
         let Self { dtau, .. } = *self;
+        let size = self.size.max(solved.excess[1]);
         let convergence = sweeps.convergence;
-        Self { node, dtau, taken: dtau, h: *h, velocities, clock, convergence, pause: Pause::NONE }
+        Self { node, dtau, taken: dtau, h: *h, size, velocities, clock, convergence, pause: Pause::NONE }
     }
 
     /// The run after a step by Newton's iteration.
@@ -111,10 +125,13 @@ impl<const N: usize, const S: usize> Run<N, S> {
         Self { pause: self.pause.after_newton(), ..self.after(solved) }
     }
 
-    /// Whether its last step changes the time: both parts of that sum hold twice the digits of a number.
+    /// Whether its last step changes the time, both parts of whose sum hold twice the digits of a number, and keeps the energy: K = g (H − E) is
+    /// nearly kept, and where g almost vanishes H may be anything, as if the motion met a wall there.
     #[inline(always)]
-    pub(super) fn leaves(&self, before: &Node<N>) -> bool {
-        self.h.abs() > 0.25 * f64::EPSILON * f64::EPSILON * before.t.abs()
+    pub(super) fn goes_on(&self, before: &Self, solved: &Solved<N, S>) -> bool {
+        let [excess, size] = solved.excess;
+        let is_lost = excess > size && excess > LOST * before.size;
+        !is_lost && self.h.abs() > 0.25 * f64::EPSILON * f64::EPSILON * before.node.t.abs()
     }
 
     /// Whether it is finite, and g positive at all stages and at the node.
@@ -133,5 +150,7 @@ pub(super) fn time_scale<Y: TimeScale<N>, const N: usize>(system: &Y, t: f64, q:
     system.scaled_point(t, q, &SVector::zeros()).g
 }
 
+/// Part of the largest terms of H from which an excess `|H − E|` is no small error.
+const LOST: f64 = 0.1;
 /// Lengths of the last step by which its polynomials guess ahead at most.
 const FARTHEST: f64 = 2.0;
