@@ -36,6 +36,10 @@ fn a_coefficient_is_the_nearest_number() {
         ("x * (sqrt(2) - 1)^20 * (y + 1)", 2.210_478_490_342_221_6e-08),
         ("sign(exp(pi) - pi - 20) * x", -1.0),
         ("abs(x * (exp(pi) - pi - 20))", 0.000_900_020_810_524_232_8),
+        // High powers are rounded as they stand.
+        ("(1 + pi / 100)^365 * x", 80_047.751_297_709_21),
+        ("(1 + sqrt(2) / 1000)^1000 * x", 4.109_143_054_374_867),
+        ("(1 + pi / 100 + sqrt(2))^50 * x", 2.627_441_887_324_360_3e19),
         // Terms of sums that differ by constants, and constant parts of sums.
         ("(x - cos(1e-8) * x)", 5e-17),
         ("y + cos(1e-8) - 1", -5e-17),

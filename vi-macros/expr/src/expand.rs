@@ -13,6 +13,9 @@ use crate::{Expr, Node, Pool, Rational, Table, TooLarge, number};
 /// Most terms that one expansion may write.
 const LIMIT: usize = 50_000;
 
+/// Powers of constant sums that are multiplied out, so that they cancel exactly.
+const HIGH: u32 = 20;
+
 /// So many bits of a coefficient count as one more term.
 const BITS_OF_A_TERM: usize = 16;
 
@@ -94,9 +97,10 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         Ok(result)
     }
 
-    /// A power that is to be multiplied out.
+    /// A power that is to be multiplied out. High powers of constants are not: they are rounded as they stand.
     fn is_open(&self, (base, exponent): &(Expr, Rational)) -> bool {
-        exponent.is_integer() && exponent.is_positive() && self.term_count(*base) > 1
+        let is_high = || self.is_constant(*base) && *exponent > Rational::from_integer(HIGH.into());
+        exponent.is_integer() && exponent.is_positive() && self.term_count(*base) > 1 && !is_high()
     }
 
     /// Product of two expanded expressions, term by term.
