@@ -171,7 +171,7 @@ where
 /// Sizes of velocities from which a search starts where Newton's iteration finds none from rest: logarithms and roots are defined for one sign,
 /// and far from the root they send it out of their domain.
 const SCALES: [f64; 9] = [1.0, 0.1, 10.0, 1e-2, 1e2, 1e-4, 1e4, 1e-8, 1e8];
-/// Parts of a velocity from which another one is looked for, and the part of it by which two are told apart.
+/// Multiples of a velocity from which the search for another one starts, and the relative distance of different velocities.
 const PARTS: [f64; 3] = [1.0, 1.0 / 16.0, 16.0];
 const APART: f64 = 1e-6;
 /// Coordinates up to which every choice of their signs is tried; of more, those of all at once and of each alone.

@@ -78,7 +78,7 @@ impl<const N: usize, const S: usize> Stepper<'_, N, S> {
     #[cold]
     pub(super) fn is_preserved(&self, trial: &Trial<N, S>) -> Result<bool, StepError> {
         let rounding = f64::EPSILON * self.rounding_of(trial);
-        // At a turning point the energy at hand may be zero, and that of the motion is not.
+        // At a turning point H may be zero, while the energies of the motion are not.
         let size = trial.size.max(self.course.largest_size);
         if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
             return Ok(false);

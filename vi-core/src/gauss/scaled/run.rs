@@ -126,7 +126,7 @@ impl<const N: usize, const S: usize> Run<N, S> {
     }
 
     /// Whether its last step changes the time, both parts of whose sum hold twice the digits of a number, and keeps the energy: K = g (H − E) is
-    /// nearly kept, and where g almost vanishes H may be anything, as if the motion met a wall there.
+    /// nearly kept, so where g almost vanishes H − E grows, and the motion turns back as at a wall.
     #[inline(always)]
     pub(super) fn goes_on(&self, before: &Self, solved: &Solved<N, S>) -> bool {
         let [excess, size] = solved.excess;
