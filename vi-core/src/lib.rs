@@ -1,8 +1,28 @@
 //! Run time of generated variational integrators.
 //!
-//! In: a system that `lagrangian!` generated, an initial state, a step length.
-//! Out: an iterator of states, or a typed [`StepError`]. AFTER A STEP its residual was measured at the very unknowns that were taken,
-//! row by row, and is at the rounding floor (`docs/mathematics.md`, section 8).
+//! In: a system that `lagrangian!` generated, a state, a method, a step length. Out: states, or a typed [`StepError`]. AFTER A STEP its residual was measured at the
+//! very unknowns that were taken, row by row, and is at the rounding floor (`docs/mathematics.md`, section 8).
+//!
+//! ```
+//! use vi_core::prelude::*;
+//!
+//! lagrangian! {
+//!     struct Kepler {
+//!         param mu = 1.0;
+//!         coord x, y;
+//!         let r = sqrt(x^2 + y^2);
+//!         L = (dot(x)^2 + dot(y)^2) / 2 + mu / r;
+//!         discretize midpoint;
+//!     }
+//! }
+//!
+//! # fn main() -> Result<(), StepError> {
+//! let start = Kepler::default().at(0.0, [0.4, 0.0], [0.0, 2.0]);
+//! let mut run = start.integrate(Gauss::<8>, 0.2)?;
+//! println!("{}", run.at_times((0..=100).map(|k| 0.05 * f64::from(k)))?);
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -11,18 +31,15 @@
 //! | [`state`] | states, intervals, steps |
 //! | [`node`] | nodes as the steppers carry them |
 //! | [`linear`] | small linear systems, by their zero pattern |
-//! | [`fixed_step`] | the variational integrator with a given step |
-//! | [`composition`] | fixed steps of order 4, 6 and 8 |
-//! | [`energy_preserving`] | the integrator that solves for its own step; its bounds, its fallback, its checkpoints |
-//! | [`integrator`] | what all integrators share: states at times, on a grid, at events; inputs |
-//! | [`derivatives`] | variations of steps and runs, gradients, Lyapunov exponents |
+//! | [`method`] | how a step is found: one file for each method |
+//! | [`run`] | what all methods share: steps, states at times, events, changes, checkpoints |
+//! | `momentum`, [`energy_preserving`], [`gauss`] | the equations of a step, and their solution |
+//! | [`derivatives`] | sensitivities to initial conditions and parameters, gradients, Lyapunov exponents |
 //! | [`condition`] | condition numbers of the equations that a step solves |
-//! | [`checkpoint`] | a run between two steps, with the system that it is of |
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
-//! | `momentum` | steps of a given length: predicted, corrected, measured; else searched |
 //! | `predictor` | the guess of a step, by a polynomial through the last ones |
-//! | `called` | a system whose functions are calls, for rare code |
+//! | `called` | a system whose functions are not inlined, for cold code |
 //! | `compensated` | sums that keep what rounding takes from them |
 //!
 //! Nothing here panics, allocates in a step (but for the room that the first stiff Gauss step makes), or prints.
@@ -33,10 +50,8 @@
 mod branch;
 pub mod called;
 pub mod check;
-pub mod checkpoint;
 pub mod collocation;
 mod compensated;
-pub mod composition;
 pub mod condition;
 mod delegate;
 pub mod derivatives;
@@ -44,18 +59,18 @@ pub mod discrete;
 pub mod energy_preserving;
 pub mod error;
 mod explained;
-pub mod fixed_step;
 pub mod gauss;
-pub mod integrator;
 pub mod lagrangian;
 mod legendre;
 pub mod linear;
+pub mod method;
 mod momentum;
 mod newton;
 pub mod node;
 mod predictor;
 pub mod real;
 pub mod rules;
+pub mod run;
 pub mod state;
 pub mod stepping;
 #[doc(hidden)]
@@ -63,17 +78,27 @@ pub mod support;
 mod vector;
 
 pub use called::Called;
-pub use composition::{Composition, Scheme};
 pub use discrete::DiscreteLagrangian;
-pub use energy_preserving::{EnergyPreserving, Fallback};
 pub use error::StepError;
-pub use fixed_step::FixedStep;
-pub use gauss::Gauss;
-pub use gauss::energy::EnergyPreservingGauss;
-pub use gauss::scaled::ScaledGauss;
-pub use integrator::Integrator;
 pub use lagrangian::Lagrangian;
+pub use method::composition::Scheme;
+pub use method::{
+    Composition, Connected, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
+    Method,
+};
 pub use nalgebra;
 pub use nalgebra::SVector;
+pub use run::{Run, Start, Starts};
 pub use state::{Interval, State, Step};
 pub use vi_macros::lagrangian;
+
+/// What a user's file needs.
+pub mod prelude {
+    pub use crate::error::StepError;
+    pub use crate::method::{
+        Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method,
+    };
+    pub use crate::run::{Crossing, Event, Run, Solution, Start, Starts as _};
+    pub use crate::state::State;
+    pub use vi_macros::lagrangian;
+}

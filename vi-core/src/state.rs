@@ -75,7 +75,7 @@ pub struct Step<const N: usize, T = f64> {
     /// running error analysis finds that its evaluation loses.
     pub residual: T,
     /// How the step was found.
-    pub method: Method<T>,
+    pub kind: StepKind<T>,
 }
 
 impl<const N: usize, T: Scalar> Step<N, T> {
@@ -90,7 +90,7 @@ impl<const N: usize, T: Scalar> Step<N, T> {
 /// How a step of the energy-preserving integrator was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Method<T = f64> {
+pub enum StepKind<T = f64> {
     /// From the momentum and the energy equation.
     EnergyPreserving,
     /// From both equations, the first after fixed steps, where no step had the energy of before: the energy to preserve
@@ -100,6 +100,6 @@ pub enum Method<T = f64> {
         energy_change: T,
     },
     /// From the momentum equation alone, its length given: no energy-preserving step was found, and
-    /// [`Fallback::FixedSteps`](crate::energy_preserving::Fallback::FixedSteps) was chosen.
+    /// [`Fallback::FixedSteps`](crate::Fallback::FixedSteps) was chosen.
     FixedStep,
 }

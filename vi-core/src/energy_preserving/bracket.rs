@@ -11,7 +11,8 @@
 //! change its sign twice, where D is about to vanish: an extremum of φ that points to zero is followed to its bottom.
 
 use super::equations::{self, EnergyStep, NoStep};
-use super::interval::{Last, RATIO};
+use super::interval::Last;
+use crate::method::bounds::RATIO;
 use crate::error::StepError;
 use crate::momentum::newton as momentum;
 use crate::newton::{Failure, roundings};
@@ -83,7 +84,7 @@ enum Search<const N: usize, T> {
 /// [`StepError::NoForwardStep`], [`StepError::DegenerateStep`], [`StepError::StepRatio`]; [`StepError::NotConverged`],
 /// [`StepError::Singular`] and [`StepError::NonFinite`] where the momentum equation or D has no value at the node.
 #[cold]
-pub(super) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+pub(crate) fn smallest_root<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,

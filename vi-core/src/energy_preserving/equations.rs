@@ -27,17 +27,17 @@ const VANISHING: f64 = 64.0;
 
 /// A step that solves the equations.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EnergyStep<const N: usize, T> {
-    pub(super) v: SVector<T, N>,
-    pub(super) h: T,
-    pub(super) density: T,
-    pub(super) iterations: u32,
-    pub(super) residual: f64,
+pub(crate) struct EnergyStep<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    pub(crate) h: T,
+    pub(crate) density: T,
+    pub(crate) iterations: u32,
+    pub(crate) residual: f64,
 }
 
 /// Why there is no step here.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum NoStep<T> {
+pub(crate) enum NoStep<T> {
     /// The equations hold, and would for other lengths too.
     Degenerate { h: T, density: T },
     /// The iteration left the range, met a singular matrix or an overflow, or did not reach the floor: its last residuals.
@@ -47,13 +47,13 @@ pub(super) enum NoStep<T> {
 /// The momentum rows eliminated from the energy row; everything times the determinant of A where that is solved by one
 /// quotient, so that the quotients of a step do not wait for each other, else times 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Elimination<const N: usize, T> {
+pub(crate) struct Elimination<const N: usize, T> {
     /// `a = A⁻¹ r`.
-    pub(super) residual: SVector<T, N>,
+    pub(crate) residual: SVector<T, N>,
     /// `b = A⁻¹ ∂r/∂h`.
-    pub(super) residual_dh: SVector<T, N>,
+    pub(crate) residual_dh: SVector<T, N>,
     /// `S = energy_dh − energy_dv·b`.
-    pub(super) schur: T,
+    pub(crate) schur: T,
     /// Sum of the absolute values of the terms of S.
     schur_magnitude: T,
     determinant: T,
@@ -64,7 +64,7 @@ pub(super) struct Elimination<const N: usize, T> {
 impl<const N: usize, T: Scalar> Elimination<N, T> {
     /// Not finite where A is singular.
     #[inline]
-    pub(super) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
+    pub(crate) fn of(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Self {
         let momentum = &equations.momentum;
         let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
         Self::from_solved(equations, momentum.jacobian.quotient(&both))
@@ -72,7 +72,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
 
     /// `None` where A is singular.
     #[inline]
-    pub(super) fn finite(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Option<Self> {
+    pub(crate) fn finite(equations: &ExtendedSystem<N, T, impl Matrix<N, T>>) -> Option<Self> {
         let momentum = &equations.momentum;
         let both = SMatrix::<T, N, 2>::from_columns(&[momentum.residual, equations.residual_dh]);
         let solved = linear::solve(&momentum.jacobian, &both)?;
@@ -97,7 +97,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
 
     /// The change `(δv, δh)` that follows from the trial.
     #[inline]
-    pub(super) fn change(
+    pub(crate) fn change(
         &self,
         equations: &ExtendedSystem<N, T, impl Matrix<N, T>>,
         trial: &VelocityStep<N, T>,
@@ -115,19 +115,19 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
 
     /// −4 S, the step density D of the interval.
     #[inline]
-    pub(super) fn density_or_infinite(&self) -> T {
+    pub(crate) fn density_or_infinite(&self) -> T {
         self.schur * self.reciprocal * T::real(-4.0)
     }
 
     /// Step density D of the interval; `None` where a term of it is not finite.
     #[inline]
-    pub(super) fn density(&self) -> Option<T> {
+    pub(crate) fn density(&self) -> Option<T> {
         (self.schur_magnitude * T::real(4.0)).is_finite().then(|| self.density_or_infinite())
     }
 
     /// Whether S is zero but for its rounding.
     #[inline]
-    pub(super) fn is_degenerate(&self) -> bool {
+    pub(crate) fn is_degenerate(&self) -> bool {
         // Where it is not a number, too.
         let rounding = self.schur_magnitude * T::real(VANISHING * T::EPSILON);
         self.schur.abs().partial_cmp(&rounding) != Some(Ordering::Greater)
@@ -137,7 +137,7 @@ impl<const N: usize, T: Scalar> Elimination<N, T> {
 /// The energy residual `e = c + v·r` of measured rows. In stiff steps v·(h/2) L_q, of which c knows no more digits than L_q has, is the
 /// same number in both, and leaves e.
 #[inline(always)]
-pub(super) fn energy_residual<const N: usize, T: Scalar>(measured: &ExtendedResidual<N, T>, v: &SVector<T, N>) -> T {
+pub(crate) fn energy_residual<const N: usize, T: Scalar>(measured: &ExtendedResidual<N, T>, v: &SVector<T, N>) -> T {
     measured.energy_residual + v.dot(&measured.residual)
 }
 
@@ -201,7 +201,7 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
 }
 
 /// The step that Newton's iteration reaches from `trial` with h inside `range`.
-pub(super) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+pub(crate) fn solve<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     trial: VelocityStep<N, T>,

@@ -5,7 +5,8 @@
 //! then v carried along `dv/dh` of the momentum equation. No prediction is made where D has changed its sign.
 
 use super::equations::Elimination;
-use super::interval::{Last, RATIO};
+use super::interval::Last;
+use crate::method::bounds::RATIO;
 use crate::node::Node;
 use crate::real::Scalar;
 use crate::stepping::EnergyStepping;
@@ -13,7 +14,7 @@ use crate::vector::VelocityStep;
 use nalgebra::SVector;
 
 /// The trial that follows `last`.
-pub(super) fn predict<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+pub(crate) fn predict<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
     system: &S,
     node: &Node<N, T>,
     last: &Last<N, T>,

@@ -1,10 +1,9 @@
 //! The interval that the next step follows.
 
-use crate::real::Real;
+use super::equations::EnergyStep;
+use crate::real::{Real, Scalar};
+use crate::state::StepKind;
 use nalgebra::SVector;
-
-/// A step may be longer or shorter than the last one by this factor at most.
-pub(crate) const RATIO: f64 = 3.0;
 
 /// The interval that the next step follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,22 +12,63 @@ pub(crate) const RATIO: f64 = 3.0;
     feature = "serde",
     serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
 )]
-pub(super) struct Last<const N: usize, T> {
-    pub(super) v: SVector<T, N>,
-    pub(super) h: T,
+pub(crate) struct Last<const N: usize, T> {
+    pub(crate) v: SVector<T, N>,
+    pub(crate) h: T,
     /// Length of the interval before.
-    pub(super) previous: T,
+    pub(crate) previous: T,
     /// Step density D of the interval.
-    pub(super) density: T,
+    pub(crate) density: T,
+    /// D of the interval before.
+    pub(crate) density_before: T,
     /// Change of v since the interval before.
-    pub(super) change: SVector<T, N>,
+    pub(crate) change: SVector<T, N>,
     /// Whether it is a step, taken with the parameters that the system has.
-    pub(super) is_step: bool,
+    pub(crate) is_step: bool,
+    /// Newton iterations that found it.
+    pub(crate) iterations: u32,
+    /// Its largest residual, in roundings.
+    pub(crate) residual: f64,
+    pub(crate) kind: StepKind<T>,
 }
 
-impl<const N: usize, T: Real> Last<N, T> {
-    /// Change of v by time, between the middles of the last two intervals.
-    pub(super) fn slope(&self) -> SVector<T, N> {
-        self.change * (T::real(2.0) / (self.h + self.previous))
+impl<const N: usize, T: Scalar> Last<N, T> {
+    /// An interval that a run starts from.
+    pub(crate) fn first(v: SVector<T, N>, h: T, density: T, change: SVector<T, N>) -> Self {
+        Self {
+            v,
+            h,
+            previous: h,
+            density,
+            density_before: density,
+            change,
+            is_step: false,
+            iterations: 0,
+            residual: 0.0,
+            kind: StepKind::EnergyPreserving,
+        }
+    }
+
+    /// The interval of the next step.
+    #[inline(always)]
+    pub(crate) fn followed(&self, step: &EnergyStep<N, T>, kind: StepKind<T>) -> Self {
+        let EnergyStep { v, h, density, iterations, residual } = *step;
+        let (previous, density_before, change) = (self.h, self.density, v - self.v);
+        Self { v, h, previous, density, density_before, change, is_step: true, iterations, residual, kind }
+    }
+
+    /// Change of v with time, between the middles of the last two intervals.
+    pub(crate) fn slope(&self) -> SVector<T, N> {
+        self.change * self.frequency()
+    }
+
+    /// D in the middle of the next interval, if it changes as it did over the last two.
+    pub(crate) fn density_next(&self) -> T {
+        self.density + (self.density - self.density_before) * (self.frequency() * self.h)
+    }
+
+    /// One over the time between the middles of the last two intervals.
+    fn frequency(&self) -> T {
+        T::real(2.0) / (self.h + self.previous)
     }
 }

@@ -15,7 +15,8 @@
 //! AFTER A STEP both residuals were measured at the (v, h) that was taken.
 
 use super::equations::{Elimination, EnergyStep, energy_residual};
-use super::interval::{Last, RATIO};
+use super::interval::Last;
+use crate::method::bounds::RATIO;
 use crate::newton::{FLOOR, are_at_floor, roundings, worst};
 use crate::node::Node;
 use crate::predictor::Predictor;
@@ -44,7 +45,7 @@ const SHORT: f64 = 1e-6;
         deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
-pub(super) struct Prediction<const N: usize, T> {
+pub(crate) struct Prediction<const N: usize, T> {
     v: Predictor<N, T>,
     h: Predictor<1, T>,
     /// What the last step left of its momentum rows.
@@ -53,35 +54,35 @@ pub(super) struct Prediction<const N: usize, T> {
 
 /// A step that was predicted.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Predicted<const N: usize, T> {
+pub struct Predicted<const N: usize, T> {
     /// What solves the equations.
-    pub(super) step: EnergyStep<N, T>,
+    pub(crate) step: EnergyStep<N, T>,
     /// What momentum and energy gain over it.
-    pub(super) increment: Increment<N, T>,
+    pub(crate) increment: Increment<N, T>,
     /// What it leaves of its momentum rows.
     remainder: SVector<T, N>,
 }
 
 impl<const N: usize, T: Scalar> Prediction<N, T> {
     /// Before the first step, which follows the interval `(v, h)`.
-    pub(super) fn new(v: SVector<T, N>, h: T) -> Self {
+    pub(crate) fn new(v: SVector<T, N>, h: T) -> Self {
         Self { v: Predictor::new(v), h: Predictor::new(SVector::repeat(h)), remainder: SVector::zeros() }
     }
 
     /// Whether every number is finite.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.v.is_finite() && self.h.is_finite() && Vector::is_finite(&self.remainder)
     }
 
     /// Whether both guesses are of the highest degree.
     #[inline(always)]
-    pub(super) fn is_highest(&self) -> bool {
+    pub(crate) fn is_highest(&self) -> bool {
         self.v.is_highest() && self.h.is_highest()
     }
 
     /// Takes a step that was predicted from a guess of the highest degree.
     #[inline(always)]
-    pub(super) fn push_common(&mut self, predicted: &Predicted<N, T>) {
+    pub(crate) fn push_common(&mut self, predicted: &Predicted<N, T>) {
         let EnergyStep { v, h, .. } = predicted.step;
         self.v.push_highest(v);
         self.h.push_highest(SVector::repeat(h));
@@ -89,7 +90,7 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
     }
 
     /// Takes a step that was predicted.
-    pub(super) fn push(&mut self, predicted: &Predicted<N, T>) {
+    pub(crate) fn push(&mut self, predicted: &Predicted<N, T>) {
         let EnergyStep { v, h, .. } = predicted.step;
         self.v.push(v);
         self.h.push(SVector::repeat(h));
@@ -97,26 +98,26 @@ impl<const N: usize, T: Scalar> Prediction<N, T> {
     }
 
     /// Takes a step that was searched.
-    pub(super) fn restart(&mut self, step: &EnergyStep<N, T>) {
+    pub(crate) fn restart(&mut self, step: &EnergyStep<N, T>) {
         self.v.restart(step.v);
         self.h.restart(SVector::repeat(step.h));
         self.remainder = SVector::zeros();
     }
 
     /// The unknowns that the last steps give.
-    pub(super) fn guess(&self) -> VelocityStep<N, T> {
+    pub(crate) fn guess(&self) -> VelocityStep<N, T> {
         VelocityStep { v: self.v.guess(), h: self.h.guess()[0] }
     }
 
     /// The same at the highest degree.
     #[inline(always)]
-    pub(super) fn guess_highest(&self) -> VelocityStep<N, T> {
+    pub(crate) fn guess_highest(&self) -> VelocityStep<N, T> {
         VelocityStep { v: self.v.guess_highest(), h: self.h.guess_highest()[0] }
     }
 
     /// The step from `node` after the interval `last`, from a trial.
     #[inline(always)]
-    pub(super) fn step<S: EnergyStepping<N, T>>(
+    pub(crate) fn step<S: EnergyStepping<N, T>>(
         &self,
         system: &S,
         node: &Node<N, T>,

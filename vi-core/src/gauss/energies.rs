@@ -23,20 +23,20 @@ use nalgebra::SVector;
 
 /// The energies of a step less a given number, and how large their terms are; see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Energies<T = f64> {
+pub(crate) struct Energies<T = f64> {
     /// E0, less the number.
-    pub(super) start: T,
+    pub(crate) start: T,
     /// E1, less the number.
-    pub(super) end: T,
+    pub(crate) end: T,
     /// `E1 − E0`.
-    pub(super) work: T,
+    pub(crate) work: T,
     /// The mean of `|v·p| + |En|` over the stages.
-    pub(super) size: T,
+    pub(crate) size: T,
 }
 
 /// The energies, less `base`, of the step of length h from `node` with the stages of its equations.
 #[inline(always)]
-pub(super) fn energies<Y, const N: usize, const S: usize>(
+pub(crate) fn energies<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
     h: f64,
@@ -52,7 +52,7 @@ where
 
 /// The same in numbers that carry a bound of their rounding, each position the nearest to the one that is meant. Velocities carry the
 /// rounding of the forces that they follow from: at an angle of thousands of turns these are known to the ulp of the angle only.
-pub(super) fn bounded_energies<Y, const N: usize, const S: usize>(
+pub(crate) fn bounded_energies<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
     h: f64,

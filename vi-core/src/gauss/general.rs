@@ -26,7 +26,7 @@ use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
 /// The equations of a step; see the [module](self).
-pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
+pub(crate) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
@@ -49,7 +49,7 @@ pub(super) struct General<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: 
 }
 
 /// The equations of a step from `node`, with velocities at its stages, or forces there of a separable system.
-pub(super) fn equations<'a, const N: usize, const S: usize>(
+pub(crate) fn equations<'a, const N: usize, const S: usize>(
     system: &'a Rare<'a, N>,
     node: &'a Node<N>,
     h: f64,
@@ -68,7 +68,7 @@ where
     /// The equations of the step of length h from `node`, with the mass matrix, where it is constant, and a guess of the velocities at the stages, or of
     /// the forces there of a separable system.
     #[inline(always)]
-    pub(super) fn new(
+    pub(crate) fn new(
         system: &'a Y,
         mass: Option<&M>,
         node: &'a Node<N>,
@@ -102,7 +102,7 @@ where
     }
 
     /// The velocities at hand.
-    pub(super) fn velocity(&self) -> Stages<N, S> {
+    pub(crate) fn velocity(&self) -> Stages<N, S> {
         self.velocity
     }
 

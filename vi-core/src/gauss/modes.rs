@@ -20,18 +20,18 @@ use nalgebra::{Complex, DMatrix};
 
 /// A number at each eigenvalue: the real parts at those above the real axis, what is at the real eigenvalue of odd S, and the imaginary parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Modal<const S: usize>(pub(super) [f64; S]);
+pub(crate) struct Modal<const S: usize>(pub(crate) [f64; S]);
 
 impl<const S: usize> Modal<S> {
-    pub(super) const ZERO: Self = Self([0.0; S]);
-    pub(super) const ONE: Self = Self::real(1.0);
+    pub(crate) const ZERO: Self = Self([0.0; S]);
+    pub(crate) const ONE: Self = Self::real(1.0);
     /// Eigenvalues above the real axis.
     const PAIRS: usize = S / 2;
     /// Where the imaginary parts begin.
     const IMAGINARY: usize = S - S / 2;
 
     /// The same real number at each eigenvalue.
-    pub(super) const fn real(value: f64) -> Self {
+    pub(crate) const fn real(value: f64) -> Self {
         let mut all = [0.0; S];
         let mut i = 0;
         while i < Self::IMAGINARY {
@@ -43,7 +43,7 @@ impl<const S: usize> Modal<S> {
 
     /// Adds a product.
     #[inline(always)]
-    pub(super) fn add_product<const FUSED: bool>(&mut self, a: &Self, b: &Self) {
+    pub(crate) fn add_product<const FUSED: bool>(&mut self, a: &Self, b: &Self) {
         let (Self(sum), Self(a), Self(b)) = (self, a, b);
         for i in 0..Self::PAIRS {
             let k = Self::IMAGINARY + i;
@@ -58,7 +58,7 @@ impl<const S: usize> Modal<S> {
 
     /// Real parts and imaginary parts, exchanged.
     #[inline(always)]
-    pub(super) fn exchanged(&self) -> Self {
+    pub(crate) fn exchanged(&self) -> Self {
         let mut exchanged = *self;
         for i in 0..Self::PAIRS {
             exchanged.0[i] = self.0[Self::IMAGINARY + i];
@@ -69,7 +69,7 @@ impl<const S: usize> Modal<S> {
 
     /// `Σ_l a_l b_l`, with the b also exchanged: sums of products of whole rows, which do not wait for one another.
     #[inline(always)]
-    pub(super) fn dot<const N: usize, const FUSED: bool>(a: &[Self; N], b: &[Self; N], exchanged: &[Self; N]) -> Self {
+    pub(crate) fn dot<const N: usize, const FUSED: bool>(a: &[Self; N], b: &[Self; N], exchanged: &[Self; N]) -> Self {
         let mut straight = [0.0; S];
         let mut crossed = [0.0; S];
         for l in 0..N {
@@ -87,7 +87,7 @@ impl<const S: usize> Modal<S> {
     }
 
     /// One divided by it; not finite where it is zero.
-    pub(super) fn recip(&self) -> Self {
+    pub(crate) fn recip(&self) -> Self {
         let Self(of) = self;
         let mut reciprocal = [0.0; S];
         for i in 0..Self::PAIRS {
@@ -103,7 +103,7 @@ impl<const S: usize> Modal<S> {
     }
 
     /// Whether it is larger than another one, in the mean of the logarithms over the eigenvalues: a ratio that no units change.
-    pub(super) fn is_larger(&self, than: &Self) -> bool {
+    pub(crate) fn is_larger(&self, than: &Self) -> bool {
         let squares = |Self(of): &Self, i: usize| {
             let imaginary = if i < Self::PAIRS { of[Self::IMAGINARY + i] } else { 0.0 };
             of[i] * of[i] + imaginary * imaginary
@@ -148,17 +148,17 @@ impl<const S: usize> Mul<f64> for Modal<S> {
 
 /// The eigenvalues of A, and the bases.
 #[derive(Clone, Debug)]
-pub(super) struct Spectrum<const S: usize> {
-    pub(super) eigenvalues: Modal<S>,
+pub(crate) struct Spectrum<const S: usize> {
+    pub(crate) eigenvalues: Modal<S>,
     /// `to[i]`: the modes of the number 1 at the stage i and 0 at the others.
-    pub(super) to: [[f64; S]; S],
+    pub(crate) to: [[f64; S]; S],
     /// `from[m]`: the numbers at the stages, of the m-th number of a [`Modal`].
-    pub(super) from: [[f64; S]; S],
+    pub(crate) from: [[f64; S]; S],
 }
 
 impl<const S: usize> Spectrum<S> {
     /// Those of S stages.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let b = const { &Tableau::<S>::VALUES.b };
         let zeros = [[0.0; S]; S];
         let mut spectrum = Self { eigenvalues: Modal::ZERO, to: zeros, from: zeros };

@@ -26,31 +26,36 @@ use vi_dispatch::{Instructions, Loop, by_baseline};
 /// Where the equations of a step of length h are linearized.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Linearization<const N: usize> {
-    pub(super) h: f64,
-    pub(super) t: f64,
-    pub(super) q: SVector<f64, N>,
-    pub(super) v: SVector<f64, N>,
+pub struct Linearization<const N: usize> {
+    pub(crate) h: f64,
+    pub(crate) t: f64,
+    pub(crate) q: SVector<f64, N>,
+    pub(crate) v: SVector<f64, N>,
     /// Iterations of the first step that was solved with it; none before.
-    pub(super) iterations: Option<u32>,
+    pub(crate) iterations: Option<u32>,
 }
 
 impl<const N: usize> Linearization<N> {
-    /// The linearization for the next step, after one of so many iterations; none where a new one pays.
-    fn after(self, iterations: u32) -> Option<Self> {
+    /// The linearization for the next step, after one of so many iterations; `None` if a new one pays.
+    pub(crate) fn after(self, iterations: u32) -> Option<Self> {
         let first = self.iterations.unwrap_or(iterations);
         (2 * iterations <= 3 * first).then_some(Self { iterations: Some(first), ..self })
     }
 
+    /// Whether the equations are linearized at the same point, for the same length.
+    fn is_at(&self, other: &Self) -> bool {
+        [self.h, self.t] == [other.h, other.t] && self.q == other.q && self.v == other.v
+    }
+
     /// Whether every number of it is finite.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         [self.h, self.t].iter().chain(&self.q).chain(&self.v).all(|number| number.is_finite())
     }
 }
 
 /// The linearized equations of a step, solved.
 #[derive(Clone, Debug)]
-pub(super) struct Newton<const N: usize, const S: usize> {
+pub struct Newton<const N: usize, const S: usize> {
     linearization: Option<Linearization<N>>,
     instructions: Instructions,
     spectrum: Spectrum<S>,
@@ -61,7 +66,7 @@ pub(super) struct Newton<const N: usize, const S: usize> {
 
 impl<const N: usize, const S: usize> Newton<N, S> {
     /// Room for the equations.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let zeros = SMatrix::zeros();
         let derivatives = AnyDerivatives { momentum_dq: zeros, mass: zeros, force_dq: zeros, force_dv: zeros };
         let inverse = vec![[Modal::ZERO; N]; N];
@@ -69,30 +74,11 @@ impl<const N: usize, const S: usize> Newton<N, S> {
         Self { linearization: None, instructions, spectrum: Spectrum::new(), derivatives, inverse }
     }
 
-    /// The equations of a system, linearized.
-    pub(super) fn at(system: &Rare<'_, N>, at: Linearization<N>) -> Self {
-        let mut newton = Self::new();
-        newton.linearize(system, at);
-        newton
-    }
-
-    /// Where the equations are linearized; none where the next step takes its own linearization.
-    pub(super) fn linearization(&self) -> Option<Linearization<N>> {
-        self.linearization
-    }
-
-    /// Takes a new linearization for the next step.
-    pub(super) fn forget(&mut self) {
-        self.linearization = None;
-    }
-
-    /// Keeps the linearization for the next step, after one that took so many iterations, or not.
-    pub(super) fn keep(&mut self, iterations: u32) {
-        self.linearization = self.linearization.and_then(|at| at.after(iterations));
-    }
-
-    /// Linearizes the equations of a system.
-    pub(super) fn linearize(&mut self, system: &Rare<'_, N>, at: Linearization<N>) {
+    /// Linearizes the equations of a system, unless they are linearized there.
+    pub(crate) fn linearize(&mut self, system: &Rare<'_, N>, at: Linearization<N>) {
+        if self.linearization.is_some_and(|last| last.is_at(&at)) {
+            return;
+        }
         let Linearization { h, t, q, v, .. } = &at;
         self.derivatives = system.derivatives(*t, q, v);
         let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
@@ -109,12 +95,12 @@ impl<const N: usize, const S: usize> Newton<N, S> {
     }
 
     /// The corrections of the velocities that make up for what is missing in the momenta.
-    pub(super) fn correction(&self, missing: &Stages<N, S>) -> Stages<N, S> {
+    pub(crate) fn correction(&self, missing: &Stages<N, S>) -> Stages<N, S> {
         by_width::<N, _>(self.instructions, Correct { newton: self, missing })
     }
 
     /// An estimate of the largest h ω: how much `h E⁻¹ G` stretches a vector, `E = [I 0; C M]` and `G = [0 I; K B]`.
-    pub(super) fn stiffness(&self) -> f64 {
+    pub(crate) fn stiffness(&self) -> f64 {
         let h = self.linearization.map_or(f64::NAN, |at| at.h);
         let AnyDerivatives { momentum_dq: c, mass: m, force_dq: k, force_dv: b } = &self.derivatives;
         let mut left = DMatrix::identity(2 * N, 2 * N);

@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// The form of equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
+pub(crate) enum Form {
     /// The mass matrix is constant, and forces depend on the position alone: [`Collocation::SEPARABLE`].
     Separable,
     /// The mass matrix is constant: [`Collocation::CONSTANT_MASS`].
@@ -32,13 +32,13 @@ impl Form {
     }
 
     /// Whether the type of a system says that its equations have this form. In `if const { … }` the other branch is then not compiled.
-    pub(super) const fn is_known(self, known: Option<Self>) -> bool {
+    pub(crate) const fn is_known(self, known: Option<Self>) -> bool {
         matches!(known, Some(known) if known as u8 == self as u8)
     }
 }
 
 /// Equations of motion in the numbers T.
-pub(super) trait Points<const N: usize, T: Real> {
+pub(crate) trait Points<const N: usize, T: Real> {
     /// The form of the mass matrix.
     type Mass: Matrix<N, T>;
 
@@ -71,7 +71,7 @@ impl<Y: Collocation<N, T>, const N: usize, T: Real> Points<N, T> for Y {
 type AnyPoint<const N: usize, T> = Point<N, T, SMatrix<T, N, N>>;
 
 /// How the equations of any system change at a point.
-pub(super) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N, N>>;
+pub(crate) type AnyDerivatives<const N: usize> = PointDerivatives<SMatrix<f64, N, N>>;
 
 /// A system in the numbers of rare code.
 trait Erased<const N: usize> {
@@ -119,16 +119,16 @@ fn dense<S: Convertible<N>, T: Real, const N: usize>(
 
 /// A system behind a pointer.
 #[derive(Clone, Copy)]
-pub(super) struct Rare<'a, const N: usize>(&'a dyn Erased<N>);
+pub(crate) struct Rare<'a, const N: usize>(&'a dyn Erased<N>);
 
 impl<'a, const N: usize> Rare<'a, N> {
     /// The system, as rare code sees it.
-    pub(super) fn of<S: Convertible<N>>(system: &'a S) -> Self {
+    pub(crate) fn of<S: Convertible<N>>(system: &'a S) -> Self {
         Self(system)
     }
 
     /// How L_v and L_q + f change.
-    pub(super) fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N> {
+    pub(crate) fn derivatives(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> AnyDerivatives<N> {
         self.0.derivatives(t, q, v)
     }
 }

@@ -12,11 +12,11 @@
 
 use super::general::equations;
 use super::points::{Points, Rare};
-use super::run::Run;
 use super::stages::{Stages, set, stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
-use crate::integrator::Path;
+use crate::node::Node;
+use crate::run::DenseOutput;
 use crate::state::State;
 use nalgebra::SVector;
 
@@ -32,17 +32,23 @@ pub struct Polynomial<const N: usize, const S: usize> {
 }
 
 impl<const N: usize, const S: usize> Polynomial<N, S> {
-    /// The motion over the last step of a run, which began at `start`.
-    pub(super) fn of(system: &Rare<'_, N>, run: &Run<N, S>, start: State<N>) -> Self {
-        let equations = equations(system, &run.before, run.h, run.stages.data.0);
+    /// The motion over the step of length h from the node `before`, whose state was `start`.
+    pub(crate) fn over(
+        system: &Rare<'_, N>,
+        before: &Node<N>,
+        h: f64,
+        stages: Stages<N, S>,
+        start: State<N>,
+    ) -> Self {
+        let equations = equations(system, before, h, stages);
         let x = equations.start();
         let velocity = equations.velocity();
         let mut force = [[0.0; S]; N];
         for i in 0..S {
-            let t = time::<N, S, false, f64>(&run.before, run.h, i);
+            let t = time::<N, S, false, f64>(before, h, i);
             set(&mut force, i, &system.at(t, &stage(&x, i), &stage(&velocity, i)).force);
         }
-        Self { start, h: run.h, velocity: coefficients(&velocity), force: coefficients(&force) }
+        Self { start, h, velocity: coefficients(&velocity), force: coefficients(&force) }
     }
 
     /// The part of the step that is over at the time t.
@@ -51,7 +57,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
     }
 }
 
-impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for Polynomial<N, S> {
     fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }
@@ -69,7 +75,7 @@ impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
 }
 
 /// The coefficients `u_k = (2k + 1) Σ_i b_i P_k(x_i) V_i` of values at the stages.
-pub(super) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
+pub(crate) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>) -> Stages<N, S> {
     let Tableau { b, legendre, .. } = const { &Tableau::<S>::VALUES };
     let mut coefficients = [[0.0; S]; N];
     let mut factor = 1.0;
@@ -85,7 +91,7 @@ pub(super) fn coefficients<const N: usize, const S: usize>(values: &Stages<N, S>
 }
 
 /// `Σ_k u_k basis_k` of each coordinate, the small ones first.
-pub(super) fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64; S]) -> SVector<f64, N> {
+pub(crate) fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, basis: &[f64; S]) -> SVector<f64, N> {
     let mut total = SVector::<f64, N>::zeros();
     for (total, row) in total.iter_mut().zip(coefficients) {
         for k in (0..S).rev() {
@@ -96,7 +102,7 @@ pub(super) fn sum<const N: usize, const S: usize>(coefficients: &Stages<N, S>, b
 }
 
 /// P_k(2θ − 1), k = 0 … S − 1, by `(k + 1) P_{k+1} = (2k + 1) x P_k − k P_{k−1}`.
-pub(super) fn polynomials<const S: usize>(part: f64) -> [f64; S] {
+pub(crate) fn polynomials<const S: usize>(part: f64) -> [f64; S] {
     let x = 2.0 * part - 1.0;
     let mut values = [0.0; S];
     let mut last = [0.0, 1.0];
@@ -110,7 +116,7 @@ pub(super) fn polynomials<const S: usize>(part: f64) -> [f64; S] {
 }
 
 /// `∫_0^θ P_k(2u − 1) du`, k = 0 … S − 1.
-pub(super) fn integrals<const S: usize>(part: f64) -> [f64; S] {
+pub(crate) fn integrals<const S: usize>(part: f64) -> [f64; S] {
     let x = 2.0 * part - 1.0;
     let mut values = [0.0; S];
     let mut last = [1.0, x];

@@ -22,12 +22,12 @@ use crate::vector::worse;
 use nalgebra::SVector;
 
 /// The vector of one stage.
-pub(super) fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usize) -> SVector<Rounded, N> {
+pub(crate) fn nearest<const N: usize, const S: usize>(of: &Stages<N, S>, i: usize) -> SVector<Rounded, N> {
     SVector::from_fn(|k, _| Rounded::nearest(of[k][i]))
 }
 
 /// The larger of a residual so far and that of a row, in roundings; not a number where the rounding of the row has no bound.
-pub(super) fn worse_row(worst: f64, row: Rounded) -> f64 {
+pub(crate) fn worse_row(worst: f64, row: Rounded) -> f64 {
     worse(worst, roundings(row.to_f64(), row.ulps()))
 }
 
@@ -89,7 +89,7 @@ impl<'a, const N: usize, const S: usize> Rows<'a, N, S> {
 }
 
 /// What the stages of the step of length h from `node` leave of their equations, in roundings; not a number where these have no bound.
-pub(super) fn residual<const N: usize, const S: usize>(
+pub(crate) fn residual<const N: usize, const S: usize>(
     system: &Rare<'_, N>,
     node: &Node<N>,
     h: f64,
@@ -111,7 +111,7 @@ pub(super) fn residual<const N: usize, const S: usize>(
 }
 
 /// The velocities at the stages, with the rounding of the forces, and so of the positions, that they follow from.
-pub(super) fn velocities<const N: usize, const S: usize>(
+pub(crate) fn velocities<const N: usize, const S: usize>(
     system: &Rare<'_, N>,
     node: &Node<N>,
     h: f64,

@@ -22,7 +22,7 @@ use core::marker::PhantomData;
 use nalgebra::SVector;
 
 /// The equations of a step; see the [module](self).
-pub(super) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
+pub(crate) struct Separable<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: bool> {
     system: &'a Y,
     node: &'a Node<N>,
     h: f64,
@@ -42,7 +42,7 @@ impl<'a, T, Y, M: Matrix<N, f64>, const N: usize, const S: usize, const FUSED: b
 {
     /// The equations of the step of length h from `node`, with the mass matrix and the forces at the stages of the last step, else a guess of them.
     #[inline(always)]
-    pub(super) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>, are_last: bool) -> Self {
+    pub(crate) fn new(system: &'a Y, mass: &M, node: &'a Node<N>, h: f64, force: Stages<N, S>, are_last: bool) -> Self {
         let c = const { &Tableau::<S>::VALUES.c };
         let inverse = mass.inverse();
         let velocity = M::apply(&inverse, &(node.p + node.p_low));

@@ -19,11 +19,11 @@
 
 use super::general::equations;
 use super::points::Rare;
-use super::run::Run;
-use super::stages::{stage, time};
+use super::stages::{Stages, stage, time};
 use super::sweep::Equations;
 use super::tableau::Tableau;
 use crate::collocation::Collocation;
+use crate::node::Node;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
 
@@ -52,17 +52,22 @@ pub struct Slots<const N: usize> {
 
 impl<const N: usize> Slots<N> {
     /// Whether all of them are finite: forces may be finite where L is not.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         let Self { ld, d1_ld, d2_ld, d3_ld, d4_ld, fd_minus, fd_plus, gd_minus, gd_plus } = self;
         let vectors = [d2_ld, d4_ld, fd_minus, fd_plus].into_iter().flat_map(SVector::iter);
         [ld, d1_ld, d3_ld, gd_minus, gd_plus].into_iter().chain(vectors).all(|number| number.is_finite())
     }
 
-    /// Those of the last step of a run.
-    pub(super) fn of<Y: Collocation<N> + Convertible<N>, const S: usize>(system: &Y, run: &Run<N, S>) -> Self {
+    /// The slots of the step of length h from a node with these stages.
+    pub(crate) fn of<Y: Collocation<N> + Convertible<N>, const S: usize>(
+        system: &Y,
+        node: &Node<N>,
+        h: f64,
+        stages: Stages<N, S>,
+    ) -> Self {
         let Tableau { b, c, .. } = const { &Tableau::<S>::VALUES };
         let rare = Rare::of(system);
-        let equations = equations(&rare, &run.before, run.h, run.stages.data.0);
+        let equations = equations(&rare, node, h, stages);
         let x = equations.start();
         let velocities = equations.velocity();
         let zeros = SVector::zeros();
@@ -78,7 +83,7 @@ impl<const N: usize> Slots<N> {
             gd_plus: 0.0,
         };
         for i in 0..S {
-            let t = time::<N, S, false, f64>(&run.before, run.h, i);
+            let t = time::<N, S, false, f64>(node, h, i);
             let q = stage(&x, i);
             let v = stage(&velocities, i);
             let point = system.point(t, &q, &v);
@@ -87,7 +92,7 @@ impl<const N: usize> Slots<N> {
             let work = force.dot(&v);
             let lt = work - system.power(t, &q, &v);
             let lq = point.force - force;
-            let weight = run.h * b[i];
+            let weight = h * b[i];
             let [before, after] = [weight * (1.0 - c[i]), weight * c[i]];
             slots.ld += weight * system.lagrangian(t, &q, &v);
             slots.d1_ld += b[i] * energy + before * lt;

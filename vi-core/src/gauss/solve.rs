@@ -1,161 +1,291 @@
 //! The solution of a step.
 //!
-//! In: a run. Out: the run at the next node, its stages solved by sweeps in vectors, by the instructions of the processor; what sweeps led to, where they did not
-//! solve it; and the same in plain numbers, by sweeps or by Newton's iteration. WHAT IS TAKEN was measured to leave rounding of the equations.
+//! In: a [`Start`]: a node, a length, and what the stages are guessed from. Out: a [`Step`], its stages solved by fixed-point iteration in vectors, by the instructions of
+//! the processor. If that does not solve it: the same in plain numbers, or Newton's iteration. Nothing changes. A [`Step`] was measured to leave rounding of the equations.
 
 use super::general::{General, equations};
 use super::newton::{Linearization, Newton};
 use super::points::{Form, Points, Rare};
 use super::rounding;
-use super::run::Run;
 use super::separable::Separable;
-use super::stages::{AtStages, LOOPED, Stages, constant_mass, mass, stage};
-use super::sweep::{self, Equations, Increment, Pause, Sweeps};
+use super::stages::{AtStages, LOOPED, Stages, constant_mass, extrapolated, mass, stage};
+use super::sweep::{self, Convergence, Equations, Increment, Pause, Sweeps};
 use crate::collocation::{Collocation, Point};
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::{Lane, Lanes};
 use crate::stepping::Convertible;
-use nalgebra::SMatrix;
 use vi_dispatch::{Instructions, Loop};
 
-/// A solved step.
-pub(super) struct Solved<const N: usize, const S: usize> {
-    pub(super) increment: Increment<N>,
-    pub(super) stages: Stages<N, S>,
-    pub(super) velocities: Option<Stages<N, S>>,
-    pub(super) sweeps: Sweeps<N, S>,
+/// What the equations of a step are solved from.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a, const N: usize, const S: usize> {
+    pub(crate) node: &'a Node<N>,
+    pub(crate) h: f64,
+    pub(crate) stages: &'a Stages<N, S>,
+    /// Whether these are the stages of the step before, which was as long: then their polynomials are continued.
+    pub(crate) are_last: bool,
+    /// How the step before ended.
+    pub(crate) before: &'a Convergence,
+    pub(crate) pause: Pause,
+}
+
+/// A step that was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<const N: usize, const S: usize> {
+    pub(crate) h: f64,
+    pub(crate) increment: Increment<N>,
+    pub(crate) stages: Stages<N, S>,
+    pub(crate) convergence: Convergence,
+    pub(crate) pause: Pause,
+    /// The linearization for the next step, if Newton's iteration solved this one.
+    pub(crate) linearization: Option<Linearization<N>>,
+}
+
+/// The stages that an iteration led to.
+pub struct Solved<const N: usize, const S: usize> {
+    pub(crate) increment: Increment<N>,
+    pub(crate) stages: Stages<N, S>,
+    velocities: Option<Stages<N, S>>,
+    pub(crate) sweeps: Sweeps<N, S>,
 }
 
 impl<const N: usize, const S: usize> Solved<N, S> {
-    /// Whether the stages are at the rounding of their positions.
-    fn is_at_floor(&self) -> bool {
-        self.sweeps.convergence.is_at_floor()
+    /// Whether fixed-point iteration solved the step of length h from a node to the rounding of its positions.
+    #[inline(always)]
+    pub(crate) fn is_step(&self, node: &Node<N>, h: f64) -> bool {
+        let Increment { velocity, momentum } = &self.increment;
+        self.sweeps.convergence.is_at_floor() && node.stays_finite(h, velocity, momentum)
+    }
+
+    /// The same stages as a step.
+    #[inline(always)]
+    fn step(&self, h: f64) -> Step<N, S> {
+        let Self { increment, stages, sweeps, .. } = self;
+        let (convergence, pause) = (sweeps.convergence, Pause::NONE);
+        Step { h, increment: *increment, stages: *stages, convergence, pause, linearization: None }
     }
 }
 
-impl<const N: usize, const S: usize> Run<N, S> {
-    /// Moves to the end of a step, after which sweeps are tried or not.
+impl<const N: usize, const S: usize> Start<'_, N, S> {
+    /// Velocities at the stages of the step, or forces there.
     #[inline(always)]
-    fn take(&mut self, solved: &Solved<N, S>, pause: Pause) {
-        self.before = self.node;
-        self.node.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
-        self.stages = SMatrix::from_array_storage(nalgebra::ArrayStorage(solved.stages));
-        self.convergence = solved.sweeps.convergence;
-        self.pause = pause;
+    fn guess<const FUSED: bool>(&self) -> Stages<N, S> {
+        if self.are_last { extrapolated::<N, S, FUSED>(self.stages) } else { *self.stages }
     }
 
-    /// Moves to the end of a step that sweeps solved to the rounding of its positions; else what they led to.
-    #[inline(always)]
-    pub(super) fn swept(&mut self, solved: Solved<N, S>) -> Option<Solved<N, S>> {
-        let Increment { velocity, momentum } = &solved.increment;
-        if solved.is_at_floor() && self.node.stays_finite(self.h, velocity, momentum) {
-            self.take(&solved, Pause::NONE);
-            return None;
-        }
-        Some(solved)
-    }
-
-    /// The run after a step that sweeps, or Newton's iteration, solved to rounding; none where they did not.
-    pub(super) fn accepted(
+    /// The step of stages that leave rounding of their equations; else `None`.
+    fn accepted(
         &self,
         system: &Rare<'_, N>,
         solved: &Solved<N, S>,
         newton: Option<&Newton<N, S>>,
-    ) -> Option<Self> {
-        // Plain numbers have sines and cosines of every angle; lanes lose what is not near.
+    ) -> Option<Step<N, S>> {
+        // Plain numbers have sines and cosines of every angle; lanes lose large ones.
         let plain;
         let solved = if solved.increment.is_finite() {
             solved
         } else {
-            plain = self.solved_plainly(system, newton);
+            plain = self.plainly(system, newton);
             &plain
         };
-        let pause = if newton.is_some() { self.pause.after_newton() } else { Pause::NONE };
-        let mut run = *self;
-        run.take(solved, pause);
-        run.convergence.change = self.residual(system, solved);
-        (run.node.is_finite() && run.convergence.is_at_floor()).then_some(run)
+        let mut after = *self.node;
+        after.advance(self.h, &solved.increment.velocity, &solved.increment.momentum);
+        let mut step = solved.step(self.h);
+        step.convergence.change = self.residual(system, solved);
+        (after.is_finite() && step.convergence.is_at_floor()).then_some(step)
     }
 
-    /// The next step in plain numbers. Not inlined: one copy serves all systems of N coordinates.
+    /// The number by which a step is judged: the last change of its stages, or, if that stalls, the residual of the stages by running error analysis.
+    fn residual(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> f64 {
+        let Solved { sweeps, velocities, .. } = solved;
+        if sweeps.convergence.is_at_floor() || sweeps.are_given_up {
+            return sweeps.convergence.change;
+        }
+        rounding::residual(system, self.node, self.h, &sweeps.positions, velocities.as_ref())
+    }
+
+    /// The stages in plain numbers. Not inlined: one copy serves all systems of N coordinates.
     #[inline(never)]
-    pub(super) fn solved_plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
+    pub(crate) fn plainly(&self, system: &Rare<'_, N>, newton: Option<&Newton<N, S>>) -> Solved<N, S> {
         solved::<f64, _, _, N, S, false>(system, system, self, newton)
     }
 
-    /// Linearizes the equations about the middle of the next step.
-    pub(super) fn linearize(&self, system: &Rare<'_, N>, newton: &mut Newton<N, S>) {
-        let equations = equations(system, &self.node, self.h, self.guess::<false>());
+    /// The point in the middle of the step, about which its equations are linearized.
+    fn middle(&self, system: &Rare<'_, N>) -> Linearization<N> {
+        let equations = equations(system, self.node, self.h, self.guess::<false>());
         let middle = S / 2;
         let q = stage(&equations.start(), middle);
         let v = stage(&equations.velocity(), middle);
         let t = self.node.t + 0.5 * self.h;
-        newton.linearize(system, Linearization { h: self.h, t, q, v, iterations: None });
+        Linearization { h: self.h, t, q, v, iterations: None }
     }
 
-    /// The number by which a step is judged: the last change of its stages, or, where that stalls, what they leave of their equations by
-    /// running error analysis.
-    fn residual(&self, system: &Rare<'_, N>, solved: &Solved<N, S>) -> f64 {
-        let Solved { sweeps, velocities, .. } = solved;
-        if solved.is_at_floor() || sweeps.are_given_up {
-            return sweeps.convergence.change;
-        }
-        rounding::residual(system, &self.node, self.h, &sweeps.positions, velocities.as_ref())
+    /// The step by fixed-point iteration, by the instructions of the processor; else what that led to.
+    ///
+    /// # Errors
+    /// The stages.
+    #[inline(never)]
+    pub(crate) fn swept<Y>(&self, system: &Y, instructions: Instructions) -> Result<Step<N, S>, Solved<N, S>>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let solved = if Y::SIDE_BY_SIDE {
+            instructions.run(Sweeping { system, start: self })
+        } else {
+            self.plainly(&Rare::of(system), None)
+        };
+        if solved.is_step(self.node, self.h) { Ok(solved.step(self.h)) } else { Err(solved) }
     }
+
+    /// The step, if fixed-point iteration did not bring it to the rounding of its positions, or was not tried. `last` is where the equations of the step before were
+    /// linearized, if that step was as long.
+    ///
+    /// # Errors
+    /// [`StepError::StagesUnsettled`], or why the stages have no value.
+    #[cold]
+    pub(crate) fn with_care<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        (left, last): (Option<&Solved<N, S>>, Option<Linearization<N>>),
+        cache: &mut Option<Box<Newton<N, S>>>,
+    ) -> Result<Step<N, S>, StepError>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let rare = &Rare::of(system);
+        if let Some(step) = left.and_then(|left| self.accepted(rare, left, None)) {
+            return Ok(step);
+        }
+        let newton = cache.get_or_insert_with(|| Box::new(Newton::new()));
+        // About the last linearization; else a new one; else from stages that are all like the node, since the polynomials of the last step may lead far away.
+        if let Some(at) = last
+            && let Ok(step) = self.by_newton(system, instructions, at, newton)
+        {
+            return Ok(step);
+        }
+        let extrapolated = self.by_newton(system, instructions, self.middle(rare), newton);
+        if extrapolated.is_ok() || !self.are_last {
+            return extrapolated;
+        }
+        let Ok(constant) = constant(system, self.node) else { return extrapolated };
+        let start = Self { stages: &constant, are_last: false, before: &Convergence::NONE, ..*self };
+        start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated)
+    }
+
+    /// The step by Newton's iteration.
+    fn by_newton<Y>(
+        &self,
+        system: &Y,
+        instructions: Instructions,
+        at: Linearization<N>,
+        newton: &mut Newton<N, S>,
+    ) -> Result<Step<N, S>, StepError>
+    where
+        Y: Collocation<N> + Convertible<N>,
+    {
+        let rare = &Rare::of(system);
+        newton.linearize(rare, at);
+        // A copy of Newton's iteration is not worth its build if fixed-point iteration has equations of its own, or short ones: one serves all systems of N coordinates.
+        let side_by_side = if Y::SIDE_BY_SIDE && const { N > LOOPED && !Y::SEPARABLE } {
+            long(instructions, Iterating { system, start: self, newton })
+        } else {
+            None
+        };
+        let solved = side_by_side.unwrap_or_else(|| self.plainly(rare, Some(newton)));
+        let Solved { increment, sweeps, .. } = &solved;
+        let unsettled = || sweeps.convergence.unsettled(increment, [self.node.t, self.h], newton.stiffness());
+        let accepted = self.accepted(rare, &solved, Some(newton));
+        let step = accepted.ok_or_else(|| lost_force(system, self.node, self.h).unwrap_or_else(unsettled))?;
+        let linearization = at.after(step.convergence.sweeps);
+        Ok(Step { pause: self.pause.after_newton(), linearization, ..step })
+    }
+}
+
+/// Stages that are all like a node: velocities, or forces of a separable system.
+///
+/// # Errors
+/// Those of [`State::velocity`](crate::State::velocity).
+pub(crate) fn constant<Y: Collocation<N>, const N: usize, const S: usize>(
+    system: &Y,
+    node: &Node<N>,
+) -> Result<Stages<N, S>, StepError> {
+    let flow = node.state().flow(system)?;
+    let start = if Y::SEPARABLE { flow.force } else { flow.v };
+    Ok(start.data.0[0].map(|entry| [entry; S]))
 }
 
 /// Whether every processor of this architecture has vectors that are worth a copy of long equations. Those of x86-64 without AVX2 hold two
 /// numbers, and are of before 2013 or of the simplest machines: they evaluate one stage after another.
-pub(super) const WIDE: bool = !cfg!(target_arch = "x86_64");
+pub(crate) const WIDE: bool = !cfg!(target_arch = "x86_64");
 
-/// The next step of a run, by the instructions of the processor: taken where sweeps solve it, else what they, or Newton's iteration, lead to. None, and
-/// nothing taken, where Newton's iteration is that of all systems.
-pub(super) struct Solve<'a, Y, const N: usize, const S: usize> {
-    pub(super) system: &'a Y,
-    pub(super) run: &'a mut Run<N, S>,
-    pub(super) newton: Option<&'a Newton<N, S>>,
+/// The stages by fixed-point iteration, by the instructions of the processor.
+pub(crate) struct Sweeping<'a, Y, const N: usize, const S: usize> {
+    pub(crate) system: &'a Y,
+    pub(crate) start: &'a Start<'a, N, S>,
 }
 
-impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Solve<'_, Y, N, S> {
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Sweeping<'_, Y, N, S> {
+    type Output = Solved<N, S>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Solved<N, S> {
+        sweeping::<_, N, S, FUSED>(self.system, self.start)
+    }
+}
+
+/// The stages in the numbers that the instructions are best at.
+#[inline(always)]
+pub(crate) fn sweeping<Y, const N: usize, const S: usize, const FUSED: bool>(
+    system: &Y,
+    start: &Start<'_, N, S>,
+) -> Solved<N, S>
+where
+    Y: Collocation<N> + Convertible<N>,
+{
+    if const { N > LOOPED && (FUSED || WIDE) } {
+        let lanes = system.convert::<Lanes<S, FUSED>>();
+        solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, start, None)
+    } else {
+        let lane = system.convert::<Lane<FUSED>>();
+        solved::<Lane<FUSED>, _, _, N, S, FUSED>(&lane, system, start, None)
+    }
+}
+
+/// The stages by Newton's iteration, by the instructions of the processor; `None` if the iteration that serves all systems has to do.
+struct Iterating<'a, Y, const N: usize, const S: usize> {
+    system: &'a Y,
+    start: &'a Start<'a, N, S>,
+    newton: &'a Newton<N, S>,
+}
+
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Iterating<'_, Y, N, S> {
     type Output = Option<Solved<N, S>>;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> Option<Solved<N, S>> {
-        let Self { system, run, newton } = self;
-        if const { N > LOOPED && (FUSED || WIDE) } {
+        let Self { system, start, newton } = self;
+        if const { N > LOOPED && (FUSED || WIDE) && !Y::SEPARABLE } {
             let lanes = system.convert::<Lanes<S, FUSED>>();
-            // Separable systems are not asked for Newton's iteration here: the compiler need not build it.
-            let newton = if const { Y::SEPARABLE } { None } else { newton };
-            let solved = solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, run, newton);
-            return if newton.is_some() { Some(solved) } else { run.swept(solved) };
+            return Some(solved::<Lanes<S, FUSED>, _, _, N, S, FUSED>(&lanes, system, start, Some(newton)));
         }
-        if newton.is_some() {
-            return None;
-        }
-        let lane = system.convert::<Lane<FUSED>>();
-        run.swept(solved::<Lane<FUSED>, _, _, N, S, FUSED>(&lane, system, run, None))
+        None
     }
 }
 
-/// The next step of a run, its equations long. Not inlined: sweeps and Newton's iteration take one copy for each set of instructions.
+/// A loop over long equations. Not inlined: one copy for each set of instructions.
 #[inline(never)]
-pub(super) fn long_step<Y, const N: usize, const S: usize>(
-    instructions: Instructions,
-    step: Solve<'_, Y, N, S>,
-) -> Option<Solved<N, S>>
-where
-    Y: Collocation<N> + Convertible<N>,
-{
+pub(crate) fn long<L: Loop>(instructions: Instructions, step: L) -> L::Output {
     instructions.run(step)
 }
 
-/// The next step of a run, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By sweeps, else by Newton's iteration.
+/// The stages, the equations evaluated in the numbers T; `plain` is the same system in plain ones. By fixed-point iteration, else by Newton's.
 #[inline(always)]
 fn solved<T, Y, P, const N: usize, const S: usize, const FUSED: bool>(
     system: &Y,
     plain: &P,
-    run: &Run<N, S>,
+    start: &Start<'_, N, S>,
     newton: Option<&Newton<N, S>>,
 ) -> Solved<N, S>
 where
@@ -163,32 +293,33 @@ where
     Y: Points<N, T>,
     P: Points<N, f64>,
 {
-    let Run { node, h, .. } = run;
+    let Start { node, h, stages, are_last, .. } = *start;
     // Of a known type the compiler sees one of the two. Newton's iteration corrects velocities: of stiff steps they are known better than forces.
     let is_separable =
         const { Form::Separable.is_known(Y::FORM) } || const { Y::FORM.is_none() } && system.form() == Form::Separable;
     if is_separable && newton.is_none() {
         let mass = mass(plain, node);
-        let last = run.stages.data.0;
-        let are_last = run.convergence.has_begun();
-        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, *h, last, are_last), run)
+        finished(Separable::<T, Y, P::Mass, N, S, FUSED>::new(system, &mass, node, h, *stages, are_last), start)
     } else {
         let mass = constant_mass(plain, node);
-        let guess = run.guess::<FUSED>();
-        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, *h, guess, newton), run)
+        let guess = start.guess::<FUSED>();
+        finished(General::<T, Y, P::Mass, N, S, FUSED>::new(system, mass.as_ref(), node, h, guess, newton), start)
     }
 }
 
 #[inline(always)]
-fn finished<const N: usize, const S: usize>(mut equations: impl Equations<N, S>, run: &Run<N, S>) -> Solved<N, S> {
-    let sweeps = sweep::solve(&mut equations, &run.convergence);
+fn finished<const N: usize, const S: usize>(
+    mut equations: impl Equations<N, S>,
+    start: &Start<'_, N, S>,
+) -> Solved<N, S> {
+    let sweeps = sweep::solve(&mut equations, start.before);
     Solved { increment: equations.increment(), stages: equations.guess(), velocities: equations.velocities(), sweeps }
 }
 
 /// Why stages cannot be evaluated about the step of length h from `node`: no velocity belongs to its momenta, or L, f or a slope of L is not
 /// finite at the node or half a step from it; the system names the part of L or f. None where they can.
 #[cold]
-pub(super) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
+pub(crate) fn lost_force<S: Collocation<N>, const N: usize>(system: &S, node: &Node<N>, h: f64) -> Option<StepError> {
     let v = match node.state().velocity(system) {
         Ok(v) => v,
         Err(failure) => return Some(failure),

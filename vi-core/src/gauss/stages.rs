@@ -11,13 +11,13 @@ use crate::real::{Lane, Lanes, Real};
 use nalgebra::SVector;
 
 /// N vectors of S stages.
-pub(super) type Stages<const N: usize, const S: usize> = [[f64; S]; N];
+pub(crate) type Stages<const N: usize, const S: usize> = [[f64; S]; N];
 
 /// Coordinates up to which the compiler makes vectors of a loop over the stages. Longer equations are evaluated of all stages at once.
-pub(super) const LOOPED: usize = 3;
+pub(crate) const LOOPED: usize = 3;
 
 /// A number by which stages are evaluated: one at a time, or all at once.
-pub(super) trait AtStages<const S: usize>: Real {
+pub(crate) trait AtStages<const S: usize>: Real {
     /// Evaluations of all stages.
     const EVALUATIONS: usize;
     /// The number of an evaluation.
@@ -54,7 +54,7 @@ impl<const S: usize, const FUSED: bool> AtStages<S> for Lanes<S, FUSED> {
 
 /// The vector of an evaluation.
 #[inline(always)]
-pub(super) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
+pub(crate) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
     of: &Stages<N, S>,
     evaluation: usize,
 ) -> SVector<T, N> {
@@ -67,7 +67,7 @@ pub(super) fn gathered<const N: usize, const S: usize, T: AtStages<S>>(
 
 /// Sets the vector of an evaluation.
 #[inline(always)]
-pub(super) fn scatter<const N: usize, const S: usize, T: AtStages<S>>(
+pub(crate) fn scatter<const N: usize, const S: usize, T: AtStages<S>>(
     stages: &mut Stages<N, S>,
     evaluation: usize,
     vector: &SVector<T, N>,
@@ -79,7 +79,7 @@ pub(super) fn scatter<const N: usize, const S: usize, T: AtStages<S>>(
 
 /// The times of all stages of the step of length h from `node`.
 #[inline(always)]
-pub(super) fn times<const N: usize, const S: usize, const FUSED: bool>(node: &Node<N>, h: f64) -> [f64; S] {
+pub(crate) fn times<const N: usize, const S: usize, const FUSED: bool>(node: &Node<N>, h: f64) -> [f64; S] {
     let mut times = [0.0; S];
     for (i, t) in times.iter_mut().enumerate() {
         *t = time::<N, S, FUSED, f64>(node, h, i);
@@ -89,7 +89,7 @@ pub(super) fn times<const N: usize, const S: usize, const FUSED: bool>(node: &No
 
 /// The vector of one stage.
 #[inline(always)]
-pub(super) fn stage<const N: usize, const S: usize, T: Real>(of: &Stages<N, S>, i: usize) -> SVector<T, N> {
+pub(crate) fn stage<const N: usize, const S: usize, T: Real>(of: &Stages<N, S>, i: usize) -> SVector<T, N> {
     let mut vector = [T::zero(); N];
     for k in 0..N {
         vector[k] = T::real(of[k][i]);
@@ -99,7 +99,7 @@ pub(super) fn stage<const N: usize, const S: usize, T: Real>(of: &Stages<N, S>, 
 
 /// Sets the vector of one stage.
 #[inline(always)]
-pub(super) fn set<const N: usize, const S: usize, T: Real>(
+pub(crate) fn set<const N: usize, const S: usize, T: Real>(
     stages: &mut Stages<N, S>,
     i: usize,
     vector: &SVector<T, N>,
@@ -111,26 +111,26 @@ pub(super) fn set<const N: usize, const S: usize, T: Real>(
 
 /// The time of a stage of the step of length h from `node`.
 #[inline(always)]
-pub(super) fn time<const N: usize, const S: usize, const FUSED: bool, T: Real>(node: &Node<N>, h: f64, i: usize) -> T {
+pub(crate) fn time<const N: usize, const S: usize, const FUSED: bool, T: Real>(node: &Node<N>, h: f64, i: usize) -> T {
     let c = const { &Tableau::<S>::VALUES.c };
     T::real(node.t + Lane::<FUSED>::multiply_add(h, c[i], node.t_low))
 }
 
 /// The mass matrix of a system at a node.
 #[inline(always)]
-pub(super) fn mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
+pub(crate) fn mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Y::Mass {
     system.at(T::real(node.t), &node.q.map(T::real), &SVector::zeros()).mass
 }
 
 /// The mass matrix of a system, where it is constant.
 #[inline(always)]
-pub(super) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Option<Y::Mass> {
+pub(crate) fn constant_mass<const N: usize, T: Real, Y: Points<N, T>>(system: &Y, node: &Node<N>) -> Option<Y::Mass> {
     (system.form() != Form::VaryingMass).then(|| mass(system, node))
 }
 
 /// `base_i + Σ_j matrix_ij x_j` at the stages i. In two sums, since each addition waits for the one before.
 #[inline(always)]
-pub(super) fn product<const S: usize, const FUSED: bool>(
+pub(crate) fn product<const S: usize, const FUSED: bool>(
     matrix: &[[f64; S]; S],
     x: &[f64; S],
     base: &[f64; S],
@@ -152,7 +152,7 @@ pub(super) fn product<const S: usize, const FUSED: bool>(
 
 /// What the polynomials through the stages of a step are at those of the next one.
 #[inline(always)]
-pub(super) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {
+pub(crate) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of: &Stages<N, S>) -> Stages<N, S> {
     let next = const { &Tableau::<S>::VALUES.next };
     let mut stages = [[0.0; S]; N];
     for k in 0..N {
@@ -163,7 +163,7 @@ pub(super) fn extrapolated<const N: usize, const S: usize, const FUSED: bool>(of
 
 /// `h b_j` of every stage.
 #[inline(always)]
-pub(super) fn weights<const S: usize>(h: f64) -> [f64; S] {
+pub(crate) fn weights<const S: usize>(h: f64) -> [f64; S] {
     let b = const { &Tableau::<S>::VALUES.b };
     let mut weights = [0.0; S];
     for j in 0..S {
@@ -174,7 +174,7 @@ pub(super) fn weights<const S: usize>(h: f64) -> [f64; S] {
 
 /// `weights_j x_j` of every stage.
 #[inline(always)]
-pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; S] {
+pub(crate) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; S] {
     let mut scaled = [0.0; S];
     for j in 0..S {
         scaled[j] = weights[j] * x[j];
@@ -183,11 +183,11 @@ pub(super) fn scaled<const S: usize>(weights: &[f64; S], x: &[f64; S]) -> [f64; 
 }
 
 /// What changes of each row are measured by: one over its scale. A change times that, over ε, is in roundings.
-pub(super) type Roundings<const N: usize> = [f64; N];
+pub(crate) type Roundings<const N: usize> = [f64; N];
 
 /// One over the largest entry of each row, and of `start`.
 #[inline(always)]
-pub(super) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start: &SVector<f64, N>) -> Roundings<N> {
+pub(crate) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start: &SVector<f64, N>) -> Roundings<N> {
     let mut scales = [0.0; N];
     for k in 0..N {
         row_by_row();
@@ -208,7 +208,7 @@ pub(super) fn roundings<const N: usize, const S: usize>(of: &Stages<N, S>, start
 
 /// By how much a change is larger in the roundings `after` than in those `before`, at most.
 #[inline(always)]
-pub(super) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>) -> f64 {
+pub(crate) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>) -> f64 {
     let mut growths = [0.0; N];
     for k in 0..N {
         growths[k] = after[k] / before[k];
@@ -220,7 +220,7 @@ pub(super) fn growth<const N: usize>(before: &Roundings<N>, after: &Roundings<N>
 ///
 /// Anything where a stage is not finite: then neither is the [`Increment`](super::sweep::Increment) of the step.
 #[inline(always)]
-pub(super) fn change<const N: usize, const S: usize>(
+pub(crate) fn change<const N: usize, const S: usize>(
     before: &mut Stages<N, S>,
     after: &Stages<N, S>,
     roundings: &Roundings<N>,
@@ -267,13 +267,13 @@ fn larger(a: f64, b: f64) -> f64 {
 
 /// The largest of W numbers that are not negative.
 #[inline(always)]
-pub(super) fn maximum<const W: usize>(of: &[f64; W]) -> f64 {
+pub(crate) fn maximum<const W: usize>(of: &[f64; W]) -> f64 {
     by_pairs(of, larger)
 }
 
 /// The sum of W numbers.
 #[inline(always)]
-pub(super) fn sum<const W: usize>(of: &[f64; W]) -> f64 {
+pub(crate) fn sum<const W: usize>(of: &[f64; W]) -> f64 {
     by_pairs(of, |a, b| a + b)
 }
 
@@ -290,4 +290,44 @@ fn by_pairs<const W: usize>(of: &[f64; W], one: impl Fn(f64, f64) -> f64) -> f64
         length = half;
     }
     left[0]
+}
+
+/// What the polynomials through the stages of a step are elsewhere: at `place(c_i)` in units of its length.
+#[inline(always)]
+pub(crate) fn at<const N: usize, const S: usize>(stages: &Stages<N, S>, place: impl Fn(f64) -> f64) -> Stages<N, S> {
+    let c = const { &Tableau::<S>::VALUES.c };
+    let scales = const { &scales::<S>() };
+    let mut values = [[0.0; S]; N];
+    for i in 0..S {
+        for j in 0..S {
+            let mut basis = scales[j];
+            for k in 0..S {
+                if k != j {
+                    basis *= place(c[i]) - c[k];
+                }
+            }
+            for k in 0..N {
+                values[k][i] += basis * stages[k][j];
+            }
+        }
+    }
+    values
+}
+
+/// `Π_{k ≠ j} 1/(c_j − c_k)`.
+const fn scales<const S: usize>() -> [f64; S] {
+    let c = &Tableau::<S>::VALUES.c;
+    let mut scales = [1.0; S];
+    let mut j = 0;
+    while j < S {
+        let mut k = 0;
+        while k < S {
+            if k != j {
+                scales[j] /= c[j] - c[k];
+            }
+            k += 1;
+        }
+        j += 1;
+    }
+    scales
 }

@@ -31,14 +31,14 @@ const NOISE: f64 = 64.0;
 /// Sweeps without a smaller change, after which no further one comes closer.
 const STALLS: u32 = 4;
 /// Part of a rounding of q that a rounding of the terms of v counts as: velocities are solved for by the mass matrix.
-pub(super) const VELOCITY: f64 = 1.0 / 16.0;
+pub(crate) const VELOCITY: f64 = 1.0 / 16.0;
 /// Roundings of q that a step may leave of the error of its stages.
 const NEGLIGIBLE: f64 = 1.0 / 1024.0;
 /// Roundings of a change after which roundings are taken anew: a sixteenth of the number that they are roundings of.
 const COARSE: f64 = 0.0625 / f64::EPSILON;
 
 /// The equations of the stages of a step.
-pub(super) trait Equations<const N: usize, const S: usize> {
+pub(crate) trait Equations<const N: usize, const S: usize> {
     /// Whether there is another way to solve them, where sweeps are slow.
     fn has_another_way(&self) -> bool;
     /// The positions that the guess of the step leads to.
@@ -62,16 +62,16 @@ pub(super) trait Equations<const N: usize, const S: usize> {
 
 /// What moves a step from its node to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Increment<const N: usize> {
+pub(crate) struct Increment<const N: usize> {
     /// `(q1 − q0)/h`.
-    pub(super) velocity: SVector<f64, N>,
+    pub(crate) velocity: SVector<f64, N>,
     /// `p1 − p0`.
-    pub(super) momentum: SVector<f64, N>,
+    pub(crate) momentum: SVector<f64, N>,
 }
 
 impl<const N: usize> Increment<N> {
     /// Whether it leads anywhere; not where a stage was not finite.
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.velocity.iter().chain(&self.momentum).all(|entry| entry.is_finite())
     }
 }
@@ -79,7 +79,7 @@ impl<const N: usize> Increment<N> {
 /// How long sweeps are not tried, since the last ones did not converge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Pause {
+pub(crate) struct Pause {
     /// Steps that are left to Newton's iteration.
     left: u32,
     /// Steps of the next pause.
@@ -91,15 +91,15 @@ const LONGEST_PAUSE: u32 = 64;
 
 impl Pause {
     /// Where sweeps converge.
-    pub(super) const NONE: Self = Self { left: 0, next: 1 };
+    pub(crate) const NONE: Self = Self { left: 0, next: 1 };
 
     /// Whether sweeps are to be tried.
-    pub(super) fn is_over(self) -> bool {
+    pub(crate) fn is_over(self) -> bool {
         self.left == 0
     }
 
     /// The pause after a step by Newton's iteration: where sweeps were tried in vain, twice as long as the last one.
-    pub(super) fn after_newton(self) -> Self {
+    pub(crate) fn after_newton(self) -> Self {
         match self.left.checked_sub(1) {
             Some(left) => Self { left, ..self },
             None => Self { left: self.next, next: LONGEST_PAUSE.min(2 * self.next) },
@@ -110,26 +110,26 @@ impl Pause {
 /// How sweeps ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Convergence {
+pub(crate) struct Convergence {
     /// How many there were.
-    pub(super) sweeps: u32,
+    pub(crate) sweeps: u32,
     /// The last change, in roundings of q, or in sixteens of those of the terms of v.
-    pub(super) change: f64,
+    pub(crate) change: f64,
     /// The ratio of a change to the one before, the last that stood out of rounding.
-    pub(super) contraction: f64,
+    pub(crate) contraction: f64,
 }
 
 impl Convergence {
     /// Before the first step.
-    pub(super) const NONE: Self = Self { sweeps: 0, change: 0.0, contraction: 1.0 };
+    pub(crate) const NONE: Self = Self { sweeps: 0, change: 0.0, contraction: 1.0 };
 
     /// Whether there was a step.
-    pub(super) fn has_begun(&self) -> bool {
+    pub(crate) fn has_begun(&self) -> bool {
         self.sweeps > 0
     }
 
     /// The error of stages that did not come to rest, in the step of length h from the time t, and led to this increment.
-    pub(super) fn unsettled<const N: usize>(
+    pub(crate) fn unsettled<const N: usize>(
         &self,
         increment: &Increment<N>,
         [t, h]: [f64; 2],
@@ -144,14 +144,14 @@ impl Convergence {
     }
 
     /// Whether the stages are at the rounding of their positions.
-    pub(super) fn is_at_floor(&self) -> bool {
+    pub(crate) fn is_at_floor(&self) -> bool {
         self.change <= FLOOR
     }
 }
 
 /// Sweeps until the stages no longer move, or no longer come closer. `before` is how the step before ended.
 #[inline(always)]
-pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
+pub(crate) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
     equations: &mut E,
     before: &Convergence,
 ) -> Sweeps<N, S> {
@@ -212,10 +212,10 @@ pub(super) fn solve<E: Equations<N, S>, const N: usize, const S: usize>(
 }
 
 /// The last of the sweeps of a step.
-pub(super) struct Sweeps<const N: usize, const S: usize> {
-    pub(super) convergence: Convergence,
+pub(crate) struct Sweeps<const N: usize, const S: usize> {
+    pub(crate) convergence: Convergence,
     /// Positions that it led to; those at which it evaluated, where they do not rest.
-    pub(super) positions: Stages<N, S>,
+    pub(crate) positions: Stages<N, S>,
     /// Whether further sweeps would come closer, but slowly.
-    pub(super) are_given_up: bool,
+    pub(crate) are_given_up: bool,
 }

@@ -21,31 +21,31 @@
 use super::pair::Pair;
 
 /// Highest degree of the polynomial that starts a step: beyond, it amplifies rounding more than it guesses.
-pub(super) const DEGREE: usize = 7;
+pub(crate) const DEGREE: usize = 7;
 
 /// The coefficients of S stages; see the [module](self).
 #[derive(Debug)]
-pub(super) struct Tableau<const S: usize> {
+pub(crate) struct Tableau<const S: usize> {
     /// Nodes in (0, 1), ascending, rounded to multiples of 2⁻⁵³.
-    pub(super) c: [f64; S],
+    pub(crate) c: [f64; S],
     /// Weights; their sum is 1.
-    pub(super) b: [f64; S],
+    pub(crate) b: [f64; S],
     /// `first[j][i] = a_ij / b_j`.
-    pub(super) first: [[f64; S]; S],
+    pub(crate) first: [[f64; S]; S],
     /// `second[j][i] = (A²)_ij / b_j`.
-    pub(super) second: [[f64; S]; S],
+    pub(crate) second: [[f64; S]; S],
     /// `next[j][i]`: the weight of stage j in the value that the polynomial of degree up to [`DEGREE`] through the stages of a step
     /// has at stage i of the next one.
-    pub(super) next: [[f64; S]; S],
+    pub(crate) next: [[f64; S]; S],
     /// `ahead[j][i]`: what `second` makes of `next`.
-    pub(super) ahead: [[f64; S]; S],
+    pub(crate) ahead: [[f64; S]; S],
     /// `legendre[k][i] = P_k(2 c_i − 1)`.
-    pub(super) legendre: [[f64; S]; S],
+    pub(crate) legendre: [[f64; S]; S],
 }
 
 impl<const S: usize> Tableau<S> {
     /// The coefficients.
-    pub(super) const VALUES: Self = Self::new();
+    pub(crate) const VALUES: Self = Self::new();
 
     const fn new() -> Self {
         assert!(S >= 1 && S <= 16, "a Gauss step has 1 to 16 stages");
@@ -284,7 +284,7 @@ const fn cosine(x: f64) -> f64 {
 
 /// A small integer as a number.
 #[allow(clippy::cast_precision_loss)]
-pub(super) const fn real(integer: usize) -> f64 {
+pub(crate) const fn real(integer: usize) -> f64 {
     integer as f64
 }
 

@@ -18,16 +18,17 @@
 //! about half a step before the zero, so that h_f is not the length of a last leap.
 //! AFTER A SWITCH q, p and t go on without a jump.
 
-use super::interval::RATIO;
 use crate::error::StepError;
 use crate::node::Node;
 use crate::real::Scalar;
 
+/// A step may be longer or shorter than the last one by this factor at most.
+pub(crate) const RATIO: f64 = 3.0;
 /// With the fallback a step may be longer than the last by this factor at most: where D falls linearly to zero, the step
 /// law gives it at the distance of 0.7 h.
 pub(crate) const GROWTH: f64 = 1.5;
 
-/// What a run of [`EnergyPreserving`](crate::EnergyPreserving) does where no energy-preserving step exists, or none within the bounds.
+/// What an energy-preserving run does if no energy-preserving step exists, or none within its bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -170,8 +171,8 @@ impl<T: Scalar> Phase<T> {
     }
 
     pub(crate) fn check(&self) -> Result<(), StepError> {
-        check_step("the fixed step h", self.h)?;
-        check_step("the last energy-preserving step h", self.law_h)?;
+        check_forward("the fixed step h", self.h)?;
+        check_forward("the last energy-preserving step h", self.law_h)?;
         let numbers = [self.law_density, self.density_next, self.gap];
         match numbers.iter().find(|number| !number.is_finite()) {
             Some(number) => {
@@ -198,7 +199,7 @@ impl<T: Scalar> Phase<T> {
 }
 
 /// A step must lead forward.
-pub(crate) fn check_step<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
+pub(crate) fn check_forward<T: Scalar>(input: &'static str, h: T) -> Result<(), StepError> {
     let value = h.to_f64();
     if value.is_normal() && value > 0.0 {
         Ok(())

@@ -32,7 +32,7 @@ const fn constant(stages: usize) -> f64 {
 }
 
 /// `C_s h^2s` of s = S stages.
-pub(super) fn power<const S: usize>(h: f64) -> f64 {
+pub(crate) fn power<const S: usize>(h: f64) -> f64 {
     (1..S).fold(h * h, |power, _| power * (h * h)) * const { constant(S) }
 }
 

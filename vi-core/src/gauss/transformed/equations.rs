@@ -26,23 +26,23 @@ use nalgebra::{SMatrix, SVector};
 
 /// What a step is found from: velocities, and what time and energy change by, at its stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rates<const N: usize, const S: usize> {
-    pub(super) velocity: Stages<N, S>,
+pub(crate) struct Rates<const N: usize, const S: usize> {
+    pub(crate) velocity: Stages<N, S>,
     /// `dt/dτ = g`.
-    pub(super) g: [f64; S],
+    pub(crate) g: [f64; S],
     /// `dE/dτ`.
-    pub(super) energy: [f64; S],
+    pub(crate) energy: [f64; S],
 }
 
 /// Times and energies of the stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Clock<const S: usize> {
-    pub(super) time: [f64; S],
-    pub(super) energy: [f64; S],
+pub(crate) struct Clock<const S: usize> {
+    pub(crate) time: [f64; S],
+    pub(crate) energy: [f64; S],
 }
 
 /// The equations of a step; see the [module](self).
-pub(super) struct Scaled<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
+pub(crate) struct Scaled<'a, T, Y: Collocation<N, T>, const N: usize, const S: usize, const FUSED: bool>
 where
     T: Real,
 {
@@ -70,7 +70,7 @@ where
 }
 
 /// Roundings of all that changes.
-pub(super) struct AllRoundings<const N: usize> {
+pub(crate) struct AllRoundings<const N: usize> {
     position: Roundings<N>,
     velocity: Roundings<N>,
     time: Roundings<1>,
@@ -84,7 +84,7 @@ where
 {
     /// The equations of the step of length Δτ from `node`, with a guess of the rates at its stages.
     #[inline(always)]
-    pub(super) fn new(
+    pub(crate) fn new(
         system: &'a Y,
         node: &'a Node<N>,
         dtau: f64,
@@ -247,7 +247,7 @@ where
     }
 
     /// `dp/dτ` where the rates at hand lead.
-    pub(super) fn momentum_rates(&mut self) -> Stages<N, S> {
+    pub(crate) fn momentum_rates(&mut self) -> Stages<N, S> {
         let x = self.positions();
         self.evaluate(&x, |_, _| {});
         self.force
@@ -255,7 +255,7 @@ where
 
     /// `Σ_j w_j x_j`.
     #[inline(always)]
-    pub(super) fn quadrature(&self, of: &[f64; S]) -> f64 {
+    pub(crate) fn quadrature(&self, of: &[f64; S]) -> f64 {
         let weights = weights::<S>(self.dtau);
         let mut sum = 0.0;
         for i in 0..S {
@@ -266,31 +266,31 @@ where
 
     /// What time and energy gain over the step, by the evaluation of the last sweep.
     #[inline(always)]
-    pub(super) fn gains(&self) -> [f64; 2] {
+    pub(crate) fn gains(&self) -> [f64; 2] {
         [self.quadrature(&self.rates.g), self.quadrature(&self.rates.energy)]
     }
 
     /// The rates at hand: what is extrapolated to the next step.
     #[inline(always)]
-    pub(super) fn rates(&self) -> Rates<N, S> {
+    pub(crate) fn rates(&self) -> Rates<N, S> {
         self.rates
     }
 
     /// The largest `|H − E|` at the last evaluation, and the size of the terms of H.
     #[inline(always)]
-    pub(super) fn excess(&self) -> [f64; 2] {
+    pub(crate) fn excess(&self) -> [f64; 2] {
         [self.excess, self.energy_scale]
     }
 
     /// Velocities at which the last sweep evaluated.
     #[inline(always)]
-    pub(super) fn velocity(&self) -> Stages<N, S> {
+    pub(crate) fn velocity(&self) -> Stages<N, S> {
         self.velocity
     }
 
     /// Times and energies at which the last sweep evaluated.
     #[inline(always)]
-    pub(super) fn evaluated(&self) -> Clock<S> {
+    pub(crate) fn evaluated(&self) -> Clock<S> {
         self.evaluated
     }
 }

@@ -11,11 +11,11 @@
 
 use super::super::polynomial::{coefficients, integrals, polynomials, sum};
 use super::super::stages::{Stages, scaled};
-use super::Run;
+use super::LastRates;
 use super::equations::Scaled;
 use crate::collocation::Collocation;
-use crate::integrator::Path;
 use crate::node::Node;
+use crate::run::DenseOutput;
 use crate::state::State;
 use nalgebra::SVector;
 
@@ -35,17 +35,17 @@ pub struct Polynomial<const N: usize, const S: usize> {
 const ITERATIONS: u32 = 60;
 
 impl<const N: usize, const S: usize> Polynomial<N, S> {
-    /// The motion over the last step of a run, which began at `start`.
-    pub(super) fn of<Y: Collocation<N>>(system: &Y, run: &Run<N, S>, start: State<N>) -> Self {
-        let rates = run.rates();
+    /// The motion over the last step, from `start` to a node with this energy.
+    pub(crate) fn of<Y: Collocation<N>>(system: &Y, energy: f64, last: &LastRates<N, S>, start: State<N>) -> Self {
+        let rates = last.rates();
         // E is the one from which the step came to that of the node.
-        let mut node = Node::new(start, run.node.energy);
+        let mut node = Node::new(start, energy);
         node.energy -=
-            Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates, None).quadrature(&rates.energy);
-        let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &node, run.taken, rates, None);
+            Scaled::<f64, Y, N, S, false>::new(system, &node, last.taken, rates, None).quadrature(&rates.energy);
+        let mut equations = Scaled::<f64, Y, N, S, false>::new(system, &node, last.taken, rates, None);
         let momentum = coefficients(&equations.momentum_rates());
         let position = coefficients(&rates.velocity.map(|row| scaled(&rates.g, &row)));
-        Self { start, dtau: run.taken, time: coefficients(&[rates.g]), position, momentum }
+        Self { start, dtau: last.taken, time: coefficients(&[rates.g]), position, momentum }
     }
 
     /// The time at a part of the step, and its derivative by the part.
@@ -86,7 +86,7 @@ impl<const N: usize, const S: usize> Polynomial<N, S> {
     }
 }
 
-impl<const N: usize, const S: usize> Path<N> for Polynomial<N, S> {
+impl<const N: usize, const S: usize> DenseOutput<N> for Polynomial<N, S> {
     fn since_start(self) -> Self {
         Self { start: State { t: 0.0, ..self.start }, ..self }
     }

@@ -25,7 +25,7 @@ struct Place<const N: usize> {
 }
 
 /// What the stages of the step of length Δτ from `node` leave of their equations, in roundings; not a number where these have no bound.
-pub(super) fn residual<Y, const N: usize, const S: usize>(
+pub(crate) fn residual<Y, const N: usize, const S: usize>(
     system: &Y,
     node: &Node<N>,
     dtau: f64,

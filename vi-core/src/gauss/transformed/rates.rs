@@ -1,12 +1,13 @@
-//! What a run in scaled time carries from step to step.
+//! What a run in transformed time remembers of its last step.
 //!
-//! In: a run, a solved step. Out: the run after it, and the rates from which the next step starts: the polynomials of the last one, further on.
+//! In: a run, a solved step. Out: the run after it, and the rates from which the next step starts: the polynomials of the last one, continued.
 
 use super::equations::Rates;
 use super::{Solved, check_time_scale};
 use crate::collocation::{ScaledPoint, TimeScale};
 use crate::compensated;
 use crate::error::StepError;
+use crate::method::Memory;
 use crate::gauss::polynomial::{coefficients, polynomials, sum};
 use crate::gauss::stages::{extrapolated, set};
 use crate::gauss::sweep::{Convergence, Pause};
@@ -15,28 +16,38 @@ use crate::node::Node;
 use crate::state::State;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// What a run carries from step to step.
+/// The rates at the stages of the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Run<const N: usize, const S: usize> {
-    pub(super) node: Node<N>,
-    pub(super) dtau: f64,
-    /// Length of the last step in scaled time, and in time; before the first one Δτ and `g Δτ`.
-    pub(super) taken: f64,
-    pub(super) h: f64,
+pub struct LastRates<const N: usize, const S: usize> {
+    /// Length of the last step in transformed time, and in time; before the first one Δτ and `g Δτ`.
+    pub(crate) taken: f64,
+    pub(crate) h: f64,
     /// The largest size of the terms of H, `|v·p| + |H|`, at the stages so far.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Velocities at the stages of the last step, a column a coordinate. Before the first step those of the node.
-    pub(super) velocities: SMatrix<f64, S, N>,
+    pub(crate) velocities: SMatrix<f64, S, N>,
     /// The same of g and of dE/dτ, a column each.
-    pub(super) clock: SMatrix<f64, S, 2>,
-    pub(super) convergence: Convergence,
-    pub(super) pause: Pause,
+    pub(crate) clock: SMatrix<f64, S, 2>,
+    pub(crate) convergence: Convergence,
+    pub(crate) pause: Pause,
 }
 
-impl<const N: usize, const S: usize> Run<N, S> {
-    /// A run that begins at a node, the rates of its first step guessed constant.
-    pub(super) fn new<Y: TimeScale<N>>(system: &Y, node: Node<N>, dtau: f64) -> Result<Self, StepError> {
+impl<const N: usize, const S: usize> Memory for LastRates<N, S> {}
+
+/// A run after a step.
+#[derive(Clone, Copy, Debug)]
+pub struct After<const N: usize, const S: usize> {
+    pub(crate) node: Node<N>,
+    pub(crate) rates: LastRates<N, S>,
+}
+
+impl<const N: usize, const S: usize> LastRates<N, S> {
+    /// Before the first step from a node: rates that are all like the node.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`], [`StepError::TimeScale`], those of [`State::velocity`].
+    pub(crate) fn constant<Y: TimeScale<N>>(system: &Y, node: &Node<N>, dtau: f64) -> Result<Self, StepError> {
         node.check_finite(node.t)?;
         let State { t, q, .. } = node.state();
         let v = node.state().velocity(system)?;
@@ -47,34 +58,25 @@ impl<const N: usize, const S: usize> Run<N, S> {
         let clock = SMatrix::from_fn(|_, column| if column == 0 { g } else { gain });
         let h = g * dtau;
         let size = energy.abs() + v.dot(&node.p).abs();
-        Ok(Self {
-            node,
-            dtau,
-            taken: dtau,
-            h,
-            size,
-            velocities,
-            clock,
-            convergence: Convergence::NONE,
-            pause: Pause::NONE,
-        })
+        let (convergence, pause) = (Convergence::NONE, Pause::NONE);
+        Ok(Self { taken: dtau, h, size, velocities, clock, convergence, pause })
     }
 
     /// Rates at the stages of the last step.
     #[inline(always)]
-    pub(super) fn rates(&self) -> Rates<N, S> {
+    pub(crate) fn rates(&self) -> Rates<N, S> {
         let [g, energy] = self.clock.data.0;
         Rates { velocity: self.velocities.data.0, g, energy }
     }
 
     /// Rates at the stages of the next step: the polynomials of the last one, further on.
     #[inline(always)]
-    pub(super) fn guess<const FUSED: bool>(&self) -> Rates<N, S> {
+    pub(crate) fn guess<const FUSED: bool>(&self, dtau: f64) -> Rates<N, S> {
         if !self.convergence.has_begun() {
             return self.rates();
         }
-        if self.taken.to_bits() != self.dtau.to_bits() {
-            return self.guess_of_another_length();
+        if self.taken.to_bits() != dtau.to_bits() {
+            return self.guess_of_another_length(dtau);
         }
         let Rates { velocity, g, energy } = self.rates();
         let [g, energy] = extrapolated::<2, S, FUSED>(&[g, energy]);
@@ -83,9 +85,9 @@ impl<const N: usize, const S: usize> Run<N, S> {
 
     /// The same where the next step is of another length: by so much further on, but not far; else the rates of the last stage.
     #[cold]
-    fn guess_of_another_length(&self) -> Rates<N, S> {
+    fn guess_of_another_length(&self, dtau: f64) -> Rates<N, S> {
         let c = const { &Tableau::<S>::VALUES.c };
-        let ratio = self.dtau / self.taken;
+        let ratio = dtau / self.taken;
         if !(ratio > 0.0 && ratio <= FARTHEST) {
             let last = |row: [f64; S]| [row[S - 1]; S];
             let Rates { velocity, g, energy } = self.rates();
@@ -103,50 +105,58 @@ impl<const N: usize, const S: usize> Run<N, S> {
         rates
     }
 
-    /// The run after a step.
+    /// The run after a step of the length Δτ from a node.
     #[inline(always)]
-    pub(super) fn after(&self, solved: &Solved<N, S>) -> Self {
+    pub(crate) fn after(&self, node: &Node<N>, dtau: f64, solved: &Solved<N, S>) -> After<N, S> {
         let Solved { increment, gains: [h, energy], rates, sweeps, .. } = solved;
-        let mut node = self.node;
+        let mut node = *node;
         compensated::add_rounded(&mut node.t, &mut node.t_low, *h);
-        compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * self.dtau));
+        compensated::add_vector(&mut node.q, &mut node.q_low, &(increment.velocity * dtau));
         compensated::add_vector(&mut node.p, &mut node.p_low, &increment.momentum);
         node.add_energy(*energy);
         let velocities = SMatrix::from_array_storage(ArrayStorage(rates.velocity));
         let clock = SMatrix::from_array_storage(ArrayStorage([rates.g, rates.energy]));
-        let Self { dtau, .. } = *self;
         let size = self.size.max(solved.excess[1]);
         let convergence = sweeps.convergence;
-        Self { node, dtau, taken: dtau, h: *h, size, velocities, clock, convergence, pause: Pause::NONE }
+        After { node, rates: Self { taken: dtau, h: *h, size, velocities, clock, convergence, pause: Pause::NONE } }
     }
 
-    /// The run after a step by Newton's iteration.
-    pub(super) fn after_newton(&self, solved: &Solved<N, S>) -> Self {
-        Self { pause: self.pause.after_newton(), ..self.after(solved) }
+    /// Whether a run can continue from stored rates.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`].
+    pub(crate) fn check(&self, t: f64) -> Result<(), StepError> {
+        let Self { velocities, clock, taken, h, size, .. } = self;
+        let mut numbers = velocities.iter().chain(clock.iter()).chain([taken, h, size]);
+        let lost = StepError::NonFinite { t, quantity: "last stages", expression: None };
+        if numbers.all(|entry| entry.is_finite()) { Ok(()) } else { Err(lost) }
     }
+}
 
-    /// Whether its last step changes the time, both parts of whose sum hold twice the digits of a number, and keeps the energy: K = g (H − E) is
-    /// nearly kept, so where g almost vanishes H − E grows, and the motion turns back as at a wall.
+impl<const N: usize, const S: usize> After<N, S> {
+    /// Whether the step changes the time, both parts of whose sum hold twice the digits of a number, and keeps the energy. K = g (H − E) is nearly kept: if g almost
+    /// vanishes, H − E grows, and the motion turns back as at a wall.
     #[inline(always)]
-    pub(super) fn goes_on(&self, before: &Self, solved: &Solved<N, S>) -> bool {
+    pub(crate) fn goes_on(&self, before: (&Node<N>, &LastRates<N, S>), solved: &Solved<N, S>) -> bool {
+        let (node, rates) = before;
         let [excess, size] = solved.excess;
-        let is_lost = excess > size && excess > LOST * before.size;
-        !is_lost && self.h.abs() > 0.25 * f64::EPSILON * f64::EPSILON * before.node.t.abs()
+        let is_lost = excess > size && excess > LOST * rates.size;
+        !is_lost && self.rates.h.abs() > 0.25 * f64::EPSILON * f64::EPSILON * node.t.abs()
     }
 
     /// Whether it is finite, and g positive at all stages and at the node.
     #[inline(always)]
-    pub(super) fn is_sound<Y: TimeScale<N>>(&self, system: &Y) -> bool {
+    pub(crate) fn is_sound<Y: TimeScale<N>>(&self, system: &Y) -> bool {
         let is_positive = |g: f64| g > 0.0 && g.is_finite();
         self.node.is_finite()
-            && self.clock.column(0).iter().all(|g| is_positive(*g))
+            && self.rates.clock.column(0).iter().all(|g| is_positive(*g))
             && is_positive(time_scale(system, self.node.t, &self.node.q))
     }
 }
 
 /// g at a place.
 #[inline(always)]
-pub(super) fn time_scale<Y: TimeScale<N>, const N: usize>(system: &Y, t: f64, q: &SVector<f64, N>) -> f64 {
+pub(crate) fn time_scale<Y: TimeScale<N>, const N: usize>(system: &Y, t: f64, q: &SVector<f64, N>) -> f64 {
     system.scaled_point(t, q, &SVector::zeros()).g
 }
 

@@ -1,0 +1,68 @@
+//! Where the first step comes from.
+//!
+//! In: a state, or the first interval. Out: the node from which the run continues with its energy, and the interval that the next step follows.
+
+use super::course::{After, Lengths};
+use super::equations::Elimination;
+use super::interval::Last;
+use crate::called::Called;
+use crate::error::StepError;
+use crate::momentum::continuation::{self, Reached};
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::stepping::EnergyStepping;
+use nalgebra::SVector;
+
+/// The memory of a run that starts at a node, with a first step of the length h: the node gets the discrete energy `D1 L_d + g_d⁻` of that step.
+///
+/// # Errors
+/// Those of a fixed step of that length.
+pub(crate) fn from_state<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+    system: &S,
+    node: &mut Node<N, T>,
+    h: T,
+) -> Result<Lengths<N, T>, StepError> {
+    let state = node.state();
+    let rest = state.velocity(system)?;
+    let called = &Called(*system);
+    let first = continuation::nearest(called, node, h, rest, rest);
+    let explained = |failure: StepError| failure.explained(system, node, h, &rest);
+    let Reached { v, .. } = first.map_err(explained)?;
+    let bare = Node::new(state, T::zero());
+    let equations = called.extended_system(&bare, h, &v);
+    let t = state.t.to_f64();
+    let singular = StepError::Singular { t, matrix: "derivative of the momentum equation" };
+    let infinite = |quantity| StepError::NonFinite { t, quantity, expression: None };
+    let elimination = Elimination::finite(&equations).ok_or(singular)?;
+    let density = elimination.density().ok_or(infinite("step density")).map_err(explained)?;
+    // The energy row is e = c + v·r.
+    let energy = equations.energy_residual + v.dot(&equations.momentum.residual);
+    if !energy.is_finite() {
+        return Err(explained(infinite("energy")));
+    }
+    node.energy = energy;
+    // The first step is this one: it follows an interval like it.
+    Ok(Lengths::new(Last::first(v, h, density, SVector::zeros())))
+}
+
+/// The run at the end of the step `(v, h)` from the place of `start`.
+pub(crate) fn first_interval<const N: usize, T: Scalar, S: EnergyStepping<N, T>>(
+    system: &S,
+    start: Node<N, T>,
+    h: T,
+    v: SVector<T, N>,
+) -> Result<After<N, T>, StepError> {
+    let t = if start.t.to_f64().is_finite() { start.t } else { T::zero() };
+    start.check_finite(t)?;
+    let start = start.leaving(system, h, &v);
+    let node = start.advanced::<S>(h, &v, &system.extended_residual(&start, h, &v).increment);
+    node.check_finite(t)?;
+    let singular = StepError::Singular { t: t.to_f64(), matrix: "derivative of the momentum equation" };
+    let infinite = StepError::NonFinite { t: t.to_f64(), quantity: "step density", expression: None };
+    let elimination = Elimination::finite(&system.extended_system(&start, h, &v)).ok_or(singular)?;
+    let density = elimination.density().ok_or(infinite)?;
+    let (t_mid, q_mid) = start.midpoint(h, &v);
+    // Only the first guess depends on the acceleration: where it has none, v is guessed constant.
+    let acceleration = system.acceleration(t_mid, &q_mid, &v).unwrap_or_else(|_| SVector::zeros());
+    Ok(After { node, lengths: Lengths::new(Last::first(v, h, density, acceleration * h)) })
+}

@@ -1,0 +1,313 @@
+//! Composition: fixed steps of order 4, 6 and 8 from a symmetric rule of order 2.
+//!
+//! In: a system whose rule is symmetric (midpoint, trapezoidal), and weights `γ_i` with `Σ γ_i = 1`. One step is the fixed steps `γ_1 h, γ_2 h, …` one after the other.
+//!
+//! ```text
+//! Φ_h = φ_{γ_s h} ∘ … ∘ φ_{γ_1 h}        γ_i = γ_{s+1−i}
+//! ```
+//!
+//! A composition keeps what its substeps keep: symplecticity, symmetry, conserved momenta. Above order 2 some weights have to be negative. Such substeps go backwards in
+//! time, and amplify damped modes. A midpoint composition of `a = −c v` is unstable in bands of `c h`, the first of which begin at 1.13 (triple jump), 3.02 (Suzuki 4),
+//! 2.73 (Kahan–Li 6) and 3.30 (Kahan–Li 8). Beyond them it is no approximation. The section "Compositions and damping" of `vi-lab stability` shows the factor of a step,
+//! and the bands.
+//!
+//! Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section V.3; Kahan and Li, Mathematics of Computation
+//! 66 (1997) 1089.
+
+use super::fixed::check_steps;
+use super::{Memory, Method, Problem, Report};
+use crate::branch::Branch;
+use crate::called::Called;
+use crate::error::StepError;
+use crate::momentum::steps::{Corrector, Solved, Steps};
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::run::{Hermite, Run};
+use crate::state::State;
+use crate::stepping::FixedStepping;
+use nalgebra::SVector;
+
+/// A symmetric composition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scheme {
+    /// Its name.
+    pub name: &'static str,
+    /// Its order, of a symmetric rule of order 2.
+    pub order: u32,
+    /// The weights `γ_i`, whose sum is 1.
+    pub weights: &'static [f64],
+}
+
+impl Scheme {
+    /// Triple jump of order 4 (Yoshida; Suzuki): the fewest substeps, the largest errors.
+    pub const TRIPLE_JUMP_4: Self = Self {
+        name: "triple jump 4",
+        order: 4,
+        weights: &[1.351_207_191_959_657_8, -1.702_414_383_919_315_5, 1.351_207_191_959_657_8],
+    };
+    /// Suzuki's fractal of order 4, five substeps.
+    pub const SUZUKI_4: Self = Self {
+        name: "Suzuki 4",
+        order: 4,
+        weights: &[
+            0.414_490_771_794_375_7,
+            0.414_490_771_794_375_7,
+            -0.657_963_087_177_502_8,
+            0.414_490_771_794_375_7,
+            0.414_490_771_794_375_7,
+        ],
+    };
+    /// Kahan and Li's of order 6, nine substeps.
+    pub const KAHAN_LI_6: Self = Self {
+        name: "Kahan–Li 6",
+        order: 6,
+        weights: &[
+            0.392_161_444_007_314_1,
+            0.332_599_136_789_359_43,
+            -0.706_246_172_557_639_3,
+            0.082_213_596_293_550_8,
+            0.798_543_990_934_830_1,
+            0.082_213_596_293_550_8,
+            -0.706_246_172_557_639_3,
+            0.332_599_136_789_359_43,
+            0.392_161_444_007_314_1,
+        ],
+    };
+    /// Kahan and Li's of order 8, seventeen substeps.
+    pub const KAHAN_LI_8: Self = Self {
+        name: "Kahan–Li 8",
+        order: 8,
+        weights: &[
+            0.130_202_483_088_890_07,
+            0.561_162_981_775_108_4,
+            -0.389_474_962_644_847_27,
+            0.158_841_906_555_155_6,
+            -0.395_903_894_133_237_57,
+            0.184_539_640_978_315_7,
+            0.258_374_387_686_322_04,
+            0.295_011_723_609_310_3,
+            -0.605_508_533_830_034_6,
+            0.295_011_723_609_310_3,
+            0.258_374_387_686_322_04,
+            0.184_539_640_978_315_7,
+            -0.395_903_894_133_237_57,
+            0.158_841_906_555_155_6,
+            -0.389_474_962_644_847_27,
+            0.561_162_981_775_108_4,
+            0.130_202_483_088_890_07,
+        ],
+    };
+    /// All of them, by order and number of substeps.
+    pub const ALL: [Self; 4] = [Self::TRIPLE_JUMP_4, Self::SUZUKI_4, Self::KAHAN_LI_6, Self::KAHAN_LI_8];
+}
+
+/// A symmetric composition of K fixed steps. See the [module](self).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Composition<const K: usize> {
+    /// The weights `γ_i`, whose sum is 1.
+    pub weights: [f64; K],
+}
+
+impl Composition<3> {
+    /// [`Scheme::TRIPLE_JUMP_4`].
+    pub const TRIPLE_JUMP_4: Self = Self::of(Scheme::TRIPLE_JUMP_4);
+}
+
+impl Composition<5> {
+    /// [`Scheme::SUZUKI_4`].
+    pub const SUZUKI_4: Self = Self::of(Scheme::SUZUKI_4);
+}
+
+impl Composition<9> {
+    /// [`Scheme::KAHAN_LI_6`].
+    pub const KAHAN_LI_6: Self = Self::of(Scheme::KAHAN_LI_6);
+}
+
+impl Composition<17> {
+    /// [`Scheme::KAHAN_LI_8`].
+    pub const KAHAN_LI_8: Self = Self::of(Scheme::KAHAN_LI_8);
+}
+
+impl<const K: usize> Composition<K> {
+    /// The composition with the weights of a scheme of K substeps.
+    const fn of(scheme: Scheme) -> Self {
+        assert!(scheme.weights.len() == K, "a composition has as many weights as its scheme");
+        let mut weights = [0.0; K];
+        let mut i = 0;
+        while i < K {
+            weights[i] = scheme.weights[i];
+            i += 1;
+        }
+        Self { weights }
+    }
+
+    /// Lengths of the substeps of a step of the length h.
+    fn lengths<T: Real>(&self, h: T) -> impl Iterator<Item = T> + '_ {
+        self.weights.iter().map(move |weight| h * T::real(*weight))
+    }
+}
+
+/// What a composition remembers: each substep is predicted from the same substep of earlier steps.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub struct Substeps<const N: usize, T = f64>(pub(crate) Vec<Steps<N, T>>);
+
+impl<const N: usize, T: Scalar> Memory for Substeps<N, T> {}
+
+/// A step that was found: the node at its end, and its substeps.
+#[derive(Clone, Debug)]
+pub struct Found<const N: usize, const K: usize, T = f64> {
+    after: Node<N, T>,
+    substeps: [Option<Solved<N, T>>; K],
+}
+
+impl<S, const N: usize, const K: usize, T> Method<S, N, T> for Composition<K>
+where
+    S: FixedStepping<N, T>,
+    T: Scalar,
+{
+    type Prepared = Vec<Corrector<S::Jacobian, N, T>>;
+    type Memory = Substeps<N, T>;
+    type Cache = ();
+    type Step = Found<N, K, T>;
+    type Left = StepError;
+    type DenseOutput = Hermite<N, T>;
+
+    fn rule(&self) -> Option<&'static str> {
+        S::RULE
+    }
+
+    fn prepare(&self, system: &S, h: T) -> Self::Prepared {
+        self.lengths(h).map(|h| Corrector::of(&Called(*system), h)).collect()
+    }
+
+    fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Substeps<N, T>, StepError> {
+        let v = node.state().velocity(system)?;
+        Ok(Substeps(self.lengths(h).map(|h| Steps::new(h, v)).collect()))
+    }
+
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        Substeps(substeps): &Substeps<N, T>,
+    ) -> Result<Self::Step, StepError> {
+        let Problem { system, prepared, node, .. } = at;
+        let mut after = *node;
+        let mut found = [const { None }; K];
+        let mut last = None;
+        for ((substep, corrector), found) in substeps.iter().zip(prepared).zip(&mut found) {
+            let first;
+            let substep = match last {
+                Some(v) if substep.is_new() => {
+                    first = followed(substep, v);
+                    &first
+                }
+                _ => substep,
+            };
+            let h = substep.h;
+            let solved = match substep.corrected(system, &after, corrector, substep.guess()) {
+                Some(solved) => solved,
+                None => substep
+                    .searched(&Called(*system), &after, Branch::Nearest)
+                    .map_err(|failure| failure.explained(system, &after, h, &substep.v()))?,
+            };
+            after.advance(h, &solved.v, &solved.increment);
+            after.check_finite(node.t)?;
+            last = Some(solved.v);
+            *found = Some(solved);
+        }
+        Ok(Found { after, substeps: found })
+    }
+
+    fn recover(
+        &self,
+        _at: Problem<'_, S, Self::Prepared, N, T>,
+        _memory: &Substeps<N, T>,
+        (): &mut (),
+        left: StepError,
+    ) -> Result<Self::Step, StepError> {
+        Err(left)
+    }
+
+    fn take(&self, _h: T, node: &mut Node<N, T>, memory: &mut Substeps<N, T>, step: &Self::Step) {
+        *node = step.after;
+        let mut last = None;
+        for (substep, solved) in memory.0.iter_mut().zip(step.substeps.iter().flatten()) {
+            if let Some(v) = last.filter(|_| substep.is_new()) {
+                *substep = followed(substep, v);
+            }
+            substep.push(solved);
+            last = Some(solved.v);
+        }
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Substeps<N, T>,
+        _node: &Node<N, T>,
+        h: T,
+    ) -> Result<Substeps<N, T>, StepError> {
+        let substeps = memory.0.iter().zip(self.lengths(h));
+        Ok(Substeps(substeps.map(|(substep, h)| substep.with_length(h)).collect()))
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N, T>,
+        _h: T,
+        memory: &Substeps<N, T>,
+    ) -> Result<Substeps<N, T>, StepError> {
+        node.state().velocity(after)?;
+        Ok(Substeps(memory.0.iter().map(|substep| substep.with_other_parameters()).collect()))
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N, T>,
+        node: &Node<N, T>,
+        h: T,
+        _memory: &Substeps<N, T>,
+    ) -> Result<Hermite<N, T>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    fn report(&self, memory: &Substeps<N, T>) -> Report {
+        let residual = memory.0.iter().map(|substep| substep.measured().roundings()).fold(0.0, f64::max);
+        Report { residual, iterations: 0 }
+    }
+
+    fn check(&self, memory: &Substeps<N, T>, h: T, t: T) -> Result<(), StepError> {
+        let mut substeps = memory.0.iter();
+        let is_of_scheme = self.lengths(h).all(|h| substeps.next().is_some_and(|substep| substep.h == h));
+        if !is_of_scheme || substeps.next().is_some() {
+            #[allow(clippy::cast_precision_loss)] // a few substeps
+            let value = memory.0.len() as f64;
+            let allowed = "those of the scheme that the run is restarted with";
+            return Err(StepError::InvalidInput { input: "the substeps of a checkpoint", allowed, value });
+        }
+        memory.0.iter().try_for_each(|substep| check_steps(substep, substep.h, t))
+    }
+}
+
+/// A substep of the first step: its velocity is guessed from the substep before, since there is no step before.
+fn followed<const N: usize, T: Scalar>(substep: &Steps<N, T>, v: SVector<T, N>) -> Steps<N, T> {
+    Steps::new(substep.h, v)
+}
+
+impl<S, const N: usize, const K: usize, T> Run<Composition<K>, S, N, T>
+where
+    S: FixedStepping<N, T>,
+    T: Scalar,
+{
+    /// Velocities of the substeps of the last step, one after the other. Before the first step the velocity that belongs to the momenta.
+    pub fn velocities(&self) -> impl Iterator<Item = SVector<T, N>> + '_ {
+        self.memory.0.iter().map(Steps::v)
+    }
+}

@@ -1,0 +1,351 @@
+//! Steps of order 2 whose length keeps the discrete energy.
+//!
+//! One step solves, in the unknowns `(v, h)` with q1 = q0 + h v, t1 = t0 + h, h > 0,
+//!
+//! ```text
+//! −D2 L_d − f_d⁻ = p0       p1 =  D4 L_d + f_d⁺
+//!  D1 L_d + g_d⁻ = E0       E1 = −D3 L_d − g_d⁺
+//! ```
+//!
+//! p1 and E1 are carried as p0 and E0 plus their increments, every sum compensated. The pair `(v, −h)` of the last step always solves these equations, and is no step.
+//! How they are solved is in [`crate::energy_preserving`]. AFTER A STEP both residuals were measured at the (v, h) that was taken, and are at the rounding floor.
+//!
+//! Source: Sharma, Patil, Woolsey, *Energy-preserving Variational Integrators for Forced Lagrangian Systems*.
+
+use super::bounds::{Fallback, StepBounds, Switches, check_forward, longest};
+use super::{Method, Problem, Report};
+use crate::called::Called;
+use crate::condition::Condition;
+use crate::energy_preserving::course::{After, Lengths};
+use crate::energy_preserving::interval::Last;
+use crate::energy_preserving::predicted::Predicted;
+use crate::energy_preserving::start;
+use crate::error::StepError;
+use crate::node::Node;
+use crate::real::Scalar;
+use crate::run::{Hermite, Run};
+use crate::state::{Numbers, State, Step, StepKind};
+use crate::stepping::EnergyStepping;
+use nalgebra::SVector;
+
+/// Steps of order 2 whose length keeps the discrete energy. See the [module](self).
+///
+/// A run from a state starts with a step of the length h, and keeps the discrete energy of that step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EnergyPreserving;
+
+/// A step that was found.
+#[derive(Clone, Copy, Debug)]
+#[allow(clippy::large_enum_variant)] // inlined on the hot path, which makes the small one
+pub enum Found<const N: usize, T = f64> {
+    /// From a guess of the highest order.
+    Predicted(Predicted<N, T>),
+    /// In any other way: the run after it.
+    After(After<N, T>),
+}
+
+impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for EnergyPreserving {
+    type Prepared = ();
+    type Memory = Lengths<N, T>;
+    type Cache = ();
+    type Step = Found<N, T>;
+    type Left = ();
+    type DenseOutput = Hermite<N, T>;
+
+    const FINDS_LENGTH: bool = true;
+
+    fn rule(&self) -> Option<&'static str> {
+        S::RULE
+    }
+
+    fn check_length(&self, h: T) -> Result<(), StepError> {
+        check_forward("the step h", h)
+    }
+
+    fn prepare(&self, _system: &S, _h: T) {}
+
+    fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Lengths<N, T>, StepError> {
+        start::from_state(system, node, h)
+    }
+
+    #[inline(always)]
+    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>) -> Result<Found<N, T>, ()> {
+        let Problem { system, node, .. } = at;
+        if memory.is_common()
+            && let Some(predicted) = memory.predicted(system, node, memory.prediction.guess_highest())
+            && node.advanced::<S>(predicted.step.h, &predicted.step.v, &predicted.increment).is_finite()
+        {
+            return Ok(Found::Predicted(predicted));
+        }
+        Err(())
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, (), N, T>,
+        memory: &Lengths<N, T>,
+        (): &mut (),
+        (): (),
+    ) -> Result<Found<N, T>, StepError> {
+        let after = memory.next(&Called(*at.system), at.node);
+        after.map(Found::After).map_err(|failure| explained(failure, at.system, at.node, memory))
+    }
+
+    #[inline(always)]
+    fn take(&self, _h: T, node: &mut Node<N, T>, memory: &mut Lengths<N, T>, step: &Found<N, T>) {
+        match step {
+            Found::Predicted(predicted) => {
+                let step = &predicted.step;
+                *node = node.advanced::<S>(step.h, &step.v, &predicted.increment);
+                memory.last = memory.last.followed(step, StepKind::EnergyPreserving);
+                memory.prediction.push_common(predicted);
+            }
+            Found::After(after) => (*node, *memory) = (after.node, after.lengths),
+        }
+    }
+
+    fn step_of(
+        &self,
+        system: &S,
+        (node, memory): (&Node<N, T>, &Lengths<N, T>),
+        [h, _]: [T; 2],
+    ) -> Result<(Node<N, T>, Lengths<N, T>), StepError> {
+        check_forward("the step h", h)?;
+        let after = memory.step_of(&Called(*system), node, h);
+        after.map(|After { node, lengths }| (node, lengths)).map_err(|failure| explained(failure, system, node, memory))
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Lengths<N, T>,
+        _node: &Node<N, T>,
+        _h: T,
+    ) -> Result<Lengths<N, T>, StepError> {
+        Ok(*memory)
+    }
+
+    fn with_system(
+        &self,
+        [before, after]: [&S; 2],
+        node: &mut Node<N, T>,
+        _h: T,
+        memory: &Lengths<N, T>,
+    ) -> Result<Lengths<N, T>, StepError> {
+        let state = node.state();
+        node.add_energy(state.energy(after)? - state.energy(before)?);
+        Ok(Lengths { last: Last { is_step: false, ..memory.last }, ..*memory })
+    }
+
+    fn with_state(
+        &self,
+        system: &S,
+        node: &mut Node<N, T>,
+        _h: T,
+        memory: &Lengths<N, T>,
+        state: State<N, T>,
+    ) -> Result<Lengths<N, T>, StepError> {
+        let brought = state.energy(system)? - node.state().energy(system)?;
+        let v = state.velocity(system)?;
+        *node = node.with_state(state);
+        node.add_energy(brought);
+        let mut lengths = Lengths { last: Last { v, ..memory.last }, ..*memory };
+        lengths.resume_after(&memory.last);
+        Ok(lengths)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N, T>,
+        node: &Node<N, T>,
+        h: T,
+        _memory: &Lengths<N, T>,
+    ) -> Result<Hermite<N, T>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    fn length(&self, _h: T, memory: &Lengths<N, T>) -> T {
+        memory.last.h
+    }
+
+    fn longest(&self, _h: T, memory: &Lengths<N, T>) -> T {
+        longest(memory.bounds.as_ref(), memory.last.h)
+    }
+
+    fn report(&self, memory: &Lengths<N, T>) -> Report {
+        Report { residual: memory.last.residual, iterations: memory.last.iterations }
+    }
+
+    fn discrete_energy(&self, _system: &S, node: &Node<N, T>, _h: T, memory: &Lengths<N, T>) -> Option<T> {
+        Some(memory.phase.as_ref().map_or(node.energy, |phase| phase.energy(node)))
+    }
+
+    fn check(&self, memory: &Lengths<N, T>, _h: T, t: T) -> Result<(), StepError> {
+        memory.check(t)
+    }
+}
+
+/// A failure with the expression that is not finite.
+fn explained<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
+    failure: StepError,
+    system: &S,
+    node: &Node<N, T>,
+    memory: &Lengths<N, T>,
+) -> StepError {
+    failure.explained(system, node, memory.last.h, &memory.last.v)
+}
+
+/// Starts other than a state. Each returns a run at the end of a first interval, with the p1 and E1 of its slot derivatives.
+impl EnergyPreserving {
+    /// The midpoint start: `(t0, q0, v0)` is the *middle* of the first interval, of length `h0`. For the midpoint rule
+    ///
+    /// ```text
+    /// t1 = t0 + h0/2      q1 = q0 + (h0/2) v0      p1 = L_v + (h0/2)(L_q + f)      E1 = H0 − (h0/2)(L_t − f·v)
+    /// ```
+    ///
+    /// Explicit, and without the paper's bias of `h0² D/8` in the energy: every midpoint lies on `H = H0` to rounding.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an h0 that is not positive and finite; [`StepError::NonFinite`] if an input is not finite or the system has no value there;
+    /// [`StepError::Singular`].
+    pub fn from_midpoint<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
+        system: S,
+        t0: T,
+        q0: impl Numbers<N, T>,
+        v0: impl Numbers<N, T>,
+        h0: T,
+    ) -> Result<Run<Self, S, N, T>, StepError> {
+        check_forward("the step h0", h0)?;
+        let (q, v) = (q0.vector(), v0.vector());
+        let mut start = Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero());
+        start.shift(h0 * T::real(-0.5), &v);
+        after(system, start, h0, v)
+    }
+
+    /// The paper's start: the first interval by its ends `(t0, q0)` and `(t1, q1)`, q1 from an accurate solution.
+    /// `p1 = D4 L_d + f_d⁺`, `E1 = −D3 L_d − g_d⁺`.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for a t1 − t0 that is not positive and finite; otherwise as [`EnergyPreserving::from_midpoint`].
+    pub fn from_points<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
+        system: S,
+        (t0, q0): (T, impl Numbers<N, T>),
+        (t1, q1): (T, impl Numbers<N, T>),
+    ) -> Result<Run<Self, S, N, T>, StepError> {
+        let (h, q, q1) = (t1 - t0, q0.vector(), q1.vector());
+        check_forward("the interval t1 − t0", h)?;
+        let v = (q1 - q).map(|distance| distance / h);
+        let mut run = after(system, Node::new(State { t: t0, q, p: SVector::zeros() }, T::zero()), h, v)?;
+        // The end is the point given, not the start plus h v with its roundings.
+        let node = &mut run.node;
+        (node.t, node.t_low, node.q, node.q_low) = (t1, T::zero(), q1, SVector::zeros());
+        Ok(run)
+    }
+
+    /// Resumes from a node with its discrete energy, and the length `h` and velocity `v` of the interval that led there.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for an h that is not positive and finite; otherwise as [`EnergyPreserving::from_midpoint`].
+    pub fn from_state<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
+        system: S,
+        state: State<N, T>,
+        energy: T,
+        h: T,
+        v: impl Numbers<N, T>,
+    ) -> Result<Run<Self, S, N, T>, StepError> {
+        check_forward("the step h", h)?;
+        let (node, v) = (Node::new(state, energy), v.vector());
+        let mut start = node;
+        start.shift(-h, &v);
+        let mut run = after(system, start, h, v)?;
+        run.node = node;
+        Ok(run)
+    }
+}
+
+/// The run at the end of the step `(v, h)` from the place of `start`.
+fn after<S: EnergyStepping<N, T>, const N: usize, T: Scalar>(
+    system: S,
+    start: Node<N, T>,
+    h: T,
+    v: SVector<T, N>,
+) -> Result<Run<EnergyPreserving, S, N, T>, StepError> {
+    match start::first_interval(&Called(system), start, h, v) {
+        Ok(After { node, lengths }) => Ok(Run::resumed(EnergyPreserving, system, (node, h, lengths))),
+        Err(failure) => Err(failure.explained(&system, &start, h, &v)),
+    }
+}
+
+impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S, N, T> {
+    /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
+    ///
+    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardStep`], [`StepError::DegenerateStep`], [`StepError::StepRatio`], [`StepError::StepBounds`] and
+    /// [`StepError::NotConverged`] do not end the run. It continues with fixed steps while D has lost its sign or the step law asks for longer ones. Then it keeps the
+    /// energy that it had before, or, if no step has that energy, the discrete energy of the last fixed interval. A step longer than the last by more than a factor of
+    /// 1.5 is not taken either: D is about to vanish. [`Run::last_step`] says how each step was found, and [`Run::switches`] what the switches cost.
+    #[must_use]
+    pub fn with_fallback(mut self, fallback: Fallback) -> Self {
+        self.memory.fallback = fallback;
+        self.failure = None;
+        self
+    }
+
+    /// Refuses steps shorter than `h_min` or longer than `h_max`, in units of time, with [`StepError::StepBounds`], or, with the fallback, replaces them by fixed steps
+    /// of the bound. `h_min = 0` bounds from above alone. An error of the last step is forgotten.
+    ///
+    /// The first step follows an interval of its own length and differs from it by a factor of 3 at most: bounds that leave no such step end the run at once.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] unless `0 ≤ h_min ≤ h_max`, with `h_max` positive and finite.
+    pub fn with_step_bounds(mut self, h_min: T, h_max: T) -> Result<Self, StepError> {
+        let bounds = StepBounds { h_min, h_max };
+        bounds.check()?;
+        self.memory.bounds = Some(bounds);
+        self.failure = None;
+        Ok(self)
+    }
+
+    /// How often the run has switched to fixed steps and back, and what that cost.
+    pub fn switches(&self) -> Switches<T> {
+        self.memory.switches
+    }
+
+    /// Velocity `(q1 − q0)/h` of the last interval, without its cancellation.
+    pub fn v(&self) -> SVector<T, N> {
+        self.memory.last.v
+    }
+
+    /// Step density D of the last interval.
+    pub fn density(&self) -> T {
+        self.memory.last.density
+    }
+
+    /// The last step: its interval, and how it was found. Before the first step the interval from which the run starts.
+    pub fn last_step(&self) -> Step<N, T> {
+        let Self { node, memory, .. } = self;
+        let Last { v, h, density, iterations, residual, kind, .. } = memory.last;
+        let (t_mid, q_mid) = node.midpoint(-h, &v);
+        Step {
+            t: node.t,
+            q: node.q,
+            p: node.p,
+            energy: memory.phase.as_ref().map_or(node.energy, |phase| phase.energy(node)),
+            h,
+            midpoint: (t_mid, q_mid, v),
+            density,
+            density_next: memory.last.density_next(),
+            iterations,
+            residual: T::real(residual),
+            kind,
+        }
+    }
+
+    /// Condition numbers of the equations that the last step solved. Allocates.
+    pub fn condition(&self) -> Condition {
+        let Last { v, h, previous, .. } = &self.memory.last;
+        let mut start = self.node;
+        start.shift(-*h, v);
+        Condition::of(&self.system.extended_system(&start, *h, v), *h, v, *previous)
+    }
+}

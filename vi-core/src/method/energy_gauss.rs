@@ -1,0 +1,760 @@
+//! Energy-preserving steps of order 2S: Gauss steps whose length keeps the discrete energy.
+//!
+//! One step solves, in the stages and h > 0,
+//!
+//! ```text
+//! Q_i = q0 + h Σ a_ij V_j        L_v(T_i, Q_i, V_i) = p0 + h Σ a_ij (L_q + f)_j        E0(h) = E
+//! E0(h) = Σ b_i En_i − h Σ b_i (1 − c_i) (f·v − L_t)_i        E ← E + h Σ b_i (f·v − L_t)_i
+//! ```
+//!
+//! so that the discrete energy of every step is that of the first one, and the work done since. The length follows from `H − E0(h) = C_s h^2s D_s`, D_s the step density
+//! ([`crate::gauss::density`]): `h D_s^(1/(2s+1))` is constant up to O(h²) without force, and a step exists while D_s keeps its sign. A shift D_* adds
+//! `C_s D_* h^(2s+1)/(2s+1)` to L_d. Then D_s + D_* has to keep its sign, and the run keeps
+//!
+//! ```text
+//! E' = E − C_s h^2s D_*
+//! ```
+//!
+//! The unknown is ln h: `ln[(H − E0(h))/(H − E)]` is nearly a line of slope 2s in it, and the last step backwards, which solves the equations too, does not exist. A step
+//! is one [`Search`] over the solution of Gauss steps of any length.
+//!
+//! If no step exists, a run with [`Fallback::FixedSteps`] takes fixed Gauss steps of the last length until an energy-preserving one exists again. E stays, with the work
+//! done, and fixed steps end when the step law `h |D|^(1/(2s+1)) = C` asks for their length or a shorter one: with D_0 the density at which they began,
+//!
+//! ```text
+//! H − E = C_s h_f^2s (2s D_0 + D)/(2s + 1)        D = D_s + D_*
+//! ```
+//!
+//! to leading order without force, which has the sign of D if D has that of D_0. Only if no step has the energy of before, E becomes the discrete energy of the last
+//! fixed step.
+//!
+//! AFTER A STEP its stages and its energy were measured at the numbers that were taken, and are at the rounding floor. Theory and measurements: `docs/theory.md`.
+
+use super::bounds::{Fallback, GROWTH, Phase, RATIO, StepBounds, Switches, check_forward, longest};
+use super::gauss::{Gauss, LastStages, Motion};
+use super::length::{Search, Trial};
+use super::{Memory, Method, Problem, Report};
+use crate::collocation::Collocation;
+use crate::error::StepError;
+use crate::gauss::course::Course;
+use crate::gauss::density::{power, step_density};
+use crate::gauss::energies::{bounded_energies, energies};
+use crate::gauss::newton::Newton;
+use crate::gauss::solve::{Start, Step};
+use crate::gauss::stages::{Stages, at};
+use crate::gauss::sweep::Convergence;
+use crate::lagrangian::Lagrangian;
+use crate::newton::{FLOOR, roundings};
+use crate::node::Node;
+use crate::run::{Run, Starts};
+use crate::state::{State, StepKind};
+use crate::stepping::{Convertible, FixedStepping};
+use core::cell::{Cell, RefCell};
+use nalgebra::{ArrayStorage, SMatrix};
+use vi_dispatch::Instructions;
+
+/// Energy-preserving steps of order 2 STAGES, with 1 to 3 stages: `EnergyPreservingGauss::<2>`. See the [module](self).
+///
+/// A run from a state starts with a step of the length h, and keeps the discrete energy of that step, which differs from H at the state by `C_s h^2s D_s`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EnergyPreservingGauss<const STAGES: usize>;
+
+/// What a run remembers: stages, and what lengths are predicted from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Lengths<const N: usize, const S: usize> {
+    stages: LastStages<N, S>,
+    course: Course,
+}
+
+impl<const N: usize, const S: usize> Memory for Lengths<N, S> {}
+
+/// A step of some length, its stages solved.
+#[derive(Clone, Copy, Debug)]
+struct Tried<const N: usize, const S: usize> {
+    step: Step<N, S>,
+    /// `E0(h) − C_s h^2s D_* − E'`.
+    residual: f64,
+    /// `E1 − E0`.
+    work: f64,
+    /// The size of the terms of E0.
+    size: f64,
+}
+
+impl<const N: usize, const S: usize> Trial for Tried<N, S> {
+    fn h(&self) -> f64 {
+        self.step.h
+    }
+
+    fn residual(&self) -> f64 {
+        self.residual
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+}
+
+/// A step that was found, with all that follows from it.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<const N: usize, const S: usize> {
+    step: Step<N, S>,
+    /// What the energy of the node gains.
+    gain: f64,
+    course: Course,
+}
+
+/// Buffers for stiff steps.
+type Cache<const N: usize, const S: usize> = Option<Box<Newton<N, S>>>;
+
+/// Part of the terms of an energy that its rounding may be: one that is known to fewer digits is not kept.
+const KNOWN: f64 = 1e-10;
+/// Times that the step is halved along which the step density is measured.
+const HALVINGS: u32 = 16;
+/// Part of the terms of the energy that a step may miss it by there.
+const HELD: f64 = 0.01;
+
+/// A run at a node: what a step is found from.
+struct Here<'a, S, const N: usize, const K: usize> {
+    system: &'a S,
+    instructions: Instructions,
+    node: &'a Node<N>,
+    stages: &'a LastStages<N, K>,
+    course: &'a Course,
+}
+
+impl<S, const N: usize, const K: usize> Clone for Here<'_, S, N, K> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S, const N: usize, const K: usize> Copy for Here<'_, S, N, K> {}
+
+impl<const K: usize> EnergyPreservingGauss<K> {
+    /// The order, which is the slope of `ln (H − E0)` over ln h to leading order.
+    #[allow(clippy::cast_precision_loss)]
+    const ORDER: f64 = 2.0 * K as f64;
+
+    /// The least `|H − E|` that tells a length, if energies are rounded by so much.
+    fn least_excess(rounding: f64) -> f64 {
+        // The length is known to this part of itself, so that the numbers of its step are.
+        const PARTS: f64 = 1000.0;
+        PARTS * rounding / Self::ORDER
+    }
+}
+
+impl<'a, S, const N: usize, const K: usize> Here<'a, S, N, K>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    fn of(at: Problem<'a, S, Instructions, N>, memory: &'a Lengths<N, K>) -> Self {
+        let Problem { system, prepared, node, .. } = at;
+        Self { system, instructions: *prepared, node, stages: &memory.stages, course: &memory.course }
+    }
+
+    /// The stages of the step of length h, by those of the last one.
+    fn guess(&self, h: f64) -> Stages<N, K> {
+        let LastStages { stages, convergence, h: last, .. } = self.stages;
+        if convergence.has_begun() { at(&stages.data.0, |c| 1.0 + c * (h / last)) } else { stages.data.0 }
+    }
+
+    /// The step of length h, by the stages of another from the same node, else by those of the last step.
+    ///
+    /// # Errors
+    /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
+    fn tried(
+        &self,
+        h: f64,
+        beside: Option<&Tried<N, K>>,
+        cache: &mut Cache<N, K>,
+    ) -> Result<Tried<N, K>, StepError> {
+        let Self { system, instructions, node, stages: last, course } = *self;
+        let stages = beside.map_or_else(
+            || self.guess(h),
+            |other| {
+                let ratio = h / other.h();
+                at(&other.step.stages, |c| ratio * c)
+            },
+        );
+        let before = &Convergence { sweeps: 0, ..last.convergence };
+        let start = Start { node, h, stages: &stages, are_last: false, before, pause: last.pause };
+        let swept = if last.pause.is_over() { start.swept(system, instructions).map_err(Some) } else { Err(None) };
+        // Lengths differ from step to step, and each has its own linearization.
+        let step = swept.or_else(|left| start.with_care(system, instructions, (left.as_ref(), None), cache))?;
+        let energies = energies(system, node, h, step.stages, node.energy);
+        let residual = energies.start - node.energy_low - power::<K>(h) * course.shift;
+        if !residual.is_finite() {
+            return Err(StepError::NonFinite { t: node.t, quantity: "energy", expression: None });
+        }
+        Ok(Tried { step: Step { linearization: None, ..step }, residual, work: energies.work, size: energies.size })
+    }
+
+    /// What rounding moves the energy of a trial by at most, by running error analysis, in ulps of 1.
+    #[cold]
+    fn rounding_of(&self, trial: &Tried<N, K>) -> f64 {
+        bounded_energies(self.system, self.node, trial.h(), trial.step.stages, self.node.energy).start.ulps()
+    }
+
+    /// Whether the energy of a trial is the one to keep, as far as its arithmetic can tell.
+    ///
+    /// # Errors
+    /// [`StepError::DegenerateStep`] if it is, and `H − E` is too small to tell the length.
+    #[cold]
+    fn is_kept(&self, trial: &Tried<N, K>) -> Result<bool, StepError> {
+        let rounding = f64::EPSILON * self.rounding_of(trial);
+        // At a turning point H may be zero, while the energies of the motion are not.
+        let size = trial.size.max(self.course.largest_size);
+        if !(trial.residual.abs() <= FLOOR * rounding && rounding <= KNOWN * size) {
+            return Ok(false);
+        }
+        let least = EnergyPreservingGauss::<K>::least_excess(rounding);
+        if self.course.excess.abs() < least { Err(self.degenerate()) } else { Ok(true) }
+    }
+
+    /// The error if `H − E` tells no length.
+    fn degenerate(&self) -> StepError {
+        let h = self.course.h();
+        StepError::DegenerateStep { t: self.node.t, h, density: self.course.excess / power::<K>(h) }
+    }
+
+    /// The error if no step leads forward.
+    #[cold]
+    fn no_step(&self) -> StepError {
+        let Self { system, node, course, .. } = *self;
+        let told = || course.told_density::<K>() - course.shift;
+        let density = step_density::<S, N, K>(system, &node.state()).unwrap_or_else(|_| told());
+        let Course { excess, shift, largest, .. } = *course;
+        let largest = largest.max(density.abs());
+        StepError::NoForwardGaussStep { t: node.t, h: course.h(), stages: K, excess, density, shift, largest }
+    }
+
+    /// The step that keeps the energy, within the bounds, with the slope of its energy over its length, and the iterations of all lengths that were tried.
+    fn found(&self, cache: &mut Cache<N, K>) -> Result<(Tried<N, K>, f64, u32), StepError> {
+        let Self { node, course, .. } = *self;
+        let (t, last) = (node.t, course.h());
+        let Course { excess, size, largest_size, shift, .. } = *course;
+        if excess.abs() < EnergyPreservingGauss::<K>::least_excess(f64::EPSILON * size) {
+            return Err(self.degenerate());
+        }
+        // A motion that has only gained speed so far has not shown how large its energies are.
+        if size < largest_size {
+            check_shift::<K>(t, last, shift, largest_size)?;
+        }
+        // Past a change of sign lies another root.
+        if course.density().is_some_and(|density| excess * density < 0.0) {
+            return Err(self.no_step());
+        }
+        let cache = RefCell::new(cache);
+        let iterations = Cell::new(0);
+        let search = Search {
+            solve: &|h, beside| {
+                let tried = self.tried(h, beside, &mut cache.borrow_mut())?;
+                iterations.set(iterations.get() + tried.step.convergence.sweeps);
+                Ok(tried)
+            },
+            is_rounding: &|trial| self.is_kept(trial),
+            t,
+            predicted: course.predicted_length(),
+            last,
+            ratio: RATIO,
+            excess,
+            slope: course.slope,
+            order: EnergyPreservingGauss::<K>::ORDER,
+        };
+        let (step, slope) = match search.root() {
+            Some(found) => found,
+            None => (search.smallest()?.ok_or_else(|| self.no_step())?, course.slope),
+        };
+        let h = step.h();
+        if h > last * RATIO || last > h * RATIO {
+            return Err(StepError::StepRatio { t, previous: last, found: h });
+        }
+        match &course.bounds {
+            Some(bounds) if !bounds.admit(h) => Err(bounds.refusal(t, h)),
+            _ => Ok((step, slope, iterations.get())),
+        }
+    }
+
+    /// What follows from a step: the energies at its end.
+    fn after(&self, trial: &Tried<N, K>, kind: StepKind) -> Result<Found<N, K>, StepError> {
+        let Self { system, node, .. } = *self;
+        let mut course = *self.course;
+        let step = trial.step;
+        let mut after = *node;
+        after.advance(step.h, &step.increment.velocity, &step.increment.momentum);
+        let gain = if !S::AUTONOMOUS || S::FORCED { trial.work } else { 0.0 };
+        after.add_energy(gain);
+        after.check_finite(node.t)?;
+        let measured = measured(system, &after)?;
+        // The mean of `H − E0` at the start and of `H − E1` at the end.
+        let mean = 0.5 * (course.excess + measured[0]) - trial.residual;
+        course.residual = match kind {
+            StepKind::FixedStep => 0.0,
+            _ if trial.roundings() <= FLOOR => trial.roundings(),
+            _ => roundings(trial.residual, self.rounding_of(trial)),
+        };
+        course.push(step.h, mean / power::<K>(step.h));
+        if kind == StepKind::FixedStep {
+            course.forget_lengths();
+        }
+        course.set_excess(measured);
+        course.kind = kind;
+        Ok(Found { step, gain, course })
+    }
+
+    /// The energy-preserving step.
+    fn next(&self, kind: StepKind, cache: &mut Cache<N, K>) -> Result<Found<N, K>, StepError> {
+        let (trial, slope, iterations) = self.found(cache)?;
+        // So much longer than the last that D is about to vanish: the user wants no such step.
+        let previous = self.course.h();
+        let runs_away = self.course.fallback == Fallback::FixedSteps && trial.h() > previous * GROWTH;
+        if runs_away && self.course.phase.is_none() {
+            return Err(StepError::StepRatio { t: self.node.t, previous, found: trial.h() });
+        }
+        let mut found = self.after(&trial, kind)?;
+        (found.course.slope, found.course.iterations) = (slope, iterations);
+        Ok(found)
+    }
+
+    /// A fixed step of a phase.
+    fn fixed(&self, phase: Phase<f64>, cache: &mut Cache<N, K>) -> Result<Found<N, K>, StepError> {
+        let trial = self.tried(phase.h, None, cache)?;
+        let last = self.course.told_density::<K>();
+        let mut found = self.after(&trial, StepKind::FixedStep)?;
+        let density = found.course.told_density::<K>();
+        // The next interval has the same length.
+        found.course.phase = Some(Phase { gap: trial.residual, density_next: density + (density - last), ..phase });
+        found.course.switches.fixed_steps += 1;
+        found.course.iterations = trial.step.convergence.sweeps;
+        Ok(found)
+    }
+
+    /// A step after a fixed one: energy-preserving again if one exists, by the energy of before or, else, by that of the last step; else fixed.
+    #[cold]
+    fn next_in_phase(&self, phase: Phase<f64>, cache: &mut Cache<N, K>) -> Result<Found<N, K>, StepError> {
+        if !phase.is_over(EnergyPreservingGauss::<K>::ORDER + 1.0) {
+            return self.fixed(phase, cache);
+        }
+        if let Ok(mut found) = self.next(StepKind::EnergyPreserving, cache) {
+            found.course.switches.returns += 1;
+            found.course.phase = None;
+            return Ok(found);
+        }
+        let mut node = *self.node;
+        node.add_energy(phase.gap);
+        let mut course = *self.course;
+        if let Ok(measured) = measured(self.system, &node) {
+            course.set_excess(measured);
+            let seeded = Self { node: &node, course: &course, ..*self };
+            if let Ok(mut found) = seeded.next(StepKind::Reseeded { energy_change: phase.gap }, cache) {
+                found.gain += phase.gap;
+                found.course.switches.returns += 1;
+                found.course.switches.reseed(phase.gap);
+                found.course.phase = None;
+                return Ok(found);
+            }
+        }
+        self.fixed(phase, cache)
+    }
+}
+
+/// `H − E'` at a node, and the size of the terms of H.
+///
+/// # Errors
+/// Those of [`State::velocity`]; [`StepError::NonFinite`] if H is not finite.
+fn measured<S: Lagrangian<N>, const N: usize>(system: &S, node: &Node<N>) -> Result<[f64; 2], StepError> {
+    let State { t, .. } = node.state();
+    let NodeEnergy { total, size } = energy_at(system, &node.state())?;
+    let excess = (total - node.energy) - node.energy_low;
+    if excess.is_finite() && size.is_finite() {
+        Ok([excess, size])
+    } else {
+        Err(StepError::NonFinite { t, quantity: "energy", expression: None })
+    }
+}
+
+/// The energy at a state.
+struct NodeEnergy {
+    /// H.
+    total: f64,
+    /// The size of its terms, `|v·p| + |H|`.
+    size: f64,
+}
+
+fn energy_at<S: Lagrangian<N>, const N: usize>(
+    system: &S,
+    State { t, q, p }: &State<N>,
+) -> Result<NodeEnergy, StepError> {
+    let v = system.flow(*t, q, p)?.v;
+    let total = system.energy(*t, q, &v);
+    Ok(NodeEnergy { total, size: v.dot(p).abs() + total.abs() })
+}
+
+/// Refuses a shift that adds more to the energy of a step of the length h than `size`, the size of the terms of the energy along the motion.
+///
+/// # Errors
+/// [`StepError::ShiftTooLarge`].
+fn check_shift<const K: usize>(t: f64, h: f64, shift: f64, size: f64) -> Result<(), StepError> {
+    let part = power::<K>(h) * shift.abs();
+    if part <= size {
+        return Ok(());
+    }
+    let shorter = h * (0.1 * size / part).powf(EnergyPreservingGauss::<K>::ORDER.recip());
+    Err(StepError::ShiftTooLarge { t, h, shift, part, size, shorter })
+}
+
+/// The memory before the first step, which keeps the energy of the node.
+fn begun<S, const N: usize, const K: usize>(
+    system: &S,
+    node: &Node<N>,
+    h: f64,
+) -> Result<Lengths<N, K>, StepError>
+where
+    S: Collocation<N>,
+{
+    let mut course = Course::new(h, EnergyPreservingGauss::<K>::ORDER);
+    let stages = LastStages::constant(system, node, h)?;
+    course.set_excess(measured(system, node)?);
+    Ok(Lengths { stages, course })
+}
+
+impl<S, const N: usize, const STAGES: usize> Method<S, N> for EnergyPreservingGauss<STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    type Prepared = Instructions;
+    type Memory = Lengths<N, STAGES>;
+    type Cache = Cache<N, STAGES>;
+    type Step = Found<N, STAGES>;
+    type Left = ();
+    type DenseOutput = Motion<N, STAGES>;
+
+    const FINDS_LENGTH: bool = true;
+
+    fn check_length(&self, h: f64) -> Result<(), StepError> {
+        check_forward("the step h", h)?;
+        if power::<STAGES>(h).is_normal() {
+            return Ok(());
+        }
+        let (input, allowed) = ("the step h", "so long that C h^2s is a number");
+        Err(StepError::InvalidInput { input, allowed, value: h })
+    }
+
+    fn prepare(&self, _system: &S, _h: f64) -> Instructions {
+        Instructions::detected()
+    }
+
+    fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        node.energy = 0.0;
+        let mut memory = begun(system, node, h)?;
+        let at = Problem { system, prepared: &Instructions::detected(), node, h };
+        let first = Here::of(at, &memory).tried(h, None, &mut None)?;
+        node.energy = first.residual;
+        // The stages of the first step are known.
+        memory.stages.stages = SMatrix::from_array_storage(ArrayStorage(first.step.stages));
+        memory.course.set_excess(measured(system, node)?);
+        Ok(memory)
+    }
+
+    /// Every step is a search: there is no hot path.
+    fn attempt(&self, _at: Problem<'_, S, Instructions, N>, _memory: &Self::Memory) -> Result<Self::Step, ()> {
+        Err(())
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+        (): (),
+    ) -> Result<Self::Step, StepError> {
+        let here = Here::of(at, memory);
+        let course = &memory.course;
+        if let Some(phase) = course.phase {
+            return here.next_in_phase(phase, cache);
+        }
+        here.next(StepKind::EnergyPreserving, cache).or_else(|failure| {
+            let density = course.told_density::<STAGES>();
+            let phase = Phase::instead_of(failure, course.fallback, course.bounds.as_ref(), course.h(), density)?;
+            let mut found = here.fixed(phase, cache)?;
+            found.course.switches.count += 1;
+            Ok(found)
+        })
+    }
+
+    fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {
+        memory.stages.take(node, &step.step);
+        node.add_energy(step.gain);
+        memory.course = step.course;
+    }
+
+    fn step_of(
+        &self,
+        system: &S,
+        (node, memory): (&Node<N>, &Self::Memory),
+        [h, _]: [f64; 2],
+    ) -> Result<(Node<N>, Self::Memory), StepError> {
+        check_forward("the step h", h)?;
+        let at = Problem { system, prepared: &Instructions::detected(), node, h };
+        let Tried { step, residual, work, .. } = Here::of(at, memory).tried(h, None, &mut None)?;
+        let mut after = *node;
+        after.advance(h, &step.increment.velocity, &step.increment.momentum);
+        after.add_energy(work);
+        after.check_finite(node.t)?;
+        let mut course = memory.course;
+        course.set_excess(measured(system, &after)?);
+        course.phase = course.phase.map(|phase| Phase { gap: residual, ..phase });
+        let stages = LastStages::constant(system, &after, course.h())?;
+        Ok((after, Lengths { stages, course }))
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Self::Memory,
+        _node: &Node<N>,
+        _h: f64,
+    ) -> Result<Self::Memory, StepError> {
+        Ok(*memory)
+    }
+
+    fn with_system(
+        &self,
+        [before, after]: [&S; 2],
+        node: &mut Node<N>,
+        _h: f64,
+        memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError> {
+        let state = node.state();
+        let mut changed = *node;
+        changed.add_energy(state.energy(after)? - state.energy(before)?);
+        let mut memory = *memory;
+        memory.course.set_excess(measured(after, &changed)?);
+        memory.stages.before = changed;
+        *node = changed;
+        Ok(memory)
+    }
+
+    fn with_state(
+        &self,
+        system: &S,
+        node: &mut Node<N>,
+        _h: f64,
+        memory: &Self::Memory,
+        state: State<N>,
+    ) -> Result<Self::Memory, StepError> {
+        let brought = state.energy(system)? - node.state().energy(system)?;
+        *node = node.with_state(state);
+        node.add_energy(brought);
+        let mut course = memory.course;
+        course.set_excess(measured(system, node)?);
+        Ok(Lengths { stages: LastStages::constant(system, node, course.h())?, course })
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N>,
+        node: &Node<N>,
+        h: f64,
+        memory: &Self::Memory,
+    ) -> Result<Motion<N, STAGES>, StepError> {
+        memory.stages.dense_output(system, before, node, h)
+    }
+
+    fn length(&self, _h: f64, memory: &Self::Memory) -> f64 {
+        memory.course.h()
+    }
+
+    fn longest(&self, _h: f64, memory: &Self::Memory) -> f64 {
+        longest(memory.course.bounds.as_ref(), memory.course.h())
+    }
+
+    fn report(&self, memory: &Self::Memory) -> Report {
+        let Lengths { stages, course } = memory;
+        Report { residual: stages.convergence.change.max(course.residual), iterations: course.iterations }
+    }
+
+    fn discrete_energy(&self, _system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
+        let course = &memory.course;
+        let gap = course.phase.map_or(0.0, |phase| phase.gap);
+        Some(node.energy + gap + power::<STAGES>(course.h()) * course.shift)
+    }
+
+    fn check(&self, memory: &Self::Memory, _h: f64, t: f64) -> Result<(), StepError> {
+        memory.stages.check(t)?;
+        memory.course.check(t)
+    }
+}
+
+impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
+    /// A run of `system` from `state` that keeps `energy`, in units of L, with a first step of about the length `h`: up to a factor of 3 from it. H at the state differs
+    /// from that energy by `C_s h^2s D_s`; a step that belongs to `E = H` itself has no length.
+    ///
+    /// # Errors
+    /// As [`integrate`](crate::run::Start::integrate); [`StepError::NonFinite`] for an energy that is not finite.
+    pub fn from_energy<S, const N: usize>(
+        system: S,
+        state: State<N>,
+        energy: f64,
+        h: f64,
+    ) -> Result<Run<Self, S, N>, StepError>
+    where
+        S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    {
+        Method::<S, N>::check_length(&Self, h)?;
+        let node = Node::new(state, energy);
+        let memory = begun(&system, &node, h)?;
+        Ok(Run::resumed(Self, system, (node, h, memory)))
+    }
+}
+
+/// Options of a run, and what only such a run knows.
+impl<S, const N: usize, const STAGES: usize> Run<EnergyPreservingGauss<STAGES>, S, N>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
+    ///
+    /// With [`Fallback::FixedSteps`] the errors [`StepError::NoForwardGaussStep`], [`StepError::DegenerateStep`], [`StepError::StepRatio`], [`StepError::StepBounds`],
+    /// [`StepError::NotConverged`] and [`StepError::StagesUnsettled`] do not end the run. It continues with fixed steps while D_s has lost its sign or the step law asks
+    /// for longer ones. A step longer than the last by more than a factor of 1.5 is not taken either: D_s is about to vanish. [`Run::step_kind`] says how the last step
+    /// was found, and [`Run::switches`] what the switches cost.
+    #[must_use]
+    pub fn with_fallback(mut self, fallback: Fallback) -> Self {
+        self.memory.course.fallback = fallback;
+        self.failure = None;
+        self
+    }
+
+    /// Refuses steps shorter than `h_min` or longer than `h_max`, in units of time, with [`StepError::StepBounds`], or, with the fallback, replaces them by fixed steps
+    /// of the bound. `h_min = 0` bounds from above alone. An error of the last step is forgotten.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] unless `0 ≤ h_min ≤ h_max`, with `h_max` positive and finite.
+    pub fn with_step_bounds(mut self, h_min: f64, h_max: f64) -> Result<Self, StepError> {
+        let bounds = StepBounds { h_min, h_max };
+        bounds.check()?;
+        self.memory.course.bounds = Some(bounds);
+        self.failure = None;
+        Ok(self)
+    }
+
+    /// Adds `shift`, in the units of the step density, to the step density of every step: a step exists while `D_s + shift` keeps its sign. The run keeps
+    /// E' = E − C_s h^2s D_*, [`Run::shifted_energy`], to rounding; momenta and the order stay. With zero it is a run without a shift. The larger the shift, the closer
+    /// to fixed steps. An error of the last step is forgotten.
+    ///
+    /// The length of the last step, or the first one, stays what it is.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for a shift that is not finite.
+    pub fn with_shift(mut self, shift: f64) -> Result<Self, StepError> {
+        if !shift.is_finite() {
+            let (input, allowed) = ("the shift of the step density", "finite");
+            return Err(StepError::InvalidInput { input, allowed, value: shift });
+        }
+        let course = &mut self.memory.course;
+        let change = shift - course.shift;
+        self.node.add_energy(-power::<STAGES>(course.h()) * change);
+        course.shift = shift;
+        course.densities = course.densities.map(|densities| densities.map(|density| density + change));
+        course.set_excess(measured(&self.system, &self.node)?);
+        self.failure = None;
+        Ok(self)
+    }
+
+    /// [`Run::with_shift`] with twice the largest `|D_s|` that fixed steps meet over `duration` from here, in units of time: a period of the motion, or a few. The steps
+    /// are then within a factor of `3^(1/(2s+1))` of each other while the motion stays like that. The fixed steps have the first length, halved until their energy holds
+    /// to a hundredth of its terms.
+    ///
+    /// # Errors
+    /// [`StepError::InvalidInput`] for a duration that is not positive and finite, or over which no fixed steps hold the energy; [`StepError::ShiftTooLarge`] for a first
+    /// step that is too long for this shift; those of Gauss steps and of [`step_density`].
+    pub fn with_shift_from(mut self, duration: f64) -> Result<Self, StepError> {
+        check_forward("the duration over which the step density is measured", duration)?;
+        let mut h = self.memory.course.h();
+        for _ in 0..HALVINGS {
+            if let Some(Met { density, scale, size }) = self.met_along(h, duration)? {
+                let shift = 2.0 * density;
+                check_shift::<STAGES>(self.node.t, self.memory.course.h(), shift, scale)?;
+                let course = &mut self.memory.course;
+                course.largest_size = course.largest_size.max(size);
+                return self.with_shift(shift);
+            }
+            h *= 0.5;
+        }
+        let input = "the duration over which the step density is measured";
+        Err(StepError::InvalidInput { input, allowed: "one over which fixed steps hold the energy", value: duration })
+    }
+
+    /// What fixed steps of the length h meet over `duration` from here; `None` if their energy does not hold.
+    fn met_along(&self, h: f64, duration: f64) -> Result<Option<Met>, StepError> {
+        let system = &self.system;
+        let mut steps = Starts::at_state(*system, self.node.state()).integrate(Gauss::<STAGES>, h)?;
+        let end = self.node.t + duration;
+        let density = |state: &State<N>| step_density::<S, N, STAGES>(system, state).map(f64::abs);
+        let mut before = energy_at(system, &steps.state())?;
+        let mut met = Met { density: density(&steps.state())?, scale: 0.0, size: before.size };
+        let mut kinetic = 0.0;
+        let mut count = 0.0;
+        let mut largest_missed = 0.0_f64;
+        while steps.node.t < end {
+            match steps.step() {
+                Ok(_) => {}
+                Err(StepError::StagesUnsettled { .. }) => return Ok(None),
+                Err(failure) => return Err(failure),
+            }
+            let state = steps.state();
+            let after = energy_at(system, &state)?;
+            let LastStages { before: start, stages, .. } = &steps.memory;
+            let of_step = energies(system, start, h, stages.data.0, before.total);
+            let missed = of_step.start.abs().max((of_step.end + (before.total - after.total)).abs());
+            largest_missed = largest_missed.max(missed);
+            met.size = met.size.max(after.size);
+            met.density = met.density.max(density(&state)?);
+            kinetic += after.size - after.total.abs();
+            count += 1.0;
+            met.scale = (kinetic / count).max(after.total.abs());
+            before = after;
+        }
+        // The energy of a start from rest may be zero: what is missed is judged by the whole motion.
+        Ok((largest_missed <= HELD * met.size).then_some(met))
+    }
+
+    /// What is kept, E' = E − C_s h^2s D_*: without a shift the discrete energy E. It changes by the work of forces and with an explicit time alone. During fixed steps
+    /// it is what was kept before them, with the work done since.
+    pub fn shifted_energy(&self) -> f64 {
+        self.node.energy
+    }
+
+    /// The shift D_* of the step density.
+    pub fn shift(&self) -> f64 {
+        self.memory.course.shift
+    }
+
+    /// Step density D_s of the last step, without the shift, by its energy: the mean of `H − E` at both ends over `C_s h^2s`. Before the first step, of its start.
+    pub fn density(&self) -> f64 {
+        self.memory.course.told_density::<STAGES>() - self.memory.course.shift
+    }
+
+    /// How the last step was found.
+    pub fn step_kind(&self) -> StepKind {
+        self.memory.course.kind
+    }
+
+    /// How often the run has switched to fixed steps and back, and what that cost.
+    pub fn switches(&self) -> Switches {
+        self.memory.course.switches
+    }
+}
+
+/// What a motion meets.
+struct Met {
+    /// The largest `|D_s|`.
+    density: f64,
+    /// The larger of the mean of `|v·p|` and of `|H|` at the end: whatever constant V has, one of them tells how large energies are.
+    scale: f64,
+    /// The largest `|v·p| + |H|`.
+    size: f64,
+}

@@ -1,0 +1,344 @@
+//! Fixed steps of order 2 by a rule of the system.
+//!
+//! One step solves
+//!
+//! ```text
+//! −D2 L_d − f_d⁻ = p0       for v, with q1 = q0 + h v and t1 = t0 + h
+//!  p1 = D4 L_d + f_d⁺       as p0 plus its increment; for the midpoint rule p1 = p0 + h (L_q + f)
+//! ```
+//!
+//! `momentum::steps` predicts v from the last steps, corrects it and measures its residual. A linear step of a few coordinates is one matrix. If that does not solve the
+//! step, Newton's iteration continues to the rounding floor. If that fails, v is followed from the velocity that belongs to p by continuation in h. AFTER A STEP its
+//! residual was measured at the v that was taken, and is at the rounding floor.
+//!
+//! Beyond a certain h the equation has several roots. [`FixedStep`] takes the one that Newton's iteration reaches from the velocity of the last steps;
+//! [`Connected`] the one that is connected with h = 0. With `L = v·Mv/2 − V(q)` and the midpoint rule the derivative of the equation is `M + (h²/4) ∇²V`: the root is
+//! the only one for `h < 2/√(−V''_min/m)`. Beyond, roots appear and vanish in pairs.
+
+use super::{Memory, Method, Problem, Report};
+use crate::branch::Branch;
+use crate::called::Called;
+use crate::error::StepError;
+use crate::momentum::steps::{Corrector, Solved, Steps};
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+use crate::run::{Hermite, Run};
+use crate::state::State;
+use crate::stepping::FixedStepping;
+use core::hint::black_box;
+use nalgebra::SVector;
+
+/// Fixed steps of order 2 by the rule of the system. See the [module](self).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FixedStep;
+
+/// The same, each step on the branch that is connected with h = 0: [`FixedStep::connected`].
+///
+/// A step depends on the state alone. It takes 20 to 40 times as long as one of [`FixedStep`], in sixteen parts or more. If the branch ends before h, the step is
+/// [`StepError::NotConverged`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Connected;
+
+impl FixedStep {
+    /// Fixed steps on the branch that is connected with h = 0.
+    #[must_use]
+    pub fn connected(self) -> Connected {
+        Connected
+    }
+}
+
+/// What fixed steps remember: the last velocities, and the residual of the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+)]
+pub struct Velocities<const N: usize, T = f64> {
+    pub(crate) steps: Steps<N, T>,
+    iterations: u32,
+}
+
+impl<const N: usize, T: Scalar> Memory for Velocities<N, T> {
+    #[inline(always)]
+    fn apart(&self) -> Self {
+        Self { steps: self.steps.map(black_box), iterations: self.iterations }
+    }
+}
+
+/// A step that was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Found<const N: usize, T = f64> {
+    solved: Solved<N, T>,
+    /// A literal where it is inlined: then the compiler sees that only the newest velocity changes.
+    is_common: bool,
+}
+
+impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for FixedStep {
+    type Prepared = Corrector<S::Jacobian, N, T>;
+    type Memory = Velocities<N, T>;
+    type Cache = ();
+    type Step = Found<N, T>;
+    type Left = ();
+    type DenseOutput = Hermite<N, T>;
+
+    fn rule(&self) -> Option<&'static str> {
+        S::RULE
+    }
+
+    fn prepare(&self, system: &S, h: T) -> Self::Prepared {
+        Corrector::of(&Called(*system), h)
+    }
+
+    fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Velocities<N, T>, StepError> {
+        Ok(Velocities { steps: Steps::new(h, node.state().velocity(system)?), iterations: 0 })
+    }
+
+    #[inline(always)]
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        memory: &Velocities<N, T>,
+    ) -> Result<Found<N, T>, ()> {
+        let Problem { system, prepared, node, h } = at;
+        if memory.steps.is_common::<S>()
+            && let Some(solved) = memory.steps.common(system, node, prepared)
+            && node.stays_finite(h, &solved.v, &solved.increment)
+        {
+            return Ok(Found { solved, is_common: true });
+        }
+        Err(())
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        memory: &Velocities<N, T>,
+        (): &mut (),
+        (): (),
+    ) -> Result<Found<N, T>, StepError> {
+        let Problem { system, prepared, node, .. } = at;
+        let steps = &memory.steps;
+        // A common step that was not at the floor has been corrected as often as it is worth.
+        let is_corrected = steps.is_common::<S>() && !S::CLOSED_FORM;
+        let corrected =
+            if is_corrected { None } else { steps.corrected(&Called(*system), node, prepared, steps.guess()) };
+        found(at, memory, corrected, Branch::Nearest)
+    }
+
+    #[inline(always)]
+    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
+        take(h, node, memory, step);
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Velocities<N, T>,
+        _node: &Node<N, T>,
+        h: T,
+    ) -> Result<Velocities<N, T>, StepError> {
+        Ok(memory.with_length(h))
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N, T>,
+        _h: T,
+        memory: &Velocities<N, T>,
+    ) -> Result<Velocities<N, T>, StepError> {
+        memory.with_system(after, node)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N, T>,
+        node: &Node<N, T>,
+        h: T,
+        _memory: &Velocities<N, T>,
+    ) -> Result<Hermite<N, T>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    fn report(&self, memory: &Velocities<N, T>) -> Report {
+        memory.report()
+    }
+
+    fn discrete_energy(&self, system: &S, node: &Node<N, T>, h: T, memory: &Velocities<N, T>) -> Option<T> {
+        memory.discrete_energy(system, node, h)
+    }
+
+    fn check(&self, memory: &Velocities<N, T>, h: T, t: T) -> Result<(), StepError> {
+        memory.check(h, t)
+    }
+}
+
+/// Only what differs from [`FixedStep`]: steps are not predicted.
+impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Connected {
+    type Prepared = ();
+    type Memory = Velocities<N, T>;
+    type Cache = ();
+    type Step = Found<N, T>;
+    type Left = ();
+    type DenseOutput = Hermite<N, T>;
+
+    fn rule(&self) -> Option<&'static str> {
+        S::RULE
+    }
+
+    fn prepare(&self, _system: &S, _h: T) {}
+
+    fn begin(&self, system: &S, node: &mut Node<N, T>, h: T) -> Result<Velocities<N, T>, StepError> {
+        FixedStep.begin(system, node, h)
+    }
+
+    fn attempt(&self, _at: Problem<'_, S, (), N, T>, _memory: &Velocities<N, T>) -> Result<Found<N, T>, ()> {
+        Err(())
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, (), N, T>,
+        memory: &Velocities<N, T>,
+        (): &mut (),
+        (): (),
+    ) -> Result<Found<N, T>, StepError> {
+        found(at, memory, None, Branch::Connected)
+    }
+
+    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
+        take(h, node, memory, step);
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Velocities<N, T>,
+        _node: &Node<N, T>,
+        h: T,
+    ) -> Result<Velocities<N, T>, StepError> {
+        Ok(memory.with_length(h))
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N, T>,
+        _h: T,
+        memory: &Velocities<N, T>,
+    ) -> Result<Velocities<N, T>, StepError> {
+        memory.with_system(after, node)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N, T>,
+        node: &Node<N, T>,
+        h: T,
+        _memory: &Velocities<N, T>,
+    ) -> Result<Hermite<N, T>, StepError> {
+        Hermite::between(system, before, &node.state(), h)
+    }
+
+    fn report(&self, memory: &Velocities<N, T>) -> Report {
+        memory.report()
+    }
+
+    fn discrete_energy(&self, system: &S, node: &Node<N, T>, h: T, memory: &Velocities<N, T>) -> Option<T> {
+        memory.discrete_energy(system, node, h)
+    }
+
+    fn check(&self, memory: &Velocities<N, T>, h: T, t: T) -> Result<(), StepError> {
+        memory.check(h, t)
+    }
+}
+
+impl<const N: usize, T: Scalar> Velocities<N, T> {
+    fn with_length(&self, h: T) -> Self {
+        Self { steps: self.steps.with_length(h), ..*self }
+    }
+
+    fn with_system<S: FixedStepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Result<Self, StepError> {
+        node.state().velocity(system)?;
+        Ok(Self { steps: self.steps.with_other_parameters(), ..*self })
+    }
+
+    fn report(&self) -> Report {
+        Report { residual: self.steps.measured().roundings(), iterations: self.iterations }
+    }
+
+    /// Discrete energy of the last interval; none if it is not finite, since forces may be finite where L is not. Evaluated from v: the stored nodes would bring the
+    /// cancellation of `(q1 − q0)/h`.
+    fn discrete_energy<S: FixedStepping<N, T>>(&self, system: &S, node: &Node<N, T>, h: T) -> Option<T> {
+        let v = self.steps.v();
+        let energy = (!self.steps.is_new()).then(|| {
+            let mut start = *node;
+            start.shift(-h, &v);
+            system.discrete_energy(&start, h, &v)
+        });
+        energy.filter(|energy| energy.is_finite())
+    }
+
+    fn check(&self, h: T, t: T) -> Result<(), StepError> {
+        check_steps(&self.steps, h, t)
+    }
+}
+
+/// Whether stored steps have the length h and are finite.
+///
+/// # Errors
+/// [`StepError::InvalidInput`], [`StepError::NonFinite`].
+pub(super) fn check_steps<const N: usize, T: Scalar>(steps: &Steps<N, T>, h: T, t: T) -> Result<(), StepError> {
+    if steps.h != h {
+        let (input, allowed) = ("the step of a checkpoint", "that of its run");
+        return Err(StepError::InvalidInput { input, allowed, value: steps.h.to_f64() });
+    }
+    let lost = StepError::NonFinite { t: t.to_f64(), quantity: "last velocity", expression: None };
+    if steps.is_finite() { Ok(()) } else { Err(lost) }
+}
+
+#[inline(always)]
+fn take<const N: usize, T: Scalar>(h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
+    let Found { solved, is_common } = step;
+    if *is_common {
+        memory.steps.push_common(solved);
+    } else {
+        memory.steps.push(solved);
+    }
+    node.advance(h, &solved.v, &solved.increment);
+    memory.iterations = solved.iterations;
+}
+
+/// The step that corrections found, else the one of a search.
+fn found<S: FixedStepping<N, T>, P, const N: usize, T: Scalar>(
+    at: Problem<'_, S, P, N, T>,
+    memory: &Velocities<N, T>,
+    corrected: Option<Solved<N, T>>,
+    branch: Branch,
+) -> Result<Found<N, T>, StepError> {
+    let Problem { system, node, h, .. } = at;
+    let searched = || memory.steps.searched(&Called(*system), node, branch);
+    let found = corrected.map_or_else(searched, Ok).and_then(|solved| {
+        let mut after = *node;
+        after.advance(h, &solved.v, &solved.increment);
+        after.check_finite(node.t).map(|()| Found { solved, is_common: false })
+    });
+    found.map_err(|failure| failure.explained(system, node, h, &memory.steps.v()))
+}
+
+impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Run<FixedStep, S, N, T> {
+    /// Velocity `(q1 − q0)/h` of the last interval, without its cancellation. Before the first step the velocity that belongs to the momenta.
+    pub fn v(&self) -> SVector<T, N> {
+        self.memory.steps.v()
+    }
+}
+
+impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Run<Connected, S, N, T> {
+    /// Velocity `(q1 − q0)/h` of the last interval, as of [`FixedStep`].
+    pub fn v(&self) -> SVector<T, N> {
+        self.memory.steps.v()
+    }
+}

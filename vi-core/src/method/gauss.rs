@@ -1,0 +1,328 @@
+//! Fixed steps of order 2S: Galerkin variational integrators at the S Gauss points.
+//!
+//! With the tableau a, b, c of Gauss collocation and the stages `T_i = t0 + c_i h`, a step solves
+//!
+//! ```text
+//! Q_i = q0 + h Σ a_ij V_j        L_v(T_i, Q_i, V_i) = p0 + h Σ a_ij (L_q + f)_j
+//! q1  = q0 + h Σ b_i V_i         p1 = p0 + h Σ b_i (L_q + f)_i        E1 = Σ b_i En_i − h Σ b_i c_i (L_t − f·v)_i
+//! ```
+//!
+//! En_i the energy at a stage. It is the variational integrator of the discrete Lagrangian `L_d = h Σ b_i L_i`: symplectic without force, time-symmetric, and it keeps
+//! momenta of cyclic coordinates bit for bit. S = 1 is the midpoint rule (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.3 and VI.6.2). The equations
+//! of the stages and their solution are in [`crate::gauss`].
+//!
+//! AFTER A STEP the residual of its stages was measured, and is at the rounding floor.
+
+use super::{Memory, Method, Problem, Report};
+use crate::collocation::Collocation;
+use crate::error::StepError;
+use crate::gauss::energies::energies;
+use crate::gauss::newton::{Linearization, Newton};
+use crate::gauss::points::Rare;
+use crate::gauss::solve::{Solved, Start, Step, constant, long, sweeping};
+use crate::gauss::stages::LOOPED;
+use crate::gauss::sweep::{Convergence, Increment, Pause};
+use crate::gauss::{Polynomial, Slots};
+use crate::node::Node;
+use crate::run::{DenseOutput, Hermite, Run};
+use crate::state::State;
+use crate::stepping::{Convertible, FixedStepping};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
+use vi_dispatch::{Instructions, Loop};
+
+/// Fixed steps of order 2 STAGES, with 1 to 16 stages: `Gauss::<8>`. See the [module](self).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Gauss<const STAGES: usize>;
+
+/// The stages of the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(C, align(64))]
+pub struct LastStages<const N: usize, const S: usize> {
+    /// Velocities at the stages of the last step, forces there of a separable system: a column a coordinate. Before the first step those of the node. First and aligned:
+    /// a vector of eight numbers then lies in one line of the cache.
+    pub(crate) stages: SMatrix<f64, S, N>,
+    /// The node before the last step; that of the run if the step is not known by the parameters that the system has.
+    pub(crate) before: Node<N>,
+    /// Length of the last step.
+    pub(crate) h: f64,
+    pub(crate) convergence: Convergence,
+    pub(crate) pause: Pause,
+    /// Where the equations of the next stiff step are linearized; `None` if it takes its own linearization.
+    pub(crate) linearization: Option<Linearization<N>>,
+}
+
+impl<const N: usize, const S: usize> Memory for LastStages<N, S> {}
+
+impl<const N: usize, const S: usize> LastStages<N, S> {
+    /// Before the first step of the length h: stages that are all like the node.
+    ///
+    /// # Errors
+    /// Those of [`State::velocity`].
+    pub(crate) fn constant<Y: Collocation<N>>(system: &Y, node: &Node<N>, h: f64) -> Result<Self, StepError> {
+        let stages = SMatrix::from_array_storage(ArrayStorage(constant(system, node)?));
+        let (convergence, pause) = (Convergence::NONE, Pause::NONE);
+        Ok(Self { stages, before: *node, h, convergence, pause, linearization: None })
+    }
+
+    /// Whether the step is known that led to the node: by other parameters its stages mean nothing.
+    pub(crate) fn has_step(&self, node: &Node<N>) -> bool {
+        self.convergence.has_begun() && self.before != *node
+    }
+
+    /// What the next step, which is as long, is solved from.
+    #[inline(always)]
+    fn start<'a>(&'a self, node: &'a Node<N>) -> Start<'a, N, S> {
+        let (before, pause) = (&self.convergence, self.pause);
+        Start { node, h: self.h, stages: &self.stages.data.0, are_last: before.has_begun(), before, pause }
+    }
+
+    /// Moves to the end of a step.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, node: &mut Node<N>, step: &Step<N, S>) {
+        self.h = step.h;
+        self.before = *node;
+        node.advance(step.h, &step.increment.velocity, &step.increment.momentum);
+        self.stages = SMatrix::from_array_storage(ArrayStorage(step.stages));
+        self.convergence = step.convergence;
+        self.pause = step.pause;
+        self.linearization = step.linearization;
+    }
+
+    /// Moves to the end of a step that fixed-point iteration solved.
+    #[inline(always)]
+    fn take_solved(&mut self, node: &mut Node<N>, solved: &Solved<N, S>) {
+        let Increment { velocity, momentum } = &solved.increment;
+        self.before = *node;
+        node.advance(self.h, velocity, momentum);
+        self.stages = SMatrix::from_array_storage(ArrayStorage(solved.stages));
+        self.convergence = solved.sweeps.convergence;
+        self.pause = Pause::NONE;
+        self.linearization = None;
+    }
+
+    /// Discrete energy of the last step, if it is known and finite.
+    fn discrete_energy<Y: Collocation<N> + Convertible<N>>(&self, system: &Y, node: &Node<N>) -> Option<f64> {
+        let energy = energies(system, &self.before, self.h, self.stages.data.0, 0.0).end;
+        (self.has_step(node) && energy.is_finite()).then_some(energy)
+    }
+
+    /// The motion over the last step, or over one of the length h whose stages are not known.
+    pub(crate) fn dense_output<Y: Collocation<N> + Convertible<N>>(
+        &self,
+        system: &Y,
+        before: &State<N>,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<Motion<N, S>, StepError> {
+        if self.has_step(node) {
+            let motion = Polynomial::over(&Rare::of(system), &self.before, self.h, self.stages.data.0, *before);
+            Ok(Motion::Collocation(motion))
+        } else {
+            Hermite::between(system, before, &node.state(), h).map(Motion::Hermite)
+        }
+    }
+
+    /// Whether stored stages are finite.
+    ///
+    /// # Errors
+    /// [`StepError::NonFinite`].
+    pub(crate) fn check(&self, t: f64) -> Result<(), StepError> {
+        self.before.check_finite(t)?;
+        let lost = |quantity| StepError::NonFinite { t, quantity, expression: None };
+        if !self.stages.iter().all(|entry| entry.is_finite()) {
+            return Err(lost("last stages"));
+        }
+        if self.linearization.is_some_and(|at| !at.is_finite()) {
+            return Err(lost("point of linearization"));
+        }
+        Ok(())
+    }
+}
+
+/// The next step of a run, taken inside the dispatched function.
+struct Advancing<'a, Y, const N: usize, const S: usize> {
+    system: &'a Y,
+    node: &'a mut Node<N>,
+    memory: &'a mut LastStages<N, S>,
+}
+
+impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop for Advancing<'_, Y, N, S> {
+    type Output = Result<(), Option<Solved<N, S>>>;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        let Self { system, node, memory } = self;
+        let solved = sweeping::<_, N, S, FUSED>(system, &memory.start(node));
+        if solved.is_step(node, memory.h) {
+            memory.take_solved(node, &solved);
+            return Ok(());
+        }
+        Err(Some(solved))
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Method<S, N> for Gauss<STAGES>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    type Prepared = Instructions;
+    type Memory = LastStages<N, STAGES>;
+    type Cache = Option<Box<Newton<N, STAGES>>>;
+    type Step = Step<N, STAGES>;
+    type Left = Option<Solved<N, STAGES>>;
+    type DenseOutput = Motion<N, STAGES>;
+
+    fn prepare(&self, _system: &S, _h: f64) -> Instructions {
+        Instructions::detected()
+    }
+
+    fn begin(&self, system: &S, node: &mut Node<N>, h: f64) -> Result<Self::Memory, StepError> {
+        LastStages::constant(system, node, h)
+    }
+
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+    ) -> Result<Step<N, STAGES>, Self::Left> {
+        if !memory.pause.is_over() {
+            return Err(None);
+        }
+        memory.start(at.node).swept(at.system, *at.prepared).map_err(Some)
+    }
+
+    #[inline(always)]
+    fn advance(
+        &self,
+        system: &S,
+        prepared: &Instructions,
+        node: &mut Node<N>,
+        _h: f64,
+        memory: &mut Self::Memory,
+    ) -> Result<(), Self::Left> {
+        if !memory.pause.is_over() {
+            return Err(None);
+        }
+        if !S::SIDE_BY_SIDE {
+            let solved = memory.start(node).plainly(&Rare::of(system), None);
+            if !solved.is_step(node, memory.h) {
+                return Err(Some(solved));
+            }
+            memory.take_solved(node, &solved);
+            Ok(())
+        } else if const { N > LOOPED } {
+            long(*prepared, Advancing { system, node, memory })
+        } else {
+            prepared.run(Advancing { system, node, memory })
+        }
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+        left: Self::Left,
+    ) -> Result<Step<N, STAGES>, StepError> {
+        let last = memory.linearization;
+        memory.start(at.node).with_care(at.system, *at.prepared, (left.as_ref(), last), cache)
+    }
+
+    fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Step<N, STAGES>) {
+        memory.take(node, step);
+    }
+
+    fn with_length(
+        &self,
+        system: &S,
+        _memory: &Self::Memory,
+        node: &Node<N>,
+        h: f64,
+    ) -> Result<Self::Memory, StepError> {
+        LastStages::constant(system, node, h)
+    }
+
+    fn with_system(
+        &self,
+        [_, after]: [&S; 2],
+        node: &mut Node<N>,
+        _h: f64,
+        memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError> {
+        node.state().velocity(after)?;
+        Ok(LastStages { before: *node, linearization: None, ..*memory })
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N>,
+        node: &Node<N>,
+        h: f64,
+        memory: &Self::Memory,
+    ) -> Result<Motion<N, STAGES>, StepError> {
+        memory.dense_output(system, before, node, h)
+    }
+
+    fn report(&self, memory: &Self::Memory) -> Report {
+        Report { residual: memory.convergence.change, iterations: memory.convergence.sweeps }
+    }
+
+    fn discrete_energy(&self, system: &S, node: &Node<N>, _h: f64, memory: &Self::Memory) -> Option<f64> {
+        memory.discrete_energy(system, node)
+    }
+
+    fn check(&self, memory: &Self::Memory, h: f64, t: f64) -> Result<(), StepError> {
+        if memory.h.to_bits() != h.to_bits() {
+            let (input, allowed) = ("the step of a checkpoint", "that of its run");
+            return Err(StepError::InvalidInput { input, allowed, value: memory.h });
+        }
+        memory.check(t)
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Run<Gauss<STAGES>, S, N>
+where
+    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// The discrete Lagrangian of the last step with its derivatives, discrete forces and powers, for checks: `−D2 L_d − f_d⁻ = p0`,
+    /// `D4 L_d + f_d⁺ = p1`. `None` before the first step, after [`Run::set_parameters`] or [`Run::step_of`], and if one of them is not finite.
+    pub fn slots(&self) -> Option<Slots<N>> {
+        let LastStages { before, h, stages, .. } = &self.memory;
+        let slots = self.memory.has_step(&self.node).then(|| Slots::of(&self.system, before, *h, stages.data.0));
+        slots.filter(Slots::is_finite)
+    }
+}
+
+/// The motion over a Gauss step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion<const N: usize, const S: usize> {
+    /// Over a step of the run.
+    Collocation(Polynomial<N, S>),
+    /// Over a step of another length, the stages of which are not kept.
+    Hermite(Hermite<N>),
+}
+
+impl<const N: usize, const S: usize> DenseOutput<N> for Motion<N, S> {
+    fn since_start(self) -> Self {
+        match self {
+            Self::Collocation(polynomial) => Self::Collocation(polynomial.since_start()),
+            Self::Hermite(cubics) => Self::Hermite(cubics.since_start()),
+        }
+    }
+
+    fn state(&self, t: f64) -> State<N> {
+        match self {
+            Self::Collocation(polynomial) => polynomial.state(t),
+            Self::Hermite(cubics) => cubics.state(t),
+        }
+    }
+
+    fn velocity(&self, t: f64) -> SVector<f64, N> {
+        match self {
+            Self::Collocation(polynomial) => polynomial.velocity(t),
+            Self::Hermite(cubics) => cubics.velocity(t),
+        }
+    }
+}

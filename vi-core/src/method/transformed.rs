@@ -1,0 +1,240 @@
+//! Gauss steps of constant length in transformed time, `dt = g(t, q) dτ`: steps of order 2S that follow the motion.
+//!
+//! A step is Gauss collocation of the Hamiltonian `K = g (H − E)` in extended phase space, where t is a coordinate and −E its momentum: with Δτ constant, h is short
+//! if g is small. With `H = V·P − L` at a stage and F = L_q + f,
+//!
+//! ```text
+//! t' = g        q' = g v        p' = g F − (H − E) ∂g/∂q        E' = g (f·v − L_t) + (H − E) ∂g/∂t        L_v = p
+//! ```
+//!
+//! all four collocated. Along the motion H = E: E starts as H of the first state, and is constant if the system is autonomous, has no force and g no time in it. The
+//! map is symplectic in extended phase space without force, time-symmetric, and keeps the momenta of symmetries that g shares, as the angular momentum for g(r)
+//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, VIII.2.1; Leimkuhler and Reich, *Simulating Hamiltonian Dynamics*, chapter 9).
+//!
+//! AFTER A STEP the residual of its stages was measured, and is at the rounding floor; g is positive and finite at all of them, and at the state reached.
+
+use super::{Gauss, Method, Problem, Report, check_step};
+use crate::collocation::TimeScale;
+use crate::error::{Residuals, StepError};
+use crate::gauss::newton::Newton;
+use crate::gauss::transformed::{After, LastRates, Polynomial, Solved, Start, check_time_scale, time_scale};
+use crate::node::Node;
+use crate::run::Run;
+use crate::state::State;
+use crate::stepping::{Convertible, FixedStepping};
+use vi_dispatch::Instructions;
+
+/// A method whose steps have constant length in transformed time: `Gauss::<8>.in_transformed_time()`. See the [module](self).
+///
+/// The step of a run is Δτ, in units of time over the unit of g.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InTransformedTime<M>(M);
+
+impl<const STAGES: usize> Gauss<STAGES> {
+    /// The same steps of constant length in transformed time, for systems with the clause `time_scale = …;`.
+    #[must_use]
+    pub fn in_transformed_time(self) -> InTransformedTime<Self> {
+        InTransformedTime(self)
+    }
+}
+
+/// Trials of Δτ for a step of a given length in time.
+const TRIALS: u32 = 60;
+/// Roundings of the length by which such a step may miss it, if they are more than one of the time: the length is a quadrature.
+const MISSED: f64 = 16.0;
+
+impl<S, const N: usize, const STAGES: usize> Method<S, N> for InTransformedTime<Gauss<STAGES>>
+where
+    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+{
+    type Prepared = Instructions;
+    type Memory = LastRates<N, STAGES>;
+    type Cache = Option<Box<Newton<N, STAGES>>>;
+    type Step = After<N, STAGES>;
+    type Left = Option<Solved<N, STAGES>>;
+    type DenseOutput = Polynomial<N, STAGES>;
+
+    // Nothing bounds how g changes from one step to the next.
+    const FINDS_LENGTH: bool = true;
+
+    fn check_length(&self, dtau: f64) -> Result<(), StepError> {
+        if !S::SCALES_TIME {
+            return Err(StepError::NoTimeScale { system: S::NAME });
+        }
+        if dtau.is_normal() {
+            return Ok(());
+        }
+        let allowed = "finite, not zero and not subnormal";
+        Err(StepError::InvalidInput { input: "the step Δτ in transformed time", allowed, value: dtau })
+    }
+
+    fn prepare(&self, _system: &S, _dtau: f64) -> Instructions {
+        Instructions::detected()
+    }
+
+    fn begin(&self, system: &S, node: &mut Node<N>, dtau: f64) -> Result<Self::Memory, StepError> {
+        node.energy = node.state().energy(system)?;
+        LastRates::constant(system, node, dtau)
+    }
+
+    #[inline(always)]
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+    ) -> Result<Self::Step, Self::Left> {
+        let Problem { system, prepared, node, h } = at;
+        if !memory.pause.is_over() {
+            return Err(None);
+        }
+        Start { system, node, dtau: h, last: memory }.swept(*prepared).map_err(Some)
+    }
+
+    fn recover(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+        left: Self::Left,
+    ) -> Result<Self::Step, StepError> {
+        let Problem { system, node, h, .. } = at;
+        Start { system, node, dtau: h, last: memory }.with_care(left.as_ref(), cache)
+    }
+
+    #[inline(always)]
+    fn take(&self, _dtau: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {
+        (*node, *memory) = (step.node, step.rates);
+    }
+
+    /// Newton's iteration on `t(Δτ) = t0 + h`, whose derivative is g at the end, halved if it leaves what is known to hold Δτ. Each trial solves a step.
+    fn step_of(
+        &self,
+        system: &S,
+        (node, memory): (&Node<N>, &Self::Memory),
+        [h, next]: [f64; 2],
+    ) -> Result<(Node<N>, Self::Memory), StepError> {
+        check_step(h)?;
+        let State { t, q, .. } = node.state();
+        let g = time_scale(system, t, &q);
+        check_time_scale(t, g)?;
+        let prepared = Instructions::detected();
+        let mut cache = None;
+        let missed = f64::EPSILON * (MISSED * h.abs()).max(t.abs());
+        // None is tried that is longer than twice what is known to be too short.
+        let [mut low, mut high] = [0.0, f64::INFINITY];
+        let mut length = (h / g).abs().min(next.abs());
+        let mut residuals = Residuals::new();
+        let mut residual = 0.0;
+        for _ in 0..TRIALS {
+            let dtau = length.copysign(h);
+            let at = Problem { system, prepared: &prepared, node, h: dtau };
+            let After { node: end, rates } = self.solve(at, memory, &mut cache)?;
+            let left = (h - rates.h) * h.signum();
+            if left.abs() <= missed {
+                return Ok((end, LastRates { h: memory.h, ..rates }));
+            }
+            residual = left.abs() / (f64::EPSILON * h.abs());
+            residuals.push(residual);
+            if left > 0.0 {
+                low = length;
+            } else {
+                high = length;
+            }
+            let g = time_scale(system, end.t, &end.q);
+            let next = length + left / g;
+            let bound = if high.is_finite() { high } else { 2.0 * low };
+            let halfway = if high.is_finite() { 0.5 * (low + high) } else { bound };
+            length = if next > low && next < bound { next } else { halfway };
+        }
+        Err(StepError::NotConverged { t, h, iterations: TRIALS, residual, residuals })
+    }
+
+    fn with_length(
+        &self,
+        _system: &S,
+        memory: &Self::Memory,
+        _node: &Node<N>,
+        _dtau: f64,
+    ) -> Result<Self::Memory, StepError> {
+        Ok(*memory)
+    }
+
+    fn with_system(
+        &self,
+        [before, after]: [&S; 2],
+        node: &mut Node<N>,
+        dtau: f64,
+        _memory: &Self::Memory,
+    ) -> Result<Self::Memory, StepError> {
+        let state = node.state();
+        let mut changed = *node;
+        changed.add_energy(state.energy(after)? - state.energy(before)?);
+        let rates = LastRates::constant(after, &changed, dtau)?;
+        *node = changed;
+        Ok(rates)
+    }
+
+    fn with_state(
+        &self,
+        system: &S,
+        node: &mut Node<N>,
+        dtau: f64,
+        _memory: &Self::Memory,
+        state: State<N>,
+    ) -> Result<Self::Memory, StepError> {
+        let brought = state.energy(system)? - node.state().energy(system)?;
+        *node = node.with_state(state);
+        node.add_energy(brought);
+        LastRates::constant(system, node, dtau)
+    }
+
+    fn dense_output(
+        &self,
+        system: &S,
+        before: &State<N>,
+        node: &Node<N>,
+        _h: f64,
+        memory: &Self::Memory,
+    ) -> Result<Polynomial<N, STAGES>, StepError> {
+        Ok(Polynomial::of(system, node.energy, memory, *before))
+    }
+
+    fn length(&self, _dtau: f64, memory: &Self::Memory) -> f64 {
+        memory.h
+    }
+
+    fn longest(&self, dtau: f64, _memory: &Self::Memory) -> f64 {
+        f64::INFINITY.copysign(dtau)
+    }
+
+    fn report(&self, memory: &Self::Memory) -> Report {
+        Report { residual: memory.convergence.change, iterations: memory.convergence.sweeps }
+    }
+
+    fn discrete_energy(&self, _system: &S, node: &Node<N>, _dtau: f64, memory: &Self::Memory) -> Option<f64> {
+        memory.convergence.has_begun().then_some(node.energy)
+    }
+
+    fn check(&self, memory: &Self::Memory, _dtau: f64, t: f64) -> Result<(), StepError> {
+        memory.check(t)
+    }
+}
+
+impl<S, const N: usize, const STAGES: usize> Run<InTransformedTime<Gauss<STAGES>>, S, N>
+where
+    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+{
+    /// The step in transformed time.
+    pub fn dtau(&self) -> f64 {
+        self.h
+    }
+
+    /// `H − E` at the state reached last, in the units of L: by so much the step misses the energy of the motion. It stays small and does
+    /// not drift, while `K = g (H − E)` is zero along the motion.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] or [`StepError::NotConverged`] if no velocity belongs to the momenta.
+    pub fn excess(&self) -> Result<f64, StepError> {
+        Ok(self.energy()? - self.node.energy)
+    }
+}

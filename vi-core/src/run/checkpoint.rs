@@ -1,0 +1,97 @@
+//! Checkpoints: everything that a run carries, with the system that it is of.
+//!
+//! In: a run between two steps. Out: a [`Checkpoint`], which the feature `serde` stores in any format that keeps numbers exactly (`serde_json` with its feature
+//! `float_roundtrip`), and the run again. AFTER A RESTART every number of every further step, and every error, is bit for bit that of the run that was not
+//! interrupted, on a processor with the same instructions. An error is not stored: the restarted run meets it again.
+
+use super::Run;
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::method::Method;
+use crate::node::Node;
+use crate::real::{Real, Scalar};
+
+/// A run between two steps, and the system and rule that it is of.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "Y: serde::Serialize, T: Real + serde::Serialize",
+        deserialize = "Y: serde::Deserialize<'de>, T: Real + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Checkpoint<Y, const N: usize, T = f64> {
+    system: String,
+    /// None for the first rule that the system is declared with.
+    #[cfg_attr(feature = "serde", serde(default))]
+    rule: Option<String>,
+    /// Names and values, in the order in which they are declared.
+    parameters: Vec<(String, T)>,
+    run: Stored<Y, N, T>,
+}
+
+/// What a run carries from step to step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "Y: serde::Serialize, T: Real + serde::Serialize",
+        deserialize = "Y: serde::Deserialize<'de>, T: Real + serde::Deserialize<'de>"
+    ))
+)]
+pub struct Stored<Y, const N: usize, T = f64> {
+    node: Node<N, T>,
+    h: T,
+    memory: Y,
+}
+
+impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> Run<M, S, N, T> {
+    /// Everything that the run carries, and the name and parameters of its system. Allocates.
+    pub fn checkpoint(&self) -> Checkpoint<M::Memory, N, T> {
+        let named = S::PARAMETERS.iter().enumerate();
+        Checkpoint {
+            system: S::NAME.to_owned(),
+            rule: self.method.rule().map(str::to_owned),
+            parameters: named.map(|(index, name)| ((*name).to_owned(), self.system.parameter(index))).collect(),
+            run: Stored { node: self.node, h: self.h, memory: self.memory.clone() },
+        }
+    }
+
+    /// The run that was at `checkpoint`, bit for bit.
+    ///
+    /// # Errors
+    /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and [`StepError::InvalidInput`] for one that no
+    /// run of this method can have left.
+    pub fn restart(system: S, method: M, checkpoint: Checkpoint<M::Memory, N, T>) -> Result<Self, StepError> {
+        let Stored { node, h, memory } = checkpoint.run_of(&system, method.rule())?;
+        method.check_length(h)?;
+        let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };
+        node.check_finite(t)?;
+        method.check(&memory, h, t)?;
+        Ok(Self::resumed(method, system, (node, h, memory)))
+    }
+}
+
+impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
+    /// What is stored, if it is of this system by this rule with these parameters.
+    fn run_of<S: Lagrangian<N, T>>(
+        self,
+        system: &S,
+        rule: Option<&'static str>,
+    ) -> Result<Stored<Y, N, T>, StepError> {
+        let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };
+        let names = self.parameters.iter().map(|(name, _)| name.as_str());
+        if self.system != S::NAME || self.rule.as_deref() != rule || !names.eq(S::PARAMETERS.iter().copied()) {
+            return Err(other(None, f64::NAN, f64::NAN));
+        }
+        for (index, (name, (_, stored))) in S::PARAMETERS.iter().zip(&self.parameters).enumerate() {
+            let given = system.parameter(index);
+            if *stored != given {
+                return Err(other(Some(name), stored.to_f64(), given.to_f64()));
+            }
+        }
+        Ok(self.run)
+    }
+}

@@ -1,0 +1,112 @@
+//! The motion between the two nodes of a step.
+//!
+//! In: a step that was taken. Out: q and p at any time of it, as polynomials; velocities are their derivatives. A step of one stage has the Hermite cubics through its
+//! ends,
+//!
+//! ```text
+//! q(t0 + θh) = q0 + θ (Δq + (1 − θ) ((1 − θ) (h v0 − Δq) − θ (h v1 − Δq)))        Δq = q1 − q0
+//! ```
+//!
+//! and the same of p with `dp/dt = L_q + f`: order 3, which is more than the step has. A Gauss step has its collocation polynomials, of order S + 1
+//! (Hairer, Lubich, Wanner, *Geometric Numerical Integration*, II.1.2). AT BOTH ENDS the polynomials agree with the nodes, to rounding.
+
+use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::real::{Real, Scalar};
+use crate::state::State;
+use nalgebra::SVector;
+
+/// The motion over a step.
+pub trait DenseOutput<const N: usize, T = f64> {
+    /// Time, coordinates and momenta at the time `t`. Beyond the step the polynomials continue.
+    fn state(&self, t: T) -> State<N, T>;
+    /// The derivative of the coordinates with respect to time at the time `t`.
+    fn velocity(&self, t: T) -> SVector<T, N>;
+    /// The same motion as a function of the time since the start of the step: far from zero the time itself is too coarse.
+    #[doc(hidden)]
+    #[must_use]
+    fn since_start(self) -> Self
+    where
+        Self: Sized;
+}
+
+/// Cubics through the ends of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hermite<const N: usize, T = f64> {
+    t: T,
+    h: T,
+    q: Cubic<N, T>,
+    p: Cubic<N, T>,
+}
+
+/// A cubic over the step, by its values and slopes at both ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cubic<const N: usize, T> {
+    start: SVector<T, N>,
+    change: SVector<T, N>,
+    /// What the slope at either end has beyond the change, times h.
+    first: SVector<T, N>,
+    last: SVector<T, N>,
+}
+
+impl<const N: usize, T: Scalar> Hermite<N, T> {
+    /// The motion of `system` from one state to another. The step between them has the length `h` if the times can differ by it, else their difference.
+    ///
+    /// # Errors
+    /// Those of [`State::velocity`] at both.
+    pub(crate) fn between<S: Lagrangian<N, T>>(
+        system: &S,
+        before: &State<N, T>,
+        after: &State<N, T>,
+        h: T,
+    ) -> Result<Self, StepError> {
+        let told = after.t - before.t;
+        let [from, to] = [before.t.to_f64(), after.t.to_f64()];
+        let rounding = T::EPSILON * from.abs().max(to.abs());
+        let h = if (told - h).to_f64().abs() <= rounding { h } else { told };
+        let start = before.flow(system)?;
+        let end = after.flow(system)?;
+        let q = Cubic::new([before.q, after.q], [start.v, end.v], h);
+        let p = Cubic::new([before.p, after.p], [start.force, end.force], h);
+        Ok(Self { t: before.t, h, q, p })
+    }
+}
+
+impl<const N: usize, T: Scalar> DenseOutput<N, T> for Hermite<N, T> {
+    fn since_start(self) -> Self {
+        Self { t: T::zero(), ..self }
+    }
+
+    fn state(&self, t: T) -> State<N, T> {
+        let part = (t - self.t) / self.h;
+        State { t, q: self.q.at(part), p: self.p.at(part) }
+    }
+
+    fn velocity(&self, t: T) -> SVector<T, N> {
+        let slope = self.q.slope((t - self.t) / self.h);
+        slope.map(|entry| entry / self.h)
+    }
+}
+
+impl<const N: usize, T: Real> Cubic<N, T> {
+    fn new(values: [SVector<T, N>; 2], slopes: [SVector<T, N>; 2], h: T) -> Self {
+        let [start, end] = values;
+        let change = end - start;
+        let [first, last] = slopes.map(|slope| slope * h - change);
+        Self { start, change, first, last }
+    }
+
+    /// The value at a part of the step.
+    fn at(&self, part: T) -> SVector<T, N> {
+        let rest = T::one() - part;
+        let bend = self.first * rest - self.last * part;
+        self.start + (self.change + bend * rest) * part
+    }
+
+    /// The derivative with respect to the part.
+    fn slope(&self, part: T) -> SVector<T, N> {
+        let two = T::real(2.0);
+        let rest = T::one() - part;
+        self.change + self.first * (rest * (rest - two * part)) - self.last * (part * (two * rest - part))
+    }
+}
