@@ -6,15 +6,15 @@
 //! restarted run meets it again, for the state before it is unchanged and nothing else enters.
 
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
 use crate::real::Scalar;
-use crate::stepping::FixedStepping;
 
 /// A run R between two steps, and which system by which rule it is of.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Checkpoint<R, T = f64> {
     system: String,
-    /// None where it is the one that the system is declared with.
+    /// None for the rule that the system is declared with, and for Gauss steps, which need none.
     #[cfg_attr(feature = "serde", serde(default))]
     rule: Option<String>,
     /// Names and values, in the order in which they are declared.
@@ -23,11 +23,11 @@ pub struct Checkpoint<R, T = f64> {
 }
 
 impl<R, T: Scalar> Checkpoint<R, T> {
-    /// The checkpoint of a run of `system`.
-    pub(crate) fn of<const N: usize, S: FixedStepping<N, T>>(system: &S, run: R) -> Self {
+    /// The checkpoint of a run of `system` by a method whose rule has this name.
+    pub(crate) fn of<const N: usize, S: Lagrangian<N, T>>(system: &S, rule: Option<&'static str>, run: R) -> Self {
         let named = S::PARAMETERS.iter().enumerate();
         let parameters = named.map(|(index, name)| ((*name).to_owned(), system.parameter(index))).collect();
-        Self { system: S::NAME.to_owned(), rule: S::RULE.map(str::to_owned), parameters, run }
+        Self { system: S::NAME.to_owned(), rule: rule.map(str::to_owned), parameters, run }
     }
 
     /// The checkpoint of a part of the run, and the rest of it.
@@ -37,11 +37,15 @@ impl<R, T: Scalar> Checkpoint<R, T> {
         (Checkpoint { system, rule, parameters, run }, rest)
     }
 
-    /// The run, where it is one of this system by this rule with these parameters.
-    pub(crate) fn run_of<const N: usize, S: FixedStepping<N, T>>(self, system: &S) -> Result<R, StepError> {
+    /// The run, if it is one of this system by this rule with these parameters.
+    pub(crate) fn run_of<const N: usize, S: Lagrangian<N, T>>(
+        self,
+        system: &S,
+        rule: Option<&'static str>,
+    ) -> Result<R, StepError> {
         let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };
         let names = self.parameters.iter().map(|(name, _)| name.as_str());
-        if self.system != S::NAME || self.rule.as_deref() != S::RULE || !names.eq(S::PARAMETERS.iter().copied()) {
+        if self.system != S::NAME || self.rule.as_deref() != rule || !names.eq(S::PARAMETERS.iter().copied()) {
             return Err(other(None, f64::NAN, f64::NAN));
         }
         for (index, (name, (_, stored))) in S::PARAMETERS.iter().zip(&self.parameters).enumerate() {

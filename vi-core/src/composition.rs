@@ -164,7 +164,7 @@ where
 
     /// Everything that the run carries but its scheme, to be stored and resumed bit for bit. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
-        checkpoint::Checkpoint::of(&self.system, self.run())
+        checkpoint::Checkpoint::of(&self.system, S::RULE, self.run())
     }
 
     /// The run that was at `checkpoint`, bit for bit.
@@ -173,7 +173,7 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::InvalidInput`] for one of another scheme;
     /// [`StepError::NonFinite`] and [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, scheme: Scheme, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
-        let run = checkpoint.run_of(&system)?;
+        let run = checkpoint.run_of(&system, S::RULE)?;
         check_step(run.h)?;
         let t = if run.node.t.to_f64().is_finite() { run.node.t } else { T::zero() };
         run.node.check_finite(t)?;

@@ -91,7 +91,7 @@ where
     /// Everything that the run carries: the node with its low parts, the step, what the next guess is made of; and of which
     /// system with which parameters. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, T> {
-        checkpoint::Checkpoint::of(&self.system, self.run)
+        checkpoint::Checkpoint::of(&self.system, S::RULE, self.run)
     }
 
     /// The run that was at `checkpoint`, bit for bit.
@@ -100,7 +100,7 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
     /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
-        let run = checkpoint.run_of(&system)?;
+        let run = checkpoint.run_of(&system, S::RULE)?;
         let Run { node, steps, .. } = &run;
         check_step(steps.h)?;
         let t = if node.t.to_f64().is_finite() { node.t } else { T::zero() };

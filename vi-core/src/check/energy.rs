@@ -61,7 +61,7 @@ pub fn energy<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>)
 fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "energy");
     let Place { t, q, v, h } = *place;
-    let bounded = system.convert::<Bounded>();
+    let bounded = system.steps::<Bounded>();
     let mut run = EnergyPreserving::from_midpoint(system, t, q, v, h).map_err(|error| check.step(error))?;
     let first = run.state();
     let mut moved = 0.0_f64;

@@ -127,6 +127,6 @@ fn density<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     (t, q, v): &(f64, SVector<f64, N>, SVector<f64, N>),
 ) -> Result<Bounded, StepError> {
-    let bound = system.convert::<Bounded>().step_density(Bounded::once(*t), &once(q), &exact(v))?;
+    let bound = system.steps::<Bounded>().step_density(Bounded::once(*t), &once(q), &exact(v))?;
     Ok(bound.of(system.step_density(*t, q, v)?))
 }

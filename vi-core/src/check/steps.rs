@@ -50,7 +50,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
         check.vector("p0", &slots.momentum_before, &known(&before.p))?;
         check.vector("p1", &known(&after.p), &slots.momentum_after)?;
         let known = node.map(Bounded::once);
-        let energy = system.convert::<Bounded>().discrete_energy(&known, Bounded::exact(place.h), &exact(&v));
+        let energy = system.steps::<Bounded>().discrete_energy(&known, Bounded::exact(place.h), &exact(&v));
         check.number("E1", energy.of(run.discrete_energy().unwrap_or(f64::NAN)), slots.energy_after)?;
     }
     check.finish(&["p1", "E1", "residual", "discrete energy", "p1 - p0"])
@@ -58,7 +58,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
 
 fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (node, bounded) = (sample.node(), system.convert::<Bounded>());
+    let (node, bounded) = (sample.node(), system.steps::<Bounded>());
     let (known, step, velocity) = (node.map(Bounded::exact), Bounded::exact(*h), exact(v));
     let (found, measured) = (system.momentum_equation(&node, *h, v), system.momentum_residual(&node, *h, v));
     let again = bounded.momentum_residual(&known, step, &velocity);
@@ -92,7 +92,7 @@ pub(super) struct Slots<const N: usize> {
 
 impl<const N: usize> Slots<N> {
     pub(super) fn between<S: Checked<N>>(system: &S, before: &State<N>, after: &State<N>) -> Self {
-        let bounded = system.convert::<Bounded>();
+        let bounded = system.steps::<Bounded>();
         let ends = Interval { t0: before.t, q0: before.q, t1: after.t, q1: after.q };
         let interval = between(&ends, Bounded::once);
         Self {

@@ -71,7 +71,7 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
 pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "reversibility");
     for sample in samples(system, place, &check)? {
-        let system = sample.system.convert::<Bounded>();
+        let system = sample.system.steps::<Bounded>();
         let (h, v) = (Bounded::exact(sample.h), exact(&sample.v));
         let start = bare(&sample).map(Bounded::exact);
         let start = Node { p: system.momentum_equation(&start, h, &v).residual, ..start };
@@ -125,7 +125,7 @@ struct Column<const N: usize> {
 
 impl<const N: usize> Column<N> {
     fn of<S: Checked<N>>(sample: &Sample<S, N>, column: usize) -> Self {
-        let system = sample.system.convert::<First>();
+        let system = sample.system.steps::<First>();
         let h = Dual::fixed(Bounded::exact(sample.h));
         let still = bare(sample).map(|number| Dual::fixed(Bounded::exact(number)));
         let (q, v) = (exact(&sample.q), exact(&sample.v));

@@ -13,7 +13,9 @@ use crate::integrator::Integrator;
 use crate::linear::{self, Matrix};
 use crate::node::Node;
 use crate::real::{Dual, Real, Slopes};
-use crate::stepping::{Convertible, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives};
+use crate::stepping::{
+    Convertible, Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
+};
 use nalgebra::{SMatrix, SVector};
 
 /// An integrator whose steps have derivatives.
@@ -139,14 +141,14 @@ fn vary<S, const N: usize>(
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError>
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
     // Borrowed: those of long systems are large.
     let derivatives = system.momentum_derivatives(node, h, v);
     let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = &derivatives;
     let inverse = residual_dv.inverse();
     for variations in variations.chunks_mut(TOGETHER) {
-        let explicit = Variation::varying_system(variations, system, node.t)?.map(|varied| {
+        let explicit = Variation::varying_steps(variations, system, node.t)?.map(|varied| {
             let node = Variation::in_time(variations, node);
             varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
         });
@@ -168,7 +170,7 @@ where
 
 impl<S, const N: usize> Differentiable<N> for FixedStep<S, N>
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         let v = self.v();
@@ -179,7 +181,7 @@ where
 
 impl<S, const N: usize> FixedStep<S, N>
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
     /// Second derivatives of the last step, which began at the node `before`: how the variation `one` of the node that it reached changes along
     /// `other`; coordinates, then momenta. The variations are those of `before`, and straight: they do not vary themselves.
@@ -204,7 +206,7 @@ where
         if directions.iter().any(|of| of.parameters.len() > S::PARAMETERS.len()) {
             return Err(more_parameters(before.t));
         }
-        let mut system = self.system().convert::<Along<Varied<1>, 1>>();
+        let mut system = self.system().steps::<Along<Varied<1>, 1>>();
         for (index, name) in S::PARAMETERS.iter().enumerate() {
             if let Some(parameter) = crate::lagrangian::Parameters::parameter_mut(&mut system, name) {
                 parameter.slope.0[0].value = one.parameters.get(index).copied().unwrap_or(0.0);
@@ -215,7 +217,7 @@ where
         let inner = Variation::node::<1>(other, before);
         let node = nested(&Variation::node(one, before), &inner);
         // The velocity as the other direction varies it; the dual numbers of the first differentiate its equation once more.
-        let plain = Variation::system::<_, 1>(other, self.system());
+        let plain = Variation::steps::<_, 1>(other, self.system());
         let equation = plain.momentum_equation(&inner, Dual::fixed(h), &v.map(Dual::fixed));
         let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(unsolved)?;
         let varied = v.zip_map(&change, |value, change| Dual { value, slope: -change.slope });
@@ -245,7 +247,7 @@ fn nested<const N: usize>(one: &Node<N, Varied<1>>, other: &Node<N, Varied<1>>) 
 
 impl<S, const N: usize> Differentiable<N> for Composition<S, N>
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
         if !self.has_parameters_of_last() {
@@ -264,8 +266,8 @@ where
 
 impl<S, const N: usize> Differentiable<N> for EnergyPreserving<S, N>
 where
-    S: EnergyStepping<N> + Convertible<N>,
-    S::In<Varied>: EnergyStepping<N, Varied>,
+    S: EnergyStepping<N> + Discretized<N>,
+    S::Steps<Varied>: EnergyStepping<N, Varied>,
 {
     const KEEPS_ENERGY: bool = true;
 
@@ -288,7 +290,7 @@ where
             solved(residual_dv, &inverse, residual_dh).ok_or_else(|| unsolved(residual_dv, residual_dh, before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
         for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = Variation::varying_system(variations, self.system(), before.t)?.map(|varied| {
+            let explicit = Variation::varying_steps(variations, self.system(), before.t)?.map(|varied| {
                 let node = Variation::in_time(variations, before);
                 varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
             });

@@ -26,7 +26,7 @@ where
         if !run.last.change.iter().all(|entry| entry.is_finite()) {
             run.last.change = SVector::zeros();
         }
-        checkpoint::Checkpoint::of(&self.system, run)
+        checkpoint::Checkpoint::of(&self.system, S::RULE, run)
     }
 
     /// The run that was at `checkpoint`.
@@ -35,7 +35,7 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
     /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, T>) -> Result<Self, StepError> {
-        let run = checkpoint.run_of(&system)?;
+        let run = checkpoint.run_of(&system, S::RULE)?;
         run.check()?;
         Ok(Self { system, run, failure: None })
     }

@@ -8,7 +8,7 @@ use crate::error::StepError;
 use crate::integrator::{Hermite, Integrator, Path, changed, own};
 use crate::node::Node;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use nalgebra::SVector;
 
 /// The motion over a step.
@@ -45,7 +45,7 @@ impl<const N: usize, const S: usize> Path<N> for Motion<N, S> {
 
 impl<S, const N: usize, const STAGES: usize> Integrator<N> for Gauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     type System = S;
     type Path = Motion<N, STAGES>;

@@ -61,7 +61,7 @@ use crate::error::StepError;
 use crate::fixed_step::check_step;
 use crate::node::Node;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use energies::energies;
 pub use integrator::Motion;
 use newton::Newton;
@@ -86,7 +86,7 @@ pub struct Gauss<S, const N: usize, const STAGES: usize> {
 
 impl<S, const N: usize, const STAGES: usize> Gauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// The integrator of `system` from `state` with the step `h`, in units of time.
     ///
@@ -102,7 +102,7 @@ where
     /// Everything that the run carries, and of which system with which parameters. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
         let linearization = self.newton.as_ref().and_then(|newton| newton.linearization());
-        checkpoint::Checkpoint::of(&self.system, Stored { run: self.run, linearization })
+        checkpoint::Checkpoint::of(&self.system, None, Stored { run: self.run, linearization })
     }
 
     /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.
@@ -111,7 +111,7 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
     /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
-        let Stored { run, linearization } = checkpoint.run_of(&system)?;
+        let Stored { run, linearization } = checkpoint.run_of(&system, None)?;
         check_step(run.h)?;
         let t = if run.node.t.is_finite() { run.node.t } else { 0.0 };
         run.node.check_finite(t)?;
@@ -286,7 +286,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Iterator for Gauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     type Item = Result<State<N>, StepError>;
 

@@ -23,13 +23,13 @@ use crate::lagrangian::Lagrangian;
 use crate::linear::{Matrix, row_by_row};
 use crate::node::Node;
 use crate::real::{Dual, Lane, Lanes};
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use nalgebra::SVector;
 use vi_dispatch::Loop;
 
 impl<S, const N: usize, const STAGES: usize> Differentiable<N> for Gauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// Allocates: the equations of all stages are one matrix.
     fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {

@@ -13,11 +13,11 @@ use crate::gauss::{Motion, Run};
 use crate::integrator::{Integrator, changed, own};
 use crate::node::Node;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 
 impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// Takes one fixed step of the length `h`, in units of time; the energy to preserve stays, with the work done. The next step follows as
     /// if the last one had its own length.
@@ -49,7 +49,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Integrator<N> for EnergyPreservingGauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     type System = S;
     type Path = Motion<N, STAGES>;

@@ -55,7 +55,7 @@ use crate::energy_preserving::fallback::{Phase, StepBounds};
 use crate::energy_preserving::{Fallback, Switches};
 use crate::error::StepError;
 use crate::state::{Method, State};
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use density::power;
 use run::Course;
 use stepper::Stepper;
@@ -71,7 +71,7 @@ pub struct EnergyPreservingGauss<S, const N: usize, const STAGES: usize> {
 
 impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// Takes one step and returns the state reached.
     ///
@@ -186,7 +186,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Iterator for EnergyPreservingGauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     type Item = Result<State<N>, StepError>;
 

@@ -10,7 +10,7 @@ use crate::energy_preserving::fallback::{Fallback, Phase, StepBounds, Switches, 
 use crate::error::StepError;
 use crate::gauss::{self, Gauss, Stored};
 use crate::state::Method;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 
 /// Everything that a run of [`EnergyPreservingGauss`] carries, to be stored and resumed bit for bit.
 pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoint<Run<N, STAGES>>;
@@ -155,11 +155,11 @@ impl Course {
 
 impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// Everything that the run carries, and of which system with which parameters. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
-        checkpoint::Checkpoint::of(&self.gauss.system, Run { gauss: self.gauss.run, course: self.course })
+        checkpoint::Checkpoint::of(&self.gauss.system, None, Run { gauss: self.gauss.run, course: self.course })
     }
 
     /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.

@@ -12,7 +12,7 @@ use crate::gauss::{Gauss, Run};
 use crate::lagrangian::Lagrangian;
 use crate::real::Rounded;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 
 /// The energy at a node.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +45,7 @@ pub(super) trait Solver<const N: usize, const S: usize> {
 
 impl<Y, const N: usize, const S: usize> Solver<N, S> for Gauss<Y, N, S>
 where
-    Y: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    Y: Collocation<N> + Convertible<N>,
 {
     fn run(&self) -> &Run<N, S> {
         &self.run

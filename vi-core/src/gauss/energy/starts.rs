@@ -14,7 +14,7 @@ use crate::error::StepError;
 use crate::gauss::Gauss;
 use crate::gauss::energies::energies;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 
 /// Times that the step is halved along which the step density is measured.
 const HALVINGS: u32 = 16;
@@ -23,7 +23,7 @@ const HELD: f64 = 0.01;
 
 impl<S, const N: usize, const STAGES: usize> EnergyPreservingGauss<S, N, STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// The integrator of `system` from `state`, whose first step has the length `h`, in units of time: it preserves the discrete energy of that
     /// step. So the energy differs by `C_s h^2s D_s` from H at the state.

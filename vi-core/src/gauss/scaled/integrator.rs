@@ -12,7 +12,7 @@ use crate::fixed_step::check_step;
 use crate::integrator::{Integrator, changed, own};
 use crate::node::Node;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 
 /// Trials of Δτ for a step of a given length in time.
 const TRIALS: u32 = 60;
@@ -21,7 +21,7 @@ const MISSED: f64 = 16.0;
 
 impl<S, const N: usize, const STAGES: usize> ScaledGauss<S, N, STAGES>
 where
-    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+    S: TimeScale<N> + Convertible<N>,
 {
     /// Takes one step of the length `h` in time instead of the next one; Δτ of the run stays. It is found by a few trials, each of which solves
     /// a step.
@@ -79,7 +79,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Integrator<N> for ScaledGauss<S, N, STAGES>
 where
-    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+    S: TimeScale<N> + Convertible<N>,
 {
     type System = S;
     type Path = Polynomial<N, STAGES>;

@@ -42,7 +42,7 @@ use crate::error::StepError;
 use crate::node::Node;
 use crate::real::{Lane, Real, Rounded};
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use equations::{Clock, Rates, Scaled};
 pub use path::Polynomial;
 pub use run::Run;
@@ -65,7 +65,7 @@ pub type Checkpoint<const N: usize, const STAGES: usize> = checkpoint::Checkpoin
 
 impl<S, const N: usize, const STAGES: usize> ScaledGauss<S, N, STAGES>
 where
-    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+    S: TimeScale<N> + Convertible<N>,
 {
     /// The integrator of `system` from `state` with the step `dtau`, in units of scaled time: the time over the unit of g.
     ///
@@ -85,7 +85,7 @@ where
 
     /// Everything that the run carries, and of which system with which parameters. Allocates.
     pub fn checkpoint(&self) -> Checkpoint<N, STAGES> {
-        checkpoint::Checkpoint::of(&self.system, self.run)
+        checkpoint::Checkpoint::of(&self.system, None, self.run)
     }
 
     /// The run that was at `checkpoint`, bit for bit, on a processor with the same instructions.
@@ -94,7 +94,7 @@ where
     /// [`StepError::OtherSystem`] for a checkpoint of another system or of other parameters; [`StepError::NonFinite`] and
     /// [`StepError::InvalidInput`] for one that no run can have left.
     pub fn restart(system: S, checkpoint: Checkpoint<N, STAGES>) -> Result<Self, StepError> {
-        let run = checkpoint.run_of(&system)?;
+        let run = checkpoint.run_of(&system, None)?;
         check_dtau(run.dtau)?;
         let t = if run.node.t.is_finite() { run.node.t } else { 0.0 };
         run.node.check_finite(t)?;
@@ -347,7 +347,7 @@ fn check_time_scale(t: f64, g: f64) -> Result<(), StepError> {
 
 impl<S, const N: usize, const STAGES: usize> Iterator for ScaledGauss<S, N, STAGES>
 where
-    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+    S: TimeScale<N> + Convertible<N>,
 {
     type Item = Result<State<N>, StepError>;
 
