@@ -329,6 +329,14 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::stepping::Convertible<1> for DampedOscillator<f64> {
+        type In<T: ::vi_core::real::Real> = DampedOscillator<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::real::Real>(&self) -> DampedOscillator<T> {
+            self.convert()
+        }
+    }
+
     impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<1, T>
     for DampedOscillator<T> {
         /// `ld = h*L`
@@ -770,10 +778,10 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::stepping::Convertible<1> for DampedOscillator<f64> {
-        type In<T: ::vi_core::real::Real> = DampedOscillator<T>;
+    impl ::vi_core::stepping::Discretized<1> for DampedOscillator<f64> {
+        type Steps<T: ::vi_core::real::Real> = DampedOscillator<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::real::Real>(&self) -> DampedOscillator<T> {
+        fn steps<T: ::vi_core::real::Real>(&self) -> DampedOscillator<T> {
             self.convert()
         }
     }

@@ -477,6 +477,14 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::stepping::Convertible<2> for DoublePendulum<f64> {
+        type In<T: ::vi_core::real::Real> = DoublePendulum<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::real::Real>(&self) -> DoublePendulum<T> {
+            self.convert()
+        }
+    }
+
     impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T>
     for DoublePendulum<T> {
         /// `ld = h*L`
@@ -1174,10 +1182,10 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::stepping::Convertible<2> for DoublePendulum<f64> {
-        type In<T: ::vi_core::real::Real> = DoublePendulum<T>;
+    impl ::vi_core::stepping::Discretized<2> for DoublePendulum<f64> {
+        type Steps<T: ::vi_core::real::Real> = DoublePendulum<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::real::Real>(&self) -> DoublePendulum<T> {
+        fn steps<T: ::vi_core::real::Real>(&self) -> DoublePendulum<T> {
             self.convert()
         }
     }

@@ -441,6 +441,14 @@ const _: () = {
 
     impl<T: ::vi_core::real::Real> ::vi_core::collocation::TimeScale<2, T>
     for Kepler<T> {}
+    impl ::vi_core::stepping::Convertible<2> for Kepler<f64> {
+        type In<T: ::vi_core::real::Real> = Kepler<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::real::Real>(&self) -> Kepler<T> {
+            self.convert()
+        }
+    }
+
     impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for Kepler<T> {
         /// `ld = h*L`
         ///
@@ -1010,10 +1018,10 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::stepping::Convertible<2> for Kepler<f64> {
-        type In<T: ::vi_core::real::Real> = Kepler<T>;
+    impl ::vi_core::stepping::Discretized<2> for Kepler<f64> {
+        type Steps<T: ::vi_core::real::Real> = Kepler<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::real::Real>(&self) -> Kepler<T> {
+        fn steps<T: ::vi_core::real::Real>(&self) -> Kepler<T> {
             self.convert()
         }
     }

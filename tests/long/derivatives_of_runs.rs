@@ -6,7 +6,7 @@ use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangen
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::Dual;
-use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::stepping::{Convertible, Discretized, FixedStepping};
 use vi_core::{
     Composition, EnergyPreserving, FixedStep, Gauss, Integrator, SVector, Scheme, State, StepError, nalgebra,
 };
@@ -43,7 +43,7 @@ fn defect(map: &DMatrix<f64>) -> f64 {
 
 fn is_symplectic<S, const N: usize>(system: S, q: [f64; N], v: [f64; N], h: f64) -> f64
 where
-    S: Convertible<N> + FixedStepping<N> + vi_core::collocation::Collocation<N>,
+    S: Discretized<N> + vi_core::collocation::Collocation<N>,
 {
     let start = State::at(&system, 0.3, q, v);
     let (_, fixed) = tangent_map(FixedStep::new(system, start, h).expect("valid"), 20);

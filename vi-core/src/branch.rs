@@ -7,7 +7,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub enum Branch {
+pub(crate) enum Branch {
     /// The root that Newton's iteration reaches from the velocity of the last step, or extrapolated over the last ones. It
     /// depends on the steps before, and on nothing else.
     #[default]

@@ -11,8 +11,8 @@ use crate::real::Real;
 use crate::rules::{By, Own, Rule};
 use crate::state::Interval;
 use crate::stepping::{
-    Batch, Convertible, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
-    MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
+    Batch, Convertible, Discretized, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem,
+    FixedStepping, MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
 use nalgebra::SVector;
 
@@ -285,7 +285,7 @@ impl<const N: usize, T: Real, S: TimeScale<N, T>, R: Rule> TimeScale<N, T> for B
 // Whether it has one is asked when a run begins.
 impl<const N: usize, T: Real, S: Collocation<N, T>> TimeScale<N, T> for Called<S> {}
 
-impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N, R> for &S {
+impl<const N: usize, S: Convertible<N>> Convertible<N> for &S {
     type In<T: Real> = S::In<T>;
     const SIDE_BY_SIDE: bool = S::SIDE_BY_SIDE;
 
@@ -305,7 +305,7 @@ impl<const N: usize, S: Convertible<N>> Convertible<N> for Called<S> {
     }
 }
 
-impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N> for By<S, R> {
+impl<const N: usize, S: Convertible<N>, R: Rule> Convertible<N> for By<S, R> {
     type In<T: Real> = By<S::In<T>, R>;
     const SIDE_BY_SIDE: bool = S::SIDE_BY_SIDE;
 
@@ -314,9 +314,35 @@ impl<const N: usize, S: Convertible<N, R>, R: Rule> Convertible<N> for By<S, R> 
     }
 }
 
+impl<const N: usize, S: Discretized<N, R>, R: Rule> Discretized<N, R> for &S {
+    type Steps<T: Real> = S::Steps<T>;
+
+    #[inline(always)]
+    fn steps<T: Real>(&self) -> Self::Steps<T> {
+        S::steps(self)
+    }
+}
+
+impl<const N: usize, S: Discretized<N>> Discretized<N> for Called<S> {
+    type Steps<T: Real> = Called<S::Steps<T>>;
+
+    fn steps<T: Real>(&self) -> Self::Steps<T> {
+        Called(self.0.steps())
+    }
+}
+
+impl<const N: usize, S: Discretized<N, R>, R: Rule> Discretized<N> for By<S, R> {
+    type Steps<T: Real> = By<S::Steps<T>, R>;
+
+    #[inline(always)]
+    fn steps<T: Real>(&self) -> Self::Steps<T> {
+        By::new(self.system().steps(), self.rule())
+    }
+}
+
 impl<const N: usize, S, R: Rule> Batch<N> for By<S, R>
 where
-    S: Batch<N> + FixedStepping<N, f64, R> + Convertible<N, R>,
+    S: Batch<N> + Discretized<N, R>,
 {
     type Rows<const W: usize> = (S::Rows<W>, R);
 

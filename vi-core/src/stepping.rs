@@ -83,9 +83,9 @@ pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<
 }
 
 /// A system that can be evaluated in other kinds of numbers, as every generated one can.
-pub trait Convertible<const N: usize, R = Own> {
+pub trait Convertible<const N: usize> {
     /// The same system in the numbers T.
-    type In<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R> + Parameters<T>;
+    type In<T: Real>: Collocation<N, T> + Parameters<T>;
     /// Whether Gauss steps evaluate their stages side by side, in vectors, with a copy for each set of instructions.
     const SIDE_BY_SIDE: bool = true;
 
@@ -93,8 +93,23 @@ pub trait Convertible<const N: usize, R = Own> {
     fn convert<T: Real>(&self) -> Self::In<T>;
 }
 
+/// A system that takes steps by the rule R in every kind of number, as a generated one does by the rules of its `discretize`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` takes no steps by the rule `{R}`",
+    note = "a system takes steps by the rules that it is declared with, as `discretize midpoint, trapezoidal;`"
+)]
+pub trait Discretized<const N: usize, R = Own>:
+    FixedStepping<N, f64, R> + DiscreteLagrangian<N, f64, R> + Convertible<N>
+{
+    /// The same system in the numbers T.
+    type Steps<T: Real>: Collocation<N, T> + FixedStepping<N, T, R> + DiscreteLagrangian<N, T, R> + Parameters<T>;
+
+    /// The same system, every parameter rounded to T.
+    fn steps<T: Real>(&self) -> Self::Steps<T>;
+}
+
 /// A system of which many can be integrated at once, each with its own parameters.
-pub trait Batch<const N: usize>: FixedStepping<N> + Convertible<N> + Send + Sync {
+pub trait Batch<const N: usize>: Discretized<N> + Send + Sync {
     /// The parameters of W systems, side by side.
     type Rows<const W: usize>: Clone + core::fmt::Debug + Send + Sync;
 

@@ -179,9 +179,9 @@ fn trajectory<S: Batch<N>, const N: usize, const FUSED: bool>(
     elapsed: Elapsed,
     before: &Nodes<N>,
     lane: LaneIndex,
-) -> Trajectory<N, FUSED, S::In<Lane<FUSED>>> {
+) -> Trajectory<N, FUSED, S::Steps<Lane<FUSED>>> {
     Trajectory {
-        system: S::from_rows(&fixed.systems[lane.half], lane.index).convert(),
+        system: S::from_rows(&fixed.systems[lane.half], lane.index).steps(),
         node: before.get(lane, elapsed.since(fixed.t.get(lane))),
         h: Lane::new(fixed.h),
         remainder: before.remainder.get(lane),

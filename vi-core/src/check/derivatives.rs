@@ -68,7 +68,7 @@ fn continuous<const N: usize, S: Checked<N>>(
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, t, q, v, .. } = sample;
-    let (bounded, dual, second) = (system.convert::<Bounded>(), system.convert::<First>(), system.convert::<Second>());
+    let (bounded, dual, second) = (system.steps::<Bounded>(), system.steps::<First>(), system.steps::<Second>());
     let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
     let momentum =
         SVector::from_fn(|i, _| dual.lagrangian(Dual::fixed(time), &lift(&place), &along(&velocity, &unit(i))).slope);
@@ -114,9 +114,9 @@ pub(super) fn matrix<const N: usize>(
 
 fn point<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let Sample { system, t, q, v, .. } = sample;
-    let (bounded, dual) = (system.convert::<Bounded>(), system.convert::<First>());
+    let (bounded, dual) = (system.steps::<Bounded>(), system.steps::<First>());
     let (time, place, velocity) = (Bounded::exact(*t), exact(q), exact(v));
-    let found = system.convert::<f64>().point_derivatives(*t, q, v);
+    let found = system.steps::<f64>().point_derivatives(*t, q, v);
     let again = bounded.point_derivatives(time, &place, &velocity);
     let at = |q: &SVector<First, N>, v: &SVector<First, N>| dual.point(Dual::fixed(time), q, v);
     let by_q = array::from_fn(|j| at(&along(&place, &unit(j)), &lift(&velocity)));
@@ -131,7 +131,7 @@ fn point<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Compa
 
 fn step<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
+    let (node, bounded, dual) = (sample.node(), system.steps::<Bounded>(), system.steps::<First>());
     let known = node.map(Bounded::exact);
     let lifted = known.map(Dual::fixed);
     let (step, velocity) = (Bounded::exact(*h), exact(v));

@@ -19,7 +19,7 @@ use super::report::{CheckFailure, Report};
 use super::sample::Course;
 use super::steps::{SOLVED, Slots};
 use super::subject::{EnergyChecked, Place, STEPS};
-use crate::energy_preserving::EnergyPreserving;
+use crate::method::EnergyPreserving;
 use crate::lagrangian::Lagrangian;
 use crate::node::Node;
 use crate::state::State;
@@ -61,13 +61,14 @@ pub fn energy<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>)
 fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "energy");
     let Place { t, q, v, h } = *place;
-    let bounded = system.convert::<Bounded>();
+    let bounded = system.steps::<Bounded>();
     let mut run = EnergyPreserving::from_midpoint(system, t, q, v, h).map_err(|error| check.step(error))?;
     let first = run.state();
     let mut moved = 0.0_f64;
     for _ in 0..STEPS {
-        let (before, carried) = (run.state(), run.discrete_energy());
-        let step = run.step().map_err(|error| check.step(error))?;
+        let (before, carried) = (run.state(), run.node().energy);
+        run.step().map_err(|error| check.step(error))?;
+        let step = run.last_step();
         let (t, q, v) = step.midpoint;
         let rounding = system.extended_rounding(&Node::new(before, 0.0), step.h, &v);
         // What the solved equations may leave, and the end may miss by, for the rounding of the start.

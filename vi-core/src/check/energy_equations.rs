@@ -44,7 +44,7 @@ fn rows<const N: usize, S: EnergyChecked<N>>(
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (node, bounded) = (sample.node(), system.convert::<Bounded>());
+    let (node, bounded) = (sample.node(), system.steps::<Bounded>());
     let (known, step, velocity) = (node.map(Bounded::exact), Bounded::exact(*h), exact(v));
     let (found, measured) = (system.extended_system(&node, *h, v), system.extended_residual(&node, *h, v));
     let again = bounded.extended_residual(&known, step, &velocity);
@@ -73,7 +73,7 @@ fn derivatives<const N: usize, S: EnergyChecked<N>>(
     check: &mut Comparison,
 ) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (node, bounded, dual) = (sample.node(), system.convert::<Bounded>(), system.convert::<First>());
+    let (node, bounded, dual) = (sample.node(), system.steps::<Bounded>(), system.steps::<First>());
     let known = node.map(Bounded::exact);
     let lifted = known.map(Dual::fixed);
     let (step, velocity) = (Bounded::exact(*h), exact(v));

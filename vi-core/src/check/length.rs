@@ -46,7 +46,7 @@ pub(super) fn solved<const N: usize, S: EnergyChecked<N>>(
     v: &SVector<f64, N>,
 ) -> Option<Solved> {
     let h = Bounded::exact(h);
-    let equations = system.convert::<Bounded>().extended_system(node, h, &exact(v));
+    let equations = system.steps::<Bounded>().extended_system(node, h, &exact(v));
     let ExtendedSystem { momentum, residual_dh, energy_residual, energy_dv, energy_dh } = equations;
     let both = SMatrix::<Bounded, N, 2>::from_columns(&[momentum.residual, residual_dh]);
     let eliminated = linear::solve(&momentum.jacobian, &both)?;

@@ -21,7 +21,8 @@ use super::report::{CheckFailure, Report};
 use super::sample::Course;
 use super::subject::{Checked, Place, STEPS};
 use crate::error::StepError;
-use crate::fixed_step::FixedStep;
+use crate::method::FixedStep;
+use crate::run::Starts;
 use crate::state::State;
 use nalgebra::SVector;
 
@@ -117,7 +118,7 @@ impl<const N: usize> Path<N> {
         let parts = 1_u32 << halvings;
         let Some((first, others)) = self.states.split_first() else { return Ok(vec![]) };
         let start = State::at(system, first.t, first.q, first.v);
-        let mut run = FixedStep::new(system, start, self.h / f64::from(parts))?;
+        let mut run = system.at_state(start).integrate(FixedStep, self.h / f64::from(parts))?;
         let error = |state: &Motion<N>| {
             let mut reached = run.step()?;
             for _ in 1..parts {

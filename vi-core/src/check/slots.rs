@@ -51,7 +51,7 @@ pub(super) fn between<const N: usize, T: Real>(interval: &Interval<N>, number: i
 
 fn by_slot<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let (system, interval) = (&sample.system, sample.interval());
-    let (bounded, dual) = (system.convert::<Bounded>(), system.convert::<First>());
+    let (bounded, dual) = (system.steps::<Bounded>(), system.steps::<First>());
     let known = between(&interval, Bounded::exact);
     let still = between(&interval, |number| Dual::fixed(Bounded::exact(number)));
     let Interval { t0, q0, t1, q1 } = known;
@@ -69,7 +69,7 @@ fn by_slot<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Com
 /// What L_d, f_d and g_d are to a part of the step, and what to a smaller one: nearer to L, f and −f·v by [`FALL`], or equal
 /// to rounding.
 fn limits<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
-    let system = sample.system.convert::<Bounded>();
+    let system = sample.system.steps::<Bounded>();
     let pairs = |part: f64| {
         let interval = between(&sample.about(part), Bounded::exact);
         let Interval { t0, q0, t1, q1 } = &interval;

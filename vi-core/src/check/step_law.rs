@@ -18,7 +18,7 @@ use super::length;
 use super::report::{CheckFailure, Report};
 use super::sample::Course;
 use super::subject::{EnergyChecked, Place, STEPS};
-use crate::energy_preserving::EnergyPreserving;
+use crate::method::EnergyPreserving;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::node::Node;
@@ -95,8 +95,9 @@ fn deviations<const N: usize, S: EnergyChecked<N>>(
     let mut squares = [Measured { quantity: 0.0, rounding: 0.0 }; 2];
     let mut passed = 0.0;
     while passed < span {
-        let node = Node::new(run.state(), run.discrete_energy());
-        let step = run.step().map_err(|error| check.step(error))?;
+        let node = Node::new(run.state(), run.node().energy);
+        run.step().map_err(|error| check.step(error))?;
+        let step = run.last_step();
         let here = density(system, &step.midpoint).map_err(|error| check.step(error))?;
         let solved = length::solved(system, &node.map(Bounded::once), step.h, &step.midpoint.2);
         let solved = solved.ok_or_else(|| check.step(singular(step.t)))?;
@@ -127,6 +128,6 @@ fn density<const N: usize, S: EnergyChecked<N>>(
     system: &S,
     (t, q, v): &(f64, SVector<f64, N>, SVector<f64, N>),
 ) -> Result<Bounded, StepError> {
-    let bound = system.convert::<Bounded>().step_density(Bounded::once(*t), &once(q), &exact(v))?;
+    let bound = system.steps::<Bounded>().step_density(Bounded::once(*t), &once(q), &exact(v))?;
     Ok(bound.of(system.step_density(*t, q, v)?))
 }

@@ -17,7 +17,8 @@ use super::sample::{Sample, samples};
 use super::slots::between;
 use super::subject::{Checked, Place};
 use crate::discrete::DiscreteLagrangian;
-use crate::fixed_step::FixedStep;
+use crate::method::FixedStep;
+use crate::run::Starts;
 use crate::node::Node;
 use crate::state::{Interval, State};
 use crate::stepping::FixedStepping;
@@ -39,7 +40,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
         equations(&sample, &mut check)?;
     }
     let start = State::at(system, place.t, place.q, place.v);
-    let mut run = FixedStep::new(system, start, place.h).map_err(|error| check.step(error))?;
+    let mut run = system.at_state(start).integrate(FixedStep, place.h).map_err(|error| check.step(error))?;
     for _ in 0..TAKEN {
         let before = run.state();
         let after = run.step().map_err(|error| check.step(error))?;
@@ -50,7 +51,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
         check.vector("p0", &slots.momentum_before, &known(&before.p))?;
         check.vector("p1", &known(&after.p), &slots.momentum_after)?;
         let known = node.map(Bounded::once);
-        let energy = system.convert::<Bounded>().discrete_energy(&known, Bounded::exact(place.h), &exact(&v));
+        let energy = system.steps::<Bounded>().discrete_energy(&known, Bounded::exact(place.h), &exact(&v));
         check.number("E1", energy.of(run.discrete_energy().unwrap_or(f64::NAN)), slots.energy_after)?;
     }
     check.finish(&["p1", "E1", "residual", "discrete energy", "p1 - p0"])
@@ -58,7 +59,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
 
 fn equations<const N: usize, S: Checked<N>>(sample: &Sample<S, N>, check: &mut Comparison) -> Result<(), CheckFailure> {
     let Sample { system, v, h, .. } = sample;
-    let (node, bounded) = (sample.node(), system.convert::<Bounded>());
+    let (node, bounded) = (sample.node(), system.steps::<Bounded>());
     let (known, step, velocity) = (node.map(Bounded::exact), Bounded::exact(*h), exact(v));
     let (found, measured) = (system.momentum_equation(&node, *h, v), system.momentum_residual(&node, *h, v));
     let again = bounded.momentum_residual(&known, step, &velocity);
@@ -92,7 +93,7 @@ pub(super) struct Slots<const N: usize> {
 
 impl<const N: usize> Slots<N> {
     pub(super) fn between<S: Checked<N>>(system: &S, before: &State<N>, after: &State<N>) -> Self {
-        let bounded = system.convert::<Bounded>();
+        let bounded = system.steps::<Bounded>();
         let ends = Interval { t0: before.t, q0: before.q, t1: after.t, q1: after.q };
         let interval = between(&ends, Bounded::once);
         Self {

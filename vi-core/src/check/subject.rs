@@ -1,10 +1,9 @@
 //! What is checked: a system in any kind of number, and a place where it is well behaved.
 
 use super::bounded::Bounded;
-use crate::discrete::DiscreteLagrangian;
 use crate::lagrangian::Parameters;
 use crate::real::dual::Dual;
-use crate::stepping::{Convertible, EnergyStepping, FixedStepping};
+use crate::stepping::{Discretized, EnergyStepping};
 use nalgebra::SVector;
 
 /// Steps of the place's length over which the motion from there is followed.
@@ -26,25 +25,23 @@ pub struct Place<const N: usize> {
 }
 
 /// A system that can be checked, as every generated one can.
-pub trait Checked<const N: usize>: FixedStepping<N> + DiscreteLagrangian<N> + Convertible<N> + Parameters {}
+pub trait Checked<const N: usize>: Discretized<N> + Parameters {}
 
-impl<const N: usize, S: FixedStepping<N> + DiscreteLagrangian<N> + Convertible<N> + Parameters> Checked<N> for S {}
+impl<const N: usize, S: Discretized<N> + Parameters> Checked<N> for S {}
 
-/// Such a system with energy-preserving steps. Rust 1.89 takes one bound on `In` for each number, not two in one.
+/// Such a system with energy-preserving steps. Rust 1.89 takes one bound on `Steps` for each number, not two in one.
 pub trait EnergyChecked<const N: usize>:
     EnergyStepping<N>
-    + DiscreteLagrangian<N>
     + Parameters
-    + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>>
-    + Convertible<N, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
+    + Discretized<N, Steps<Bounded>: EnergyStepping<N, Bounded>>
+    + Discretized<N, Steps<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
 {
 }
 
 impl<const N: usize, S> EnergyChecked<N> for S where
     S: EnergyStepping<N>
-        + DiscreteLagrangian<N>
         + Parameters
-        + Convertible<N, In<Bounded>: EnergyStepping<N, Bounded>>
-        + Convertible<N, In<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
+        + Discretized<N, Steps<Bounded>: EnergyStepping<N, Bounded>>
+        + Discretized<N, Steps<Dual<Bounded>>: EnergyStepping<N, Dual<Bounded>>>
 {
 }

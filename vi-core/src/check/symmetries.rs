@@ -16,7 +16,8 @@ use super::derivatives::First;
 use super::report::{CheckFailure, Report};
 use super::sample::{Sample, samples};
 use super::subject::{Checked, Place, STEPS};
-use crate::fixed_step::FixedStep;
+use crate::method::FixedStep;
+use crate::run::Starts;
 use crate::node::Node;
 use crate::real::dual::Dual;
 use crate::real::dual::{along, lift, slopes, unit};
@@ -36,7 +37,7 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
     }
     let cyclic = || (0..N).filter(|index| S::CYCLIC[*index]);
     let start = State::at(system, place.t, place.q, place.v);
-    let mut run = FixedStep::new(system, start, place.h).map_err(|error| check.step(error))?;
+    let mut run = system.at_state(start).integrate(FixedStep, place.h).map_err(|error| check.step(error))?;
     for _ in 0..STEPS {
         let state = run.step().map_err(|error| check.step(error))?;
         for index in cyclic() {
@@ -71,7 +72,7 @@ pub fn momenta<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> R
 pub fn reversibility<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let mut check = Comparison::new(S::NAME, "reversibility");
     for sample in samples(system, place, &check)? {
-        let system = sample.system.convert::<Bounded>();
+        let system = sample.system.steps::<Bounded>();
         let (h, v) = (Bounded::exact(sample.h), exact(&sample.v));
         let start = bare(&sample).map(Bounded::exact);
         let start = Node { p: system.momentum_equation(&start, h, &v).residual, ..start };
@@ -125,7 +126,7 @@ struct Column<const N: usize> {
 
 impl<const N: usize> Column<N> {
     fn of<S: Checked<N>>(sample: &Sample<S, N>, column: usize) -> Self {
-        let system = sample.system.convert::<First>();
+        let system = sample.system.steps::<First>();
         let h = Dual::fixed(Bounded::exact(sample.h));
         let still = bare(sample).map(|number| Dual::fixed(Bounded::exact(number)));
         let (q, v) = (exact(&sample.q), exact(&sample.v));

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! z the time, coordinates and momenta, and the energy E that an energy-preserving run keeps. Parameters change as by
-//! [`crate::Integrator::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
+//! [`Run::set_parameters`]: there E gains `H(z, θ_k) − H(z, θ_{k−1})`, and of H at fixed v is `δH = v·δp − δL`.
 //!
 //! The run is kept at every √K-th node and taken again between them: memory for `2 √K` runs, and one more run of work (Griewank and Walther, *Evaluating
 //! Derivatives*, chapter 12). Where the caller allows for all nodes, nothing is taken again. Of each step 2N directions are followed, that of the energy and that of
@@ -17,8 +17,10 @@ use super::steps::Differentiable;
 use super::variation::{TOGETHER, Variation};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
+use crate::method::Method;
 use crate::node::Node;
 use crate::real::Dual;
+use crate::run::Run;
 use crate::state::State;
 use crate::stepping::Convertible;
 use nalgebra::SVector;
@@ -52,12 +54,12 @@ impl<const N: usize> Covector<N> {
 }
 
 /// What a run is for: a sum of functions of its nodes, and the inputs on the way.
-pub trait Objective<I, const N: usize> {
+pub trait Objective<M: Method<S, N>, S, const N: usize> {
     /// Sets the inputs of the step from the node `step`, before it is taken. It has to do the same whenever it is asked.
     ///
     /// # Errors
-    /// That of [`crate::Integrator::set_parameters`].
-    fn prepare(&self, _step: u64, _run: &mut I) -> Result<(), StepError> {
+    /// That of [`Run::set_parameters`].
+    fn prepare(&self, _step: u64, _run: &mut Run<M, S, N>) -> Result<(), StepError> {
         Ok(())
     }
     /// Names of the parameters with respect to which the gradient is wanted: a column each.
@@ -84,16 +86,17 @@ pub struct Gradient<const N: usize> {
 /// # Errors
 /// That of the step that fails, of its derivative, or of its inputs; [`StepError::UnknownParameter`] for a name that no parameter has; [`StepError::NonFinite`] where the gradient is beyond the range of numbers, or a slope of the objective is
 /// no number.
-pub fn gradient<I, const N: usize>(
-    run: &I,
+pub fn gradient<M, S, const N: usize>(
+    run: &Run<M, S, N>,
     steps: u64,
     kept: usize,
-    objective: &impl Objective<I, N>,
+    objective: &impl Objective<M, S, N>,
 ) -> Result<Gradient<N>, StepError>
 where
-    I: Differentiable<N>,
+    M: Differentiable<S, N>,
+    S: Convertible<N> + Lagrangian<N> + Copy,
 {
-    let named = objective.parameters().iter().map(|name| Variation::of_parameter::<I::System>(name));
+    let named = objective.parameters().iter().map(|name| Variation::of_parameter::<S>(name));
     let of_parameters: Vec<_> = named.collect::<Result<_, _>>()?;
     let stride = stride(steps, kept);
     let mut stations = vec![run.clone()];
@@ -107,10 +110,10 @@ where
     }
     let mut slope = finite(objective.slope(steps, &ahead.state()), ahead.t())?;
     let mut directions = Variation::of_state();
-    if I::KEEPS_ENERGY {
+    if M::KEEPS_ENERGY {
         directions.push(Variation { energy: 1.0, ..Variation::zero() });
     }
-    let is_autonomous = <I::System as Lagrangian<N>>::AUTONOMOUS;
+    let is_autonomous = S::AUTONOMOUS;
     if !is_autonomous {
         directions.push(Variation { t: 1.0, ..Variation::zero() });
     }
@@ -135,7 +138,7 @@ where
             after.vary(before.node(), &mut variations)?;
             changes.clear();
             changes.extend(variations.iter().map(|variation| slope.of(variation)));
-            if I::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
+            if M::KEEPS_ENERGY && (are_varied || !have_equal_parameters(before.system(), after.system())) {
                 let state = before.state();
                 let gained = changes_of_energy(after.system(), &state, &directions)?;
                 let lost = changes_of_energy(before.system(), &state, &directions)?;
@@ -148,7 +151,7 @@ where
                     *change += of_energy * gained[index] - lost;
                 }
             }
-            let (mut back, of_parameters) = sorted::<I, N>(&changes);
+            let (mut back, of_parameters) = sorted::<M, S, N>(&changes);
             if is_autonomous {
                 // A motion that begins later is the same motion.
                 back.t = slope.t;
@@ -189,12 +192,12 @@ fn stride(steps: u64, kept: usize) -> u64 {
 }
 
 /// The runs at the nodes between `first`, where a run is given, and `last`.
-fn between<I: Differentiable<N>, const N: usize>(
-    start: &I,
+fn between<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+    start: &Run<M, S, N>,
     first: u64,
     last: u64,
-    objective: &impl Objective<I, N>,
-) -> Result<Vec<I>, StepError> {
+    objective: &impl Objective<M, S, N>,
+) -> Result<Vec<Run<M, S, N>>, StepError> {
     let inner = first..last.saturating_sub(1);
     if inner.is_empty() {
         return Ok(Vec::new());
@@ -236,12 +239,12 @@ where
 }
 
 /// What a number changes by in all directions, sorted: the covector at the start of a step, and the changes by the parameters of the step.
-fn sorted<I: Differentiable<N>, const N: usize>(changes: &[f64]) -> (Covector<N>, Vec<f64>) {
+fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(changes: &[f64]) -> (Covector<N>, Vec<f64>) {
     let mut changes = changes.iter().copied();
     let mut next = || changes.next().unwrap_or(0.0);
     let q = SVector::from_fn(|_, _| next());
     let p = SVector::from_fn(|_, _| next());
-    let energy = if I::KEEPS_ENERGY { next() } else { 0.0 };
-    let t = if <I::System as Lagrangian<N>>::AUTONOMOUS { 0.0 } else { next() };
+    let energy = if M::KEEPS_ENERGY { next() } else { 0.0 };
+    let t = if S::AUTONOMOUS { 0.0 } else { next() };
     (Covector { t, q, p, energy }, changes.collect())
 }

@@ -15,11 +15,14 @@ use super::tangent::Tangent;
 use super::variation::Variation;
 use crate::compensated;
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::method::Method;
+use crate::run::Run;
 
 /// Estimates of the largest Lyapunov exponents along a run: mean rates at which its directions grow.
 #[derive(Clone, Debug)]
-pub struct Lyapunov<I, const N: usize> {
-    tangent: Tangent<I, N>,
+pub struct Lyapunov<M: Method<S, N>, S, const N: usize> {
+    tangent: Tangent<M, S, N>,
     start: f64,
     /// The time up to which growth is summed.
     end: f64,
@@ -27,12 +30,12 @@ pub struct Lyapunov<I, const N: usize> {
     growth: Vec<(f64, f64)>,
 }
 
-impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
+impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Lyapunov<M, S, N> {
     /// The `count` largest exponents of a run. The first directions are fixed, so that two runs give the same.
     ///
     /// # Errors
     /// [`StepError::InvalidInput`] unless `count` is 1 to 2N.
-    pub fn new(run: I, count: usize) -> Result<Self, StepError> {
+    pub fn new(run: Run<M, S, N>, count: usize) -> Result<Self, StepError> {
         if count == 0 || count > 2 * N {
             #[allow(clippy::cast_precision_loss)] // for the message
             let value = count as f64;
@@ -77,7 +80,7 @@ impl<I: Differentiable<N>, const N: usize> Lyapunov<I, N> {
     }
 
     /// The run.
-    pub fn run(&self) -> &I {
+    pub fn run(&self) -> &Run<M, S, N> {
         self.tangent.run()
     }
 }

@@ -14,7 +14,7 @@
 //! | file | what it gives |
 //! |---|---|
 //! | `variation` | directions, and the dual numbers that they are |
-//! | `steps` | variations of one step, for each integrator |
+//! | `steps` | variations of one step, for each method |
 //! | `tangent` | variations along a run |
 //! | `adjoint` | the gradient of what a run ends in, by one sweep backwards |
 //! | `lyapunov` | Lyapunov exponents |

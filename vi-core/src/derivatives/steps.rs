@@ -1,35 +1,48 @@
-//! Variations of one step, for each integrator; those of a Gauss step stand with its stages (`gauss/variation.rs`).
+//! Variations of one step, for each method; those of a Gauss step stand with its stages (`gauss/variation.rs`).
 //!
-//! In: an integrator after a step, the node at which the step began, variations of that node. Out: those of the node reached. The unknowns of the step are at
+//! In: a run after a step, the node at which the step began, variations of that node. Out: those of the node reached. The unknowns of the step are at
 //! hand, and its system says how the equations change with them and with the coordinates of the node. How they change with the time and with parameters dual numbers
 //! say, where one of the directions asks for it.
 
 use super::variation::{TOGETHER, Variation, Varied, more_parameters, not_finite};
-use crate::composition::Composition;
-use crate::energy_preserving::{EnergyPreserving, Fallback};
+use crate::energy_preserving::interval::Last;
 use crate::error::StepError;
-use crate::fixed_step::FixedStep;
-use crate::integrator::Integrator;
+use crate::lagrangian::Lagrangian;
 use crate::linear::{self, Matrix};
+use crate::method::{Composition, Connected, EnergyPreserving, Fallback, FixedStep, Method};
+use crate::momentum::steps::Steps;
 use crate::node::Node;
 use crate::real::{Dual, Real, Slopes};
-use crate::stepping::{Convertible, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives};
+use crate::run::Run;
+use crate::stepping::{
+    Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
+};
 use nalgebra::{SMatrix, SVector};
 
-/// An integrator whose steps have derivatives.
-pub trait Differentiable<const N: usize>: Integrator<N, System: Convertible<N>> {
+/// A method whose steps have derivatives.
+pub trait Differentiable<S: Lagrangian<N> + Copy, const N: usize>: Method<S, N> {
     /// Whether the energy that the run keeps is a variable beside coordinates and momenta.
     const KEEPS_ENERGY: bool = false;
 
-    /// Turns variations of the node `before`, at which the last step began, into those of the node that it reached.
-    ///
-    /// The step is the one that [`Integrator::step`] took last.
+    /// [`Run::vary`].
     ///
     /// # Errors
-    /// [`StepError::Singular`] where the equations of the step do not determine how its solution varies; [`StepError::NonFinite`] where its derivative is infinite, or beyond the
-    /// range of numbers; [`StepError::NoDerivative`] where `before` is not the node at which the last step began, the parameters have changed since, or a variation has more
-    /// parameters than the system.
-    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
+    /// As there.
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError>;
+}
+
+impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
+    /// Turns variations of the node `before`, at which the last step began, into those of the node that it reached.
+    ///
+    /// The step is the one that [`Run::step`] took last.
+    ///
+    /// # Errors
+    /// [`StepError::Singular`] if the equations of the step do not determine how its solution varies; [`StepError::NonFinite`] if its derivative is infinite, or beyond
+    /// the range of numbers; [`StepError::NoDerivative`] if `before` is not the node at which the last step began, the parameters have changed since, or a variation has
+    /// more parameters than the system.
+    pub fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        M::vary(self, before, variations)
+    }
 }
 
 /// The derivative of the equations of a step cannot be inverted.
@@ -139,14 +152,14 @@ fn vary<S, const N: usize>(
     variations: &mut [Variation<N>],
 ) -> Result<(), StepError>
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
     // Borrowed: those of long systems are large.
     let derivatives = system.momentum_derivatives(node, h, v);
     let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = &derivatives;
     let inverse = residual_dv.inverse();
     for variations in variations.chunks_mut(TOGETHER) {
-        let explicit = Variation::varying_system(variations, system, node.t)?.map(|varied| {
+        let explicit = Variation::varying_steps(variations, system, node.t)?.map(|varied| {
             let node = Variation::in_time(variations, node);
             varied.momentum_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
         });
@@ -166,20 +179,39 @@ where
     Variation::check_finite(variations, node.t)
 }
 
-impl<S, const N: usize> Differentiable<N> for FixedStep<S, N>
+impl<S, const N: usize> Differentiable<S, N> for FixedStep
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
-    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let v = self.v();
-        check_last(before, (self.h(), &v), self.node(), self.has_parameters_of_last())?;
-        vary(self.system(), before, self.h(), &v, variations)
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        vary_fixed(run, run.memory.steps.v(), run.memory.steps.has_parameters_of_last(), before, variations)
     }
 }
 
-impl<S, const N: usize> FixedStep<S, N>
+impl<S, const N: usize> Differentiable<S, N> for Connected
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
+{
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        vary_fixed(run, run.memory.steps.v(), run.memory.steps.has_parameters_of_last(), before, variations)
+    }
+}
+
+/// Variations of the step that led a run to its node with the velocity v.
+fn vary_fixed<M: Method<S, N>, S: Discretized<N>, const N: usize>(
+    run: &Run<M, S, N>,
+    v: SVector<f64, N>,
+    has_its_parameters: bool,
+    before: &Node<N>,
+    variations: &mut [Variation<N>],
+) -> Result<(), StepError> {
+    check_last(before, (run.h, &v), &run.node, has_its_parameters)?;
+    vary(&run.system, before, run.h, &v, variations)
+}
+
+impl<S, const N: usize> Run<FixedStep, S, N>
+where
+    S: Discretized<N>,
 {
     /// Second derivatives of the last step, which began at the node `before`: how the variation `one` of the node that it reached changes along
     /// `other`; coordinates, then momenta. The variations are those of `before`, and straight: they do not vary themselves.
@@ -192,8 +224,8 @@ where
         one: &Variation<N>,
         other: &Variation<N>,
     ) -> Result<(SVector<f64, N>, SVector<f64, N>), StepError> {
-        let (h, v) = (self.h(), self.v());
-        check_last(before, (h, &v), self.node(), self.has_parameters_of_last())?;
+        let (h, v) = (self.h, self.memory.steps.v());
+        check_last(before, (h, &v), &self.node, self.memory.steps.has_parameters_of_last())?;
         // Where the matrix has an inverse, it is the variations that are beyond the range of numbers.
         let unsolved = || {
             let equation = self.system().momentum_equation(before, h, &v);
@@ -204,7 +236,7 @@ where
         if directions.iter().any(|of| of.parameters.len() > S::PARAMETERS.len()) {
             return Err(more_parameters(before.t));
         }
-        let mut system = self.system().convert::<Along<Varied<1>, 1>>();
+        let mut system = self.system().steps::<Along<Varied<1>, 1>>();
         for (index, name) in S::PARAMETERS.iter().enumerate() {
             if let Some(parameter) = crate::lagrangian::Parameters::parameter_mut(&mut system, name) {
                 parameter.slope.0[0].value = one.parameters.get(index).copied().unwrap_or(0.0);
@@ -215,7 +247,7 @@ where
         let inner = Variation::node::<1>(other, before);
         let node = nested(&Variation::node(one, before), &inner);
         // The velocity as the other direction varies it; the dual numbers of the first differentiate its equation once more.
-        let plain = Variation::system::<_, 1>(other, self.system());
+        let plain = Variation::steps::<_, 1>(other, self.system());
         let equation = plain.momentum_equation(&inner, Dual::fixed(h), &v.map(Dual::fixed));
         let change = linear::solve(&equation.jacobian, &equation.residual).ok_or_else(unsolved)?;
         let varied = v.zip_map(&change, |value, change| Dual { value, slope: -change.slope });
@@ -243,43 +275,44 @@ fn nested<const N: usize>(one: &Node<N, Varied<1>>, other: &Node<N, Varied<1>>) 
     }
 }
 
-impl<S, const N: usize> Differentiable<N> for Composition<S, N>
+impl<S, const N: usize, const K: usize> Differentiable<S, N> for Composition<K>
 where
-    S: FixedStepping<N> + Convertible<N>,
+    S: Discretized<N>,
 {
-    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        if !self.has_parameters_of_last() {
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Run { system, memory, .. } = run;
+        if !memory.0.iter().all(Steps::has_parameters_of_last) {
             return Err(not_last(before.t));
         }
         let mut node = *before;
-        for (weight, v) in self.scheme().weights.iter().zip(self.velocities()) {
-            let h = weight * self.h();
-            vary(self.system(), &node, h, &v, variations)?;
-            let increment = self.system().momentum_residual(&node, h, &v).increment;
+        for substep in &memory.0 {
+            let (h, v) = (substep.h, substep.v());
+            vary(system, &node, h, &v, variations)?;
+            let increment = system.momentum_residual(&node, h, &v).increment;
             node.advance(h, &v, &increment);
         }
-        if is_last(&node, self.node()) { Ok(()) } else { Err(not_last(before.t)) }
+        if is_last(&node, &run.node) { Ok(()) } else { Err(not_last(before.t)) }
     }
 }
 
-impl<S, const N: usize> Differentiable<N> for EnergyPreserving<S, N>
+impl<S, const N: usize> Differentiable<S, N> for EnergyPreserving
 where
-    S: EnergyStepping<N> + Convertible<N>,
-    S::In<Varied>: EnergyStepping<N, Varied>,
+    S: EnergyStepping<N> + Discretized<N>,
+    S::Steps<Varied>: EnergyStepping<N, Varied>,
 {
     const KEEPS_ENERGY: bool = true;
 
     /// The energy that the run keeps is a variable of its own, beside q and p, and the length of the step varies. With
     /// [`Fallback::FixedSteps`] the run may leap from one energy to another: it has no derivative, and this is [`StepError::NoDerivative`].
-    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        if self.fallback() != Fallback::Stop {
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Run { system, memory, .. } = run;
+        if memory.fallback != Fallback::Stop {
             let because = "with a fallback the energy of the run may leap; take `Fallback::Stop`";
             return Err(StepError::NoDerivative { t: before.t, because });
         }
-        let h = self.h();
-        let v = self.v();
-        check_last(before, (h, &v), self.node(), self.has_parameters_of_last())?;
-        let derivatives = self.system().extended_derivatives(before, h, &v);
+        let Last { h, v, is_step, .. } = memory.last;
+        check_last(before, (h, &v), &run.node, is_step)?;
+        let derivatives = system.extended_derivatives(before, h, &v);
         let ExtendedDerivatives { momentum, residual_dh, increment_dh, energy_dq, energy_dv, energy_dh, .. } =
             &derivatives;
         let MomentumDerivatives { residual_dq, residual_dv, increment_dq, increment_dv } = momentum;
@@ -288,7 +321,7 @@ where
             solved(residual_dv, &inverse, residual_dh).ok_or_else(|| unsolved(residual_dv, residual_dh, before.t))?;
         let schur = energy_dh - energy_dv.dot(&along_h);
         for variations in variations.chunks_mut(TOGETHER) {
-            let explicit = Variation::varying_system(variations, self.system(), before.t)?.map(|varied| {
+            let explicit = Variation::varying_steps(variations, system, before.t)?.map(|varied| {
                 let node = Variation::in_time(variations, before);
                 varied.extended_residual(&node, Dual::fixed(h), &v.map(Dual::fixed))
             });

@@ -6,27 +6,30 @@
 use super::steps::Differentiable;
 use super::variation::Variation;
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::method::Method;
+use crate::run::Run;
 use crate::state::State;
 
 /// A run, and how its node varies in some directions.
 #[derive(Clone, Debug)]
-pub struct Tangent<I, const N: usize> {
-    run: I,
+pub struct Tangent<M: Method<S, N>, S, const N: usize> {
+    run: Run<M, S, N>,
     variations: Vec<Variation<N>>,
     failure: Option<StepError>,
 }
 
-impl<I: Differentiable<N>, const N: usize> Tangent<I, N> {
+impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Tangent<M, S, N> {
     /// A run, and variations of the node at which it is.
     #[must_use]
-    pub fn new(run: I, variations: Vec<Variation<N>>) -> Self {
+    pub fn new(run: Run<M, S, N>, variations: Vec<Variation<N>>) -> Self {
         Self { run, variations, failure: None }
     }
 
     /// Takes a step, and returns the state reached.
     ///
     /// # Errors
-    /// That of the step, after which the run and its variations are those before; or of [`Differentiable::vary`], after which the variations have no meaning. The same
+    /// That of the step, after which the run and its variations are those before; or of [`Run::vary`], after which the variations have no meaning. The same
     /// error again after an error.
     pub fn step(&mut self) -> Result<State<N>, StepError> {
         if let Some(failure) = self.failure {
@@ -39,7 +42,7 @@ impl<I: Differentiable<N>, const N: usize> Tangent<I, N> {
     }
 
     /// The run.
-    pub fn run(&self) -> &I {
+    pub fn run(&self) -> &Run<M, S, N> {
         &self.run
     }
 

@@ -6,7 +6,7 @@ use crate::error::StepError;
 use crate::lagrangian::{Lagrangian, Parameters};
 use crate::node::Node;
 use crate::real::{Dual, Slopes};
-use crate::stepping::Convertible;
+use crate::stepping::{Convertible, Discretized};
 use nalgebra::SVector;
 
 /// Directions that one evaluation follows.
@@ -130,11 +130,28 @@ impl<const N: usize> Variation<N> {
         system: &S,
         t: f64,
     ) -> Result<Option<S::In<Varied>>, StepError> {
+        Ok(Self::are_explicit::<S>(variations, t)?.then(|| Self::system(variations, system)))
+    }
+
+    /// The same system with its steps.
+    ///
+    /// # Errors
+    /// As [`Self::varying_system`].
+    pub(crate) fn varying_steps<S: Discretized<N>>(
+        variations: &[Self],
+        system: &S,
+        t: f64,
+    ) -> Result<Option<S::Steps<Varied>>, StepError> {
+        Ok(Self::are_explicit::<S>(variations, t)?.then(|| Self::steps(variations, system)))
+    }
+
+    /// Whether the time of a system that depends on it, or a parameter, varies in any direction.
+    fn are_explicit<S: Lagrangian<N>>(variations: &[Self], t: f64) -> Result<bool, StepError> {
         if variations.iter().any(|variation| variation.parameters.len() > S::PARAMETERS.len()) {
             return Err(more_parameters(t));
         }
         let is_explicit = |of: &Self| !S::AUTONOMOUS && of.t != 0.0 || of.parameters.iter().any(|slope| *slope != 0.0);
-        Ok(variations.iter().any(is_explicit).then(|| Self::system(variations, system)))
+        Ok(variations.iter().any(is_explicit))
     }
 
     /// The system, its parameters varied in each of the directions.
@@ -142,15 +159,28 @@ impl<const N: usize> Variation<N> {
         variations: &[Self],
         system: &S,
     ) -> S::In<Varied<W>> {
-        let mut varied = system.convert::<Varied<W>>();
+        Self::vary_parameters(variations, S::PARAMETERS, system.convert())
+    }
+
+    /// The system with its steps, its parameters varied in each of the directions.
+    pub(super) fn steps<S: Discretized<N>, const W: usize>(variations: &[Self], system: &S) -> S::Steps<Varied<W>> {
+        Self::vary_parameters(variations, S::PARAMETERS, system.steps())
+    }
+
+    /// A system whose parameters of these names vary in each of the directions.
+    fn vary_parameters<Y: Parameters<Varied<W>>, const W: usize>(
+        variations: &[Self],
+        names: &[&str],
+        mut system: Y,
+    ) -> Y {
         for (direction, variation) in variations.iter().enumerate() {
-            for (name, slope) in S::PARAMETERS.iter().zip(&variation.parameters) {
-                if let Some(parameter) = varied.parameter_mut(name) {
+            for (name, slope) in names.iter().zip(&variation.parameters) {
+                if let Some(parameter) = system.parameter_mut(name) {
                     parameter.slope.0[direction] = *slope;
                 }
             }
         }
-        varied
+        system
     }
 
     /// The node, its time varied in each of the directions.

@@ -271,7 +271,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
         let found = EnergyStep { v, h, density, iterations, residual };
         let mut after = self.after(system, start, found, StepKind::FixedStep)?;
         let density_next = after.lengths.last.density_next();
-        after.lengths.phase = Some(Phase { gap, density_next, ..phase });
+        after.lengths.phase = Some(Phase { density_next, gap, ..phase });
         after.lengths.switches.fixed_steps += 1;
         Ok(after)
     }

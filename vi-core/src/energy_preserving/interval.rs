@@ -1,7 +1,7 @@
 //! The interval that the next step follows.
 
 use super::equations::EnergyStep;
-use crate::real::{Real, Scalar};
+use crate::real::Scalar;
 use crate::state::StepKind;
 use nalgebra::SVector;
 
@@ -10,7 +10,7 @@ use nalgebra::SVector;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+    serde(bound(serialize = "T: crate::real::Real + serde::Serialize", deserialize = "T: crate::real::Real + serde::Deserialize<'de>"))
 )]
 pub(crate) struct Last<const N: usize, T> {
     pub(crate) v: SVector<T, N>,

@@ -16,7 +16,7 @@ use crate::error::StepError;
 use crate::linear::Matrix;
 use crate::real::Series;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use nalgebra::SVector;
 
 /// `C_s` of s stages; see the [module](self).
@@ -44,7 +44,7 @@ pub(crate) fn power<const S: usize>(h: f64) -> f64 {
 /// value.
 pub fn step_density<S, const N: usize, const STAGES: usize>(system: &S, state: &State<N>) -> Result<f64, StepError>
 where
-    S: Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     const { constant(STAGES) };
     density(system, state, STAGES)
@@ -53,7 +53,7 @@ where
 /// The step density of so many stages. A number here, not a type: one copy of this serves all.
 fn density<S, const N: usize>(system: &S, state: &State<N>, stages: usize) -> Result<f64, StepError>
 where
-    S: Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     let series = system.convert::<Series>();
     let t = Series::variable(state.t);

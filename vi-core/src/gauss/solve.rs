@@ -170,7 +170,8 @@ impl<const N: usize, const S: usize> Start<'_, N, S> {
             return extrapolated;
         }
         let Ok(constant) = constant(system, self.node) else { return extrapolated };
-        let start = Self { stages: &constant, are_last: false, before: &Convergence::NONE, ..*self };
+        let Self { node, h, pause, .. } = *self;
+        let start = Start { node, h, stages: &constant, are_last: false, before: &Convergence::NONE, pause };
         start.by_newton(system, instructions, start.middle(rare), newton).or(extrapolated)
     }
 

@@ -9,7 +9,6 @@
 //!
 //! S N equations with the same matrix for all directions. It is not the simplified matrix of `newton`: derivatives have to be those of every stage.
 
-use super::Gauss;
 use super::general::equations;
 use super::points::Rare;
 use super::solve::WIDE;
@@ -21,26 +20,30 @@ use crate::derivatives::{Differentiable, TOGETHER, Variation, Varied, not_finite
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::linear::{Matrix, row_by_row};
+use crate::method::Gauss;
+use crate::method::gauss::LastStages;
 use crate::node::Node;
 use crate::real::{Dual, Lane, Lanes};
-use crate::stepping::{Convertible, FixedStepping};
+use crate::run::Run;
+use crate::stepping::Convertible;
 use nalgebra::SVector;
 use vi_dispatch::Loop;
 
-impl<S, const N: usize, const STAGES: usize> Differentiable<N> for Gauss<S, N, STAGES>
+impl<S, const N: usize, const STAGES: usize> Differentiable<S, N> for Gauss<STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// Allocates: the equations of all stages are one matrix.
-    fn vary(&self, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
-        let Self { system, instructions, run, .. } = self;
-        if !run.has_step() || run.before != *before {
+    fn vary(run: &Run<Self, S, N>, before: &Node<N>, variations: &mut [Variation<N>]) -> Result<(), StepError> {
+        let Run { system, prepared: instructions, node, memory, .. } = run;
+        let LastStages { h, stages, before: start, .. } = memory;
+        if !memory.has_step(node) || start != before {
             return Err(not_last(before.t));
         }
         let rare = Rare::of(system);
-        let equations = equations(&rare, before, run.h, run.stages.data.0);
+        let equations = equations(&rare, before, *h, stages.data.0);
         let at = Solution {
-            times: times::<N, STAGES, false>(before, run.h),
+            times: times::<N, STAGES, false>(before, *h),
             positions: equations.start(),
             velocities: equations.velocity(),
         };
@@ -55,7 +58,7 @@ where
         }
         for variations in variations.chunks_mut(TOGETHER) {
             let explicit = explicit(system, &at, variations, before.t)?;
-            let are_found = instructions.run(Vary { derivatives, equations, h: run.h, explicit, variations });
+            let are_found = instructions.run(Vary { derivatives, equations, h: *h, explicit, variations });
             if !are_found {
                 // What is singular, and what was not finite before.
                 Variation::check_finite(variations, before.t)?;

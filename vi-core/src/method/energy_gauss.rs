@@ -48,7 +48,7 @@ use crate::newton::{FLOOR, roundings};
 use crate::node::Node;
 use crate::run::{Run, Starts};
 use crate::state::{State, StepKind};
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use core::cell::{Cell, RefCell};
 use nalgebra::{ArrayStorage, SMatrix};
 use vi_dispatch::Instructions;
@@ -146,7 +146,7 @@ impl<const K: usize> EnergyPreservingGauss<K> {
 
 impl<'a, S, const N: usize, const K: usize> Here<'a, S, N, K>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     fn of(at: Problem<'a, S, Instructions, N>, memory: &'a Lengths<N, K>) -> Self {
         let Problem { system, prepared, node, .. } = at;
@@ -346,7 +346,8 @@ where
         let mut course = *self.course;
         if let Ok(measured) = measured(self.system, &node) {
             course.set_excess(measured);
-            let seeded = Self { node: &node, course: &course, ..*self };
+            let Self { system, instructions, stages, .. } = *self;
+            let seeded = Here { system, instructions, node: &node, stages, course: &course };
             if let Ok(mut found) = seeded.next(StepKind::Reseeded { energy_change: phase.gap }, cache) {
                 found.gain += phase.gap;
                 found.course.switches.returns += 1;
@@ -421,7 +422,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for EnergyPreservingGauss<STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     type Prepared = Instructions;
     type Memory = Lengths<N, STAGES>;
@@ -601,7 +602,7 @@ impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
         h: f64,
     ) -> Result<Run<Self, S, N>, StepError>
     where
-        S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+        S: Collocation<N> + Convertible<N>,
     {
         Method::<S, N>::check_length(&Self, h)?;
         let node = Node::new(state, energy);
@@ -613,7 +614,7 @@ impl<const STAGES: usize> EnergyPreservingGauss<STAGES> {
 /// Options of a run, and what only such a run knows.
 impl<S, const N: usize, const STAGES: usize> Run<EnergyPreservingGauss<STAGES>, S, N>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// What to do if no energy-preserving step exists; [`Fallback::Stop`] is the default. An error of the last step is forgotten.
     ///

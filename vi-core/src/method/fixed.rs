@@ -21,7 +21,7 @@ use crate::called::Called;
 use crate::error::StepError;
 use crate::momentum::steps::{Corrector, Solved, Steps};
 use crate::node::Node;
-use crate::real::{Real, Scalar};
+use crate::real::Scalar;
 use crate::run::{Hermite, Run};
 use crate::state::State;
 use crate::stepping::FixedStepping;
@@ -52,7 +52,7 @@ impl FixedStep {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(serialize = "T: Real + serde::Serialize", deserialize = "T: Real + serde::Deserialize<'de>"))
+    serde(bound(serialize = "T: crate::real::Real + serde::Serialize", deserialize = "T: crate::real::Real + serde::Deserialize<'de>"))
 )]
 pub struct Velocities<const N: usize, T = f64> {
     pub(crate) steps: Steps<N, T>,

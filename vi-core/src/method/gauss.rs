@@ -26,7 +26,7 @@ use crate::gauss::{Polynomial, Slots};
 use crate::node::Node;
 use crate::run::{DenseOutput, Hermite, Run};
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 use vi_dispatch::{Instructions, Loop};
 
@@ -164,7 +164,7 @@ impl<Y: Collocation<N> + Convertible<N>, const N: usize, const S: usize> Loop fo
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for Gauss<STAGES>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     type Prepared = Instructions;
     type Memory = LastStages<N, STAGES>;
@@ -284,7 +284,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Run<Gauss<STAGES>, S, N>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     /// The discrete Lagrangian of the last step with its derivatives, discrete forces and powers, for checks: `−D2 L_d − f_d⁻ = p0`,
     /// `D4 L_d + f_d⁺ = p1`. `None` before the first step, after [`Run::set_parameters`] or [`Run::step_of`], and if one of them is not finite.

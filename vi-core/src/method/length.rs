@@ -40,10 +40,13 @@ pub(super) trait Trial: Clone {
     }
 }
 
+/// Solves the step of a length, guessed by that of another length.
+pub(super) type Solve<'a, T> = &'a dyn Fn(f64, Option<&T>) -> Result<T, StepError>;
+
 /// A search for a length.
 pub(super) struct Search<'a, T> {
     /// The step of length h, guessed by that of another length; by the last one where there is none.
-    pub(super) solve: &'a dyn Fn(f64, Option<&T>) -> Result<T, StepError>,
+    pub(super) solve: Solve<'a, T>,
     /// Whether the residual of a trial is what its arithmetic loses; an error if such a residual tells no length.
     pub(super) is_rounding: &'a dyn Fn(&T) -> Result<bool, StepError>,
     pub(super) t: f64,

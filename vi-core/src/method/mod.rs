@@ -36,6 +36,7 @@ use crate::node::Node;
 use crate::real::Scalar;
 use crate::run::DenseOutput;
 use crate::state::State;
+use core::fmt::Debug;
 
 /// What a step depends on beside the memory of a run.
 #[derive(Debug)]
@@ -59,7 +60,7 @@ impl<S, P, const N: usize, T: Copy> Clone for Problem<'_, S, P, N, T> {
 impl<S, P, const N: usize, T: Copy> Copy for Problem<'_, S, P, N, T> {}
 
 /// What a run carries between two steps beside its node.
-pub trait Memory: Clone {
+pub trait Memory: Clone + Debug {
     /// A copy that shares no memory with this one.
     ///
     /// A small memory passes each number through `black_box`, so that a loop over steps keeps its own numbers in registers. A large one is cloned.
@@ -85,13 +86,13 @@ pub struct Report {
     note = "`FixedStep`, `Composition`, `EnergyPreserving` need the clause `discretize midpoint;`, `Gauss` and `EnergyPreservingGauss` take every system",
     note = "a method in transformed time needs the clause `time_scale = …;`"
 )]
-pub trait Method<S, const N: usize, T: Scalar = f64>: Clone {
+pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
     /// What follows from the system and h alone. A checkpoint does not store it.
-    type Prepared: Clone;
+    type Prepared: Clone + Debug;
     /// What the next step is guessed from. A checkpoint stores it.
     type Memory: Memory;
     /// Buffers that are kept to be reused. No result depends on them.
-    type Cache: Clone + Default;
+    type Cache: Clone + Debug + Default;
     /// A step that was found.
     type Step;
     /// What an attempt got to that did not find one.

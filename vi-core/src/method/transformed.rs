@@ -21,7 +21,7 @@ use crate::gauss::transformed::{After, LastRates, Polynomial, Solved, Start, che
 use crate::node::Node;
 use crate::run::Run;
 use crate::state::State;
-use crate::stepping::{Convertible, FixedStepping};
+use crate::stepping::Convertible;
 use vi_dispatch::Instructions;
 
 /// A method whose steps have constant length in transformed time: `Gauss::<8>.in_transformed_time()`. See the [module](self).
@@ -45,7 +45,7 @@ const MISSED: f64 = 16.0;
 
 impl<S, const N: usize, const STAGES: usize> Method<S, N> for InTransformedTime<Gauss<STAGES>>
 where
-    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+    S: TimeScale<N> + Convertible<N>,
 {
     type Prepared = Instructions;
     type Memory = LastRates<N, STAGES>;
@@ -222,7 +222,7 @@ where
 
 impl<S, const N: usize, const STAGES: usize> Run<InTransformedTime<Gauss<STAGES>>, S, N>
 where
-    S: TimeScale<N> + Convertible<N> + FixedStepping<N>,
+    S: TimeScale<N> + Convertible<N>,
 {
     /// The step in transformed time.
     pub fn dtau(&self) -> f64 {

@@ -21,7 +21,7 @@ const LARGEST: usize = 3;
 
 /// The matrix of a linear step. Room for the largest one: a matrix of N × N would be large where it is not used.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ClosedForm<T> {
+pub struct ClosedForm<T> {
     velocity: Affine<T>,
     increment: Affine<T>,
 }

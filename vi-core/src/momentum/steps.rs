@@ -38,7 +38,7 @@ const REMAINING: f64 = 2.0;
 
 /// How a step is corrected. It depends on the system, its parameters and h alone.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Corrector<J: Matrix<N, T>, const N: usize, T: Real> {
+pub enum Corrector<J: Matrix<N, T>, const N: usize, T: Real> {
     /// The whole step is one matrix; A is constant.
     ClosedForm(ClosedForm<T>, J::Inverse),
     /// By the inverse of A, which is constant.

@@ -9,7 +9,7 @@ use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
 use crate::method::Method;
 use crate::node::Node;
-use crate::real::{Real, Scalar};
+use crate::real::Scalar;
 
 /// A run between two steps, and the system and rule that it is of.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +17,8 @@ use crate::real::{Real, Scalar};
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "Y: serde::Serialize, T: Real + serde::Serialize",
-        deserialize = "Y: serde::Deserialize<'de>, T: Real + serde::Deserialize<'de>"
+        serialize = "Y: serde::Serialize, T: crate::real::Real + serde::Serialize",
+        deserialize = "Y: serde::Deserialize<'de>, T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
 pub struct Checkpoint<Y, const N: usize, T = f64> {
@@ -37,8 +37,8 @@ pub struct Checkpoint<Y, const N: usize, T = f64> {
 #[cfg_attr(
     feature = "serde",
     serde(bound(
-        serialize = "Y: serde::Serialize, T: Real + serde::Serialize",
-        deserialize = "Y: serde::Deserialize<'de>, T: Real + serde::Deserialize<'de>"
+        serialize = "Y: serde::Serialize, T: crate::real::Real + serde::Serialize",
+        deserialize = "Y: serde::Deserialize<'de>, T: crate::real::Real + serde::Deserialize<'de>"
     ))
 )]
 pub struct Stored<Y, const N: usize, T = f64> {

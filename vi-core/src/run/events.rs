@@ -10,8 +10,10 @@
 //! AFTER AN EVENT |g| is not larger than at neighbouring lengths of the step, to rounding.
 
 use super::sign_changes::{START, Sample, changes, located};
-use super::{Integrator, Path};
+use super::{DenseOutput, Run};
 use crate::error::StepError;
+use crate::lagrangian::Lagrangian;
+use crate::method::Method;
 use crate::state::State;
 use core::fmt;
 use nalgebra::SVector;
@@ -65,7 +67,7 @@ pub struct Crossing<const N: usize> {
     pub length: f64,
 }
 
-/// The events of a run; see [`Integrator::events`].
+/// The events of a run; see [`Run::events`].
 ///
 /// An item is a [`Crossing`], or the error of the step that fails: then the run is at its last good node, and the iterator ends.
 pub struct Events<'a, const N: usize> {
@@ -80,7 +82,7 @@ pub struct Events<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Events<'a, N> {
-    pub(super) fn new(run: &'a mut impl Integrator<N>, wanted: &'a [Event<'a, N>], until: f64) -> Self {
+    pub(super) fn new<M: Method<S, N>, S: Lagrangian<N> + Copy>(run: &'a mut Run<M, S, N>, wanted: &'a [Event<'a, N>], until: f64) -> Self {
         let run = Box::new(Ahead { run, ahead: None });
         Self { run, wanted, until, signs: vec![None; wanted.len()], found: Vec::new(), is_over: false }
     }
@@ -118,6 +120,31 @@ impl<const N: usize> fmt::Debug for Events<'_, N> {
     }
 }
 
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Run<M, S, N> {
+    /// Goes on to the first event, or to the time `until` where there is none before. The run ends there: its state is the one returned. Of functions that
+    /// vanish together the first one is told; [`Run::events`] tells all.
+    ///
+    /// # Errors
+    /// As [`Run::until`].
+    pub fn next_event(&mut self, events: &[Event<'_, N>], until: f64) -> Result<Option<Crossing<N>>, StepError> {
+        let first = self.events(events, until).next().transpose()?;
+        if let Some(Crossing { length, .. }) = first {
+            if length.to_bits() == self.time_to(until).to_bits() {
+                self.end_at(until)?;
+            } else if length.is_normal() {
+                self.step_of(length)?;
+            }
+        }
+        Ok(first)
+    }
+
+    /// The events up to the time `until`, in their order: an iterator, which takes steps as it needs them. The run keeps its own steps, but for the last, which ends
+    /// at `until`.
+    pub fn events<'a>(&'a mut self, events: &'a [Event<'a, N>], until: f64) -> Events<'a, N> {
+        Events::new(self, events, until)
+    }
+}
+
 /// A run that is searched, its integrator erased: so the search is compiled once, and not for each integrator of each system.
 trait Searched<const N: usize> {
     /// Takes the step that was looked at, which ends at `until` where it led beyond. Whether the run is there.
@@ -129,12 +156,12 @@ trait Searched<const N: usize> {
 }
 
 /// A run, and the run after its next step.
-struct Ahead<'a, I> {
-    run: &'a mut I,
-    ahead: Option<I>,
+struct Ahead<'a, M: Method<S, N>, S, const N: usize> {
+    run: &'a mut Run<M, S, N>,
+    ahead: Option<Run<M, S, N>>,
 }
 
-impl<I: Integrator<N>, const N: usize> Searched<N> for Ahead<'_, I> {
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Searched<N> for Ahead<'_, M, S, N> {
     fn take(&mut self, until: f64) -> Result<bool, StepError> {
         self.run.check_ahead(until)?;
         if let Some(ahead) = self.ahead.take() {
@@ -155,7 +182,7 @@ impl<I: Integrator<N>, const N: usize> Searched<N> for Ahead<'_, I> {
     fn look_ahead(&mut self, until: f64) -> Result<Step<N>, StepError> {
         let start = self.run.state();
         let ahead = self.ahead.insert(self.run.after_a_step()?);
-        let path = Box::new(ahead.path(&start)?.since_start());
+        let path = Box::new(ahead.dense_output(&start)?.since_start());
         let h = self.run.time_to(ahead.t()) + ahead.node().t_low;
         let left = self.run.time_to(until);
         let is_last = ahead.time_to(until) * h.signum() <= 0.0;
@@ -193,7 +220,7 @@ struct Step<const N: usize> {
     is_last: bool,
     until: f64,
     /// The motion over it, by the time since its start.
-    path: Box<dyn Path<N>>,
+    path: Box<dyn DenseOutput<N>>,
 }
 
 impl<const N: usize> Step<N> {

@@ -8,8 +8,8 @@ use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::real::Real;
 use vi_core::stepping::{
-    Convertible, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping, Increment,
-    MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
+    Convertible, Discretized, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
+    Increment, MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
 
@@ -105,6 +105,13 @@ impl<const N: usize, S: Convertible<N>> Convertible<N> for Spoiled<S> {
     type In<T: Real> = Spoiled<S::In<T>>;
     fn convert<T: Real>(&self) -> Self::In<T> {
         Spoiled { system: self.system.convert(), fault: self.fault }
+    }
+}
+
+impl<const N: usize, S: Discretized<N>> Discretized<N> for Spoiled<S> {
+    type Steps<T: Real> = Spoiled<S::Steps<T>>;
+    fn steps<T: Real>(&self) -> Self::Steps<T> {
+        Spoiled { system: self.system.steps(), fault: self.fault }
     }
 }
 

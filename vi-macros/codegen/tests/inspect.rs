@@ -243,7 +243,7 @@ fn every_rule_of_a_list_is_shown_and_gives_the_operations_that_it_gives_alone() 
     let rust = by("midpoint, trapezoidal", Stage::Rust);
     for shown in [
         "/// By the rule `trapezoidal`, as `By::new(system, Trapezoidal)`:",
-        "impl ::vi_core::stepping::Convertible<2, ::vi_core::rules::Trapezoidal>",
+        "impl ::vi_core::stepping::Discretized<2, ::vi_core::rules::Trapezoidal>",
     ] {
         assert!(rust.contains(shown), "{shown}");
     }

@@ -1092,6 +1092,14 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::stepping::Convertible<10> for Chain<f64> {
+        type In<T: ::vi_core::real::Real> = Chain<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::real::Real>(&self) -> Chain<T> {
+            self.convert()
+        }
+    }
+
     impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<10, T> for Chain<T> {
         /// `ld = h*L`
         ///
@@ -3409,10 +3417,10 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::stepping::Convertible<10> for Chain<f64> {
-        type In<T: ::vi_core::real::Real> = Chain<T>;
+    impl ::vi_core::stepping::Discretized<10> for Chain<f64> {
+        type Steps<T: ::vi_core::real::Real> = Chain<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::real::Real>(&self) -> Chain<T> {
+        fn steps<T: ::vi_core::real::Real>(&self) -> Chain<T> {
             self.convert()
         }
     }

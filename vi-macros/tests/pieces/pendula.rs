@@ -523,6 +523,14 @@ const _: () = {
         }
     }
 
+    impl ::vi_core::stepping::Convertible<2> for Pendula<f64> {
+        type In<T: ::vi_core::real::Real> = Pendula<T>;
+        #[inline(always)]
+        fn convert<T: ::vi_core::real::Real>(&self) -> Pendula<T> {
+            self.convert()
+        }
+    }
+
     impl<T: ::vi_core::real::Real> ::vi_core::DiscreteLagrangian<2, T> for Pendula<T> {
         /// `ld = h*L`
         ///
@@ -2419,10 +2427,10 @@ const _: () = {
         }
     }
 
-    impl ::vi_core::stepping::Convertible<2> for Pendula<f64> {
-        type In<T: ::vi_core::real::Real> = Pendula<T>;
+    impl ::vi_core::stepping::Discretized<2> for Pendula<f64> {
+        type Steps<T: ::vi_core::real::Real> = Pendula<T>;
         #[inline(always)]
-        fn convert<T: ::vi_core::real::Real>(&self) -> Pendula<T> {
+        fn steps<T: ::vi_core::real::Real>(&self) -> Pendula<T> {
             self.convert()
         }
     }

@@ -59,10 +59,11 @@ pub fn items(derivations: &Derivations, limit: usize) -> TokenStream {
     let parameters = structure::parameters(&source);
     let lagrangian = lagrangian::item(&source);
     let collocation = collocation::item(&source);
+    let convertible = structure::convertible(&source);
     let own = by_rule(&source);
     let batch = structure::batch(&source);
     let by_further = further.iter().map(by_rule);
-    let implementations = quote!(#parameters #lagrangian #collocation #own #batch #(#by_further)*);
+    let implementations = quote!(#parameters #lagrangian #collocation #convertible #own #batch #(#by_further)*);
     let conditions: Vec<_> = conditions(&source.model.attributes).collect();
     let scope = scope::scope(&conditions, &implementations);
     let tests = check::tests(&source, &further, &conditions);
@@ -73,8 +74,8 @@ pub fn items(derivations: &Derivations, limit: usize) -> TokenStream {
 fn by_rule(source: &Source) -> TokenStream {
     let discrete = discrete::item(source);
     let stepping = stepping::item(source);
-    let convertible = structure::convertible(source);
-    quote!(#discrete #stepping #convertible)
+    let discretized = structure::discretized(source);
+    quote!(#discrete #stepping #discretized)
 }
 
 /// The conditions under which a struct is there, and all that belongs to it.

@@ -112,15 +112,30 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
     }
 }
 
-/// The implementation of `Convertible` by the rule: the system in other numbers.
+/// The implementation of `Convertible`: the system in other numbers.
 pub(super) fn convertible(source: &Source) -> TokenStream {
-    let (name, dimension, rule) = (&source.model.name, source.dimension(), source.rule_argument());
+    let (name, dimension) = (&source.model.name, source.dimension());
     quote! {
-        impl ::vi_core::stepping::Convertible<#dimension #rule> for #name<f64> {
+        impl ::vi_core::stepping::Convertible<#dimension> for #name<f64> {
             type In<T: ::vi_core::real::Real> = #name<T>;
 
             #[inline(always)]
             fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> {
+                self.convert()
+            }
+        }
+    }
+}
+
+/// The implementation of `Discretized` by the rule: its steps in other numbers.
+pub(super) fn discretized(source: &Source) -> TokenStream {
+    let (name, dimension, rule) = (&source.model.name, source.dimension(), source.rule_argument());
+    quote! {
+        impl ::vi_core::stepping::Discretized<#dimension #rule> for #name<f64> {
+            type Steps<T: ::vi_core::real::Real> = #name<T>;
+
+            #[inline(always)]
+            fn steps<T: ::vi_core::real::Real>(&self) -> #name<T> {
                 self.convert()
             }
         }
@@ -357,6 +372,10 @@ fn stub_lagrangian(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
             fn point_derivatives(#at) -> ::vi_core::collocation::PointDerivatives<Self::PointMatrix> #none
             fn power(#at) -> T #none
         }
+        impl<#generic> ::vi_core::stepping::Convertible<#n> for #name<f64> {
+            type In<T: ::vi_core::real::Real> = #name<T>;
+            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> #none
+        }
     }
 }
 
@@ -393,9 +412,9 @@ fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStrea
             fn extended_derivatives(#from) -> ::vi_core::stepping::ExtendedDerivatives<#n, T, Self::Jacobian, Self::StepMatrix> #none
             fn extended_rounding(#from) -> ::vi_core::stepping::Rounding<#n, T> #none
         }
-        impl<#generic> ::vi_core::stepping::Convertible<#n #rule> for #name<f64> {
-            type In<T: ::vi_core::real::Real> = #name<T>;
-            fn convert<T: ::vi_core::real::Real>(&self) -> #name<T> #none
+        impl<#generic> ::vi_core::stepping::Discretized<#n #rule> for #name<f64> {
+            type Steps<T: ::vi_core::real::Real> = #name<T>;
+            fn steps<T: ::vi_core::real::Real>(&self) -> #name<T> #none
         }
     }
 }
