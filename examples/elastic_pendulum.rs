@@ -5,7 +5,7 @@
 
 use std::error::Error;
 use std::fmt::Write;
-use vi_core::{EnergyPreserving, FixedStep, State, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Starts, State, lagrangian};
 
 lagrangian! {
     /// A mass m on a rod of natural length l and stiffness k; r is the length of the rod, θ its angle from below.
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Steps of given length; p is the momentum, and the energy at a node is that of the velocity which belongs to it.
     let mut csv = String::from("t,r,theta,energy\n");
-    let mut fixed = FixedStep::new(pendulum, State::at(&pendulum, 0.0, q, v), h)?;
+    let mut fixed = pendulum.at(0.0, q, v).integrate(FixedStep, h)?;
     println!("fixed steps\n{:>8} {:>10} {:>10} {:>12}", "t", "r", "θ", "energy");
     for count in 1..=2000 {
         let state = fixed.step()?;

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 use std::time::Instant;
-use vi_core::{Gauss, State, StepError};
+use vi_core::{Gauss, Run, Starts, State, StepError};
 use vi_systems::Kepler;
 
 /// Runs of each kind, of which the fastest counts.
@@ -34,7 +34,7 @@ fn runs<const S: usize>() -> Result<Vec<Run>, StepError> {
         let mut end = Ok(start);
         for _ in 0..RUNS {
             let clock = Instant::now();
-            let mut run = Gauss::<_, 2, S>::new(planet, start, 3.0 * TAU / f64::from(steps))?;
+            let mut run = planet.at_state(start).integrate(Gauss::<S>, 3.0 * TAU / f64::from(steps))?;
             end = (0..steps).try_fold(start, |_, _| run.step());
             seconds = seconds.min(clock.elapsed().as_secs_f64());
         }

@@ -17,7 +17,7 @@ use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use vi_core::derivatives::{Covector, Objective, gradient};
 use vi_core::nalgebra::{DMatrix, DVector};
-use vi_core::{Gauss, Integrator, SVector, State, StepError, lagrangian};
+use vi_core::{Gauss, Run, SVector, State, StepError, lagrangian};
 
 lagrangian! {
     /// A pole on a cart; the angle a is zero where the pole is upright.
@@ -33,7 +33,7 @@ lagrangian! {
 }
 
 /// Steps of order 4.
-type Run = Gauss<CartPole, 2, 2>;
+type Run = Run<Gauss<2>, CartPole, 2>;
 
 /// Length of a step, in seconds.
 const H: f64 = 0.1;

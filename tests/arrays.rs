@@ -3,7 +3,7 @@
 
 use crate::support::exact::Motion;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, lagrangian};
 use vi_systems::{DoublePendulum, FpuChain, NPendulum};
 
 const N: usize = 16;
@@ -47,7 +47,7 @@ fn two_links_are_the_double_pendulum() {
 /// The state after some fixed steps.
 fn fixed<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) -> State<N> {
     let start = State::at(&system, 0.0, q, v);
-    let mut run = FixedStep::new(system, start, h).expect("a valid start");
+    let mut run = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
     for _ in 0..steps {
         run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
     }
@@ -121,7 +121,7 @@ fn energies<const N: usize, S: EnergyStepping<N> + Copy>(
     h: f64,
     steps: usize,
 ) -> [f64; 2] {
-    let mut run = FixedStep::new(system, State::at(&system, 0.0, q, v), h).expect("a valid start");
+    let mut run = system.at(0.0, q, v).integrate(FixedStep, h).expect("a valid start");
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for _ in 0..steps {
         run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));

@@ -2,7 +2,7 @@
 
 use crate::support::reference::{file, number, vector};
 use serde_json::Value;
-use vi_core::{Gauss, SVector, State};
+use vi_core::{Gauss, Run, SVector, Starts, State};
 use vi_systems::{OuterSolarSystem, ThreeBody};
 
 /// Momentum and angular momentum of the six bodies along one axis.
@@ -16,7 +16,7 @@ fn sums(state: &State<18>, axis: usize) -> [f64; 2] {
 }
 
 /// Largest difference of positions, and of velocities, from an entry of the reference.
-fn off(run: &Gauss<OuterSolarSystem, 18, 8>, expected: &Value) -> [f64; 2] {
+fn off(run: &Run<Gauss<8>, OuterSolarSystem, 18>, expected: &Value) -> [f64; 2] {
     let state = run.state();
     let v = state.velocity(run.system()).expect("a mass matrix");
     let difference =
@@ -30,7 +30,7 @@ fn the_outer_solar_system_is_where_other_programs_have_it() {
     let reference = file("outer_solar_system.json");
     let system = OuterSolarSystem::default();
     let start = State::at(&system, 0.0, OuterSolarSystem::POSITIONS, OuterSolarSystem::VELOCITIES);
-    let mut run = Gauss::<_, 18, 8>::new(system, start, 100.0).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Gauss::<8>, 100.0).expect("a valid start");
     assert!(run.by_ref().take(200).all(|step| step.is_ok()));
     let [q, v] = off(&run, &reference["taylor"]);
     println!("20 000 days: q off by {q:.1e}, v by {v:.1e}");
@@ -50,7 +50,7 @@ fn the_outer_solar_system_keeps_energy_momentum_and_angular_momentum() {
     let energy = |state: &State<18>| state.energy(&system).expect("a mass matrix");
     let mut changes = [0.0_f64; 3];
     let mut swing = 0.0_f64;
-    for state in Gauss::<_, 18, 8>::new(system, start, 100.0).expect("a valid start").take(5000) {
+    for state in system.at_state(start).integrate(Gauss::<8>, 100.0).expect("a valid start").take(5000) {
         let state = state.expect("a step");
         for axis in 0..3 {
             let [momentum, angular] = sums(&state, axis);
@@ -75,7 +75,7 @@ fn three_bodies_follow_one_another_on_the_figure_of_eight() {
     let [x, y] = [0.970_004_356_697_34, 0.243_087_531_535_83];
     let [u, w] = [0.466_203_685_720_52, 0.432_365_730_460_51];
     let start = State::at(&system, 0.0, [x, -x, 0.0, -y, y, 0.0], [u, u, -2.0 * u, w, w, -2.0 * w]);
-    let mut run = Gauss::<_, 6, 8>::new(system, start, PERIOD / 60.0).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Gauss::<8>, PERIOD / 60.0).expect("a valid start");
     // After a third of the period each body is where the one two places on, then one, then itself, began.
     for ahead in [2, 1, 0] {
         let state = run.by_ref().take(20).last().expect("a step").expect("a step");

@@ -4,7 +4,7 @@ use crate::support::exact::Motion;
 use crate::support::reference::{file, number, steps, vector};
 use crate::support::slope;
 use vi_core::stepping::FixedStepping;
-use vi_core::{Composition, Scheme, State, StepError};
+use vi_core::{Composition, Scheme, Starts, State, StepError};
 use vi_systems::{DampedOscillator, DoublePendulum, HardDuffing, Kepler, ParametricPendulum, Pendulum};
 
 /// The entries of `composition_…` of one system.
@@ -15,7 +15,7 @@ fn references<const N: usize, S: FixedStepping<N> + Copy>(name: &str, system: S)
         let start = State::at(&system, 0.0, vector::<N>(&of["q0"]), vector::<N>(&of["v0"]));
         let list = steps(&of[key]);
         let h = number(&list[0].1["H"]);
-        let mut run = Composition::new(system, scheme, start, h).expect("a valid start");
+        let mut run = system.at_state(start).integrate(scheme, h).expect("a valid start");
         let (mut taken, mut worst) = (0, 0.0_f64);
         for (step, entry) in list {
             while taken < step {
@@ -50,7 +50,7 @@ fn order<const N: usize, S: FixedStepping<N> + Copy>(
     let (start, ends) = motion.split_first().expect("a start");
     let error = |h: f64, count: u32| {
         let state = State::at(&system, start.t, start.q, start.v);
-        let mut run = Composition::new(system, scheme, state, h).expect("a valid start");
+        let mut run = system.at_state(state).integrate(scheme, h).expect("a valid start");
         let squares = ends.iter().map(|exact| {
             for _ in 0..count {
                 run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
@@ -105,7 +105,7 @@ fn the_orders_are_reached() {
 fn speed(scheme: Scheme, ch: f64) -> Result<f64, StepError> {
     let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
     let start = State::at(&system, 0.0, [0.0], [1.0]);
-    let last = Composition::new(system, scheme, start, 1.0)?.take(60).last().unwrap_or(Ok(start))?;
+    let last = system.at_state(start).integrate(scheme, 1.0)?.take(60).last().unwrap_or(Ok(start))?;
     Ok(last.p[0].abs())
 }
 
@@ -130,7 +130,7 @@ fn a_failing_substep_leaves_the_state_before_the_whole_step() {
     // Through the centre: Kepler's momentum equation has no solution there.
     let system = Kepler::default();
     let start = State::at(&system, 0.0, [1e-3, 0.0], [0.0, 0.1]);
-    let mut run = Composition::new(system, Scheme::SUZUKI_4, start, 0.5).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Composition::SUZUKI_4, 0.5).expect("a valid start");
     let error = run.step().expect_err("no solution");
     assert_eq!(run.state(), start);
     assert_eq!(run.step(), Err(error));

@@ -3,7 +3,7 @@
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{
-    EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, SVector, State, StepError,
+    EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, SVector, Starts, State, StepError,
     energy_preserving, lagrangian,
 };
 use vi_systems::{HarmonicOscillator, Pendulum};
@@ -13,10 +13,10 @@ fn a_step_that_is_subnormal_is_refused() {
     let system = HarmonicOscillator::default();
     let start = State::at(&system, 0.0, [1.0], [0.5]);
     for h in [1e-310, -1e-310, f64::from_bits(1), 0.0, f64::NAN, f64::INFINITY] {
-        let refused = FixedStep::new(system, start, h).map(|run| run.v());
+        let refused = system.at_state(start).integrate(FixedStep, h).map(|run| run.v());
         assert!(matches!(refused, Err(StepError::InvalidInput { input: "the step h", .. })), "{h:e}: {refused:?}");
     }
-    let mut run = FixedStep::new(system, start, f64::MIN_POSITIVE).expect("the smallest step");
+    let mut run = system.at_state(start).integrate(FixedStep, f64::MIN_POSITIVE).expect("the smallest step");
     let state = run.step().expect("a step");
     assert_eq!((state.t, state.q[0], run.v()[0]), (f64::MIN_POSITIVE, 1.0, 0.5));
 }
@@ -28,7 +28,7 @@ fn without_a_mass_there_is_no_step() {
     for v in [0.0, 1.0] {
         let start = State { t: 0.0, q: SVector::from([0.3]), p: SVector::from([0.0]) };
         assert!(matches!(start.velocity(&system), Err(StepError::Singular { .. })), "{v}");
-        let fixed = FixedStep::new(system, State::at(&system, 0.0, [0.3], [v]), 0.01).map(|run| run.state());
+        let fixed = system.at(0.0, [0.3], [v]).integrate(FixedStep, 0.01).map(|run| run.state());
         assert!(matches!(fixed, Err(StepError::Singular { .. })), "{fixed:?}");
         let both = EnergyPreserving::from_midpoint(system, 0.0, [0.3], [v], 0.01).map(|run| run.state());
         assert!(matches!(both, Err(StepError::Singular { .. })), "{both:?}");
@@ -67,8 +67,8 @@ where
     let outcomes = [
         system.acceleration(0.0, &zero, &zero).err(),
         system.step_density(0.0, &zero, &zero).err(),
-        Gauss::<_, N, 4>::new(system, start, 0.01).and_then(|mut run| run.step()).err(),
-        EnergyPreservingGauss::<_, N, 2>::new(system, start, 0.01).and_then(|mut run| run.step()).err(),
+        system.at_state(start).integrate(Gauss::<4>, 0.01).and_then(|mut run| run.step()).err(),
+        system.at_state(start).integrate(EnergyPreservingGauss::<2>, 0.01).and_then(|mut run| run.step()).err(),
     ];
     let are_lost = outcomes.iter().all(|error| matches!(error, Some(StepError::NonFinite { .. })));
     assert!(are_lost, "{system:?}: {outcomes:?}");
@@ -97,7 +97,7 @@ fn what_is_below_an_ulp_is_not_lost() {
     // An ulp of q is 16384: for ten million steps the particle stands still, and then it has moved.
     let system = Free { m: 1.5 };
     let (q, v, h) = (1e20_f64, 1.0_f64, 0.01_f64);
-    let mut run = FixedStep::new(system, State::at(&system, 0.0, [q], [v]), h).expect("a start");
+    let mut run = system.at(0.0, [q], [v]).integrate(FixedStep, h).expect("a start");
     run.step().expect("a step");
     let node = *run.node();
     assert_eq!((node.q[0], node.q_low[0]), (q, v * h));
@@ -145,7 +145,7 @@ fn reached(m: f64, n: f64) -> SVector<f64, 2> {
     let system = Unequal { m, n, ..Unequal::default() };
     let units = SVector::from([m.sqrt(), n.sqrt()]);
     let [q, v] = [[0.7, 0.4], [0.1, -0.3]].map(|start| SVector::from(start).component_div(&units));
-    let mut run = FixedStep::new(system, State::at(&system, 0.0, q, v), 0.01).expect("a regular system");
+    let mut run = system.at(0.0, q, v).integrate(FixedStep, 0.01).expect("a regular system");
     for _ in 0..1000 {
         run.step().expect("a step");
     }
@@ -163,7 +163,7 @@ fn masses_of_any_units_make_a_regular_system() {
     // The mass of e^(−30/x) drops out but for its slope: a = −1 − 30/x − 15 v²/x², whatever it is; from x = 1/20 it is e^−600.
     for x in [1.0, 0.05] {
         let system = Thin::default();
-        let mut run = FixedStep::new(system, State::at(&system, 0.0, [x], [0.0]), 1e-7).expect("a regular system");
+        let mut run = system.at(0.0, [x], [0.0]).integrate(FixedStep, 1e-7).expect("a regular system");
         for _ in 0..100 {
             run.step().expect("a step");
         }
@@ -190,7 +190,7 @@ fn the_root_of_zero_is_no_obstacle() {
     let system = Hertz::default();
     let start = State::at(&system, 0.0, [0.3], [0.0]);
     let energy = start.energy(&system).expect("a velocity");
-    let mut run = FixedStep::new(system, start, 1e-3).expect("a velocity");
+    let mut run = system.at_state(start).integrate(FixedStep, 1e-3).expect("a velocity");
     let (mut contacts, mut worst) = (0, 0.0_f64);
     for _ in 0..20_000 {
         let state = run.step().expect("a step");
@@ -235,7 +235,7 @@ fn where_the_forces_are_finite_and_the_energy_is_not_no_energy_is_told() {
     assert!(EnergyPreserving::restart(system, stored).is_ok());
 
     // Fixed steps need forces only, and go on; their energy is not told.
-    let mut run = FixedStep::new(system, State::at(&system, 0.0, [0.99], [1.0]), 0.05).expect("a start");
+    let mut run = system.at(0.0, [0.99], [1.0]).integrate(FixedStep, 0.05).expect("a start");
     run.step().expect("a step");
     assert!(run.state().q[0] > 1.0 && run.discrete_energy().is_none());
 }
@@ -254,9 +254,9 @@ lagrangian! {
 #[test]
 fn a_slope_that_is_no_number_is_not_a_singular_mass() {
     let system = Drag::default();
-    assert!(FixedStep::new(system, State::at(&system, 0.0, [1.0], [0.1]), 0.01).is_ok());
+    assert!(system.at(0.0, [1.0], [0.1]).integrate(FixedStep, 0.01).is_ok());
     // At rest there is a velocity, but no step.
-    let mut at_rest = FixedStep::new(system, State::at(&system, 0.0, [1.0], [0.0]), 0.01).expect("a velocity");
+    let mut at_rest = system.at(0.0, [1.0], [0.0]).integrate(FixedStep, 0.01).expect("a velocity");
     let step = at_rest.step();
     assert!(matches!(step, Err(StepError::NonFinite { .. })), "{step:?}");
 }

@@ -11,7 +11,8 @@ use vi_core::stepping::{
     MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{
-    DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, SVector, State, StepError, lagrangian,
+    DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, Run, SVector, Starts, State, StepError,
+    lagrangian,
 };
 use vi_systems::FpuChain;
 
@@ -269,7 +270,7 @@ struct Run<const N: usize> {
 /// Fixed steps and energy-preserving ones.
 fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [Run<N>; 2] {
     let panic = |error: StepError| -> ! { panic!("{}: {error}", S::NAME) };
-    let mut stepper = FixedStep::new(system, State::at(&system, 0.0, q, v), h).unwrap_or_else(|error| panic(error));
+    let mut stepper = system.at(0.0, q, v).integrate(FixedStep, h).unwrap_or_else(|error| panic(error));
     let mut fixed = Run { states: Vec::new(), iterations: 0 };
     for _ in 0..STEPS {
         fixed.states.push(stepper.step().unwrap_or_else(|error| panic(error)));

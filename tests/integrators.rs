@@ -1,10 +1,9 @@
 //! What all integrators share: states at times and on grids, events, inputs, other states; against closed forms and runs that begin anew.
 
 use core::f64::consts::{PI, TAU};
-use vi_core::integrator::{Crossing, Direction, Event, Path};
+use vi_core::run::{Crossing, Direction, Event, Path};
 use vi_core::{
-    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, Lagrangian, SVector, Scheme, State, StepError,
-    lagrangian,
+    Composition, EnergyPreserving, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State, StepError, lagrangian,
 };
 use vi_systems::{DoubleWell, HarmonicOscillator, HenonHeiles, Kepler, Pendulum};
 
@@ -40,11 +39,11 @@ fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
 
 /// The state at t by many steps that end there, of a run that is given anew for each number of them.
 fn ends_at<I: Integrator<N>, const N: usize>(mut run: I, t: f64) -> State<N> {
-    let state = run.propagate_until(t).expect("the run goes on");
+    let state = run.until(t).expect("the run goes on");
     assert_eq!(state.t.to_bits(), t.to_bits());
     assert_eq!(state, run.state());
     // A run that is there goes nowhere.
-    assert_eq!(run.propagate_until(t), Ok(state));
+    assert_eq!(run.until(t), Ok(state));
     // And it goes on with its own step.
     let h = run.h();
     let next = run.step().expect("the run goes on").t - t;
@@ -56,12 +55,12 @@ fn ends_at<I: Integrator<N>, const N: usize>(mut run: I, t: f64) -> State<N> {
 fn a_run_ends_exactly_at_a_time() {
     let kepler = Kepler::default();
     let start = planet(0.3);
-    let exact = ends_at(Gauss::<_, 2, 8>::new(kepler, start, 0.05).expect("valid"), 7.3);
+    let exact = ends_at(kepler.at_state(start).integrate(Gauss::<8>, 0.05).expect("valid"), 7.3);
     let runs = |h: f64| {
         [
-            ends_at(FixedStep::new(kepler, start, h).expect("valid"), 7.3),
-            ends_at(Composition::new(kepler, Scheme::SUZUKI_4, start, h).expect("valid"), 7.3),
-            ends_at(Gauss::<_, 2, 2>::new(kepler, start, h).expect("valid"), 7.3),
+            ends_at(kepler.at_state(start).integrate(FixedStep, h).expect("valid"), 7.3),
+            ends_at(kepler.at_state(start).integrate(Composition::SUZUKI_4, h).expect("valid"), 7.3),
+            ends_at(kepler.at_state(start).integrate(Gauss::<2>, h).expect("valid"), 7.3),
         ]
     };
     // The last step is shorter, and the order is that of the method all the same.
@@ -86,12 +85,12 @@ fn runs_to_multiples_of_a_step_take_plain_steps() {
     let well = DoubleWell::default();
     let start = State::at(&well, 0.0, [0.8], [0.0]);
     for h in [0.1, 0.3, 1.0 / 3.0, -0.07] {
-        let mut plain = FixedStep::new(well, start, h).expect("valid");
+        let mut plain = well.at_state(start).integrate(FixedStep, h).expect("valid");
         let mut asked = plain.clone();
         for step in 1..=300_u32 {
             let state = plain.step().expect("solvable");
             if step % 30 == 0 {
-                let reached = asked.propagate_until(f64::from(step) * h).expect("solvable");
+                let reached = asked.until(f64::from(step) * h).expect("solvable");
                 // By a rounding of the time the last step may be another: 1.8e-15.
                 assert!(distance(&reached, &state) < 1e-14, "{h}, {step}: {}", distance(&reached, &state));
             }
@@ -103,8 +102,8 @@ fn runs_to_multiples_of_a_step_take_plain_steps() {
 fn backwards_and_forwards_again() {
     let kepler = Kepler::default();
     let start = planet(0.5);
-    let end = Gauss::<_, 2, 6>::new(kepler, start, 0.1).expect("valid").propagate_until(5.03).expect("solvable");
-    let back = Gauss::<_, 2, 6>::new(kepler, end, -0.1).expect("valid").propagate_until(0.0).expect("solvable");
+    let end = kepler.at_state(start).integrate(Gauss::<6>, 0.1).expect("valid").until(5.03).expect("solvable");
+    let back = kepler.at_state(end).integrate(Gauss::<6>, -0.1).expect("valid").until(0.0).expect("solvable");
     assert_eq!(back.t.to_bits(), 0.0_f64.to_bits());
     // 1.6e-15: the steps are others, and both are at the accuracy of numbers.
     assert!(distance(&back, &start) < 1e-14, "{}", distance(&back, &start));
@@ -114,11 +113,11 @@ fn backwards_and_forwards_again() {
 fn times_behind_or_beyond_all_are_typed_errors() {
     let well = DoubleWell::default();
     let start = State::at(&well, 1.0, [0.8], [0.0]);
-    let mut run = FixedStep::new(well, start, 0.1).expect("valid");
+    let mut run = well.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     for t in [0.5, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let Err(StepError::InvalidInput { input, value, .. }) = run.propagate_until(t) else { panic!("{t}") };
+        let Err(StepError::InvalidInput { input, value, .. }) = run.until(t) else { panic!("{t}") };
         assert_eq!((input, value.to_bits()), ("the time to propagate to", t.to_bits()));
-        let asked = run.propagate_grid(&[t]).next();
+        let asked = run.states_at([t]).next();
         assert!(matches!(asked, Some(Err(StepError::InvalidInput { .. }))), "{asked:?}");
         assert!(matches!(run.next_event(&[], t), Err(StepError::InvalidInput { .. })));
         assert_eq!(run.state(), start, "the run stays");
@@ -134,7 +133,7 @@ fn is_undisturbed<I: Integrator<N>, const N: usize>(run: &I) {
     let mut asked = run.clone();
     let mut plain = run.clone();
     let times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.317).collect();
-    let states: Vec<_> = asked.propagate_grid(&times).map(|state| state.expect("solvable")).collect();
+    let states: Vec<_> = asked.states_at(times).map(|state| state.expect("solvable")).collect();
     assert_eq!(states.len(), times.len());
     for (state, t) in states.iter().zip(&times) {
         assert_eq!(state.t.to_bits(), t.to_bits());
@@ -148,7 +147,7 @@ fn is_undisturbed<I: Integrator<N>, const N: usize>(run: &I) {
     assert_eq!((plain.state(), *plain.node()), (asked.state(), *asked.node()));
     // Each state is that of a run to its time.
     for (state, t) in states.iter().zip(&times).skip(1).step_by(7) {
-        let alone = run.clone().propagate_until(*t).expect("solvable");
+        let alone = run.clone().until(*t).expect("solvable");
         assert_eq!((alone.q, alone.p), (state.q, state.p));
     }
 }
@@ -157,18 +156,18 @@ fn is_undisturbed<I: Integrator<N>, const N: usize>(run: &I) {
 fn a_grid_leaves_the_run_as_it_is() {
     let well = DoubleWell::default();
     let start = State::at(&well, 0.0, [0.8], [0.0]);
-    is_undisturbed(&FixedStep::new(well, start, 0.1).expect("valid"));
-    is_undisturbed(&Composition::new(well, Scheme::KAHAN_LI_6, start, 0.4).expect("valid"));
-    is_undisturbed(&Gauss::<_, 1, 5>::new(well, start, 0.3).expect("valid"));
+    is_undisturbed(&well.at_state(start).integrate(FixedStep, 0.1).expect("valid"));
+    is_undisturbed(&well.at_state(start).integrate(Composition::KAHAN_LI_6, 0.4).expect("valid"));
+    is_undisturbed(&well.at_state(start).integrate(Gauss::<5>, 0.3).expect("valid"));
     // Several times in one step.
-    is_undisturbed(&Gauss::<_, 1, 8>::new(well, start, 0.9).expect("valid"));
+    is_undisturbed(&well.at_state(start).integrate(Gauss::<8>, 0.9).expect("valid"));
     let mut energy = EnergyPreserving::from_midpoint(well, -0.05, [0.8], [0.0], 0.1).expect("valid");
-    energy.propagate_until(0.0).expect("solvable");
+    energy.until(0.0).expect("solvable");
     is_undisturbed(&energy);
 }
 
 /// The largest error of a path over the first step of a run, with that of its derivative.
-fn path_error<I: Integrator<2>>(mut run: I, exact: &Gauss<Kepler, 2, 10>) -> f64 {
+fn path_error<I: Integrator<2>>(mut run: I, exact: &Run<Gauss<10>, Kepler, 2>) -> f64 {
     let before = run.state();
     let after = run.step().expect("solvable");
     let path = run.path(&before).expect("regular");
@@ -179,7 +178,7 @@ fn path_error<I: Integrator<2>>(mut run: I, exact: &Gauss<Kepler, 2, 10>) -> f64
     let parts = [0.2, 0.37, 0.5, 0.81];
     let errors = parts.map(|part| {
         let t = before.t + part * (after.t - before.t);
-        let truth = exact.clone().propagate_until(t).expect("solvable");
+        let truth = exact.clone().until(t).expect("solvable");
         let v = truth.velocity(&Kepler::default()).expect("regular");
         // The derivative is one order lower.
         let of_velocity = (path.velocity(t) - v).norm() * (after.t - before.t);
@@ -192,12 +191,12 @@ fn path_error<I: Integrator<2>>(mut run: I, exact: &Gauss<Kepler, 2, 10>) -> f64
 fn paths_have_their_order_and_end_at_the_nodes() {
     let kepler = Kepler::default();
     let start = planet(0.4);
-    let exact = Gauss::<_, 2, 10>::new(kepler, start, 0.05).expect("valid");
+    let exact = kepler.at_state(start).integrate(Gauss::<10>, 0.05).expect("valid");
     let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
     // Of S stages: of order S + 1 over one step, its velocity too; of cubics that of the step, 3. Measured: 3.988, 4.976, 3.016.
-    let three = slope(&|h| path_error(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid"), &exact));
-    let four = slope(&|h| path_error(Gauss::<_, 2, 4>::new(kepler, start, h).expect("valid"), &exact));
-    let cubic = slope(&|h| path_error(FixedStep::new(kepler, start, h).expect("valid"), &exact));
+    let three = slope(&|h| path_error(kepler.at_state(start).integrate(Gauss::<3>, h).expect("valid"), &exact));
+    let four = slope(&|h| path_error(kepler.at_state(start).integrate(Gauss::<4>, h).expect("valid"), &exact));
+    let cubic = slope(&|h| path_error(kepler.at_state(start).integrate(FixedStep, h).expect("valid"), &exact));
     assert!((three - 4.0).abs() < 0.2, "{three}");
     assert!((four - 5.0).abs() < 0.2, "{four}");
     assert!((cubic - 3.0).abs() < 0.2, "{cubic}");
@@ -237,13 +236,14 @@ fn the_period_of_a_pendulum() {
         times.iter().zip(expected).map(|(t, exact)| (t - exact).abs()).fold(0.0, f64::max)
     };
     let end = 12.0 * period;
-    let gauss = rises(&rising(Gauss::<_, 1, 8>::new(pendulum, start, 0.4).expect("valid"), end));
+    let gauss = rises(&rising(pendulum.at_state(start).integrate(Gauss::<8>, 0.4).expect("valid"), end));
     // 4.3e-14.
     assert!(gauss < 2e-13, "{gauss}");
-    let errors = [0.05, 0.025].map(|h| rises(&rising(FixedStep::new(pendulum, start, h).expect("valid"), end)));
+    let errors =
+        [0.05, 0.025].map(|h| rises(&rising(pendulum.at_state(start).integrate(FixedStep, h).expect("valid"), end)));
     let slope = (errors[0] / errors[1]).log2();
     assert!((slope - 2.0).abs() < 0.1, "{slope}");
-    let composed = Composition::new(pendulum, Scheme::KAHAN_LI_6, start, 0.2).expect("valid");
+    let composed = pendulum.at_state(start).integrate(Composition::KAHAN_LI_6, 0.2).expect("valid");
     // 5.2e-7.
     assert!(rises(&rising(composed, end)) < 1e-6);
     let energy = EnergyPreserving::from_midpoint(pendulum, 0.0, [2.0], [0.0], 0.02).expect("valid");
@@ -256,7 +256,7 @@ fn the_period_of_a_pendulum() {
 fn two_events_in_a_step_and_one_that_only_touches() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
-    let run = || Gauss::<_, 1, 10>::new(oscillator, start, 0.5).expect("valid");
+    let run = || oscillator.at_state(start).integrate(Gauss::<10>, 0.5).expect("valid");
     let levels = |level: f64, direction: Direction| -> Vec<f64> {
         let above = move |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0] - level;
         let events = [Event::new(&above, direction)];
@@ -285,7 +285,7 @@ fn two_events_in_a_step_and_one_that_only_touches() {
 fn several_functions_in_one_step_come_in_their_order() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
-    let mut run = Gauss::<_, 1, 10>::new(oscillator, start, 2.0).expect("valid");
+    let mut run = oscillator.at_state(start).integrate(Gauss::<10>, 2.0).expect("valid");
     let clock = |t: f64, _: &SVector<f64, 1>, _: &SVector<f64, 1>| t - 1.3;
     let place = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
     let speed = |_: f64, _: &SVector<f64, 1>, v: &SVector<f64, 1>| v[0] + 0.5;
@@ -302,7 +302,7 @@ fn several_functions_in_one_step_come_in_their_order() {
 fn a_run_that_stops_at_an_event_goes_on_from_it() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
-    let mut run = Gauss::<_, 1, 6>::new(oscillator, start, 0.3).expect("valid");
+    let mut run = oscillator.at_state(start).integrate(Gauss::<6>, 0.3).expect("valid");
     let place = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
     let events = [Event::new(&place, Direction::Both)];
     for half in 0..200 {
@@ -317,7 +317,7 @@ fn a_run_that_stops_at_an_event_goes_on_from_it() {
     assert_eq!(run.t().to_bits(), (start + 1.0).to_bits());
     // A run that begins at a zero leaves it.
     let start = State::at(&oscillator, 0.0, [0.0], [1.0]);
-    let mut run = FixedStep::new(oscillator, start, 0.1).expect("valid");
+    let mut run = oscillator.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let first = run.next_event(&events, 10.0).expect("solvable").expect("there is one");
     assert!((first.state.t - PI).abs() < 0.01 && !first.is_rising, "{first:?}");
 }
@@ -326,7 +326,7 @@ fn a_run_that_stops_at_an_event_goes_on_from_it() {
 fn an_event_function_that_is_not_finite_is_a_typed_error() {
     let oscillator = HarmonicOscillator { k: 1.0, ..HarmonicOscillator::default() };
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
-    let mut run = FixedStep::new(oscillator, start, 0.1).expect("valid");
+    let mut run = oscillator.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let logarithm = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0].ln();
     let events = [Event::new(&logarithm, Direction::Both)];
     let mut found = run.events(&events, 10.0);
@@ -345,7 +345,7 @@ fn a_section_of_henon_and_heiles() {
     let x = |_: f64, q: &SVector<f64, 2>, _: &SVector<f64, 2>| q[0];
     let events = [Event::new(&x, Direction::Rising)];
     let section = |h: f64| -> Vec<State<2>> {
-        let mut run = Gauss::<_, 2, 8>::new(system, start, h).expect("valid");
+        let mut run = system.at_state(start).integrate(Gauss::<8>, h).expect("valid");
         run.events(&events, 300.0).map(|crossing| crossing.expect("solvable").state).collect()
     };
     let coarse = section(0.5);
@@ -374,7 +374,7 @@ fn a_ball_bounces() {
     let ball = Ball::default();
     let floor = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
     let hits = [Event::new(&floor, Direction::Falling)];
-    let mut run = FixedStep::new(ball, State::at(&ball, 0.0, [1.3], [0.0]), 0.037).expect("valid");
+    let mut run = ball.at(0.0, [1.3], [0.0]).integrate(FixedStep, 0.037).expect("valid");
     let fall = (2.0_f64 * 1.3 / 9.81).sqrt();
     for count in 0..20 {
         let t = bounce(&mut run, &hits);
@@ -405,9 +405,9 @@ fn difference<I: Integrator<1, System = Pushed>>(mut run: I, anew: impl Fn(Pushe
 fn changed_parameters_are_those_of_a_new_run() {
     let system = Pushed::default();
     let start = State::at(&system, 0.0, [0.4], [0.2]);
-    let fixed = |system, state| FixedStep::new(system, state, 0.1).expect("valid");
-    let composed = |system, state| Composition::new(system, Scheme::SUZUKI_4, state, 0.1).expect("valid");
-    let gauss = |system, state| Gauss::<_, 1, 4>::new(system, state, 0.1).expect("valid");
+    let fixed = |system, state| system.at_state(state).integrate(FixedStep, 0.1).expect("valid");
+    let composed = |system, state| system.at_state(state).integrate(Composition::SUZUKI_4, 0.1).expect("valid");
+    let gauss = |system, state| system.at_state(state).integrate(Gauss::<4>, 0.1).expect("valid");
     // 1.0e-15, 1.0e-15, 9.5e-16: the residuals of two guesses, and what sums carry below an ulp.
     let errors = [
         difference(fixed(system, start), fixed),
@@ -422,10 +422,10 @@ fn of_the_last_step_is_said_what_the_new_parameters_make_of_it() {
     let system = Pushed { u: 0.3, ..Pushed::default() };
     let start = State::at(&system, 0.0, [0.4], [0.2]);
     let h = 0.1;
-    let mut fixed = FixedStep::new(system, start, h).expect("valid");
+    let mut fixed = system.at_state(start).integrate(FixedStep, h).expect("valid");
     let before = fixed.step().expect("solvable");
     let after = fixed.step().expect("solvable");
-    let mut gauss = Gauss::<_, 1, 4>::new(system, start, h).expect("valid");
+    let mut gauss = system.at_state(start).integrate(Gauss::<4>, h).expect("valid");
     let gauss_before = gauss.step().expect("solvable");
     let gauss_after = gauss.step().expect("solvable");
     assert!(gauss.discrete_energy().is_some() && gauss.slots().is_some());
@@ -506,9 +506,9 @@ fn refuses<I: Integrator<1, System = Pushed>>(mut run: I) {
 fn parameters_with_which_nothing_moves_are_refused() {
     let system = Pushed::default();
     let start = State::at(&system, 0.0, [0.4], [0.2]);
-    refuses(FixedStep::new(system, start, 0.1).expect("valid"));
-    refuses(Composition::new(system, Scheme::SUZUKI_4, start, 0.1).expect("valid"));
-    refuses(Gauss::<_, 1, 4>::new(system, start, 0.1).expect("valid"));
+    refuses(system.at_state(start).integrate(FixedStep, 0.1).expect("valid"));
+    refuses(system.at_state(start).integrate(Composition::SUZUKI_4, 0.1).expect("valid"));
+    refuses(system.at_state(start).integrate(Gauss::<4>, 0.1).expect("valid"));
     refuses(EnergyPreserving::from_midpoint(system, 0.0, [0.4], [0.2], 0.05).expect("valid"));
 }
 
@@ -528,9 +528,9 @@ fn energies_at_nodes_are_of_order_2_and_2s() {
     let kepler = Kepler::default();
     let start = planet(0.3);
     let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
-    let two = slope(&|h| largest_error_of_energy(FixedStep::new(kepler, start, h).expect("valid")));
-    let four = slope(&|h| largest_error_of_energy(Gauss::<_, 2, 2>::new(kepler, start, h).expect("valid")));
-    let six = slope(&|h| largest_error_of_energy(Gauss::<_, 2, 3>::new(kepler, start, h).expect("valid")));
+    let two = slope(&|h| largest_error_of_energy(kepler.at_state(start).integrate(FixedStep, h).expect("valid")));
+    let four = slope(&|h| largest_error_of_energy(kepler.at_state(start).integrate(Gauss::<2>, h).expect("valid")));
+    let six = slope(&|h| largest_error_of_energy(kepler.at_state(start).integrate(Gauss::<3>, h).expect("valid")));
     // 2.000, 3.995, 6.003.
     assert!((two - 2.0).abs() < 0.2 && (four - 4.0).abs() < 0.2 && (six - 6.0).abs() < 0.3, "{two} {four} {six}");
 }
@@ -538,20 +538,20 @@ fn energies_at_nodes_are_of_order_2_and_2s() {
 #[test]
 fn a_composition_restarts_bit_for_bit() {
     let kepler = Kepler::default();
-    let mut run = Composition::new(kepler, Scheme::KAHAN_LI_6, planet(0.4), 0.2).expect("valid");
+    let mut run = kepler.at_state(planet(0.4)).integrate(Composition::KAHAN_LI_6, 0.2).expect("valid");
     for _ in 0..30 {
         run.step().expect("solvable");
     }
     let text = serde_json::to_string(&run.checkpoint()).expect("plain numbers");
     let stored = serde_json::from_str(&text).expect("what was written");
-    let mut again = Composition::restart(kepler, Scheme::KAHAN_LI_6, stored).expect("the same system");
+    let mut again = Run::restart(kepler, Composition::KAHAN_LI_6, stored).expect("the same system");
     for _ in 0..30 {
         assert_eq!(run.step(), again.step());
         assert_eq!(run.node(), again.node());
     }
-    let other = Composition::restart(kepler, Scheme::KAHAN_LI_8, run.checkpoint());
+    let other = Run::restart(kepler, Composition::KAHAN_LI_8, run.checkpoint());
     assert!(matches!(other, Err(StepError::InvalidInput { .. })), "{other:?}");
-    let other = Composition::restart(Kepler { mu: 2.0 }, Scheme::KAHAN_LI_6, run.checkpoint());
+    let other = Run::restart(Kepler { mu: 2.0 }, Composition::KAHAN_LI_6, run.checkpoint());
     assert!(matches!(other, Err(StepError::OtherSystem { .. })), "{other:?}");
 }
 
@@ -559,7 +559,7 @@ fn a_composition_restarts_bit_for_bit() {
 fn the_motion_goes_on_after_a_step_that_failed() {
     // A step that is too long has no solution; the run may take a shorter one.
     let kepler = Kepler::default();
-    let mut run = Gauss::<_, 2, 3>::new(kepler, planet(0.6), 0.05).expect("valid");
+    let mut run = kepler.at_state(planet(0.6)).integrate(Gauss::<3>, 0.05).expect("valid");
     run.step().expect("solvable");
     let before = run.clone();
     assert!(run.step_of(1e200).is_err());
@@ -583,8 +583,8 @@ fn many_events_of_a_step_come_in_their_order_and_each_once() {
             .collect()
     };
     for h in [0.3, 1.0] {
-        let mut fixed = FixedStep::new(free, start, h).expect("valid");
-        let mut gauss = Gauss::<_, 1, 4>::new(free, start, h).expect("valid");
+        let mut fixed = free.at_state(start).integrate(FixedStep, h).expect("valid");
+        let mut gauss = free.at_state(start).integrate(Gauss::<4>, h).expect("valid");
         for found in [reached(&mut fixed.events(&events, 1.0)), reached(&mut gauss.events(&events, 1.0))] {
             assert!(found.len() == 300 && found.windows(2).all(|pair| pair[0].1 <= pair[1].1), "h = {h}");
             let worst = found.iter().map(|(event, t)| (t - levels[*event]).abs()).fold(0.0, f64::max);
@@ -628,8 +628,8 @@ fn functions_that_are_flat_steep_or_jump_are_met_once() {
         let of_velocity = |_: f64, _: &SVector<f64, 1>, v: &SVector<f64, 1>| g(v[0]);
         for wanted in [Event::new(&of_position, Direction::Both), Event::new(&of_velocity, Direction::Both)] {
             let found = [
-                met(&FixedStep::new(oscillator, start, 0.1 / omega).expect("valid"), &[wanted], until),
-                met(&Gauss::<_, 1, 4>::new(oscillator, start, 0.3 / omega).expect("valid"), &[wanted], until),
+                met(&oscillator.at_state(start).integrate(FixedStep, 0.1 / omega).expect("valid"), &[wanted], until),
+                met(&oscillator.at_state(start).integrate(Gauss::<4>, 0.3 / omega).expect("valid"), &[wanted], until),
             ];
             assert_eq!(found[1].0, [3, 3]);
             assert_eq!(found[0].0, [3, 3]);
@@ -647,7 +647,7 @@ fn an_event_at_the_end_of_a_search_is_met_once() {
         for h in [1.0 / n, 1.01 / n, 0.77 / n] {
             let of_time = |t: f64, _: &SVector<f64, 1>, _: &SVector<f64, 1>| t - 1.0;
             let wanted = [Event::new(&of_time, Direction::Both)];
-            let mut run = Gauss::<_, 1, 3>::new(body, State::at(&body, 0.0, [0.3], [0.2]), h).expect("valid");
+            let mut run = body.at(0.0, [0.3], [0.2]).integrate(Gauss::<3>, h).expect("valid");
             let mut count = 0;
             for until in [1.0, 2.0] {
                 for crossing in run.events(&wanted, until) {
@@ -666,7 +666,7 @@ fn an_event_at_the_end_of_a_search_is_met_once() {
 /// The position after an eighth, the length of the step to the next event, and the velocity there.
 fn later<I: Integrator<1>>(mut run: I, wanted: &[Event<'_, 1>]) -> [f64; 3] {
     let start = run.state();
-    let state = run.clone().propagate_until(start.t + 0.125).expect("the run goes on");
+    let state = run.clone().until(start.t + 0.125).expect("the run goes on");
     let crossing = run.next_event(wanted, start.t + 10.0).expect("the run goes on").expect("one");
     let mut run = run.clone();
     let before = run.state();
@@ -684,8 +684,10 @@ fn far_from_zero_a_rounding_of_the_time_is_many_steps() {
     let far = State { t: 1e15, ..near };
     let position = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
     let wanted = [Event::new(&position, Direction::Both)];
-    let fixed = [near, far].map(|state| later(FixedStep::new(oscillator, state, h).expect("valid"), &wanted));
-    let gauss = [near, far].map(|state| later(Gauss::<_, 1, 4>::new(oscillator, state, h).expect("valid"), &wanted));
+    let fixed =
+        [near, far].map(|state| later(oscillator.at_state(state).integrate(FixedStep, h).expect("valid"), &wanted));
+    let gauss =
+        [near, far].map(|state| later(oscillator.at_state(state).integrate(Gauss::<4>, h).expect("valid"), &wanted));
     for [near, far] in [fixed, gauss] {
         let difference = near.iter().zip(far).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         // 2e-14.
@@ -699,17 +701,17 @@ fn a_bound_of_the_step_leads_beyond_no_time() {
     let run = EnergyPreserving::from_midpoint(oscillator, 0.0, [1.0], [0.0], 0.001).expect("valid");
     let mut run = run.with_fallback(vi_core::Fallback::FixedSteps).with_step_bounds(0.1, 1.0).expect("valid");
     for t in [0.05, 0.5] {
-        assert_eq!(run.propagate_until(t).map(|state| state.t), Ok(t));
+        assert_eq!(run.until(t).map(|state| state.t), Ok(t));
     }
 }
 
 #[test]
 fn a_time_nearer_than_the_smallest_step_is_here() {
     let oscillator = HarmonicOscillator::default();
-    let mut run = FixedStep::new(oscillator, State::at(&oscillator, 0.0, [1.0], [0.0]), 0.1).expect("valid");
-    assert_eq!(run.propagate_until(1e-310).map(|state| state.t), Ok(1e-310));
+    let mut run = oscillator.at(0.0, [1.0], [0.0]).integrate(FixedStep, 0.1).expect("valid");
+    assert_eq!(run.until(1e-310).map(|state| state.t), Ok(1e-310));
     assert_eq!(
-        run.propagate_grid(&[2e-310, 0.1]).map(|state| state.map(|state| state.t)).collect::<Vec<_>>(),
+        run.states_at([2e-310, 0.1]).map(|state| state.map(|state| state.t)).collect::<Vec<_>>(),
         [Ok(2e-310), Ok(0.1)]
     );
 }

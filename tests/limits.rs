@@ -8,7 +8,9 @@ use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, Variati
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, Fallback, FixedStep, Gauss, Integrator, SVector, State, StepError, lagrangian};
+use vi_core::{
+    Composition, EnergyPreserving, Fallback, FixedStep, Gauss, SVector, Starts, State, StepError, lagrangian,
+};
 use vi_ensemble::Ensemble;
 
 lagrangian! {
@@ -126,9 +128,9 @@ where
         // Measured: 5.6e-17.
         assert!(off < 1e-16, "{name}: {off:e} at {}", state.t);
     };
-    is_on_parabola(&after(FixedStep::new(system, start, 0.01)), "fixed");
-    is_on_parabola(&after(Composition::new(system, Scheme::KAHAN_LI_6, start, 0.01)), "composition");
-    is_on_parabola(&after(Gauss::<S, 1, 4>::new(system, start, 0.01)), "Gauss");
+    is_on_parabola(&after(system.at_state(start).integrate(FixedStep, 0.01)), "fixed");
+    is_on_parabola(&after(system.at_state(start).integrate(Composition::KAHAN_LI_6, 0.01)), "composition");
+    is_on_parabola(&after(system.at_state(start).integrate(Gauss::<4>, 0.01)), "Gauss");
     let mut energy = EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.01).expect("a valid start");
     for _ in 0..60 {
         let (t, q, v) = energy.step().expect("a step").midpoint;
@@ -159,9 +161,9 @@ where
     let start = State::at(&system, 0.0, q, [0.0; N]);
     let energy = EnergyPreserving::from_midpoint(system, 0.0, q, [0.0; N], h).expect("a valid start");
     let runs = [
-        followed(FixedStep::new(system, start, h).expect("a valid start"), 6.0, is_there),
-        followed(Composition::new(system, Scheme::KAHAN_LI_6, start, h).expect("a valid start"), 6.0, is_there),
-        followed(Gauss::<S, N, 4>::new(system, start, h).expect("a valid start"), 6.0, is_there),
+        followed(system.at_state(start).integrate(FixedStep, h).expect("a valid start"), 6.0, is_there),
+        followed(system.at_state(start).integrate(Composition::KAHAN_LI_6, h).expect("a valid start"), 6.0, is_there),
+        followed(system.at_state(start).integrate(Gauss::<4>, h).expect("a valid start"), 6.0, is_there),
         followed(energy.with_fallback(Fallback::FixedSteps), 6.0, is_there),
     ];
     runs.map(|run| {
@@ -202,7 +204,7 @@ fn the_curvature_of_the_floor_is_that_of_the_formula() {
     // At the floor itself it is infinite on one side: no step begins there.
     assert!(!at(0.3).is_finite(), "{:e}", at(0.3));
     let floor = State { t: 0.0, q: [0.3].into(), p: [0.0].into() };
-    let step = FixedStep::new(system, floor, 0.01).expect("a velocity").step();
+    let step = system.at_state(floor).integrate(FixedStep, 0.01).expect("a velocity").step();
     assert!(matches!(step, Err(StepError::NonFinite { .. })), "{step:?}");
 }
 
@@ -232,7 +234,7 @@ fn a_drag_at_rest_has_no_slope() {
 
 /// The errors of x, y and both momenta after a fall from rest of 2 seconds, against `v = √(g/c) tanh(√(g c) t)`.
 fn off<I: Integrator<2>>(mut run: I) -> f64 {
-    run.propagate_until(2.0).expect("a fall");
+    run.until(2.0).expect("a fall");
     let (state, root) = (run.state(), 0.3_f64.sqrt());
     let y = -(2.0 * root).cosh().ln() / 0.3;
     let v = -(2.0 * root).tanh() / root;
@@ -244,17 +246,17 @@ fn a_fall_from_rest_is_the_closed_form() {
     let system = Fall::default();
     let start = State::at(&system, 0.0, [0.0, 0.0], [0.0, 0.0]);
     let errors = [
-        off(FixedStep::new(system, start, 0.02).expect("a velocity")),
-        off(FixedStep::new(system, start, 0.01).expect("a velocity")),
-        off(Composition::new(system, Scheme::KAHAN_LI_6, start, 0.02).expect("a velocity")),
-        off(Gauss::<_, 2, 4>::new(system, start, 0.02).expect("a velocity")),
+        off(system.at_state(start).integrate(FixedStep, 0.02).expect("a velocity")),
+        off(system.at_state(start).integrate(FixedStep, 0.01).expect("a velocity")),
+        off(system.at_state(start).integrate(Composition::KAHAN_LI_6, 0.02).expect("a velocity")),
+        off(system.at_state(start).integrate(Gauss::<4>, 0.02).expect("a velocity")),
     ];
     // Measured: 1.31e-5, 3.28e-6 (a quarter), 1.1e-15, 0.
     assert!(errors.iter().zip([1.4e-5, 3.4e-6, 2e-15, 1e-15]).all(|(found, most)| *found < most), "{errors:?}");
     // In single precision.
     let single = Fall::<f32> { c: 0.3 };
     let start = State::at(&single, 0.0, [0.0, 0.0], [0.0, 0.0]);
-    let mut run = FixedStep::new(single, start, 0.01_f32).expect("a velocity");
+    let mut run = single.at_state(start).integrate(FixedStep, 0.01_f32).expect("a velocity");
     for _ in 0..200 {
         run.step().expect("a step");
     }
@@ -271,7 +273,7 @@ fn a_fall_from_rest_is_the_closed_form() {
     // Measured: 3.7e-6.
     assert!(off < 4e-6, "{off:e}");
     // As in lanes.
-    let mut alone = FixedStep::new(system, State::at(&system, 0.0, [0.0, 0.0], [0.0, 0.0]), 0.01).expect("a velocity");
+    let mut alone = system.at(0.0, [0.0, 0.0], [0.0, 0.0]).integrate(FixedStep, 0.01).expect("a velocity");
     let mut ensemble = Ensemble::new(vec![system; 9], vec![alone.state(); 9], 0.01).expect("valid starts");
     ensemble.run(200);
     for _ in 0..200 {
@@ -287,7 +289,7 @@ fn a_fall_from_rest_is_the_closed_form() {
 
 #[test]
 fn exponents_and_coefficients_that_are_parameters_are_tested_at_run_time() {
-    let start = |system: Unlike| FixedStep::new(system, State::at(&system, 0.0, [0.0; 2], [0.0; 2]), 0.01);
+    let start = |system: Unlike| system.at(0.0, [0.0; 2], [0.0; 2]).integrate(FixedStep, 0.01);
     for system in [Unlike::default(), Unlike { n: 0.2, ..Unlike::default() }] {
         let mut run = start(system).expect("a velocity");
         for _ in 0..1000 {
@@ -312,14 +314,14 @@ fn exponents_and_coefficients_that_are_parameters_are_tested_at_run_time() {
 fn what_has_no_limit_is_a_typed_error() {
     let system = Towards::default();
     let start = State { t: 0.0, q: [0.0; 2].into(), p: [0.0; 2].into() };
-    let fixed = FixedStep::new(system, start, 0.01).expect("a velocity").step();
+    let fixed = system.at_state(start).integrate(FixedStep, 0.01).expect("a velocity").step();
     assert!(matches!(fixed, Err(StepError::NonFinite { .. })), "{fixed:?}");
     assert!(!system.momentum_equation(&Node::new(start, 0.0), 0.01, &[0.0; 2].into()).residual[0].is_finite());
-    let gauss = Gauss::<_, 2, 4>::new(system, start, 0.01).expect("a velocity").step();
+    let gauss = system.at_state(start).integrate(Gauss::<4>, 0.01).expect("a velocity").step();
     assert!(gauss.is_err(), "{gauss:?}");
     // Right beside it there is a step.
     let beside = State { q: [1e-9, 0.0].into(), ..start };
-    assert!(FixedStep::new(system, beside, 1e-6).expect("a velocity").step().is_ok());
+    assert!(system.at_state(beside).integrate(FixedStep, 1e-6).expect("a velocity").step().is_ok());
 }
 
 /// The last coordinate after 60 steps.
@@ -354,11 +356,11 @@ fn derivatives_of_a_free_fall_are_those_of_the_parabola() {
         let names = ["n", "k", "height"].map(|name| Variation::of_parameter::<Floor>(name).expect("a parameter"));
         Variation::of_state().into_iter().chain(names).collect::<Vec<_>>()
     };
-    let run = FixedStep::new(system, start, 0.01).expect("a velocity");
+    let run = system.at_state(start).integrate(FixedStep, 0.01).expect("a velocity");
     for found in [
         varied(run.clone(), variations()),
-        varied(Composition::new(system, Scheme::KAHAN_LI_6, start, 0.01).expect("a velocity"), variations()),
-        varied(Gauss::<_, 1, 4>::new(system, start, 0.01).expect("a velocity"), variations()),
+        varied(system.at_state(start).integrate(Composition::KAHAN_LI_6, 0.01).expect("a velocity"), variations()),
+        varied(system.at_state(start).integrate(Gauss::<4>, 0.01).expect("a velocity"), variations()),
     ] {
         let wanted = [[1.0, 0.0], [0.6, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
         for (found, wanted) in found.iter().flatten().zip(wanted.iter().flatten()) {
@@ -383,13 +385,13 @@ fn derivatives_of_a_free_fall_are_those_of_the_parabola() {
 fn derivatives_of_a_fall_from_rest_are_differences_of_falls() {
     let system = Fall::default();
     let after = |system: Fall, v: [f64; 2]| {
-        let mut run = FixedStep::new(system, State::at(&system, 0.0, [0.0; 2], v), 0.01).expect("a velocity");
+        let mut run = system.at(0.0, [0.0; 2], v).integrate(FixedStep, 0.01).expect("a velocity");
         for _ in 0..100 {
             run.step().expect("a step");
         }
         run.state().q
     };
-    let run = FixedStep::new(system, State::at(&system, 0.0, [0.0; 2], [0.0; 2]), 0.01).expect("a velocity");
+    let run = system.at(0.0, [0.0; 2], [0.0; 2]).integrate(FixedStep, 0.01).expect("a velocity");
     let by_c = Variation::of_parameter::<Fall>("c").expect("a parameter");
     let momentum = |index| Variation::of_momentum(index).expect("a coordinate");
     let mut tangent = Tangent::new(run, vec![momentum(0), momentum(1), by_c]);

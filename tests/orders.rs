@@ -9,7 +9,7 @@ use crate::support::reference::{file, number};
 use crate::support::scenes::{Scene, each_system};
 use crate::support::slope;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, Starts, State, StepError};
 use vi_systems::{DoublePendulum, HardDuffing, Kepler, Pendulum};
 
 /// Steps over the time of a run: powers of two times this number of the scene's own steps.
@@ -39,7 +39,7 @@ fn fixed_step<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
         .map(|halvings| {
             let steps = STEPS << halvings;
             let h = span / f64::from(steps);
-            let mut run = FixedStep::new(system, State::at(&system, start.t, q, v), h).expect("a valid start");
+            let mut run = system.at(start.t, q, v).integrate(FixedStep, h).expect("a valid start");
             for _ in 0..steps {
                 run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
             }
@@ -53,7 +53,7 @@ fn fixed_step<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
 /// The energy-preserving integrator from one of its starts, given the start of the motion and h0.
 fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(
     scene: &Scene<S, N>,
-    begin: impl Fn(&S, &Motion<N>, f64) -> Result<EnergyPreserving<S, N>, StepError>,
+    begin: impl Fn(&S, &Motion<N>, f64) -> Result<Run<EnergyPreserving, S, N>, StepError>,
 ) {
     let start = Motion::new(0.2, scene.q, scene.v);
     let span = scene.h * f64::from(STEPS);

@@ -5,7 +5,7 @@
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
 use vi_core::support::step_alone;
-use vi_core::{FixedStep, State, lagrangian};
+use vi_core::{FixedStep, Starts, State, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, Kepler, ParametricPendulum, SphericalPendulum,
 };
@@ -43,7 +43,7 @@ fn apart<const N: usize, S: FixedStepping<N>>(
     iterations: u32,
 ) -> (f64, f64) {
     let start = State::at(&system, 0.0, q, v);
-    let mut run = FixedStep::new(system, start, h).expect("a regular start");
+    let mut run = system.at_state(start).integrate(FixedStep, h).expect("a regular start");
     let (mut node, mut last) = (Node::new(start, 0.0), run.v());
     let (mut off, mut predicted) = (0.0_f64, 0.0_f64);
     for _ in 0..STEPS {

@@ -6,7 +6,7 @@
 use crate::support::reference::{file, number, steps, vector};
 use serde_json::Value;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, State};
+use vi_core::{EnergyPreserving, FixedStep, Run, Starts, State};
 use vi_systems::{DampedOscillator, DoublePendulum, DoubleWell, HardDuffing, Kepler, Pendulum};
 
 /// Steps up to which the limits are stated.
@@ -25,7 +25,7 @@ fn difference<const N: usize>(state: &State<N>, entry: &Value) -> f64 {
 
 /// Runs fixed steps through the entries of a reference.
 fn fixed<const N: usize>(name: &str, system: impl EnergyStepping<N>, state: State<N>, h: f64, list: &Value) {
-    let mut integrator = FixedStep::new(system, state, h).expect("a valid start");
+    let mut integrator = system.at_state(state).integrate(FixedStep, h).expect("a valid start");
     let (mut taken, mut worst) = (0, 0.0_f64);
     for (step, entry) in steps(list).into_iter().filter(|(step, _)| *step <= STEPS) {
         while taken < step {
@@ -42,7 +42,7 @@ fn fixed<const N: usize>(name: &str, system: impl EnergyStepping<N>, state: Stat
 /// Runs energy-preserving steps through the entries of a reference.
 fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
     name: &str,
-    mut integrator: EnergyPreserving<S, N>,
+    mut integrator: Run<EnergyPreserving, S, N>,
     first: u32,
     list: &Value,
 ) {

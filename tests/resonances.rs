@@ -12,7 +12,7 @@
 //! The midpoint rule's is the same in x + p, with a/4 for a and (b − a²)/8 for b: bounded unless a² ≤ b ≤ 2 a².
 
 use vi_core::stepping::FixedStepping;
-use vi_core::{FixedStep, State, lagrangian};
+use vi_core::{FixedStep, Starts, State, lagrangian};
 
 lagrangian! {
     /// Oscillator with a quadratic and a cubic force, by the trapezoidal rule.
@@ -37,7 +37,7 @@ lagrangian! {
 /// The largest amplitude over 3000 steps of length h from x at rest, up to 1, or to where no step is left.
 fn amplitude<S: FixedStepping<1> + Copy>(system: S, h: f64, x: f64) -> f64 {
     let start = State::at(&system, 0.0, [x], [0.0]);
-    let run = FixedStep::new(system, start, h).expect("a valid start");
+    let run = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
     let mut largest = 0.0_f64;
     for state in run.take(3000) {
         let Ok(state) = state else { return 1.0 };

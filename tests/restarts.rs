@@ -1,7 +1,7 @@
 //! A run that is stored and resumed goes on bit for bit, for every way in which steps are taken; and only as what it was.
 
 use vi_core::stepping::FixedStepping;
-use vi_core::{EnergyPreserving, FixedStep, State, StepError, fixed_step, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Run, Starts, State, StepError, fixed_step, lagrangian};
 use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler};
 
 lagrangian! {
@@ -26,12 +26,12 @@ lagrangian! {
 
 /// Restarts after each of `steps` steps: the next steps must be those of the run that goes on.
 fn resumes<const N: usize, S: FixedStepping<N>>(system: S, (q, v): ([f64; N], [f64; N]), h: f64, steps: u32) {
-    let mut whole = FixedStep::new(system, State::at(&system, 0.3, q, v), h).expect("a start");
+    let mut whole = system.at(0.3, q, v).integrate(FixedStep, h).expect("a start");
     let mut resumed = whole.clone();
     for step in 0..steps {
         let text = serde_json::to_string(&resumed.checkpoint()).expect("numbers");
         let stored: fixed_step::Checkpoint<N> = serde_json::from_str(&text).expect("the same numbers");
-        resumed = FixedStep::restart(system, stored).expect("a checkpoint of this system");
+        resumed = Run::restart(system, FixedStep, stored).expect("a checkpoint of this system");
         let (next, again) = (whole.step(), resumed.step());
         assert_eq!(format!("{next:?}"), format!("{again:?}"), "{}, h = {h}, step {step}", S::NAME);
         assert!(next.is_ok(), "{}: {next:?}", S::NAME);
@@ -58,17 +58,17 @@ fn every_way_of_stepping_resumes_bit_for_bit() {
 fn a_checkpoint_is_resumed_by_its_own_system_only() {
     let system = Kepler { mu: 1.2 };
     let start = State::at(&system, 0.0, [1.0, 0.0], [0.0, 1.1]);
-    let mut run = FixedStep::new(system, start, 0.01).expect("a start");
+    let mut run = system.at_state(start).integrate(FixedStep, 0.01).expect("a start");
     run.step().expect("a step");
 
-    let other = FixedStep::restart(Kepler { mu: 1.3 }, run.checkpoint()).expect_err("another parameter");
+    let other = Run::restart(Kepler { mu: 1.3 }, FixedStep, run.checkpoint()).expect_err("another parameter");
     let StepError::OtherSystem { system: name, parameter, stored, given } = other else { panic!("{other}") };
     assert_eq!((name, parameter, stored, given), ("Kepler", Some("mu"), 1.2, 1.3));
     assert!(other.to_string().contains("`mu` = 1.2"), "{other}");
 
     let text = serde_json::to_string(&run.checkpoint()).expect("numbers").replace("Kepler", "Keller");
     let stored: fixed_step::Checkpoint<2> = serde_json::from_str(&text).expect("the same numbers");
-    let other = FixedStep::restart(system, stored).expect_err("another system");
+    let other = Run::restart(system, FixedStep, stored).expect_err("another system");
     assert!(matches!(other, StepError::OtherSystem { parameter: None, .. }), "{other:?}");
 
     let both = EnergyPreserving::from_midpoint(system, 0.0, [1.0, 0.0], [0.0, 1.1], 0.01).expect("a start");

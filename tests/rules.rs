@@ -5,7 +5,7 @@ use vi_core::lagrangian::{Lagrangian, Parameters};
 use vi_core::rules::{By, Midpoint, Trapezoidal};
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{
-    Composition, DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, SVector, Scheme, State, StepError,
+    Composition, DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Run, SVector, Starts, State, StepError,
     fixed_step, lagrangian,
 };
 
@@ -71,8 +71,8 @@ where
     S: FixedStepping<N> + DiscreteLagrangian<N>,
 {
     let start = State::at(&system, 0.3, q, v);
-    let mut all = told(FixedStep::new(system, start, h).expect("a start").take(200));
-    all.extend(told(Composition::new(system, Scheme::SUZUKI_4, start, h).expect("a start").take(20)));
+    let mut all = told(system.at_state(start).integrate(FixedStep, h).expect("a start").take(200));
+    all.extend(told(system.at_state(start).integrate(Composition::SUZUKI_4, h).expect("a start").take(20)));
     let (q0, v0) = (SVector::from(q), SVector::from(v));
     let interval = Interval { t0: 0.3, q0, t1: 0.3 + h, q1: q0 + v0 * h };
     let numbers = [
@@ -128,22 +128,22 @@ fn a_checkpoint_is_of_one_rule() {
     let surface = Surface::default();
     let system = By::new(&surface, Trapezoidal);
     let (q, v) = PLACE;
-    let mut whole = FixedStep::new(system, State::at(&surface, 0.3, q, v), 0.02).expect("a start");
+    let mut whole = system.at_state(State::at(&surface, 0.3, q, v)).integrate(FixedStep, 0.02).expect("a start");
     for _ in 0..20 {
         let text = serde_json::to_string(&whole.checkpoint()).expect("numbers");
         let stored: fixed_step::Checkpoint<2> = serde_json::from_str(&text).expect("the same numbers");
-        let by_other = FixedStep::restart(surface, stored.clone()).expect_err("another rule");
+        let by_other = Run::restart(surface, FixedStep, stored.clone()).expect_err("another rule");
         assert!(matches!(by_other, StepError::OtherSystem { parameter: None, .. }), "{by_other:?}");
-        let mut resumed = FixedStep::restart(system, stored).expect("a checkpoint of this system by this rule");
+        let mut resumed = Run::restart(system, FixedStep, stored).expect("a checkpoint of this system by this rule");
         assert_eq!(format!("{:?}", whole.step()), format!("{:?}", resumed.step()));
     }
-    let own = FixedStep::new(surface, State::at(&surface, 0.3, q, v), 0.02).expect("a start").checkpoint();
-    assert!(FixedStep::restart(system, own.clone()).is_err());
+    let own = surface.at(0.3, q, v).integrate(FixedStep, 0.02).expect("a start").checkpoint();
+    assert!(Run::restart(system, FixedStep, own.clone()).is_err());
     // A checkpoint that was stored before rules had names is of the system's own.
     let text = serde_json::to_string(&own).expect("numbers").replace("\"rule\":null,", "");
     assert!(!text.contains("rule"), "{text}");
     let stored: fixed_step::Checkpoint<2> = serde_json::from_str(&text).expect("the same numbers");
-    assert!(FixedStep::restart(surface, stored).is_ok());
+    assert!(Run::restart(surface, FixedStep, stored).is_ok());
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn single_precision_has_every_rule() {
     /// Fixed steps in single precision.
     fn single<S: FixedStepping<2, f32>>(system: S) -> Vec<String> {
         let start = State::at(&system, 0.3, [0.7, -0.4], [0.5, 0.9]);
-        let run = FixedStep::new(system, start, 0.02).expect("a start");
+        let run = system.at_state(start).integrate(FixedStep, 0.02).expect("a start");
         run.take(100).map(|state| format!("{:?}", state.expect("a step"))).collect()
     }
     let alone = single(OfTrapezoidal::default().convert::<f32>());

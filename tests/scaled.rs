@@ -5,10 +5,10 @@ use crate::support::reference::{file, number, steps, vector};
 use serde_json::Value;
 use std::f64::consts::PI;
 use vi_core::collocation::{Collocation, TimeScale};
-use vi_core::integrator::Path;
 use vi_core::real::Dual;
+use vi_core::run::Path;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{Called, Gauss, Integrator, Lagrangian, SVector, ScaledGauss, State, StepError, lagrangian};
+use vi_core::{Called, Gauss, InTransformedTime, Lagrangian, Run, SVector, Starts, State, StepError, lagrangian};
 use vi_systems::Kepler;
 
 lagrangian! {
@@ -67,7 +67,10 @@ impl<const N: usize, S: TimeScale<N> + Convertible<N> + FixedStepping<N> + Copy>
 /// The runs of the reference, of Hamilton's equations of K = g (H − E).
 fn follows<const S: usize>(case: &Value) {
     let state = State::at(&EVERYTHING, number(&case["t0"]), vector(&case["q0"]), vector(&case["v0"]));
-    let mut run = ScaledGauss::<_, 2, S>::new(EVERYTHING, state, number(&case["dtau"])).expect("a valid start");
+    let mut run = EVERYTHING
+        .at_state(state)
+        .integrate(Gauss::<S>.in_transformed_time(), number(&case["dtau"]))
+        .expect("a valid start");
     let entries = steps(&case[&format!("s{S}")]);
     assert_eq!(entries.iter().map(|(step, _)| *step).collect::<Vec<_>>(), [1, 5]);
     let mut taken = 0;
@@ -129,10 +132,11 @@ fn order<const S: usize>(longest: f64, tolerance: f64) {
         .into_iter()
         .map(|count| {
             let dtau = 4.0 * longest / f64::from(count);
-            let mut run = ScaledGauss::<_, 2, S>::new(EVERYTHING, state, dtau).expect("a valid start");
+            let mut run =
+                EVERYTHING.at_state(state).integrate(Gauss::<S>.in_transformed_time(), dtau).expect("a valid start");
             let reached = run.by_ref().take(count as usize).last().expect("steps").expect("a step");
             let mut plain =
-                Gauss::<_, 2, 16>::new(EVERYTHING, state, (reached.t - state.t) / 16.0).expect("a valid start");
+                EVERYTHING.at_state(state).integrate(Gauss::<16>, (reached.t - state.t) / 16.0).expect("a valid start");
             let exact = plain.by_ref().take(16).last().expect("steps").expect("a step");
             (dtau, (reached.q - exact.q).amax().max((reached.p - exact.p).amax()))
         })
@@ -164,8 +168,8 @@ fn scaled_period(power: f64) -> f64 {
 /// The error of the position after three periods.
 fn three_periods<const S: usize>(system: impl System<2>, dtau: f64) -> f64 {
     let start = eccentric(&system);
-    let mut run = ScaledGauss::<_, 2, S>::new(system, start, dtau).expect("a valid start");
-    let reached = run.propagate_until(6.0 * PI).expect("the end");
+    let mut run = system.at_state(start).integrate(Gauss::<S>.in_transformed_time(), dtau).expect("a valid start");
+    let reached = run.until(6.0 * PI).expect("the end");
     assert_eq!(reached.t.to_bits(), (6.0 * PI).to_bits());
     (reached.q - start.q).norm()
 }
@@ -194,7 +198,7 @@ fn few_steps_follow_an_eccentric_orbit() {
     }
     // Plain steps, 120 in a period.
     let end = 6.0 * PI;
-    let mut plain = Gauss::<_, 2, 4>::new(kepler, eccentric(&kepler), end / 360.0).expect("a valid start");
+    let mut plain = kepler.at_state(eccentric(&kepler)).integrate(Gauss::<4>, end / 360.0).expect("a valid start");
     let reached = plain.by_ref().take(360).last().expect("steps").expect("a step");
     assert!((reached.q - eccentric(&kepler).q).norm() > 0.05);
 }
@@ -205,7 +209,8 @@ fn angular_momentum_and_energy_are_kept() {
     let start = eccentric(&system);
     let spin = |state: &State<2>| state.q[0] * state.p[1] - state.q[1] * state.p[0];
     let period = scaled_period(1.5);
-    let mut run = ScaledGauss::<_, 2, 4>::new(system, start, period / 20.0).expect("a valid start");
+    let mut run =
+        system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), period / 20.0).expect("a valid start");
     let energy = run.discrete_energy();
     let mut excess = Vec::new();
     let mut turned = 0.0_f64;
@@ -232,9 +237,9 @@ fn angular_momentum_and_energy_are_kept() {
 #[test]
 fn time_runs_backwards() {
     let start = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
-    let mut there = ScaledGauss::<_, 2, 8>::new(EVERYTHING, start, 0.1).expect("a valid start");
+    let mut there = EVERYTHING.at_state(start).integrate(Gauss::<8>.in_transformed_time(), 0.1).expect("a valid start");
     let end = there.by_ref().take(40).last().expect("steps").expect("a step");
-    let mut back = ScaledGauss::<_, 2, 8>::new(EVERYTHING, end, -0.1).expect("a valid start");
+    let mut back = EVERYTHING.at_state(end).integrate(Gauss::<8>.in_transformed_time(), -0.1).expect("a valid start");
     let found = back.by_ref().take(40).last().expect("steps").expect("a step");
     assert!(back.h() < 0.0 && back.dtau() < 0.0 && there.h() > 0.0);
     let off = (found.t - start.t).abs().max((found.q - start.q).amax()).max((found.p - start.p).amax());
@@ -245,10 +250,11 @@ fn time_runs_backwards() {
 #[test]
 fn a_restarted_run_is_the_same_bit_for_bit() {
     let start = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
-    let mut run = ScaledGauss::<_, 2, 3>::new(EVERYTHING, start, 0.1).expect("a valid start");
+    let mut run = EVERYTHING.at_state(start).integrate(Gauss::<3>.in_transformed_time(), 0.1).expect("a valid start");
     for steps in [0, 1, 7] {
         assert!(run.by_ref().take(steps).all(|state| state.is_ok()));
-        let mut again = ScaledGauss::restart(EVERYTHING, run.checkpoint()).expect("its own checkpoint");
+        let mut again =
+            Run::restart(EVERYTHING, Gauss.in_transformed_time(), run.checkpoint()).expect("its own checkpoint");
         let mut on = run.clone();
         for _ in 0..5 {
             assert_eq!(on.step(), again.step());
@@ -256,32 +262,33 @@ fn a_restarted_run_is_the_same_bit_for_bit() {
         }
     }
     let other = Everything { b: 0.8, ..EVERYTHING };
-    let refused = ScaledGauss::restart(other, run.checkpoint()).expect_err("another parameter");
+    let refused = Run::restart(other, Gauss.in_transformed_time(), run.checkpoint()).expect_err("another parameter");
     assert!(matches!(refused, StepError::OtherSystem { parameter: Some("b"), .. }), "{refused}");
 }
 
 #[test]
 fn states_at_times_are_those_of_plain_steps() {
     let start = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
-    let mut run = ScaledGauss::<_, 2, 6>::new(EVERYTHING, start, 0.3).expect("a valid start");
+    let mut run = EVERYTHING.at_state(start).integrate(Gauss::<6>.in_transformed_time(), 0.3).expect("a valid start");
     let untouched: Vec<State<2>> = run.clone().take(8).map(|state| state.expect("a step")).collect();
     let times = [0.25, 0.8, 0.81, 1.9, 2.6];
-    let states: Vec<State<2>> = run.propagate_grid(&times).map(|state| state.expect("a state")).collect();
+    let states: Vec<State<2>> = run.states_at(times).map(|state| state.expect("a state")).collect();
     assert!(untouched.iter().any(|state| *state == run.state()), "steps to a time are taken aside");
     for (state, t) in states.iter().zip(times) {
-        let mut plain = Gauss::<_, 2, 16>::new(EVERYTHING, start, 0.1).expect("a valid start");
-        let exact = plain.propagate_until(t).expect("the time");
+        let mut plain = EVERYTHING.at_state(start).integrate(Gauss::<16>, 0.1).expect("a valid start");
+        let exact = plain.until(t).expect("the time");
         let off = (state.q - exact.q).amax().max((state.p - exact.p).amax());
         println!("t = {t}: off by {off:.1e}");
         // Measured: 1.4e-13, the error of six stages.
         assert!(state.t.to_bits() == t.to_bits() && off < 2e-13, "t = {t}: {off:e}");
     }
     // Backwards, and by steps that are longer than those of the run.
-    let mut back = ScaledGauss::<_, 2, 8>::new(EVERYTHING, states[4], -0.1).expect("a valid start");
+    let mut back =
+        EVERYTHING.at_state(states[4]).integrate(Gauss::<8>.in_transformed_time(), -0.1).expect("a valid start");
     back.step_of(-0.9).expect("a long step");
     let left = 0.2 - back.state().t;
     assert!((back.state().t - 1.7).abs() < 1e-14 && left < 0.0, "{:?}", back.state());
-    let reached = back.propagate_until(0.2).expect("the start");
+    let reached = back.until(0.2).expect("the start");
     assert!((reached.q - start.q).amax() < 1e-11, "{reached:?}");
     assert!(matches!(back.step_of(f64::NAN), Err(StepError::InvalidInput { .. })));
 }
@@ -289,8 +296,10 @@ fn states_at_times_are_those_of_plain_steps() {
 #[test]
 fn the_path_of_a_step_is_its_polynomial() {
     let system = Kepler::default();
-    let mut run =
-        ScaledGauss::<_, 2, 8>::new(system, eccentric(&system), scaled_period(1.5) / 15.0).expect("a valid start");
+    let mut run = system
+        .at_state(eccentric(&system))
+        .integrate(Gauss::<8>.in_transformed_time(), scaled_period(1.5) / 15.0)
+        .expect("a valid start");
     let mut worst = [0.0_f64; 2];
     for _ in 0..15 {
         let before = run.state();
@@ -303,8 +312,9 @@ fn the_path_of_a_step_is_its_polynomial() {
         for part in [0.2, 0.5, 0.8] {
             let t = before.t + part * run.h();
             let found = path.state(t);
-            let mut plain = Gauss::<_, 2, 16>::new(system, before, (t - before.t) / 8.0).expect("a valid start");
-            let exact = plain.propagate_until(t).expect("the time");
+            let mut plain =
+                system.at_state(before).integrate(Gauss::<16>, (t - before.t) / 8.0).expect("a valid start");
+            let exact = plain.until(t).expect("the time");
             worst[0] = worst[0].max((found.q - exact.q).norm());
             worst[1] = worst[1].max((path.velocity(t) - exact.p).norm() / exact.p.norm());
         }
@@ -317,13 +327,15 @@ fn the_path_of_a_step_is_its_polynomial() {
 #[test]
 fn a_run_goes_on_with_other_parameters_and_from_other_states() {
     let system = Kepler::default();
-    let mut run = ScaledGauss::<_, 2, 8>::new(system, eccentric(&system), 0.5).expect("a valid start");
+    let mut run =
+        system.at_state(eccentric(&system)).integrate(Gauss::<8>.in_transformed_time(), 0.5).expect("a valid start");
     run.by_ref().take(5).for_each(|state| assert!(state.is_ok()));
     let excess = run.excess().expect("an energy");
     run.set_parameters(|system| system.mu = 1.1).expect("other parameters");
     assert!((run.excess().expect("an energy") - excess).abs() < 1e-14);
     let state = run.state();
-    let mut fresh = ScaledGauss::<_, 2, 8>::new(Kepler { mu: 1.1 }, state, 0.5).expect("a valid start");
+    let mut fresh =
+        Kepler { mu: 1.1 }.at_state(state).integrate(Gauss::<8>.in_transformed_time(), 0.5).expect("a valid start");
     let [one, other] = [run.step(), fresh.step()].map(|state| state.expect("a step"));
     assert!((one.q - other.q).norm() < 1e-13 && (one.q - state.q).norm() > 1e-3);
     assert_eq!(Integrator::discrete_energy(&run), Some(run.discrete_energy()));
@@ -340,7 +352,7 @@ fn stiff_steps_are_solved_by_newton() {
     let system = Stiff::default();
     // At rest in the stiff direction, so that what is left of it says how well steps are solved.
     let start = State::at(&system, 0.0, [0.0, 1.0], [0.0, 0.0]);
-    let mut run = ScaledGauss::<_, 2, 4>::new(system, start, 0.2).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 0.2).expect("a valid start");
     let reached = run.by_ref().take(50).last().expect("steps").expect("a step");
     let exact = [reached.t.cos(), -reached.t.sin()];
     let off = (reached.q[1] - exact[0]).abs().max((reached.p[1] - exact[1]).abs());
@@ -348,7 +360,7 @@ fn stiff_steps_are_solved_by_newton() {
     // Measured: 1.9e-10.
     assert!(off < 3e-10 && reached.q[0].abs() < 1e-15, "{off:e}, {:e}", reached.q[0]);
     let moving = State::at(&system, 0.0, [1e-3, 1.0], [0.0, 0.0]);
-    let mut run = ScaledGauss::<_, 2, 4>::new(system, moving, 0.2).expect("a valid start");
+    let mut run = system.at_state(moving).integrate(Gauss::<4>.in_transformed_time(), 0.2).expect("a valid start");
     for _ in 0..50 {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
         assert!(state.q[0].abs() < 1.1e-3 && run.iterations() > 0);
@@ -358,7 +370,7 @@ fn stiff_steps_are_solved_by_newton() {
 }
 
 /// The error of a run, and that the run still has its last state and keeps the error.
-fn ends<const N: usize, const S: usize>(mut run: ScaledGauss<impl System<N>, N, S>) -> StepError {
+fn ends<const N: usize, const S: usize>(mut run: Run<InTransformedTime<Gauss<S>>, impl System<N>, N>) -> StepError {
     for _ in 0..10_000 {
         let before = run.state();
         if let Err(error) = run.step() {
@@ -373,20 +385,22 @@ fn ends<const N: usize, const S: usize>(mut run: ScaledGauss<impl System<N>, N, 
 #[test]
 fn a_time_scale_that_is_not_positive_is_an_error_with_its_value() {
     let beyond = State::at(&Wall::default(), 0.5, [1.5], [1.0]);
-    let error = ScaledGauss::<_, 1, 4>::new(Wall::default(), beyond, 0.1).expect_err("g < 0");
+    let error = Wall::default().at_state(beyond).integrate(Gauss::<4>.in_transformed_time(), 0.1).expect_err("g < 0");
     assert_eq!(error, StepError::TimeScale { t: 0.5, g: -0.5 });
     assert!(error.to_string().starts_with("the time scale is g = -5.000e-1 at t = 0.500000000"), "{error}");
     // A long step from before the wall.
     let before = State::at(&Wall::default(), 0.0, [0.0], [1.0]);
-    let run = ScaledGauss::<_, 1, 4>::new(Wall::default(), before, 30.0).expect("a valid start");
+    let run =
+        Wall::default().at_state(before).integrate(Gauss::<4>.in_transformed_time(), 30.0).expect("a valid start");
     let error = ends(run);
     assert!(matches!(error, StepError::TimeScale { g, .. } if g <= 0.0), "{error}");
     // A step beyond the wall, from a stage before it: x = 1.5 (1 − (x/2)⁸).
-    let run = ScaledGauss::<_, 1, 1>::new(Wall { k: 0.0 }, before, 1.5).expect("a valid start");
+    let run = Wall { k: 0.0 }.at_state(before).integrate(Gauss::<1>.in_transformed_time(), 1.5).expect("a valid start");
     let error = ends(run);
     assert!(matches!(error, StepError::TimeScale { t, g } if (t - 1.40899).abs() < 1e-4 && g < -14.0), "{error}");
     // Short steps never arrive.
-    let mut run = ScaledGauss::<_, 1, 4>::new(Wall::default(), before, 0.1).expect("a valid start");
+    let mut run =
+        Wall::default().at_state(before).integrate(Gauss::<4>.in_transformed_time(), 0.1).expect("a valid start");
     let reached = run.by_ref().take(100).last().expect("steps").expect("a step");
     assert!((reached.q[0] - (1.0 - (-10.0_f64).exp())).abs() < 1e-13, "{reached:?}");
 }
@@ -394,14 +408,14 @@ fn a_time_scale_that_is_not_positive_is_an_error_with_its_value() {
 #[test]
 fn a_system_without_a_time_scale_is_refused() {
     let system = Called(vi_systems::Pendulum::default());
-    let error = ScaledGauss::<_, 1, 2>::new(system, State::at(&system, 0.0, [1.0], [0.0]), 0.1).expect_err("no g");
+    let error = system.at(0.0, [1.0], [0.0]).integrate(Gauss::<2>.in_transformed_time(), 0.1).expect_err("no g");
     assert_eq!(error, StepError::NoTimeScale { system: "Pendulum" });
     // And one with a time scale steps as it does when its functions are no calls.
     let kepler = Kepler::default();
     let start = eccentric(&kepler);
     let mut runs = (
-        ScaledGauss::<_, 2, 4>::new(kepler, start, 0.3).expect("a valid start"),
-        ScaledGauss::<_, 2, 4>::new(Called(kepler), start, 0.3).expect("a valid start"),
+        kepler.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 0.3).expect("a valid start"),
+        Called(kepler).at_state(start).integrate(Gauss::<4>.in_transformed_time(), 0.3).expect("a valid start"),
     );
     for _ in 0..30 {
         let [one, other] = [runs.0.step(), runs.1.step()].map(|step| step.expect("a step"));
@@ -415,13 +429,13 @@ fn what_cannot_be_stepped_is_refused_with_its_numbers() {
     let system = Kepler::default();
     let start = eccentric(&system);
     for dtau in [0.0, f64::NAN, f64::INFINITY, 1e-310] {
-        let error = ScaledGauss::<_, 2, 4>::new(system, start, dtau).expect_err("no step");
+        let error = system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), dtau).expect_err("no step");
         assert!(matches!(error, StepError::InvalidInput { input: "the step Δτ in scaled time", .. }), "{error}");
     }
     let lost = State { q: SVector::from([f64::NAN, 0.0]), ..start };
-    let error = ScaledGauss::<_, 2, 4>::new(system, lost, 0.1).expect_err("no state");
+    let error = system.at_state(lost).integrate(Gauss::<4>.in_transformed_time(), 0.1).expect_err("no state");
     assert!(matches!(error, StepError::NonFinite { .. } | StepError::TimeScale { .. }), "{error}");
     // Half a period in one step.
-    let error = ends(ScaledGauss::<_, 2, 4>::new(system, start, 40.0).expect("a valid start"));
+    let error = ends(system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 40.0).expect("a valid start"));
     assert!(matches!(error, StepError::StagesUnsettled { .. } | StepError::NonFinite { .. }), "{error}");
 }

@@ -2,7 +2,7 @@
 
 use vi_core::real::Scalar;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Starts, State};
 use vi_systems::{HardDuffing, Kepler};
 
 const STEPS: usize = 200;
@@ -18,7 +18,7 @@ fn runs<const N: usize, T: Scalar, S: EnergyStepping<N, T> + Copy>(system: S, q:
     let h = T::real(0.05);
     let (q, v) = (q.map(T::real), v.map(T::real));
     let start = State::at(&system, T::zero(), q, v);
-    let mut fixed = FixedStep::new(system, start, h).expect("a valid start");
+    let mut fixed = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
     let mut energy_preserving = EnergyPreserving::from_midpoint(system, T::zero(), q, v, h).expect("a valid start");
     let (energy, mut energy_error) = (energy_preserving.discrete_energy(), 0.0_f64);
     for _ in 0..STEPS {

@@ -2,11 +2,11 @@
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
 use vi_core::stepping::FixedStepping;
-use vi_core::{FixedStep, SVector, State};
+use vi_core::{FixedStep, SVector, Starts, State};
 
 /// The state after `steps` steps of length `h`.
 fn after<const N: usize, S: FixedStepping<N> + Copy>(system: S, start: State<N>, h: f64, steps: usize) -> State<N> {
-    let run = FixedStep::new(system, start, h).unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
+    let run = system.at_state(start).integrate(FixedStep, h).unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
     run.take(steps).last().expect("a step").unwrap_or_else(|error| panic!("{}: {error}", S::NAME))
 }
 

@@ -4,7 +4,7 @@
 use crate::support::exact::Motion;
 use vi_core::real::Dual;
 use vi_core::stepping::FixedStepping;
-use vi_core::{DiscreteLagrangian, FixedStep, Interval, SVector, State, lagrangian};
+use vi_core::{DiscreteLagrangian, FixedStep, Interval, Run, SVector, Starts, State, lagrangian};
 
 type D = Dual<f64>;
 
@@ -58,9 +58,9 @@ lagrangian! {
     }
 }
 
-fn run<const N: usize, S: FixedStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> FixedStep<S, N> {
+fn run<const N: usize, S: FixedStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> Run<FixedStep, S, N> {
     let start = State::at(&system, 0.0, q, v);
-    FixedStep::new(system, start, h).expect("a valid start")
+    system.at_state(start).integrate(FixedStep, h).expect("a valid start")
 }
 
 #[test]

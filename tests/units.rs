@@ -1,7 +1,7 @@
 //! Units do not matter: a system in metres and radians, in masses of 1 and 1e-12, moves as the same one does in like units.
 
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError, lagrangian};
 
 /// A system of angles u and angular velocities w, in the coordinates q = u, and in q with u_i = 2^(25 i (−1)^i) q_i: masses of
 /// 1 to 1e-75. Powers of two round nothing.
@@ -83,7 +83,7 @@ fn fixed<const N: usize>(plain: impl EnergyStepping<N>, in_units: impl EnergySte
     ) -> impl Iterator<Item = Result<SVector<f64, N>, StepError>> {
         let [q, v] = start(unit);
         let start = State::at(&system, 0.0, q, v);
-        FixedStep::new(system, start, 0.01).expect("a right start").map(|step| step.map(|state| state.q))
+        system.at_state(start).integrate(FixedStep, 0.01).expect("a right start").map(|step| step.map(|state| state.q))
     }
     apart(run(plain, |_| 1.0), run(in_units, unit))
 }

@@ -15,7 +15,7 @@ use core::array::from_fn;
 use std::hint::black_box;
 use vi_core::derivatives::{Differentiable, Tangent, Variation};
 use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, SVector, State};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, Run, SVector, Starts, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
 
@@ -164,7 +164,7 @@ fn kepler_energy_derivatives() -> Contest {
 fn double_pendulum_gauss_derivatives() -> Contest {
     let (system, (q, v), h) = (black_box(DoublePendulum::default()), ([0.3, 0.2], [0.0, 0.1]), black_box(0.05));
     let state = State::at(&system, 0.0, SVector::from(q), SVector::from(v));
-    let run = Gauss::<_, 2, 4>::new(system, state, h).expect("a step");
+    let run = system.at_state(state).integrate(Gauss::<4>, h).expect("a step");
     derivatives("Double pendulum, Gauss of 4 stages with derivatives, h = 0.05", &run)
 }
 
@@ -246,8 +246,8 @@ fn fixed<S: FixedStepping<N> + Clone, const N: usize>(
     system: &S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,
-) -> FixedStep<S, N> {
-    FixedStep::new(*system, State::at(system, 0.0, q, v), h).expect("a regular start")
+) -> Run<FixedStep, S, N> {
+    (*system).at(0.0, q, v).integrate(FixedStep, h).expect("a regular start")
 }
 
 /// The trajectory of [`fixed`], and 63 more whose coordinates are up to a fifth smaller.
@@ -260,7 +260,7 @@ fn energy_preserving<S: EnergyStepping<N> + Clone, const N: usize>(
     system: &S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,
-) -> EnergyPreserving<S, N> {
+) -> Run<EnergyPreserving, S, N> {
     EnergyPreserving::from_midpoint(*system, 0.0, q, v, h).expect("a regular start")
 }
 

@@ -7,7 +7,7 @@ use std::cell::Cell;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
 use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, Run, State, StepError};
 use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.
@@ -49,7 +49,7 @@ fn flat<const N: usize>(state: State<N>) -> Vec<f64> {
     [state.t].into_iter().chain(state.q.iter().copied()).chain(state.p.iter().copied()).collect()
 }
 
-impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
+impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for Run<FixedStep, S, N> {
     #[inline]
     fn step(&mut self) {
         taken(FixedStep::step(self));
@@ -60,7 +60,7 @@ impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for FixedStep<S, N> {
     }
 }
 
-impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<S, N> {
+impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for Run<EnergyPreserving, S, N> {
     #[inline]
     fn step(&mut self) {
         taken(EnergyPreserving::step(self));
@@ -71,7 +71,7 @@ impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for EnergyPreserving<
     }
 }
 
-impl<S, const N: usize, const STAGES: usize> Stepper for Gauss<S, N, STAGES>
+impl<S, const N: usize, const STAGES: usize> Stepper for Run<Gauss<STAGES>, S, N>
 where
     S: Collocation<N> + Convertible<N> + FixedStepping<N>,
 {

@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, SMatrix};
 use vi_core::composition::{Composition, Scheme};
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::{
-    EnergyPreserving, Fallback, FixedStep, Gauss, Integrator, SVector, State, StepError, lagrangian, nalgebra,
+    Composition, EnergyPreserving, Fallback, FixedStep, Gauss, Run, SVector, Starts, State, StepError, lagrangian,
+    nalgebra,
 };
 
 lagrangian! {
@@ -31,7 +32,7 @@ impl<I> Objective<I, 1> for Last {
 fn a_slope_without_a_bound_is_told() {
     // One step ends exactly at x = 0.
     let start = State { t: 0.0, q: SVector::from([-1.0]), p: SVector::from([0.25]) };
-    let run = FixedStep::new(Kink::default(), start, 1.0).expect("valid");
+    let run = Kink::default().at_state(start).integrate(FixedStep, 1.0).expect("valid");
     let mut tangent = Tangent::new(run.clone(), Variation::of_state());
     let is_told = |outcome: Result<(), StepError>| matches!(outcome, Err(StepError::NonFinite { t: 0.0, quantity, .. }) if quantity.contains("variation"));
     let failure = tangent.step().map(drop);
@@ -85,7 +86,7 @@ fn differentiates_its_last_step<I: Differentiable<1, System = Hill>>(mut run: I)
     run.vary(&changed, &mut states()).expect("the last step, with the new parameters");
     // The last step ends at a given time, to which it is equal but for rounding.
     let before = *run.node();
-    run.propagate_until(before.t + 1.25 * run.h()).expect("solvable");
+    run.until(before.t + 1.25 * run.h()).expect("solvable");
     assert!(has_none(&run.vary(&before, &mut states()), before.t, "last"), "two steps");
 }
 
@@ -93,10 +94,10 @@ fn differentiates_its_last_step<I: Differentiable<1, System = Hill>>(mut run: I)
 fn only_the_last_step_is_differentiated() {
     let start = State { t: 0.7, q: SVector::from([1.3]), p: SVector::from([0.4]) };
     let hill = Hill { k: -2.0, c: 0.1 };
-    let fixed = FixedStep::new(hill, start, 0.1).expect("valid");
+    let fixed = hill.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     differentiates_its_last_step(fixed.clone());
-    differentiates_its_last_step(Gauss::<_, 1, 3>::new(hill, start, 0.1).expect("valid"));
-    differentiates_its_last_step(Composition::new(hill, Scheme::KAHAN_LI_6, start, 0.1).expect("valid"));
+    differentiates_its_last_step(hill.at_state(start).integrate(Gauss::<3>, 0.1).expect("valid"));
+    differentiates_its_last_step(hill.at_state(start).integrate(Composition::KAHAN_LI_6, 0.1).expect("valid"));
     let energy = EnergyPreserving::from_midpoint(hill, 0.7, [1.3], [0.4], 0.1).expect("valid");
     differentiates_its_last_step(energy.clone());
     let leaping = energy.with_fallback(Fallback::FixedSteps);
@@ -106,7 +107,8 @@ fn only_the_last_step_is_differentiated() {
     let mut run = fixed;
     let first = *run.node();
     let one = Variation::of_coordinate(0).expect("a coordinate");
-    let second = |run: &FixedStep<Hill, 1>, other: &Variation<1>| run.second_variation(&first, &one, other).map(drop);
+    let second =
+        |run: &Run<FixedStep, Hill, 1>, other: &Variation<1>| run.second_variation(&first, &one, other).map(drop);
     assert!(has_none(&second(&run, &one), 0.7, "last"));
     run.step().expect("solvable");
     second(&run, &one).expect("the last step");
@@ -115,7 +117,7 @@ fn only_the_last_step_is_differentiated() {
     changed.set_parameters(|hill| hill.k *= 2.0).expect("regular");
     assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
     // A run that is stored then knows it too.
-    let changed = FixedStep::restart(*changed.system(), changed.checkpoint()).expect("its own system");
+    let changed = Run::restart(*changed.system(), FixedStep, changed.checkpoint()).expect("its own system");
     assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
     run.step().expect("solvable");
     assert!(has_none(&second(&run, &one), 0.7, "last"));
@@ -137,7 +139,10 @@ fn names_and_indices_that_do_not_exist_are_told() {
         Variation::<1>::of_coordinate(0).map(|of| vec![of, Variation::of_momentum(0).expect("one")]),
         Ok(Variation::of_state())
     );
-    let run = FixedStep::new(Hill::default(), State { t: 0.0, q: [0.3].into(), p: [0.1].into() }, 0.1).expect("valid");
+    let run = Hill::default()
+        .at_state(State { t: 0.0, q: [0.3].into(), p: [0.1].into() })
+        .integrate(FixedStep, 0.1)
+        .expect("valid");
     for count in [0, 3] {
         let refused = Lyapunov::new(run.clone(), count).map(drop);
         assert!(matches!(refused, Err(StepError::InvalidInput { .. })), "{count}: {refused:?}");
@@ -173,12 +178,12 @@ lagrangian! {
 #[test]
 fn a_start_where_the_slope_of_a_force_has_no_bound_is_told() {
     let start = State { t: 0.7, q: SVector::from([0.0]), p: SVector::from([0.0]) };
-    let mut run = FixedStep::new(Root::default(), start, 0.1).expect("the velocity is known");
+    let mut run = Root::default().at_state(start).integrate(FixedStep, 0.1).expect("the velocity is known");
     let failure = run.step();
     assert!(is_not_finite(&failure, "derivative of the momentum equation"), "{failure:?}");
     // Away from there it is a step like any other.
     let start = State { p: SVector::from([0.1]), ..start };
-    FixedStep::new(Root::default(), start, 0.1).expect("valid").step().expect("solvable");
+    Root::default().at_state(start).integrate(FixedStep, 0.1).expect("valid").step().expect("solvable");
 }
 
 /// The last coordinate after so many steps, by this weight.
@@ -195,8 +200,8 @@ impl<I> Objective<I, 1> for Weighted {
 fn what_grows_beyond_the_range_of_numbers_is_told() {
     // cosh(t) of 700 and more is beyond them.
     let top = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([0.0]) };
-    let fixed = FixedStep::new(Hill::default(), top, 0.5).expect("valid");
-    let gauss = Gauss::<_, 1, 4>::new(Hill::default(), top, 0.5).expect("valid");
+    let fixed = Hill::default().at_state(top).integrate(FixedStep, 0.5).expect("valid");
+    let gauss = Hill::default().at_state(top).integrate(Gauss::<4>, 0.5).expect("valid");
     assert!(is_not_finite(&gradient(&fixed, 2000, 0, &Weighted(2000, 1.0)), "gradient"));
     assert!(is_not_finite(&gradient(&gauss, 2000, 0, &Weighted(2000, 1.0)), "gradient"));
     for weight in [f64::NAN, f64::INFINITY] {
@@ -222,14 +227,14 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
 fn an_exponent_without_a_bound_is_told() {
     // The step ends at rest from everywhere, c h = 2: nothing is left of one direction.
     let start = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([1.0]) };
-    let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
+    let run = Hill { k: 0.0, c: 20.0 }.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let mut exponents = Lyapunov::new(run, 2).expect("two");
     let failure = exponents.advance(3);
     assert!(is_not_finite(&failure, "Lyapunov exponent"), "{failure:?}");
     assert!(exponents.exponents().iter().all(|exponent| exponent.is_nan()), "{:?}", exponents.exponents());
     // Backwards in time they are those of the motion backwards, the largest first: λ² − c λ − k = 0.
     let start = State { t: 0.0, q: SVector::from([1e-9]), p: SVector::from([0.0]) };
-    let run = Gauss::<_, 1, 4>::new(Hill { k: 1.0, c: 0.5 }, start, -0.1).expect("valid");
+    let run = Hill { k: 1.0, c: 0.5 }.at_state(start).integrate(Gauss::<4>, -0.1).expect("valid");
     let mut backwards = Lyapunov::new(run, 2).expect("two");
     backwards.advance(200).expect("no step fails");
     let [largest, smallest] = backwards.exponents()[..] else { panic!("two exponents") };
@@ -238,7 +243,7 @@ fn an_exponent_without_a_bound_is_told() {
     assert!((largest - 0.25 - root).abs() < 0.02 && (smallest - 0.25 + root).abs() < 0.02, "{largest} {smallest}");
     assert!((largest + smallest - 0.5).abs() < 1e-12, "{largest} {smallest}");
     // One direction alone loses length once, and keeps it then.
-    let run = FixedStep::new(Hill { k: 0.0, c: 20.0 }, start, 0.1).expect("valid");
+    let run = Hill { k: 0.0, c: 20.0 }.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let mut largest = Lyapunov::new(run, 1).expect("one");
     largest.advance(1000).expect("a length is left");
     assert!(largest.exponents()[0].abs() < 0.01, "{:?}", largest.exponents());
@@ -258,7 +263,7 @@ lagrangian! {
 fn map<const STAGES: usize>(u: f64, c: f64) -> SMatrix<f64, 4, 4> {
     let system = Units { u, c, ..Units::default() };
     let start = State::at(&system, 0.0, [0.5, -0.3 / u], [0.2, 0.4 / u]);
-    let run = Gauss::<_, 2, STAGES>::new(system, start, 0.2).expect("valid");
+    let run = system.at_state(start).integrate(Gauss::<STAGES>, 0.2).expect("valid");
     let mut tangent = Tangent::new(run, Variation::of_state());
     for _ in 0..10 {
         tangent.step().expect("solvable");

@@ -7,9 +7,7 @@ use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::Dual;
 use vi_core::stepping::{Convertible, Discretized, FixedStepping};
-use vi_core::{
-    Composition, EnergyPreserving, FixedStep, Gauss, Integrator, SVector, Scheme, State, StepError, nalgebra,
-};
+use vi_core::{Composition, EnergyPreserving, FixedStep, Gauss, SVector, Starts, State, StepError, nalgebra};
 use vi_systems::{
     ChargedParticle, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HenonHeiles, Kepler, NPendulum,
     ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
@@ -46,9 +44,9 @@ where
     S: Discretized<N> + vi_core::collocation::Collocation<N>,
 {
     let start = State::at(&system, 0.3, q, v);
-    let (_, fixed) = tangent_map(FixedStep::new(system, start, h).expect("valid"), 20);
-    let (_, gauss) = tangent_map(Gauss::<_, N, 3>::new(system, start, h).expect("valid"), 20);
-    let (_, composed) = tangent_map(Composition::new(system, Scheme::SUZUKI_4, start, h).expect("valid"), 20);
+    let (_, fixed) = tangent_map(system.at_state(start).integrate(FixedStep, h).expect("valid"), 20);
+    let (_, gauss) = tangent_map(system.at_state(start).integrate(Gauss::<3>, h).expect("valid"), 20);
+    let (_, composed) = tangent_map(system.at_state(start).integrate(Composition::SUZUKI_4, h).expect("valid"), 20);
     let identity = DMatrix::identity(2 * N, 2 * N);
     assert!((&fixed - &identity).amax() > 1e-3, "{}: nothing moves", S::NAME);
     defect(&fixed).max(defect(&gauss)).max(defect(&composed))
@@ -100,7 +98,8 @@ fn variations_are_those_of_a_run_in_dual_numbers() {
     variations.extend(["a", "c", "w"].map(|name| Variation::of_parameter::<Everything>(name).expect("a parameter")));
     variations.push(Variation { t: 1.0, ..Variation::zero() });
     assert_eq!(variations.len(), 8);
-    let mut tangent = Tangent::new(FixedStep::new(system, start, 0.1).expect("valid"), variations.clone());
+    let mut tangent =
+        Tangent::new(system.at_state(start).integrate(FixedStep, 0.1).expect("valid"), variations.clone());
     for _ in 0..100 {
         tangent.step().expect("solvable");
     }
@@ -190,19 +189,20 @@ fn variations_are_those_of_differences() {
         p: SVector::from([0.3, 0.5]) + p,
     };
     let errors = [
-        differs(|q, p, a| FixedStep::new(system(a), start(q, p), 0.1).expect("valid"), 30, "a"),
-        differs(|q, p, a| Composition::new(system(a), Scheme::SUZUKI_4, start(q, p), 0.1).expect("valid"), 30, "a"),
-        differs(|q, p, a| Gauss::<_, 2, 1>::new(system(a), start(q, p), 0.1).expect("valid"), 30, "a"),
-        differs(|q, p, a| Gauss::<_, 2, 4>::new(system(a), start(q, p), 0.3).expect("valid"), 10, "a"),
+        differs(|q, p, a| system(a).at_state(start(q, p)).integrate(FixedStep, 0.1).expect("valid"), 30, "a"),
+        differs(
+            |q, p, a| system(a).at_state(start(q, p)).integrate(Composition::SUZUKI_4, 0.1).expect("valid"),
+            30,
+            "a",
+        ),
+        differs(|q, p, a| system(a).at_state(start(q, p)).integrate(Gauss::<1>, 0.1).expect("valid"), 30, "a"),
+        differs(|q, p, a| system(a).at_state(start(q, p)).integrate(Gauss::<4>, 0.3).expect("valid"), 10, "a"),
         differs(
             |q, p, m| {
                 let well = DoubleWell { m: 1.0 + m };
-                Gauss::<_, 1, 6>::new(
-                    well,
-                    State { t: 0.0, q: SVector::from([0.8]) + q, p: SVector::from([0.1]) + p },
-                    0.4,
-                )
-                .expect("valid")
+                well.at_state(State { t: 0.0, q: SVector::from([0.8]) + q, p: SVector::from([0.1]) + p })
+                    .integrate(Gauss::<6>, 0.4)
+                    .expect("valid")
             },
             10,
             "m",
@@ -277,8 +277,10 @@ fn second_variations_are_differences_of_first_ones() {
             let varied = |s: f64| {
                 let a = if other.parameters.is_empty() { 0.0 } else { s };
                 let state = State { q: start.q + other.q * s, p: start.p + other.p * s, ..start };
-                let mut tangent =
-                    Tangent::new(FixedStep::new(system(a), state, 0.2).expect("valid"), vec![one.clone()]);
+                let mut tangent = Tangent::new(
+                    system(a).at_state(state).integrate(FixedStep, 0.2).expect("valid"),
+                    vec![one.clone()],
+                );
                 tangent.step().expect("solvable");
                 let variation = &tangent.variations()[0];
                 (variation.q, variation.p)
@@ -287,7 +289,7 @@ fn second_variations_are_differences_of_first_ones() {
             let [a, b, c, d] = [s, -s, 2.0 * s, -2.0 * s].map(varied);
             let q = ((a.0 - b.0) * 8.0 - (c.0 - d.0)) / (12.0 * s);
             let p = ((a.1 - b.1) * 8.0 - (c.1 - d.1)) / (12.0 * s);
-            let mut run = FixedStep::new(system(0.0), start, 0.2).expect("valid");
+            let mut run = system(0.0).at_state(start).integrate(FixedStep, 0.2).expect("valid");
             let before = *run.node();
             run.step().expect("solvable");
             let (found_q, found_p) = run.second_variation(&before, one, other).expect("regular");
@@ -363,13 +365,14 @@ fn adjoint_and_tangent_agree() {
     let system = Everything::default();
     let start = State::at(&system, 0.1, [0.6, -0.4], [0.3, 0.5]);
     let errors = [
-        worst(&FixedStep::new(system, start, 0.1).expect("valid"), 47),
-        worst(&Gauss::<_, 2, 3>::new(system, start, 0.3).expect("valid"), 20),
-        worst(&Composition::new(system, Scheme::SUZUKI_4, start, 0.2).expect("valid"), 23),
+        worst(&system.at_state(start).integrate(FixedStep, 0.1).expect("valid"), 47),
+        worst(&system.at_state(start).integrate(Gauss::<3>, 0.3).expect("valid"), 20),
+        worst(&system.at_state(start).integrate(Composition::SUZUKI_4, 0.2).expect("valid"), 23),
     ];
     // 3.6e-16.
     assert!(errors.into_iter().all(|error| error < 2e-15), "{errors:?}");
-    let none = gradient(&FixedStep::new(system, start, 0.1).expect("valid"), 0, 3, &Course).expect("nothing to take");
+    let none = gradient(&system.at_state(start).integrate(FixedStep, 0.1).expect("valid"), 0, 3, &Course)
+        .expect("nothing to take");
     assert!(none.parameters.is_empty() && (none.start.q - start.q * 2.0).norm() < 1e-15);
 }
 
@@ -409,8 +412,8 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
     }
     let well = DoubleWell::default();
     let start = State::at(&well, 0.5, [0.74], [0.1]);
-    let fixed = worst(&FixedStep::new(well, start, 0.05).expect("valid"), 20);
-    let gauss = worst(&Gauss::<_, 1, 4>::new(well, start, 0.1).expect("valid"), 20);
+    let fixed = worst(&well.at_state(start).integrate(FixedStep, 0.05).expect("valid"), 20);
+    let gauss = worst(&well.at_state(start).integrate(Gauss::<4>, 0.1).expect("valid"), 20);
     let energy = EnergyPreserving::from_midpoint(well, 0.5, [1.2], [0.3], 0.1).expect("valid");
     // The length of a step answers an energy by as much as 1/h²: few and long ones.
     let energy = worst(&energy, 6);
@@ -428,7 +431,7 @@ fn exponents_of_a_saddle() {
     // An inverted pendulum at rest leaves its place as exp(ω t), and a run of Gauss steps as the stable root of its rule.
     let pendulum = Pendulum { m: 1.3, l: 0.5, g: 4.5 };
     let top = State::at(&pendulum, 0.0, [core::f64::consts::PI], [0.0]);
-    let run = Gauss::<_, 1, 6>::new(pendulum, State { p: SVector::zeros(), ..top }, 0.1).expect("valid");
+    let run = pendulum.at_state(State { p: SVector::zeros(), ..top }).integrate(Gauss::<6>, 0.1).expect("valid");
     let mut lyapunov = Lyapunov::new(run, 2).expect("two");
     let mut growth = [[0.0; 2]; 2];
     for part in &mut growth {
@@ -473,17 +476,17 @@ fn exponents_of_chaotic_motion() {
         (lyapunov.exponents(), separated(run, steps))
     }
     let duffing = DoubleWellDuffing { amplitude: 0.5, ..DoubleWellDuffing::default() };
-    let run = Gauss::<_, 1, 6>::new(duffing, State::at(&duffing, 0.0, [0.8], [0.0]), 0.1).expect("valid");
+    let run = duffing.at(0.0, [0.8], [0.0]).integrate(Gauss::<6>, 0.1).expect("valid");
     let (driven, of_driven) = both(&run, 40_000);
     let stars = HenonHeiles::default();
     let energy = 1.0 / 6.0;
     let p_x = (2.0_f64 * energy - 0.01 - 2.0e-3 / 3.0).sqrt();
     let chaotic = State { t: 0.0, q: SVector::from([0.0, -0.1]), p: SVector::from([p_x, 0.0]) };
     assert!((chaotic.energy(&stars).expect("regular") - energy).abs() < 1e-15);
-    let (galaxy, of_galaxy) = both(&Gauss::<_, 2, 6>::new(stars, chaotic, 0.4).expect("valid"), 40_000);
+    let (galaxy, of_galaxy) = both(&stars.at_state(chaotic).integrate(Gauss::<6>, 0.4).expect("valid"), 40_000);
     let pendula = DoublePendulum::default();
     let start = State::at(&pendula, 0.0, [2.0, 2.0], [0.0, 0.0]);
-    let (swinging, of_swinging) = both(&Gauss::<_, 2, 6>::new(pendula, start, 0.02).expect("valid"), 20_000);
+    let (swinging, of_swinging) = both(&pendula.at_state(start).integrate(Gauss::<6>, 0.02).expect("valid"), 20_000);
     // 0.0964, 0.1121 and 1.397; off by 7e-4, 4e-4 and 4e-3.
     for (found, other) in [(driven[0], of_driven), (galaxy[0], of_galaxy), (swinging[0], of_swinging)] {
         assert!(found > 0.05 && (found / other - 1.0).abs() < 1e-2, "{found} {other}");
@@ -558,7 +561,7 @@ fn gradients_of_inputs_that_bring_energy() {
     let system = Everything::default();
     let start = State::at(&system, 0.1, [0.6, -0.4], [0.3, 0.5]);
     let kept = EnergyPreserving::from_midpoint(system, 0.1, [0.6, -0.4], [0.3, 0.5], 0.05).expect("valid");
-    let errors = [worst(&FixedStep::new(system, start, 0.1).expect("valid")), worst(&kept)];
+    let errors = [worst(&system.at_state(start).integrate(FixedStep, 0.1).expect("valid")), worst(&kept)];
     // 5.2e-9 and 1.8e-8: what the differences lack.
     assert!(errors.into_iter().all(|error| error < 1e-7), "{errors:?}");
 }

@@ -8,9 +8,9 @@ use crate::support::scenes::{self, Scene};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use vi_core::gauss::energy::{self, step_density};
 use vi_core::real::Rounded;
-use vi_core::state::Method;
+use vi_core::state::StepKind;
 use vi_core::{
-    EnergyPreserving, EnergyPreservingGauss, Fallback, Gauss, Integrator, Lagrangian, SVector, State, StepError,
+    EnergyPreserving, EnergyPreservingGauss, Fallback, Gauss, Lagrangian, Run, SVector, Starts, State, StepError,
 };
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, HarmonicOscillator, HenonHeiles, Kepler, ParametricPendulum,
@@ -32,8 +32,8 @@ fn begin<const N: usize, const S: usize, Y: System<N>>(
     system: Y,
     (q, v): ([f64; N], [f64; N]),
     h: f64,
-) -> EnergyPreservingGauss<Y, N, S> {
-    EnergyPreservingGauss::new(system, State::at(&system, 0.2, q, v), h).expect("a valid start")
+) -> Run<EnergyPreservingGauss<S>, Y, N> {
+    system.at(0.2, q, v).integrate(EnergyPreservingGauss, h).expect("a valid start")
 }
 
 /// What H at a state is a sum of: its rounding by running error analysis, in roundings of 1.
@@ -120,8 +120,11 @@ fn told<const N: usize, const S: usize>(system: impl System<N>, (q, v): ([f64; N
     let mut run = begin::<N, S, _>(system, (q, v), h);
     let before = run.state();
     run.step().expect("a step");
-    let middle =
-        Gauss::<_, N, S>::new(system, before, 0.5 * run.h()).and_then(|mut half| half.step()).expect("half a step");
+    let middle = system
+        .at_state(before)
+        .integrate(Gauss::<S>, 0.5 * run.h())
+        .and_then(|mut half| half.step())
+        .expect("half a step");
     let exact = step_density::<_, N, S>(&system, &middle).expect("a density");
     (run.density() / exact - 1.0).abs()
 }
@@ -311,7 +314,7 @@ fn one_stage_is_the_midpoint_rule_with_its_energy() {
     let Scene { system, q, v, h, .. } = scenes::kepler();
     let mut paper = EnergyPreserving::from_midpoint(system, 0.2, q, v, h).expect("a valid start");
     let (state, energy) = (paper.state(), paper.discrete_energy());
-    let mut gauss = EnergyPreservingGauss::<_, 2, 1>::from_energy(system, state, energy, h).expect("a valid start");
+    let mut gauss = EnergyPreservingGauss::<1>::from_energy(system, state, energy, h).expect("a valid start");
     let mut worst = 0.0_f64;
     for _ in 0..200 {
         let (one, other) = (paper.step().expect("a step"), gauss.step().expect("a step"));
@@ -339,7 +342,7 @@ fn energy_of_many<const N: usize, const S: usize>(
         let before = run.state();
         run.step().unwrap_or_else(|error| panic!("{}: {error}", name_of(&system)));
         // A fixed step of that length has the same stages.
-        let mut same = Gauss::<_, N, S>::new(system, before, run.h()).expect("a valid start");
+        let mut same = system.at_state(before).integrate(Gauss::<S>, run.h()).expect("a valid start");
         let state = same.step().expect("a step");
         scale = scale.max(size_of_energy(&system, &state));
         worst = worst.max((same.discrete_energy().expect("an energy") - kept).abs());
@@ -395,7 +398,7 @@ fn law<const N: usize, const S: usize>(
     while run.state().t < span {
         let before = run.state();
         run.step().unwrap_or_else(|error| panic!("{}: {error}", name_of(&system)));
-        let middle = Gauss::<_, N, S>::new(system, before, 0.5 * run.h()).and_then(|mut half| half.step());
+        let middle = system.at_state(before).integrate(Gauss::<S>, 0.5 * run.h()).and_then(|mut half| half.step());
         let density = step_density::<_, N, S>(&system, &middle.expect("half a step")).expect("a density");
         let value = run.h() * (density + shift).abs().powf(exponent);
         worst = worst.max((value / *first.get_or_insert(value) - 1.0).abs());
@@ -495,7 +498,7 @@ fn vanishing<const N: usize, const S: usize, Y: System<N>>(
         let (system, start) = motion(amplitude);
         let of = |state: &State<N>| step_density::<_, N, S>(&system, state).expect("a density");
         let first = of(&start);
-        let mut run = Gauss::<_, N, 6>::new(system, start, span / 2000.0).expect("a valid start");
+        let mut run = system.at_state(start).integrate(Gauss::<6>, span / 2000.0).expect("a valid start");
         (0..2000).all(|_| of(&run.step().expect("a step")) * first > 0.0)
     };
     assert!(keeps_its_sign(low) && !keeps_its_sign(high));
@@ -578,7 +581,7 @@ fn shifted<const N: usize, const S: usize, Y: System<N>>(
     while run.state().t < span {
         let before = run.state();
         let state = run.step().unwrap_or_else(|error| panic!("{name}, {S} stages, shift {shift:.3e}: {error}"));
-        let mut same = Gauss::<_, N, S>::new(system, before, run.h()).expect("a valid start");
+        let mut same = system.at_state(before).integrate(Gauss::<S>, run.h()).expect("a valid start");
         same.step().expect("a step");
         let energy = same.discrete_energy().expect("an energy");
         // Of a system that depends on the time E' changes by the work that the integrator says.
@@ -642,7 +645,7 @@ fn with_a_shift_steps_exist_where_the_density_changes_its_sign() {
 fn a_large_shift_is_the_fixed_step() {
     let Scene { system, q, v, .. } = scenes::double_well();
     let mut run = begin::<1, 2, _>(system, (q, v), 0.03).with_shift(1e7).expect("a shift");
-    let mut fixed = Gauss::<_, 1, 2>::new(system, State::at(&system, 0.2, q, v), 0.03).expect("a valid start");
+    let mut fixed = system.at(0.2, q, v).integrate(Gauss::<2>, 0.03).expect("a valid start");
     for _ in 0..100 {
         run.step().expect("a step");
         fixed.step().expect("a step");
@@ -714,17 +717,17 @@ fn inputs_that_make_no_step_are_refused() {
     let state = State::at(&system, 0.0, [1.0, 0.0], [0.0, 1.1]);
     let invalid = |error: StepError| assert!(matches!(error, StepError::InvalidInput { .. }), "{error}");
     for h in [0.0, -0.1, f64::NAN, f64::INFINITY] {
-        invalid(EnergyPreservingGauss::<_, 2, 2>::new(system, state, h).expect_err("no step"));
+        invalid(system.at_state(state).integrate(EnergyPreservingGauss::<2>, h).expect_err("no step"));
     }
-    let run = EnergyPreservingGauss::<_, 2, 2>::new(system, state, 0.1).expect("a valid start");
+    let run = system.at_state(state).integrate(EnergyPreservingGauss::<2>, 0.1).expect("a valid start");
     invalid(run.clone().with_shift(f64::NAN).expect_err("no shift"));
     invalid(run.clone().with_shift_from(-1.0).expect_err("no duration"));
     invalid(run.clone().with_shift_from(f64::INFINITY).expect_err("no duration"));
     invalid(run.clone().with_step_bounds(0.2, 0.1).expect_err("no bounds"));
-    let error = EnergyPreservingGauss::<_, 2, 2>::from_energy(system, state, f64::NAN, 0.1).expect_err("no energy");
+    let error = EnergyPreservingGauss::<2>::from_energy(system, state, f64::NAN, 0.1).expect_err("no energy");
     assert!(matches!(error, StepError::NonFinite { .. }), "{error}");
     let centre = State::at(&system, 0.0, [0.0, 0.0], [1.0, 0.0]);
-    let error = EnergyPreservingGauss::<_, 2, 2>::new(system, centre, 0.1).expect_err("no force at the centre");
+    let error = system.at_state(centre).integrate(EnergyPreservingGauss::<2>, 0.1).expect_err("no force at the centre");
     assert!(matches!(error, StepError::NonFinite { .. }), "{error}");
 }
 
@@ -734,7 +737,7 @@ fn an_energy_far_from_that_of_the_state_has_no_step_near() {
     let state = State::at(&system, 0.0, q, v);
     let total = state.energy(&system).expect("an energy");
     let density = step_density::<_, 2, 2>(&system, &state).expect("a density");
-    let begin = |h: f64, energy: f64| EnergyPreservingGauss::<_, 2, 2>::from_energy(system, state, energy, h);
+    let begin = |h: f64, energy: f64| EnergyPreservingGauss::<2>::from_energy(system, state, energy, h);
     // The energy of a step of 0.04: found from half of it, not from a fifth.
     let energy = total - power(2, 0.04) * density;
     let mut near = begin(0.02, energy).expect("a valid start");
@@ -778,7 +781,7 @@ fn with_the_fallback_a_run_goes_on_and_its_energy_comes_back() {
     while run.state().t < 200.0 {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
         worst = worst.max((state.energy(&system).expect("an energy") - start).abs());
-        if run.method() == Method::EnergyPreserving {
+        if run.method() == StepKind::EnergyPreserving {
             worst_kept = worst_kept.max((run.discrete_energy() - kept).abs());
         }
     }
@@ -790,13 +793,13 @@ fn with_the_fallback_a_run_goes_on_and_its_energy_comes_back() {
 // Restarts.
 
 /// Restarts after each step: the next steps must be those of the run that goes on, up to its error.
-fn resumes<Y: System<N>, const N: usize, const S: usize>(mut whole: EnergyPreservingGauss<Y, N, S>, count: u32) {
+fn resumes<Y: System<N>, const N: usize, const S: usize>(mut whole: Run<EnergyPreservingGauss<S>, Y, N>, count: u32) {
     let system = *whole.system();
     let mut resumed = whole.clone();
     for step in 0..count {
         let text = serde_json::to_string(&resumed.checkpoint()).expect("numbers");
         let stored: energy::Checkpoint<N, S> = serde_json::from_str(&text).expect("the same numbers");
-        resumed = EnergyPreservingGauss::restart(system, stored).expect("a checkpoint of this system");
+        resumed = Run::restart(system, EnergyPreservingGauss, stored).expect("a checkpoint of this system");
         let next = whole.step();
         let again = resumed.step();
         assert_eq!(format!("{next:?}"), format!("{again:?}"), "{}, step {step}", name_of(&system));
@@ -831,7 +834,7 @@ fn states_at_times_are_those_of_the_motion_and_the_energy_stays() {
     let mut worst = 0.0_f64;
     for k in 1..=20 {
         let t = 0.2 + 0.31 * f64::from(k);
-        let state = run.propagate_until(t).expect("a state");
+        let state = run.until(t).expect("a state");
         let exact = Motion::new(0.2, q, v).at(&system, t);
         assert_eq!(state.t.to_bits(), t.to_bits());
         worst = worst.max((state.q - exact.q).amax());
@@ -848,7 +851,8 @@ fn a_run_goes_on_with_what_a_change_brings() {
     run.by_ref().take(20).for_each(|step| {
         step.expect("a step");
     });
-    let excess = |run: &EnergyPreservingGauss<Kepler, 2, 2>| run.energy().expect("an energy") - run.discrete_energy();
+    let excess =
+        |run: &Run<EnergyPreservingGauss<2>, Kepler, 2>| run.energy().expect("an energy") - run.discrete_energy();
     let before = excess(&run);
     run.set_parameters(|system| system.mu *= 1.1).expect("other parameters");
     assert!((excess(&run) - before).abs() < 1e-14);

@@ -6,7 +6,7 @@
 use crate::support::ending::{self, Ending};
 use crate::support::exact::Motion;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, State, StepError, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Starts, State, StepError, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, DoubleWellDuffing, HarmonicOscillator, Kepler, ParametricPendulum,
     Pendulum,
@@ -195,7 +195,7 @@ fn the_step_density_of_the_trapezoidal_rule_changes_its_sign_in_every_swing() {
         let (x, v) = (f64::cos(phase), -f64::sin(phase));
         let start = State::at(&system, 0.0, [x], [v]);
         let excess = start.energy(&system).expect("an energy") - {
-            let mut run = FixedStep::new(system, start, h).expect("a valid start");
+            let mut run = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
             run.step().expect("a step");
             run.discrete_energy().expect("an energy")
         };
@@ -206,6 +206,6 @@ fn the_step_density_of_the_trapezoidal_rule_changes_its_sign_in_every_swing() {
     }
     // Fixed steps of this rule know no such limit.
     let state = State::at(&system, 0.0, [1.0], [0.0]);
-    let run = FixedStep::new(system, state, 0.1).expect("a valid start");
+    let run = system.at_state(state).integrate(FixedStep, 0.1).expect("a valid start");
     assert_eq!(ending::fixed(run, ENDLESS), None);
 }

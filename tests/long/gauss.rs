@@ -8,7 +8,7 @@ use crate::support::scenes::{self, Scene};
 use serde_json::Value;
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{FixedStep, Gauss, Integrator, Lagrangian, State, StepError, gauss, lagrangian};
+use vi_core::{FixedStep, Gauss, Lagrangian, Run, Starts, State, StepError, gauss, lagrangian};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum,
 };
@@ -51,7 +51,7 @@ impl<const N: usize, S: Collocation<N> + Convertible<N> + FixedStepping<N> + Cop
 /// The run after so many steps of a reference, against it: nodes, and the discrete energy of the last interval.
 fn follows<const N: usize, const S: usize>(name: &str, system: impl System<N>, case: &Value, limits: [f64; 3]) {
     let state = State::at(&system, 0.0, vector(&case["q0"]), vector(&case["v0"]));
-    let mut run = Gauss::<_, N, S>::new(system, state, number(&case["h"])).expect("a valid start");
+    let mut run = system.at_state(state).integrate(Gauss::<S>, number(&case["h"])).expect("a valid start");
     let entries = steps(&case[&format!("s{S}")]);
     assert_eq!(entries.iter().map(|(step, _)| *step).collect::<Vec<_>>(), [1, 10, 100], "{name}");
     let mut taken = 0;
@@ -106,7 +106,7 @@ fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longe
         .map(|count| {
             let h = quarter / f64::from(count);
             let state = State::at(&scene.system, start.t, scene.q, scene.v);
-            let mut run = Gauss::<_, N, S>::new(scene.system, state, h).expect("a valid start");
+            let mut run = scene.system.at_state(state).integrate(Gauss::<S>, h).expect("a valid start");
             let mut error = 0.0_f64;
             for exact in &exact {
                 let node =
@@ -159,8 +159,8 @@ fn the_order_is_twice_the_number_of_stages() {
 /// A Gauss step of one stage is a step of the midpoint rule.
 fn one_stage<const N: usize>(Scene { system, q, v, h, .. }: Scene<impl System<N>, N>) {
     let state = State::at(&system, 0.2, q, v);
-    let mut midpoint = FixedStep::new(system, state, h).expect("a valid start");
-    let mut gauss = Gauss::<_, N, 1>::new(system, state, h).expect("a valid start");
+    let mut midpoint = system.at_state(state).integrate(FixedStep, h).expect("a valid start");
+    let mut gauss = system.at_state(state).integrate(Gauss::<1>, h).expect("a valid start");
     let mut worst = 0.0_f64;
     for _ in 0..50 {
         let (one, other) = (midpoint.step().expect("a step"), gauss.step().expect("a step"));
@@ -181,9 +181,9 @@ mod one_stage_is_the_midpoint_rule {
 /// Backwards the steps lead where they came from.
 fn there_and_back<const N: usize>(Scene { system, q, v, h, .. }: Scene<impl System<N>, N>) {
     let state = State::at(&system, 0.2, q, v);
-    let there = Gauss::<_, N, 3>::new(system, state, h).expect("a valid start").take(40).last();
+    let there = system.at_state(state).integrate(Gauss::<3>, h).expect("a valid start").take(40).last();
     let there = there.expect("steps").expect("a step");
-    let back = Gauss::<_, N, 3>::new(system, there, -h).expect("a valid start").take(40).last();
+    let back = system.at_state(there).integrate(Gauss::<3>, -h).expect("a valid start").take(40).last();
     let back = back.expect("steps").expect("a step");
     let worst = (back.q - state.q).amax().max((back.p - state.p).amax()).max((back.t - state.t).abs());
     // Measured: 1.1e-14.
@@ -202,7 +202,7 @@ fn momenta_of_cyclic_coordinates_are_kept_bit_for_bit() {
     let Scene { system, q, v, h, .. } = scenes::spherical_pendulum();
     let state = State::at(&system, 0.0, q, v);
     let cyclic = <SphericalPendulum as Lagrangian<2>>::CYCLIC.iter().position(|cyclic| *cyclic).expect("the azimuth");
-    let end = Gauss::<_, 2, 4>::new(system, state, 4.0 * h).expect("a valid start").take(10_000).last();
+    let end = system.at_state(state).integrate(Gauss::<4>, 4.0 * h).expect("a valid start").take(10_000).last();
     let end = end.expect("steps").expect("a step");
     assert_eq!(end.p[cyclic].to_bits(), state.p[cyclic].to_bits());
     assert!((end.p[1 - cyclic] - state.p[1 - cyclic]).abs() > 1e-3);
@@ -211,8 +211,7 @@ fn momenta_of_cyclic_coordinates_are_kept_bit_for_bit() {
 #[test]
 fn angular_momentum_of_a_million_steps() {
     let system = Kepler { mu: 1.6 };
-    let mut run =
-        Gauss::<_, 2, 4>::new(system, State::at(&system, 0.0, [0.6, 0.1], [-0.2, 1.9]), 0.1).expect("a start");
+    let mut run = system.at(0.0, [0.6, 0.1], [-0.2, 1.9]).integrate(Gauss::<4>, 0.1).expect("a start");
     let of = |state: &State<2>| state.q[0] * state.p[1] - state.q[1] * state.p[0];
     let start = of(&run.state());
     let mut worst = 0.0_f64;
@@ -226,7 +225,7 @@ fn angular_momentum_of_a_million_steps() {
 
 /// The largest relative error of the energy over so many periods, and its mean over the last tenth.
 fn energy_error<const N: usize>(system: impl System<N>, state: State<N>, h: f64, count: u32) -> (f64, f64) {
-    let mut run = Gauss::<_, N, 8>::new(system, state, h).expect("a valid start");
+    let mut run = system.at_state(state).integrate(Gauss::<8>, h).expect("a valid start");
     let exact = state.energy(&system).expect("an energy");
     let (mut worst, mut mean, mut counted) = (0.0_f64, 0.0, 0.0);
     for step in 0..count {
@@ -264,7 +263,7 @@ fn the_discrete_energy_oscillates_as_it_should() {
     // 2s γ_s h^2s (Dmax − Dmin): q0, s, at h = 0.1.
     fn spread<const S: usize>(q0: f64) -> f64 {
         let system = DoubleWell::default();
-        let mut run = Gauss::<_, 1, S>::new(system, State::at(&system, 0.0, [q0], [0.0]), 0.1).expect("a start");
+        let mut run = system.at(0.0, [q0], [0.0]).integrate(Gauss::<S>, 0.1).expect("a start");
         let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
         for _ in 0..2000 {
             run.step().expect("a step");
@@ -291,7 +290,14 @@ fn angles_beyond_the_fast_sine_are_solved_too() {
     let turns = 40_000.0 * core::f64::consts::TAU;
     let run = |turned: f64| {
         let state = State::at(&system, 0.0, [2.0 + turned, 2.0], [0.0, 0.0]);
-        Gauss::<_, 2, 8>::new(system, state, 0.05).expect("a start").take(40).last().expect("steps").expect("a step")
+        system
+            .at_state(state)
+            .integrate(Gauss::<8>, 0.05)
+            .expect("a start")
+            .take(40)
+            .last()
+            .expect("steps")
+            .expect("a step")
     };
     let (near, far) = (run(0.0), run(turns));
     let off = (far.q[0] - turns - near.q[0]).abs().max((far.p - near.p).amax());
@@ -311,7 +317,7 @@ lagrangian! {
 
 /// Mean sweeps, and how often the second velocity passes zero.
 fn sweeps(system: impl System<2>, q: [f64; 2], h: f64) -> (f64, u32) {
-    let mut run = Gauss::<_, 2, 8>::new(system, State::at(&system, 0.0, q, [0.0, 0.0]), h).expect("a start");
+    let mut run = system.at(0.0, q, [0.0, 0.0]).integrate(Gauss::<8>, h).expect("a start");
     let mut sweeps = 0;
     let mut turns = 0;
     let mut last = run.velocity().expect("regular").y;
@@ -343,7 +349,7 @@ fn velocities_whose_terms_cancel_take_no_further_sweeps() {
 fn stages_that_do_not_settle_are_a_typed_error_and_nothing_is_lost() {
     let system = DoubleWell::default();
     let state = State::at(&system, 0.3, [3.0], [0.0]);
-    let mut run = Gauss::<_, 1, 3>::new(system, state, 2.0).expect("a valid start");
+    let mut run = system.at_state(state).integrate(Gauss::<3>, 2.0).expect("a valid start");
     let error = run.step().expect_err("a step far too long");
     let StepError::StagesUnsettled { t, h, iterations, stiffness, .. } = error else { panic!("{error}") };
     assert_eq!((t, h), (0.3, 2.0));
@@ -358,24 +364,27 @@ fn stages_that_do_not_settle_are_a_typed_error_and_nothing_is_lost() {
 fn what_is_not_finite_is_named() {
     let system = Kepler::default();
     let state = State::at(&system, 0.0, [0.0, 0.0], [1.0, 0.0]);
-    let error =
-        Gauss::<_, 2, 4>::new(system, state, 0.1).and_then(|mut run| run.step()).expect_err("no force at the centre");
+    let error = system
+        .at_state(state)
+        .integrate(Gauss::<4>, 0.1)
+        .and_then(|mut run| run.step())
+        .expect_err("no force at the centre");
     assert!(matches!(error, StepError::NonFinite { expression: Some(_), .. }), "{error}");
     for h in [0.0, f64::NAN, f64::INFINITY] {
         let start = State::at(&system, 0.0, [1.0, 0.0], [0.0, 1.0]);
-        let error = Gauss::<_, 2, 4>::new(system, start, h).expect_err("no step");
+        let error = system.at_state(start).integrate(Gauss::<4>, h).expect_err("no step");
         assert!(matches!(error, StepError::InvalidInput { .. }), "{error}");
     }
 }
 
 /// Restarts after each step: the next steps must be those of the run that goes on.
 fn resumes<const N: usize, const S: usize>(system: impl System<N>, (q, v): ([f64; N], [f64; N]), h: f64, count: u32) {
-    let mut whole = Gauss::<_, N, S>::new(system, State::at(&system, 0.3, q, v), h).expect("a start");
+    let mut whole = system.at(0.3, q, v).integrate(Gauss::<S>, h).expect("a start");
     let mut resumed = whole.clone();
     for step in 0..count {
         let text = serde_json::to_string(&resumed.checkpoint()).expect("numbers");
         let stored: gauss::Checkpoint<N, S> = serde_json::from_str(&text).expect("the same numbers");
-        resumed = Gauss::restart(system, stored).expect("a checkpoint of this system");
+        resumed = Run::restart(system, Gauss, stored).expect("a checkpoint of this system");
         let (next, again) = (whole.step(), resumed.step());
         assert_eq!(format!("{next:?}"), format!("{again:?}"), "{} stages, h = {h}, step {step}", S);
         assert!(next.is_ok(), "{next:?}");
@@ -398,8 +407,8 @@ fn a_run_that_is_stored_goes_on_bit_for_bit() {
 fn a_checkpoint_is_resumed_by_its_own_system_only() {
     let system = Kepler { mu: 1.2 };
     let start = State::at(&system, 0.0, [1.0, 0.0], [0.0, 1.1]);
-    let run = Gauss::<_, 2, 4>::new(system, start, 0.1).expect("a start");
-    let error = Gauss::restart(Kepler { mu: 1.3 }, run.checkpoint()).expect_err("another parameter");
+    let run = system.at_state(start).integrate(Gauss::<4>, 0.1).expect("a start");
+    let error = Run::restart(Kepler { mu: 1.3 }, Gauss, run.checkpoint()).expect_err("another parameter");
     assert!(matches!(error, StepError::OtherSystem { parameter: Some("mu"), .. }), "{error}");
 }
 
@@ -444,7 +453,7 @@ lagrangian! {
 fn stages_that_leave_the_domain_are_an_error_or_right() {
     for h in [0.1, 0.5, 5.0] {
         let system = Accelerated::default();
-        let mut run = Gauss::<_, 1, 3>::new(&system, State::at(&system, 0.0, [0.0], [0.0]), h).expect("a valid start");
+        let mut run = system.at(0.0, [0.0], [0.0]).integrate(Gauss::<3>, h).expect("a valid start");
         // p = 3 t, and x = (√(1 + p²) − 1)/3.
         for step in 1..=10 {
             let Ok(state) = run.step() else { break };
@@ -455,7 +464,7 @@ fn stages_that_leave_the_domain_are_an_error_or_right() {
         }
     }
     let system = Vanishing::default();
-    let mut run = Gauss::<_, 1, 3>::new(&system, State::at(&system, 0.0, [1.0], [-2.0]), 1.0).expect("a valid start");
+    let mut run = system.at(0.0, [1.0], [-2.0]).integrate(Gauss::<3>, 1.0).expect("a valid start");
     let error = run.step().expect_err("the mass vanishes on the way");
     assert!(matches!(error, StepError::StagesUnsettled { .. } | StepError::NonFinite { .. }), "{error}");
 }
@@ -465,7 +474,7 @@ fn velocities_are_solved_wherever_the_positions_are() {
     let system = Anywhere::default();
     let step = |x: f64| {
         let state = State::at(&system, 0.0, [x], [1.0]);
-        Gauss::<_, 1, 8>::new(&system, state, 0.1).expect("a start").step().expect("a step").p[0]
+        system.at_state(state).integrate(Gauss::<8>, 0.1).expect("a start").step().expect("a step").p[0]
     };
     for x in [1e6, 1e12, 1e17] {
         // Measured: 4.4e-16.
@@ -476,7 +485,7 @@ fn velocities_are_solved_wherever_the_positions_are() {
 #[test]
 fn a_step_that_newton_does_not_solve_is_an_error() {
     let system = Wall::default();
-    let mut run = Gauss::<_, 1, 1>::new(&system, State::at(&system, 0.0, [1.0], [-1.0]), 1.0).expect("a valid start");
+    let mut run = system.at(0.0, [1.0], [-1.0]).integrate(Gauss::<1>, 1.0).expect("a valid start");
     for _ in 0..5 {
         match run.step() {
             // p1 − p0 = h F in the middle, and L_v there is the mean of both.

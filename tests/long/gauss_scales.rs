@@ -1,7 +1,7 @@
 //! Stages whose numbers change by orders of magnitude from one sweep to the next, and numbers at the end of their range: a step is a
 //! solution or an error.
 
-use vi_core::{Gauss, SVector, State, StepError, lagrangian};
+use vi_core::{Gauss, SVector, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// A mass that is nearly singular where x + y = 0: the first sweep there leads to velocities of 1e16.
@@ -51,7 +51,7 @@ fn first<S, const N: usize, const STAGES: usize>(
 where
     S: vi_core::collocation::Collocation<N> + vi_core::stepping::Convertible<N> + vi_core::stepping::FixedStepping<N>,
 {
-    Gauss::<_, N, STAGES>::new(system, State::at(&system, 0.0, q, v), h)?.step()
+    system.at(0.0, q, v).integrate(Gauss::<STAGES>, h)?.step()
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn stages_beyond_the_range_of_numbers_are_no_solution() {
 fn stages_that_leave_the_range_of_numbers_change_without_end() {
     let (q, v) = crate::gauss_stiff::lowest_mode();
     let system = vi_systems::FpuChain::default();
-    let mut run = Gauss::<_, 16, 8>::new(system, State::at(&system, 0.0, q, v), 25.0).expect("a valid start");
+    let mut run = system.at(0.0, q, v).integrate(Gauss::<8>, 25.0).expect("a valid start");
     let failure = run.find_map(Result::err);
     let Some(StepError::StagesUnsettled { change, contraction, .. }) = failure else {
         panic!("{failure:?}");

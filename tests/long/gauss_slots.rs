@@ -3,7 +3,7 @@
 use crate::gauss::{Everything, System};
 use vi_core::gauss::Slots;
 use vi_core::nalgebra::SMatrix;
-use vi_core::{Gauss, SVector, State, lagrangian};
+use vi_core::{Gauss, SVector, Starts, State, lagrangian};
 use vi_systems::{DampedOscillator, DoublePendulum, Kepler};
 
 lagrangian! {
@@ -19,7 +19,7 @@ lagrangian! {
 /// What the slots say of the ends of each step, against the nodes, and the sum of the slots of time against the power along the step.
 fn end_at_the_nodes<const N: usize, const S: usize>(name: &str, system: impl System<N>, q: [f64; N], v: [f64; N]) {
     let start = State::at(&system, 0.3, q, v);
-    let mut run = Gauss::<_, N, S>::new(system, start, 0.05).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Gauss::<S>, 0.05).expect("a valid start");
     assert_eq!(run.slots(), None, "no step was taken");
     let mut worst = [0.0_f64; 2];
     for _ in 0..20 {
@@ -54,7 +54,8 @@ fn slots_say_what_the_nodes_are() {
 fn between<const S: usize>(system: impl System<2>, ends: &[[f64; 3]; 2], near: SVector<f64, 2>) -> Slots<2> {
     let [[t, x, y], [end, x1, y1]] = *ends;
     let step = |p: SVector<f64, 2>| {
-        let mut run = Gauss::<_, 2, S>::new(system, State { t, q: [x, y].into(), p }, end - t).expect("a valid start");
+        let mut run =
+            system.at_state(State { t, q: [x, y].into(), p }).integrate(Gauss::<S>, end - t).expect("a valid start");
         let reached = run.step().expect("a step");
         (reached.q - SVector::from([x1, y1]), run.slots().expect("a step was taken"))
     };
@@ -77,7 +78,7 @@ fn between<const S: usize>(system: impl System<2>, ends: &[[f64; 3]; 2], near: S
 fn are_derivatives<const S: usize>(system: impl System<2>) {
     let start = State::at(&system, 0.3, [0.4, -0.3], [0.2, 0.7]);
     let h = 0.4;
-    let reached = Gauss::<_, 2, S>::new(system, start, h).expect("a valid start").step().expect("a step");
+    let reached = system.at_state(start).integrate(Gauss::<S>, h).expect("a valid start").step().expect("a step");
     let ends = [[start.t, start.q[0], start.q[1]], [reached.t, reached.q[0], reached.q[1]]];
     let at = between::<S>(system, &ends, start.p);
     let slots = [[at.d1_ld, at.d2_ld[0], at.d2_ld[1]], [at.d3_ld, at.d4_ld[0], at.d4_ld[1]]];

@@ -1,6 +1,6 @@
 //! Gauss steps far beyond the reach of sweeps: Newton's iteration solves them, or they are errors.
 
-use vi_core::{Gauss, State, StepError, lagrangian};
+use vi_core::{Gauss, Starts, State, StepError, lagrangian};
 use vi_systems::{DampedOscillator, DoublePendulum, FpuChain};
 
 /// The step of S stages on a linear system is a rational function of its matrix: the diagonal Padé approximant of exp.
@@ -23,7 +23,7 @@ fn linear<const S: usize>(c: f64, h: f64) {
     let (m, k) = (1.2, 3.4);
     let system = DampedOscillator { m, k, c };
     let step = pade::<S>(vi_core::nalgebra::SMatrix::<f64, 2, 2>::new(0.0, 1.0 / m, -k, -c / m) * h);
-    let mut run = Gauss::<_, 1, S>::new(system, State::at(&system, 0.0, [0.8], [0.5]), h).expect("a valid start");
+    let mut run = system.at(0.0, [0.8], [0.5]).integrate(Gauss::<S>, h).expect("a valid start");
     let mut worst = 0.0_f64;
     for _ in 0..20 {
         let before = vi_core::SVector::<f64, 2>::new(run.state().q[0], run.state().p[0]);
@@ -73,7 +73,7 @@ fn mixed<const S: usize>(h: f64) {
     let places = [0.0, 1.0, 2.0, 3.0, 4.0_f64];
     let mix = vi_core::nalgebra::SMatrix::<f64, 5, 5>::from_fn(|i, j| 1.0 / (1.0 + (places[i] - places[j]).powi(2)));
     let start = State::at(&system, 0.0, [0.3, -0.2, 0.5, 0.1, -0.4], [0.2, 0.1, -0.3, 0.4, 0.5]);
-    let mut run = Gauss::<_, 5, S>::new(system, start, h).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Gauss::<S>, h).expect("a valid start");
     let mut worst = 0.0_f64;
     for _ in 0..20 {
         let before = run.state();
@@ -116,7 +116,7 @@ fn chain<const S: usize>(h: f64) {
     let system = FpuChain::default();
     let (q, v) = lowest_mode();
     let start = State::at(&system, 0.0, q, v);
-    let mut run = Gauss::<_, 16, S>::new(system, start, h).expect("a valid start");
+    let mut run = system.at_state(start).integrate(Gauss::<S>, h).expect("a valid start");
     let mut worst = 0.0_f64;
     let mut most = 0;
     for _ in 0..20 {
@@ -147,7 +147,7 @@ fn stages_that_went_astray_are_not_taken_for_rounding() {
     let start = State::at(&system, 0.0, [1.2, 0.5], [0.0, 0.0]);
     let energy = start.energy(&system).expect("an energy");
     for h in [0.2, 0.25, 0.4, 0.7, 2.0] {
-        let mut run = Gauss::<_, 2, 8>::new(system, start, h).expect("a valid start");
+        let mut run = system.at_state(start).integrate(Gauss::<8>, h).expect("a valid start");
         let mut worst = 0.0_f64;
         for _ in 0..3000 {
             match run.step() {

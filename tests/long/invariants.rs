@@ -7,7 +7,7 @@ use crate::support::scenes::{self, Scene};
 use core::ops::RangeInclusive;
 use serde_json::Value;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, Step};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, Starts, State, Step};
 use vi_systems::{DampedOscillator, DoubleWell, Kepler};
 
 const MILLION: u32 = 1_000_000;
@@ -33,7 +33,7 @@ fn papers_start<const N: usize, S: EnergyStepping<N> + Copy>(
     q0: [f64; N],
     v0: [f64; N],
     h0: f64,
-) -> EnergyPreserving<S, N> {
+) -> Run<EnergyPreserving, S, N> {
     let second = Motion::new(0.0, q0, v0).at(&system, h0);
     EnergyPreserving::from_points(system, (0.0, q0), (h0, second.q)).expect("a valid start")
 }
@@ -94,7 +94,7 @@ fn the_double_well_keeps_its_energy_for_a_million_steps() {
 fn the_energy_of_fixed_steps_oscillates_as_stated() {
     for Case { q0, h0, fixed, .. } in CASES {
         let start = papers_start(DoubleWell::default(), [q0], [0.0], h0);
-        let mut run = FixedStep::new(DoubleWell::default(), start.state(), h0).expect("a valid start");
+        let mut run = DoubleWell::default().at_state(start.state()).integrate(FixedStep, h0).expect("a valid start");
         let mut worst = 0.0_f64;
         for _ in 0..MILLION {
             run.step().unwrap_or_else(|error| panic!("{q0}, {h0}: {error}"));
@@ -139,7 +139,7 @@ fn node<const N: usize>(step: &Step<N>) -> State<N> {
 fn kepler_keeps_its_angular_momentum_for_a_million_steps() {
     let (q, v, h) = ([0.4, 0.0], [0.0, 2.0], 0.01);
     let start = State::at(&Kepler::default(), 0.0, q, v);
-    let run = FixedStep::new(Kepler::default(), start, h).expect("a valid start");
+    let run = Kepler::default().at_state(start).integrate(FixedStep, h).expect("a valid start");
     let fixed = drift_of_angular_momentum(start, run.take(MILLION as usize).map(|state| state.expect("a step")));
     let run = EnergyPreserving::from_midpoint(Kepler::default(), 0.0, q, v, h).expect("a valid start");
     let states = run.clone().take(MILLION as usize).map(|step| node(&step.expect("a step")));
@@ -155,7 +155,7 @@ fn keeps_every_bit<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, 
     let Scene { system, q, v, h, .. } = scene;
     assert_eq!(S::CYCLIC, core::array::from_fn(|coordinate| coordinate == index), "{}", S::NAME);
     let start = State::at(&system, 0.0, q, v);
-    let mut fixed = FixedStep::new(system, start, h).expect("a valid start");
+    let mut fixed = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
     let mut energy_preserving = EnergyPreserving::from_midpoint(system, 0.0, q, v, h).expect("a valid start");
     assert!(start.p[index].abs() > 0.1);
     assert_eq!(energy_preserving.state().p[index].to_bits(), start.p[index].to_bits(), "{}: the start", S::NAME);

@@ -2,7 +2,7 @@
 
 use crate::support::scenes::{Scene, each_system};
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, State};
+use vi_core::{EnergyPreserving, FixedStep, Starts, State};
 
 const STEPS: u32 = 100_000;
 
@@ -31,7 +31,7 @@ fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S
 /// Measured: none (linear systems), 1.00 (Hénon–Heiles) to 2.34 (spherical pendulum).
 fn fixed<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     let start = State::at(&scene.system, 0.0, scene.q, scene.v);
-    let mut run = FixedStep::new(scene.system, start, scene.h).expect("a valid start");
+    let mut run = scene.system.at_state(start).integrate(FixedStep, scene.h).expect("a valid start");
     let mut iterations = 0;
     for _ in 0..STEPS {
         run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));

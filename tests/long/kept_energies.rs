@@ -1,6 +1,6 @@
 //! Energies that Gauss steps keep: far from the origin, under a shift that is too large, over long runs, and at the ends of what numbers can tell.
 
-use vi_core::{EnergyPreservingGauss, Gauss, Integrator, ScaledGauss, State, StepError, lagrangian};
+use vi_core::{EnergyPreservingGauss, Gauss, Run, Starts, State, StepError, lagrangian};
 use vi_systems::{DoublePendulum, HarmonicOscillator, Kepler, Pendulum};
 
 /// The sine of an angle of thousands of turns is known to the ulp of the angle, and so is the energy.
@@ -8,7 +8,8 @@ use vi_systems::{DoublePendulum, HarmonicOscillator, Kepler, Pendulum};
 fn a_pendulum_turns_for_a_hundred_thousand_steps() {
     let system = Pendulum { m: 1.0, l: 1.0, g: 1.0 };
     let start = State::at(&system, 0.0, [0.0], [2.5]);
-    let run = EnergyPreservingGauss::<_, 1, 1>::new(system, start, 0.05).and_then(|run| run.with_shift_from(16.2));
+    let run =
+        system.at_state(start).integrate(EnergyPreservingGauss::<1>, 0.05).and_then(|run| run.with_shift_from(16.2));
     let mut run = run.expect("a start");
     let (energy, mut worst) = (run.shifted_energy(), 0.0_f64);
     for _ in 0..100_000 {
@@ -39,7 +40,7 @@ fn refused(error: StepError) -> f64 {
 #[test]
 fn a_shift_that_outweighs_the_energy_is_refused() {
     let (system, start, h) = grazing();
-    let begin = |h| EnergyPreservingGauss::<_, 2, 1>::new(system, start, h);
+    let begin = |h| system.at_state(start).integrate(EnergyPreservingGauss::<1>, h);
     let shorter = refused(
         begin(h).and_then(|run| run.with_shift_from(6.0)).expect_err("the shift is measured along right steps"),
     );
@@ -65,7 +66,7 @@ fn a_varying_mass_leaves_no_drift() {
     let system = DoublePendulum { g: 9.81, ..DoublePendulum::default() };
     let start = State::at(&system, 0.0, [0.3, 0.2], [0.0, 0.0]);
     let energy = start.energy(&system).expect("an energy");
-    let mut run = Gauss::<_, 2, 4>::new(system, start, 0.08).expect("a start");
+    let mut run = system.at_state(start).integrate(Gauss::<4>, 0.08).expect("a start");
     let (mut n, mut sums) = (0.0, [0.0; 4]);
     for _ in 0..400_000 {
         run.step().expect("a step");
@@ -85,9 +86,9 @@ fn a_varying_mass_leaves_no_drift() {
 /// `C h^2s` underflows, and a density by it would not be a number.
 #[test]
 fn a_step_without_a_power_is_refused() {
-    fn begin<const S: usize>(h: f64) -> Result<EnergyPreservingGauss<HarmonicOscillator, 1, S>, StepError> {
+    fn begin<const S: usize>(h: f64) -> Result<Run<EnergyPreservingGauss<S>, HarmonicOscillator, 1>, StepError> {
         let system = HarmonicOscillator::default();
-        EnergyPreservingGauss::new(system, State::at(&system, 0.0, [1.0], [0.5]), h)
+        system.at(0.0, [1.0], [0.5]).integrate(EnergyPreservingGauss, h)
     }
     for h in [1e-307, 1e-200, 1e-160] {
         for error in [begin::<1>(h).err(), begin::<2>(h).err(), begin::<3>(h).err()] {
@@ -120,7 +121,7 @@ lagrangian! {
 fn a_time_that_stands_still_is_an_error() {
     let system = Stalling::default();
     let start = State::at(&system, 1.0, [12.0], [0.0]);
-    let mut run = ScaledGauss::<_, 1, 2>::new(system, start, 1e-3).expect("a start");
+    let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), 1e-3).expect("a start");
     let error = run.step().expect_err("g = e^-144");
     assert!(matches!(error, StepError::TimeScale { t, g } if t.to_bits() == 1.0_f64.to_bits() && g > 0.0), "{error:?}");
     assert!(error.to_string().contains("too small for the time to go on"), "{error}");
@@ -128,7 +129,7 @@ fn a_time_that_stands_still_is_an_error() {
     assert_eq!(run.step().expect_err("the same error"), error);
     // What advances in the low part of the time is a step.
     let start = State::at(&system, 1.0, [6.5], [0.0]);
-    let mut run = ScaledGauss::<_, 1, 2>::new(system, start, 1e-3).expect("a start");
+    let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), 1e-3).expect("a start");
     for _ in 0..1000 {
         run.step().expect("a step");
     }
@@ -150,7 +151,7 @@ fn a_time_scale_that_nearly_vanishes_is_no_wall() {
     for (d, dtau) in [(0.0, 0.1), (0.0, 0.01), (1e-7, 0.1)] {
         let system = Near { d };
         let start = State::at(&system, 0.0, [1.0], [0.0]);
-        let mut run = ScaledGauss::<_, 1, 2>::new(system, start, dtau).expect("a start");
+        let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), dtau).expect("a start");
         let error = (0..1_000_000).find_map(|_| run.step().err()).expect("no way through");
         assert!(matches!(error, StepError::TimeScale { g, .. } if g > 0.0), "{d:e}, {dtau}: {error:?}");
         // Until then it is the right motion.
@@ -161,8 +162,8 @@ fn a_time_scale_that_nearly_vanishes_is_no_wall() {
     // Less near the steps lead through.
     let system = Near { d: 0.05 };
     let start = State::at(&system, 0.0, [1.0], [0.0]);
-    let mut run = ScaledGauss::<_, 1, 2>::new(system, start, 0.02).expect("a start");
-    run.propagate_until(3.0).expect("steps");
+    let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), 0.02).expect("a start");
+    run.until(3.0).expect("steps");
     let off = (run.state().q[0] - 3.0_f64.cos()).abs();
     println!("off by {off:.1e}");
     assert!(off < 1e-2, "{off:e}");
@@ -184,13 +185,13 @@ fn a_shift_does_not_depend_on_the_constant_of_the_potential() {
         let from = |zero: f64| {
             let system = Lifted { zero };
             let start = State::at(&system, 0.0, [angle], [0.0]);
-            EnergyPreservingGauss::<_, 1, 1>::new(system, start, 0.02).and_then(|run| run.with_shift_from(7.0))
+            system.at_state(start).integrate(EnergyPreservingGauss::<1>, 0.02).and_then(|run| run.with_shift_from(7.0))
         };
         let (plain, at_zero) = (from(0.0).expect("a shift"), from(-angle.cos()).expect("a shift"));
         assert!((plain.shift() / at_zero.shift() - 1.0).abs() < 1e-6, "{} {}", plain.shift(), at_zero.shift());
         let system = Lifted { zero: -angle.cos() };
         let start = State::at(&system, 0.0, [angle], [0.0]);
-        let mut run = EnergyPreservingGauss::<_, 1, 2>::new(system, start, 0.02).expect("a start");
+        let mut run = system.at_state(start).integrate(EnergyPreservingGauss::<2>, 0.02).expect("a start");
         run = run.with_shift_from(10.0).expect("a shift");
         for _ in 0..3000 {
             run.step().expect("a step past turning points at which H is zero");

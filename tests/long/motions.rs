@@ -3,13 +3,11 @@
 
 use vi_core::derivatives::{Tangent, Variation};
 use vi_core::stepping::FixedStepping;
-use vi_core::{
-    Called, Composition, FixedStep, Gauss, Integrator, Lagrangian, SVector, Scheme, State, StepError, lagrangian,
-};
+use vi_core::{Called, Composition, FixedStep, Gauss, Lagrangian, SVector, Starts, State, StepError, lagrangian};
 
 /// Asserts where a run is, and returns how far off: the largest difference of a coordinate or a velocity.
 fn off<const N: usize, I: Integrator<N>>(mut run: I, t: f64, q: [f64; N], v: [f64; N]) -> f64 {
-    let end = run.propagate_until(t).expect("solvable");
+    let end = run.until(t).expect("solvable");
     let velocity = run.velocity().expect("regular");
     (end.q - SVector::from(q)).amax().max((velocity - SVector::from(v)).amax())
 }
@@ -18,7 +16,7 @@ fn off<const N: usize, I: Integrator<N>>(mut run: I, t: f64, q: [f64; N], v: [f6
 macro_rules! gauss {
     ($system:expr, $q:expr, $v:expr, $h:expr) => {{
         let system = $system;
-        Gauss::<_, _, 8>::new(Called(system), State::at(&system, 0.0, $q, $v), $h).expect("valid")
+        Called(system).at_state(State::at(&system, 0.0, $q, $v)).integrate(Gauss::<8>, $h).expect("valid")
     }};
 }
 
@@ -109,7 +107,7 @@ lagrangian! {
 #[test]
 fn motions_of_other_programs_are_followed() {
     let start = State { t: 0.0, q: SVector::from([0.5]), p: SVector::from([0.0]) };
-    let perturbed = Gauss::<_, 1, 8>::new(Perturbed::default(), start, 0.25).expect("valid");
+    let perturbed = Perturbed::default().at_state(start).integrate(Gauss::<8>, 0.25).expect("valid");
     let joined = [3.136_949_984_228_409, -3.136_949_984_228_409];
     let inspiral = [-0.000_118_518_518_518_518_52, 0.182_574_185_835_055_36];
     let errors = [
@@ -243,7 +241,7 @@ fn an_arm_is_that_of_the_textbook() {
     // The acrobot of a collection of games, at a step at which its own integrator gains energy.
     let acrobot = Arm { m1: 1.0, m2: 1.0, l1: 1.0, c1: 0.5, c2: 0.5, I1: 1.0, I2: 1.0, g: 9.8 };
     let start = State::at(&acrobot, 0.0, [-1.0, 0.5], [0.1, 0.0]);
-    let steps = Gauss::<_, 2, 8>::new(acrobot, start, 0.2).expect("valid").take(500);
+    let steps = acrobot.at_state(start).integrate(Gauss::<8>, 0.2).expect("valid").take(500);
     let energy = energy_error(acrobot, steps, start.energy(&acrobot).expect("regular"));
     // Measured 3.6e-15, 5.3e-15, 7.1e-15.
     assert!(by_hand < 5e-15 && error < 1e-14 && energy < 1e-14, "{by_hand:e} {error:e} {energy:e}");
@@ -277,7 +275,7 @@ fn double_pendulums_gain_no_energy() {
     let energies =
         [(drawn, [1.0, 0.0], 1.0), (short, [2.0, -2.5], 1e-3), (light, [0.3, 0.3], 1e-3)].map(|(system, q, h)| {
             let start = State::at(&system, 0.0, q, [0.0, 0.0]);
-            let steps = FixedStep::new(system, start, h).expect("valid").take(20_000);
+            let steps = system.at_state(start).integrate(FixedStep, h).expect("valid").take(20_000);
             energy_error(system, steps, start.energy(&system).expect("regular"))
         });
     // Measured 1.5e-14, and 1.4e-10 of a motion that parts from its neighbours.
@@ -303,10 +301,11 @@ fn damping_of_many_turns_a_step_is_no_obstacle() {
     // c h = 100 and 1000, where explicit steps explode: x falls as exp(−t k/c).
     let damped = Damped { m: 1.0, k: 1e4, c: 1e4 };
     let start = State::at(&damped, 0.0, [1.0], [0.0]);
-    let fixed =
-        |t: f64| FixedStep::new(damped, start, 0.01).and_then(|mut run| run.propagate_until(t)).expect("solvable").q[0];
+    let fixed = |t: f64| {
+        damped.at_state(start).integrate(FixedStep, 0.01).and_then(|mut run| run.until(t)).expect("solvable").q[0]
+    };
     let gauss =
-        Gauss::<_, 1, 4>::new(damped, start, 0.1).and_then(|mut run| run.propagate_until(5.0)).expect("solvable").q[0];
+        damped.at_state(start).integrate(Gauss::<4>, 0.1).and_then(|mut run| run.until(5.0)).expect("solvable").q[0];
     let exact = [0.367_879_443_011_698_3, 0.006_735_251_853_986_8];
     let errors = [fixed(1.0) - exact[0], fixed(5.0) - exact[1], gauss - exact[1]];
     // Measured 4.9e-6, 2.8e-7, 1.4e-5.
@@ -369,7 +368,7 @@ lagrangian! {
 fn inputs_that_switch_where_a_step_ends_cost_no_order() {
     let mut run = gauss!(Pushed::default(), [0.0], [0.0], 0.3);
     let at_five = off(run.clone(), 5.0, [1.074_590_566_595_030_6], [-0.087_942_420_732_510_02]);
-    run.propagate_until(5.0).expect("solvable");
+    run.until(5.0).expect("solvable");
     run.set_parameters(|system| system.0.u = 0.0).expect("regular");
     let end = ([0.028_225_824_654_361_884], [0.005_286_720_976_763_788]);
     let errors = [
@@ -385,7 +384,7 @@ fn inputs_that_switch_where_a_step_ends_cost_no_order() {
     ];
     // Where no step ends at the switch order 1 is left.
     let start = State::at(&Switched::default(), 0.0, [0.0], [0.0]);
-    let missed = FixedStep::new(Switched::default(), start, 0.0037).and_then(|mut run| run.propagate_until(12.0));
+    let missed = Switched::default().at_state(start).integrate(FixedStep, 0.0037).and_then(|mut run| run.until(12.0));
     let missed = (missed.expect("solvable").q[0] - end.0[0]).abs();
     // Measured 2.8e-15, 8.3e-16, 8.3e-16, 9.9e-16, and 1.0e-5.
     assert!(errors.iter().all(|error| *error < 4e-15) && missed < 2e-5, "{errors:?} {missed:e}");
@@ -396,9 +395,9 @@ fn a_close_passage_is_followed_backwards() {
     let kepler = vi_systems::Kepler::default();
     let start = State::at(&kepler, 3.0, [0.1, 0.0], [0.0, 19.0_f64.sqrt()]);
     let tau = core::f64::consts::TAU;
-    let two = Gauss::<_, 2, 8>::new(kepler, start, -0.02).and_then(|mut run| run.propagate_until(3.0 - 2.0 * tau));
+    let two = kepler.at_state(start).integrate(Gauss::<8>, -0.02).and_then(|mut run| run.until(3.0 - 2.0 * tau));
     let one =
-        Composition::new(kepler, Scheme::KAHAN_LI_8, start, -0.005).and_then(|mut run| run.propagate_until(3.0 - tau));
+        kepler.at_state(start).integrate(Composition::KAHAN_LI_8, -0.005).and_then(|mut run| run.until(3.0 - tau));
     let errors = [two, one].map(|end| (end.expect("solvable").q - start.q).amax());
     // Measured 4.3e-10, 4.2e-8.
     assert!(errors[0] < 5e-10 && errors[1] < 5e-8, "{errors:?}");
@@ -418,7 +417,7 @@ lagrangian! {
 fn the_variation_with_respect_to_a_power_is_finite_or_told() {
     // From x = 0, where the derivative of x^n with respect to n is 0 · ∞ but for its limit.
     let start = State::at(&Power::default(), 0.0, [0.0], [1.0]);
-    let run = Gauss::<_, 1, 4>::new(Power::default(), start, 0.1).expect("valid");
+    let run = Power::default().at_state(start).integrate(Gauss::<4>, 0.1).expect("valid");
     let mut tangent = Tangent::new(run, vec![Variation::of_parameter::<Power>("n").expect("a parameter")]);
     let mut told = None;
     for _ in 0..30 {

@@ -8,7 +8,7 @@ use crate::support::ending::{self, assert_typed};
 use crate::support::scenes::{Scene, each_system};
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, State, StepError};
+use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, Starts, State, StepError};
 
 /// Draws for each system, each from four starts.
 const DRAWS: usize = 1500;
@@ -86,7 +86,7 @@ fn check<const N: usize, S: EnergyStepping<N> + Parameters + Copy>(scene: Scene<
     for _ in 0..DRAWS {
         let Drawn { system, t, q, v, h } = drawn(&scene, &mut draw);
         let state = State { t, q, p: if draw.next() < 0.5 { v } else { system.momentum(t, &q, &v) } };
-        fixed.count(FixedStep::new(system, state, h), |run| ending::fixed(run, STEPS));
+        fixed.count(system.at_state(state).integrate(FixedStep, h), |run| ending::fixed(run, STEPS));
         let starts = [
             EnergyPreserving::from_midpoint(system, t, q, v, h),
             EnergyPreserving::from_points(system, (t, q), (t + h, q + v * h)),

@@ -4,7 +4,7 @@ use crate::support::Sequence;
 use crate::support::ending;
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
-use vi_core::{FixedStep, SVector, State, StepError};
+use vi_core::{FixedStep, SVector, Starts, State, StepError};
 use vi_systems::{DoubleWell, Kepler, Pendulum};
 
 #[test]
@@ -22,7 +22,7 @@ fn a_step_of_kepler_exists_up_to_its_bound() {
         // 0.3 to 3 times the bound, and close to it.
         for distance in [draw.within(-1.2, 1.1).exp(), 1.0 - 1e-4, 1.0 + 1e-4] {
             let q = direction * (distance * bound) - p * (h / 2.0);
-            let mut run = FixedStep::new(system, State { t: 0.0, q, p }, h).expect("a valid start");
+            let mut run = system.at_state(State { t: 0.0, q, p }).integrate(FixedStep, h).expect("a valid start");
             match run.step() {
                 Ok(state) => {
                     assert!(distance >= 1.0, "{distance} of the bound: {state:?}");
@@ -85,9 +85,9 @@ fn every_step_below_the_bound_is_taken() {
         for _ in 0..300 {
             let state = |q: f64, p: f64| State { t: 0.0, q: SVector::from([q]), p: SVector::from([p]) };
             let start = state(draw.within(-2.0, 2.0), draw.within(-2.0, 2.0));
-            let run = FixedStep::new(DoubleWell::default(), start, h).expect("a valid start");
+            let run = DoubleWell::default().at_state(start).integrate(FixedStep, h).expect("a valid start");
             assert_eq!(ending::fixed(run, 50), None, "h = {h}, {start:?}");
-            let run = FixedStep::new(Pendulum::default(), start, h).expect("a valid start");
+            let run = Pendulum::default().at_state(start).integrate(FixedStep, h).expect("a valid start");
             assert_eq!(ending::fixed(run, 50), None, "h = {h}, {start:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Lagrangians that are not defined at rest: the velocity that belongs to a momentum is searched where it can be.
 
-use vi_core::{EnergyPreserving, FixedStep, Gauss, Integrator, State, StepError, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// Predators and prey of Volterra: X and Y are the integrals of their numbers.
@@ -57,8 +57,8 @@ fn predators_and_prey_live_on() {
             assert!((found - given).abs() <= 1e-13 * given, "{v:?}: {again:?}");
         }
         assert!(start.energy(&system).expect("an energy").is_finite());
-        let mut run = Gauss::<_, 2, 8>::new(system, start, 0.1).expect("a start");
-        run.propagate_until(10.05).expect("the last step too");
+        let mut run = system.at_state(start).integrate(Gauss::<8>, 0.1).expect("a start");
+        run.until(10.05).expect("the last step too");
         assert_eq!(run.t().to_bits(), 10.05_f64.to_bits());
         let found = run.velocity().expect("a velocity");
         let wanted = numbers(&system, v, 10.05);
@@ -66,23 +66,23 @@ fn predators_and_prey_live_on() {
             // Measured: 2e-12, of the reference.
             assert!((found - wanted).abs() <= 1e-10 * wanted, "{v:?}: {found} {wanted}");
         }
-        let mut fixed = FixedStep::new(system, start, 1e-3).expect("a start");
-        fixed.propagate_until(0.5).expect("fixed steps");
+        let mut fixed = system.at_state(start).integrate(FixedStep, 1e-3).expect("a start");
+        fixed.until(0.5).expect("fixed steps");
         let mut kept = EnergyPreserving::from_midpoint(system, 0.0, [0.0, 0.0], v, 1e-3).expect("a start");
-        if let Err(error) = kept.propagate_until(0.1) {
+        if let Err(error) = kept.until(0.1) {
             crate::support::ending::assert_typed(error);
         }
     }
     // A long run, through small and large numbers: its energy stays.
     let start = State::at(&system, 0.0, [0.0, 0.0], [10.0, 5.0]);
     let energy = start.energy(&system).expect("an energy");
-    let mut run = Gauss::<_, 2, 8>::new(system, start, 0.1).expect("a start");
+    let mut run = system.at_state(start).integrate(Gauss::<8>, 0.1).expect("a start");
     let mut worst = 0.0_f64;
     for _ in 0..300 {
         run.step().expect("a step");
         worst = worst.max((run.energy().expect("an energy") - energy).abs());
     }
-    run.propagate_until(30.05).expect("the last step");
+    run.until(30.05).expect("the last step");
     println!("energy off by {worst:.1e}");
     // Measured: 4.4e-15.
     assert!(worst <= 2e-14 && worst > 0.0, "{worst:e}");
@@ -110,7 +110,7 @@ fn two_velocities_of_one_momentum_are_an_error() {
         let error = start.velocity(&system).expect_err("two velocities");
         assert_eq!(error, StepError::Ambiguous { t: 0.5 });
         assert!(error.to_string().contains("two velocities have the momenta"), "{error}");
-        assert!(Gauss::<_, 1, 2>::new(system, start, 0.01).is_err());
+        assert!(system.at_state(start).integrate(Gauss::<2>, 0.01).is_err());
     }
 }
 

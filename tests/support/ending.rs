@@ -1,7 +1,7 @@
 //! How runs end: the steps that were taken, and the error that ended them.
 
 use vi_core::stepping::{EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, State, Step, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Run, State, Step, StepError};
 
 /// The end of a run of the energy-preserving integrator.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Ending {
 /// Runs to the first error, at most `limit` steps, and checks each step: finite, forward, not the last one backwards.
 /// After the error the state stays and the error repeats.
 pub(crate) fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
-    mut run: EnergyPreserving<S, N>,
+    mut run: Run<EnergyPreserving, S, N>,
     limit: usize,
 ) -> Ending {
     let (mut last, mut steps) = (None, 0);
@@ -46,7 +46,10 @@ pub(crate) fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
 }
 
 /// Runs to the first error, at most `limit` steps, with the same checks.
-pub(crate) fn fixed<const N: usize, S: FixedStepping<N>>(mut run: FixedStep<S, N>, limit: usize) -> Option<StepError> {
+pub(crate) fn fixed<const N: usize, S: FixedStepping<N>>(
+    mut run: Run<FixedStep, S, N>,
+    limit: usize,
+) -> Option<StepError> {
     for _ in 0..limit {
         let before = run.state();
         match run.step() {

@@ -95,9 +95,7 @@ pub use vi_macros::lagrangian;
 /// What a user's file needs.
 pub mod prelude {
     pub use crate::error::StepError;
-    pub use crate::method::{
-        Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method,
-    };
+    pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
     pub use crate::run::{Crossing, Event, Run, Solution, Start, Starts as _};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;

@@ -1,8 +1,8 @@
 //! What the other crates of this project need, and no one else: it may change with any version.
 
 pub use crate::compensated::two_sum;
-pub use crate::method::check_step;
 pub use crate::legendre::{acceleration, step_density, velocity, velocity_by_mass};
+pub use crate::method::check_step;
 pub use crate::predictor::weights;
 pub use crate::stepping::{extended_rounding, momentum_rounding};
 

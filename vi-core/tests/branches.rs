@@ -2,10 +2,9 @@
 //! double well.
 
 use crate::systems::{DoubleWell, UnitMass};
-use vi_core::fixed_step::{Branch, FixedStep};
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
-use vi_core::{SVector, State, StepError};
+use vi_core::{Connected, FixedStep, SVector, Starts, State, StepError};
 
 const SYSTEM: UnitMass<DoubleWell> = UnitMass(DoubleWell);
 
@@ -36,7 +35,26 @@ fn branch(state: State<1>, h: f64) -> Option<f64> {
 }
 
 /// States of no pattern: 20 steps from each of 60 starts.
-fn each_step(h: f64, taken: Branch, mut see: impl FnMut(State<1>, Result<f64, StepError>)) {
+macro_rules! each_step {
+    ($h:expr, $method:expr, $see:expr) => {{
+        let mut see = $see;
+        each_state(|start| {
+            let run = SYSTEM.at_state(start).integrate($method, $h);
+            let mut run = run.unwrap_or_else(|error| panic!("{error}"));
+            for _ in 0..20 {
+                let before = run.state();
+                let step = run.step();
+                see(before, step.map(|_| run.v()[0]));
+                if step.is_err() {
+                    break;
+                }
+            }
+        });
+    }};
+}
+
+/// The starts.
+fn each_state(mut see: impl FnMut(State<1>)) {
     let mut seed = 1_u32;
     let mut draw = || {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -44,33 +62,25 @@ fn each_step(h: f64, taken: Branch, mut see: impl FnMut(State<1>, Result<f64, St
     };
     for _ in 0..60 {
         let start = State { t: 0.0, q: [1.5 * draw()].into(), p: [1.5 * draw()].into() };
-        let mut run = FixedStep::new(SYSTEM, start, h).unwrap_or_else(|error| panic!("{error}")).with_branch(taken);
-        for _ in 0..20 {
-            let before = run.state();
-            let step = run.step();
-            see(before, step.map(|_| run.v()[0]));
-            if step.is_err() {
-                break;
-            }
-        }
+        see(start);
     }
 }
 
 #[test]
 fn below_the_bound_both_choices_are_the_one_root() {
-    for taken in [Branch::Nearest, Branch::Connected] {
-        each_step(1.9, taken, |before, step| {
-            let expected = branch(before, 1.9).unwrap_or(f64::NAN);
-            assert!(step.is_ok_and(|v| (v - expected).abs() < 1e-9), "{before:?}: {step:?}, {expected}");
-        });
-    }
+    let check = |before: State<1>, step: Result<f64, StepError>| {
+        let expected = branch(before, 1.9).unwrap_or(f64::NAN);
+        assert!(step.is_ok_and(|v| (v - expected).abs() < 1e-9), "{before:?}: {step:?}, {expected}");
+    };
+    each_step!(1.9, FixedStep, check);
+    each_step!(1.9, FixedStep.connected(), check);
 }
 
 #[test]
 fn beyond_the_bound_the_connected_root_is_taken_or_none() {
     for h in [2.1, 2.5, 3.0, 4.0, 6.0] {
         let (mut same, mut ended, mut different) = (0, 0, 0);
-        each_step(h, Branch::Connected, |before, step| match (step, branch(before, h)) {
+        each_step!(h, Connected, |before: State<1>, step: Result<f64, StepError>| match (step, branch(before, h)) {
             (Ok(v), Some(expected)) if (v - expected).abs() < 1e-6 => same += 1,
             (Err(StepError::NotConverged { .. }), None) => ended += 1,
             (step, expected) => {
@@ -83,7 +93,7 @@ fn beyond_the_bound_the_connected_root_is_taken_or_none() {
         assert!(same > 800 && ended > 0 && different <= 2, "h = {h}: {same}, {ended}, {different}");
         // The nearest root is another one here and there.
         let mut others = 0;
-        each_step(h, Branch::Nearest, |before, step| {
+        each_step!(h, FixedStep, |before: State<1>, step: Result<f64, StepError>| {
             others += u32::from(!matches!((step, branch(before, h)), (Ok(v), Some(w)) if (v - w).abs() < 1e-6));
         });
         // Measured: 5 at h = 2.1, and more beyond.
@@ -94,8 +104,8 @@ fn beyond_the_bound_the_connected_root_is_taken_or_none() {
 #[test]
 fn the_connected_root_does_not_depend_on_the_steps_before() {
     let mut compared = 0;
-    each_step(3.0, Branch::Connected, |before, step| {
-        let fresh = FixedStep::new(SYSTEM, before, 3.0).map(|run| run.with_branch(Branch::Connected));
+    each_step!(3.0, Connected, |before: State<1>, step: Result<f64, StepError>| {
+        let fresh = SYSTEM.at_state(before).integrate(Connected, 3.0);
         let mut fresh = fresh.unwrap_or_else(|error| panic!("{error}"));
         match (fresh.step(), step) {
             (Ok(_), Ok(v)) => assert!((fresh.v()[0] - v).abs() < 1e-9, "{before:?}"),

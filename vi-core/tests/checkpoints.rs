@@ -1,7 +1,9 @@
 //! A run that is stored and resumed goes on bit for bit; and what holds over very long runs.
 
 use crate::systems::{DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
-use vi_core::{EnergyPreserving, Fallback, FixedStep, State, Step, StepError, energy_preserving, fixed_step};
+use vi_core::energy_preserving::course::Lengths;
+use vi_core::run::Checkpoint;
+use vi_core::{EnergyPreserving, Fallback, FixedStep, Run, Starts, State, Step, StepError};
 
 /// Through the text of a file and back.
 fn through_json<C: serde::Serialize + serde::de::DeserializeOwned>(checkpoint: &C) -> C {
@@ -16,22 +18,22 @@ fn bits<const N: usize>(step: Result<Step<N>, StepError>) -> String {
 
 /// `first` steps, stored, and `second` more are the same steps as without the interruption.
 fn assert_resumes<const N: usize, P: Steppable<N> + Clone>(
-    start: &EnergyPreserving<UnitMass<P>, N>,
+    start: &Run<EnergyPreserving, UnitMass<P>, N>,
     first: u32,
     second: u32,
 ) {
     let mut whole = start.clone();
     let mut interrupted = start.clone();
     for _ in 0..first {
-        assert_eq!(bits(whole.step()), bits(interrupted.step()));
+        assert_eq!(bits(whole.detailed_step()), bits(interrupted.detailed_step()));
     }
     let checkpoint = interrupted.checkpoint();
-    let stored: energy_preserving::Checkpoint<N> = through_json(&checkpoint);
+    let stored: Checkpoint<_, N> = through_json(&checkpoint);
     assert_eq!(format!("{stored:?}"), format!("{checkpoint:?}"));
     let mut resumed =
-        EnergyPreserving::restart(*interrupted.system(), stored).unwrap_or_else(|error| panic!("{error}"));
+        Run::restart(*interrupted.system(), EnergyPreserving, stored).unwrap_or_else(|error| panic!("{error}"));
     for step in 0..second {
-        assert_eq!(bits(whole.step()), bits(resumed.step()), "step {step} after {first}");
+        assert_eq!(bits(whole.detailed_step()), bits(resumed.detailed_step()), "step {step} after {first}");
     }
     assert_eq!(format!("{:?}", whole.checkpoint()), format!("{:?}", resumed.checkpoint()));
     assert_eq!(whole.switches(), resumed.switches());
@@ -42,7 +44,7 @@ fn started<const N: usize, P: Steppable<N>>(
     q: [f64; N],
     v: [f64; N],
     h0: f64,
-) -> EnergyPreserving<UnitMass<P>, N> {
+) -> Run<EnergyPreserving, UnitMass<P>, N> {
     EnergyPreserving::from_midpoint(UnitMass(potential), 0.1, q, v, h0).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -61,8 +63,8 @@ fn fixed_steps_in_between_resume_bit_for_bit() {
     let start = start.with_step_bounds(1e-6, 2e-3).unwrap_or_else(|error| panic!("{error}"));
     // In the first phase of energy-preserving steps, at its end, in the fixed ones, and after their end.
     let mut methods = start.clone();
-    let fixed = |run: &mut EnergyPreserving<_, 2>| {
-        run.step().is_ok_and(|step| step.method == vi_core::state::Method::FixedStep)
+    let fixed = |run: &mut Run<EnergyPreserving, _, 2>| {
+        run.detailed_step().is_ok_and(|step| step.kind == vi_core::state::StepKind::FixedStep)
     };
     let mut first = 1;
     while !fixed(&mut methods) {
@@ -82,7 +84,8 @@ fn an_error_is_met_again_after_a_restart() {
         }
     };
     let stored = through_json(&run.checkpoint());
-    let mut resumed = EnergyPreserving::restart(UnitMass(DoubleWell), stored).unwrap_or_else(|error| panic!("{error}"));
+    let resumed = Run::restart(UnitMass(DoubleWell), EnergyPreserving, stored);
+    let mut resumed = resumed.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((resumed.step(), resumed.step(), resumed.state()), (Err(error), Err(error), run.state()));
 }
 
@@ -90,14 +93,18 @@ fn an_error_is_met_again_after_a_restart() {
 fn a_fixed_step_run_resumes_bit_for_bit() {
     for first in [0, 1, 2, 3, 5000] {
         let state = State { t: 0.1, q: [0.4, 0.0].into(), p: [0.0, 2.0].into() };
-        let start =
-            || FixedStep::new(UnitMass(Kepler { mu: 1.0 }), state, 0.01).unwrap_or_else(|error| panic!("{error}"));
+        let start = || {
+            UnitMass(Kepler { mu: 1.0 })
+                .at_state(state)
+                .integrate(FixedStep, 0.01)
+                .unwrap_or_else(|error| panic!("{error}"))
+        };
         let (mut whole, mut interrupted) = (start(), start());
         for _ in 0..first {
             assert_eq!(whole.step(), interrupted.step());
         }
-        let stored: fixed_step::Checkpoint<2> = through_json(&interrupted.checkpoint());
-        let resumed = FixedStep::restart(UnitMass(Kepler { mu: 1.0 }), stored);
+        let stored: Checkpoint<_, 2> = through_json(&interrupted.checkpoint());
+        let resumed = Run::restart(UnitMass(Kepler { mu: 1.0 }), FixedStep, stored);
         let mut resumed = resumed.unwrap_or_else(|error| panic!("{error}"));
         for _ in 0..1000 {
             assert_eq!(format!("{:?}", whole.step()), format!("{:?}", resumed.step()));
@@ -113,18 +120,18 @@ fn a_checkpoint_that_no_run_has_left_is_refused() {
     let good = serde_json::to_value(run.checkpoint()).unwrap_or_else(|error| panic!("{error}"));
     let h = |value: f64| {
         let mut changed = good.clone();
-        changed["run"]["last"]["h"] = value.into();
+        changed["run"]["memory"]["last"]["h"] = value.into();
         let checkpoint = serde_json::from_value(changed).unwrap_or_else(|error| panic!("{error}"));
-        EnergyPreserving::<_, 1>::restart(UnitMass(DoubleWell), checkpoint).map(|run| run.h())
+        Run::restart(UnitMass(DoubleWell), EnergyPreserving, checkpoint).map(|run: Run<_, _, 1>| run.h())
     };
     assert_eq!(h(0.02), Ok(0.02));
     for value in [0.0, -0.01] {
         assert!(matches!(h(value), Err(StepError::InvalidInput { .. })), "{value}");
     }
-    let mut checkpoint: energy_preserving::Checkpoint<1> = run.checkpoint();
+    let mut checkpoint: Checkpoint<Lengths<1>, 1> = run.checkpoint();
     let mut changed = good.clone();
     changed["run"]["node"]["q"] = serde_json::Value::Null;
-    assert!(serde_json::from_value::<energy_preserving::Checkpoint<1>>(changed).is_err());
+    assert!(serde_json::from_value::<Checkpoint<Lengths<1>, 1>>(changed).is_err());
     checkpoint = through_json(&checkpoint);
     assert_eq!(checkpoint, run.checkpoint());
 }
@@ -134,7 +141,9 @@ fn time_does_not_drift() {
     // After k steps t + t_low is k h to the rounding of t_low alone: for 10⁹ steps of 0.01, t is the nearest number to 10⁷
     // and not off by the 1e-2 or so that a plain sum loses.
     let h = 0.01;
-    let mut run = FixedStep::new(UnitMass(DoubleWell), State { t: 0.0, q: [0.74].into(), p: [0.0].into() }, h)
+    let mut run = UnitMass(DoubleWell)
+        .at_state(State { t: 0.0, q: [0.74].into(), p: [0.0].into() })
+        .integrate(FixedStep, h)
         .unwrap_or_else(|error| panic!("{error}"));
     let (mut plain, steps) = (0.0, 10_000_000_u32);
     for _ in 0..steps {

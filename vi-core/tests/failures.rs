@@ -2,9 +2,9 @@
 //! never a hang.
 
 use crate::systems::{DoubleWell, FreeParticle, Kepler, UnitMass, point_after};
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, Step, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Run, SVector, Starts, State, Step, StepError};
 
-type DoubleWellRun<'a> = EnergyPreserving<&'a UnitMass<DoubleWell>, 1>;
+type DoubleWellRun<'a> = Run<EnergyPreserving, &'a UnitMass<DoubleWell>, 1>;
 
 fn above_the_barrier(system: &UnitMass<DoubleWell>, q0: f64) -> DoubleWellRun<'_> {
     let q1 = point_after(&system.0, q0, 0.01);
@@ -38,7 +38,7 @@ fn above_the_barrier_the_step_ends_where_the_density_vanishes() {
     for (q0, last) in [(1.0001, 151), (1.001, 145), (1.05, 114), (1.2, 88), (1.5, 66)] {
         let system = UnitMass(DoubleWell);
         let mut run = above_the_barrier(&system, q0);
-        let (steps, error) = until_error(&mut run, 1000);
+        let (steps, error) = until_error(&mut run.detailed_steps(), 1000);
         // The step that fails, counted from 1. Measured: exactly these.
         assert_eq!(steps + 1, last, "{q0}");
         assert!(matches!(error, Some(StepError::NoForwardStep { excess, .. }) if excess > 0.0), "{q0}: {error:?}");
@@ -49,7 +49,7 @@ fn above_the_barrier_the_step_ends_where_the_density_vanishes() {
 fn kepler_ends_beyond_the_eccentricity_that_the_method_can_follow() {
     let system = UnitMass(Kepler { mu: 1.0 });
     let run = EnergyPreserving::from_midpoint(&system, 0.0, [0.2, 0.0], [0.0, 3.0], 0.0035);
-    let (steps, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 1000);
+    let (steps, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")).detailed_steps(), 1000);
     assert_eq!(steps + 1, 37);
     assert!(matches!(error, Some(StepError::NoForwardStep { .. })), "{error:?}");
 }
@@ -70,8 +70,10 @@ fn after_an_error_the_last_state_stays_and_the_error_repeats() {
     assert_eq!(last, Some(run.state()));
 
     let falling = State { t: 0.0, q: SVector::from([0.1, 0.0]), p: SVector::from([0.0, 0.0]) };
-    let mut fixed =
-        FixedStep::new(UnitMass(Kepler { mu: 1.0 }), falling, 1.0).unwrap_or_else(|error| panic!("{error}"));
+    let mut fixed = UnitMass(Kepler { mu: 1.0 })
+        .at_state(falling)
+        .integrate(FixedStep, 1.0)
+        .unwrap_or_else(|error| panic!("{error}"));
     let error = fixed.step();
     assert!(error.is_err());
     assert_eq!((fixed.step(), fixed.next(), fixed.state()), (error, Some(error), falling));
@@ -84,7 +86,8 @@ fn the_fixed_step_of_kepler_exists_up_to_its_bound() {
     let bound = (27.0 / 16.0 * mu * h * h).cbrt();
     for (distance, exists) in [(0.999, false), (0.9, false), (0.5, false), (1.001, true), (1.1, true), (3.0, true)] {
         let start = State { t: 0.0, q: SVector::from([distance * bound, 0.0]), p: SVector::zeros() };
-        let mut run = FixedStep::new(UnitMass(Kepler { mu }), start, h).unwrap_or_else(|error| panic!("{error}"));
+        let mut run =
+            UnitMass(Kepler { mu }).at_state(start).integrate(FixedStep, h).unwrap_or_else(|error| panic!("{error}"));
         let result = run.step();
         match result {
             Ok(state) => assert!(exists && state.q[0] > 0.0, "{distance}: {state:?}"),
@@ -111,7 +114,7 @@ fn a_state_without_room_for_a_step_has_none() {
     let state = State::at(&system, 0.0_f64, [0.74], [0.1]);
     let energy = vi_core::Lagrangian::energy(&system, 0.0, &state.q, &SVector::from([0.1]));
     let run = EnergyPreserving::from_state(&system, state, energy, 0.01, [0.1]);
-    let (steps, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 10);
+    let (steps, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")).detailed_steps(), 10);
     assert!(steps == 0 && matches!(error, Some(StepError::NoForwardStep { .. })), "{error:?}");
 }
 
@@ -121,10 +124,10 @@ fn a_step_beyond_the_factor_is_named_with_its_length() {
     let system = UnitMass(DoubleWell);
     let mut short = EnergyPreserving::from_midpoint(&system, 0.0_f64, [0.74], [0.0], 0.01)
         .unwrap_or_else(|error| panic!("{error}"));
-    let h = short.step().map_or(f64::NAN, |step| step.h);
-    let (state, energy, v) = (short.state(), short.discrete_energy(), short.v());
+    let h = short.detailed_step().map_or(f64::NAN, |step| step.h);
+    let (state, energy, v) = (short.state(), short.last_step().energy, short.v());
     let run = EnergyPreserving::from_state(&system, state, energy, 0.05, v);
-    let (_, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")), 1);
+    let (_, error) = until_error(&mut run.unwrap_or_else(|error| panic!("{error}")).detailed_steps(), 1);
     let Some(StepError::StepRatio { previous, found, .. }) = error else { panic!("{error:?}") };
     assert!(previous.to_bits() == 0.05_f64.to_bits() && (found / h - 1.0).abs() < 1e-8, "{found} {h}");
 }
@@ -157,11 +160,11 @@ fn strange_numbers_give_typed_errors_and_never_not_a_number() {
             ];
             for run in runs {
                 match run {
-                    Ok(mut run) => _ = until_error(&mut run, 20),
+                    Ok(mut run) => _ = until_error(&mut run.detailed_steps(), 20),
                     Err(error) => assert_typed(error),
                 }
             }
-            match FixedStep::new(&system, State::at(&system, t0, [q0], [v0]), h0) {
+            match system.at(t0, [q0], [v0]).integrate(FixedStep, h0) {
                 Ok(run) => {
                     for result in run.take(20) {
                         match result {
@@ -196,7 +199,7 @@ fn a_step_must_be_a_step() {
     let system = UnitMass(DoubleWell);
     let state = State::at(&system, 0.0_f64, [0.74], [0.0]);
     for h in [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(matches!(FixedStep::new(&system, state, h), Err(StepError::InvalidInput { .. })), "{h}");
+        assert!(matches!(system.at_state(state).integrate(FixedStep, h), Err(StepError::InvalidInput { .. })), "{h}");
     }
     for h in [0.0, -0.01, f64::NAN, f64::INFINITY] {
         let start = EnergyPreserving::from_midpoint(&system, 0.0, [0.74], [0.0], h);
@@ -208,9 +211,9 @@ fn a_step_must_be_a_step() {
 fn a_negative_step_leads_back() {
     let system = UnitMass(DoubleWell);
     let start = State::at(&system, 0.0_f64, [0.74], [0.1]);
-    let there = FixedStep::new(&system, start, 0.1).ok().and_then(|run| run.take(1000).last());
+    let there = system.at_state(start).integrate(FixedStep, 0.1).ok().and_then(|run| run.take(1000).last());
     let there = there.and_then(Result::ok).unwrap_or(start);
-    let back = FixedStep::new(&system, there, -0.1).ok().and_then(|run| run.take(1000).last());
+    let back = system.at_state(there).integrate(FixedStep, -0.1).ok().and_then(|run| run.take(1000).last());
     let back = back.and_then(Result::ok).unwrap_or(there);
     // Measured: 5.6e-15.
     assert!(back.t.abs().max((back.q - start.q).amax()).max((back.p - start.p).amax()) < 2e-14, "{back:?}");

@@ -2,11 +2,11 @@
 //! they cost.
 
 use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass};
-use vi_core::energy_preserving::Switches;
-use vi_core::state::Method;
-use vi_core::{EnergyPreserving, Fallback, Lagrangian, StepError};
+use vi_core::method::Switches;
+use vi_core::state::StepKind;
+use vi_core::{EnergyPreserving, Fallback, Lagrangian, Run, StepError};
 
-fn kepler(e: f64, h0: f64) -> EnergyPreserving<UnitMass<Kepler>, 2> {
+fn kepler(e: f64, h0: f64) -> Run<EnergyPreserving, UnitMass<Kepler>, 2> {
     let v0 = [0.0, ((1.0 + e) / (1.0 - e)).sqrt()];
     EnergyPreserving::from_midpoint(UnitMass(Kepler { mu: 1.0 }), 0.0, [1.0 - e, 0.0], v0, h0)
         .unwrap_or_else(|error| panic!("{error}"))
@@ -14,7 +14,7 @@ fn kepler(e: f64, h0: f64) -> EnergyPreserving<UnitMass<Kepler>, 2> {
 
 /// What a run to the time `end` shows.
 #[derive(Debug)]
-struct Run {
+struct Course {
     steps: u64,
     /// Largest |H − E1| in the middles of the intervals: of all, and of the energy-preserving ones.
     energy_error: f64,
@@ -22,27 +22,27 @@ struct Run {
     switches: Switches,
 }
 
-fn run<const N: usize, P: Steppable<N>>(mut integrator: EnergyPreserving<UnitMass<P>, N>, end: f64) -> Run {
-    let e1 = integrator.discrete_energy();
+fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, UnitMass<P>, N>, end: f64) -> Course {
+    let e1 = integrator.last_step().energy;
     let (mut steps, mut fixed_steps, mut energy_error, mut preserved_error) = (0, 0, 0.0_f64, 0.0_f64);
     while integrator.state().t < end {
-        let step = integrator.step().unwrap_or_else(|error| panic!("step {steps}: {error}"));
+        let step = integrator.detailed_step().unwrap_or_else(|error| panic!("step {steps}: {error}"));
         let (t, q, v) = step.midpoint;
         let error = (integrator.system().energy(t, &q, &v) - e1).abs();
         energy_error = energy_error.max(error);
-        match step.method {
-            Method::FixedStep => fixed_steps += 1,
+        match step.kind {
+            StepKind::FixedStep => fixed_steps += 1,
             _ => preserved_error = preserved_error.max(error),
         }
         // Autonomous and unforced: the discrete energy is H in the middle, whatever the method.
         assert!(
             (step.energy - e1).abs() <= error + 1e-12
-                && step.energy.to_bits() == integrator.discrete_energy().to_bits()
+                && step.energy.to_bits() == integrator.last_step().energy.to_bits()
         );
         steps += 1;
     }
     assert_eq!(fixed_steps, integrator.switches().fixed_steps);
-    Run { steps, energy_error, preserved_error, switches: integrator.switches() }
+    Course { steps, energy_error, preserved_error, switches: integrator.switches() }
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_bound_cures_the_step_that_runs_away() {
     // h = h0 e^{ζ ω t} passes h_max = 0.05 at t = ln 5/0.02 = 80.5: an error without the fallback.
     let mut bounded = damped().with_step_bounds(0.0, 0.05).unwrap_or_else(|error| panic!("{error}"));
     let error = loop {
-        match bounded.step() {
+        match bounded.detailed_step() {
             Ok(step) => assert!(step.h <= 0.05),
             Err(error) => break error,
         }
@@ -108,8 +108,8 @@ fn a_bound_cures_the_step_that_runs_away() {
     let mut integrator = integrator.unwrap_or_else(|error| panic!("{error}"));
     let (mut last, mut crossings) = (0.0, 0_u32);
     while integrator.state().t < 1000.0 {
-        let step = integrator.step().unwrap_or_else(|error| panic!("{error}"));
-        assert!(step.h <= 0.05 && (step.t < 82.0 || step.method == Method::FixedStep));
+        let step = integrator.detailed_step().unwrap_or_else(|error| panic!("{error}"));
+        assert!(step.h <= 0.05 && (step.t < 82.0 || step.kind == StepKind::FixedStep));
         crossings += u32::from(last * step.q[0] < 0.0);
         last = step.q[0];
     }
@@ -126,7 +126,7 @@ fn the_shortest_step_bounds_the_effort() {
     let integrator = integrator.unwrap_or_else(|error| panic!("{error}")).with_fallback(Fallback::FixedSteps);
     let mut shortest = f64::INFINITY;
     let mut stepping = integrator.clone();
-    for step in stepping.by_ref().take(1000) {
+    for step in stepping.detailed_steps().take(1000) {
         shortest = shortest.min(step.unwrap_or_else(|error| panic!("{error}")).h);
     }
     assert!(shortest >= 0.02, "{shortest}");
@@ -148,18 +148,18 @@ fn bounds_must_be_bounds() {
 fn the_length_of_the_next_step_is_predicted() {
     // By the step law; and nothing is predicted where D is about to change its sign.
     let mut integrator = kepler(0.6, 0.005);
-    integrator.step().unwrap_or_else(|error| panic!("{error}"));
+    integrator.detailed_step().unwrap_or_else(|error| panic!("{error}"));
     let mut worst = 0.0_f64;
     for _ in 0..5000 {
-        let predicted = integrator.step().map_or(None, |step| step.h_next()).unwrap_or(f64::NAN);
-        let h = integrator.clone().step().map_or(f64::NAN, |step| step.h);
+        let predicted = integrator.detailed_step().map_or(None, |step| step.h_next()).unwrap_or(f64::NAN);
+        let h = integrator.clone().detailed_step().map_or(f64::NAN, |step| step.h);
         worst = worst.max((predicted / h - 1.0).abs());
     }
     // Measured: 1.3e-2.
     assert!(worst < 0.03, "{worst}");
     let mut ending = kepler(0.8, 1e-4);
     let mut warned = false;
-    while let Ok(step) = ending.step() {
+    while let Ok(step) = ending.detailed_step() {
         warned = step.h_next().is_none();
     }
     assert!(warned);
@@ -169,7 +169,7 @@ fn the_length_of_the_next_step_is_predicted() {
 fn the_condition_number_of_the_last_step_is_at_hand() {
     let mut integrator = kepler(0.6, 0.01);
     for _ in 0..100 {
-        integrator.step().unwrap_or_else(|error| panic!("{error}"));
+        integrator.detailed_step().unwrap_or_else(|error| panic!("{error}"));
         let condition = integrator.condition();
         assert!(condition.scaled >= 1.0 && condition.scaled < condition.velocity_step);
         assert!(condition.velocity_step < condition.position_time && condition.position_time.is_finite());

@@ -2,20 +2,20 @@
 
 use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass, point_after};
 use vi_core::condition::Condition;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, Starts, StepError};
 
 /// The four cases of the paper: q0, h0.
 const CASES: [(f64, f64); 4] = [(0.74, 0.01), (0.74, 0.1), (0.995, 0.01), (0.995, 0.1)];
 
 /// The paper's start of the double well.
-fn double_well(q0: f64, h0: f64) -> EnergyPreserving<UnitMass<DoubleWell>, 1> {
+fn double_well(q0: f64, h0: f64) -> Run<EnergyPreserving, UnitMass<DoubleWell>, 1> {
     let q1 = point_after(&DoubleWell, q0, h0);
     EnergyPreserving::from_points(UnitMass(DoubleWell), (0.0, [q0]), (h0, [q1]))
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// What a run shows.
-struct Run {
+struct Course {
     /// Largest |E − E1|, E from the middle of the interval.
     energy_error: f64,
     /// Largest h/h0.
@@ -23,17 +23,17 @@ struct Run {
     iterations: f64,
 }
 
-fn run<const N: usize, P: Steppable<N>>(mut integrator: EnergyPreserving<UnitMass<P>, N>, steps: u32) -> Run {
-    let (e1, h0) = (integrator.discrete_energy(), integrator.h());
+fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, UnitMass<P>, N>, steps: u32) -> Course {
+    let (e1, h0) = (integrator.last_step().energy, integrator.h());
     let (mut energy_error, mut stretch, mut iterations) = (0.0_f64, 1.0_f64, 0.0);
     for _ in 0..steps {
-        let step = integrator.step().unwrap_or_else(|error| panic!("{error}"));
+        let step = integrator.detailed_step().unwrap_or_else(|error| panic!("{error}"));
         let (t, q, v) = step.midpoint;
         energy_error = energy_error.max((integrator.system().energy(t, &q, &v) - e1).abs());
         stretch = stretch.max(step.h / h0);
         iterations += f64::from(step.iterations);
     }
-    Run { energy_error, stretch, iterations: iterations / f64::from(steps) }
+    Course { energy_error, stretch, iterations: iterations / f64::from(steps) }
 }
 
 #[test]
@@ -61,12 +61,13 @@ fn kepler_keeps_its_energy() {
 fn the_energy_of_the_fixed_step_oscillates_as_in_the_paper() {
     for ((q0, h0), expected) in CASES.into_iter().zip([7.189e-9, 7.093e-7, 7.843e-6, 7.723e-4]) {
         let start = double_well(q0, h0);
-        let mut fixed = FixedStep::new(start.system(), start.state(), h0).unwrap_or_else(|error| panic!("{error}"));
+        let mut fixed =
+            start.system().at_state(start.state()).integrate(FixedStep, h0).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(fixed.discrete_energy(), None);
         let mut largest = 0.0_f64;
         for _ in 0..10_000 {
             fixed.step().unwrap_or_else(|error| panic!("{error}"));
-            largest = largest.max((fixed.discrete_energy().unwrap_or(f64::NAN) - start.discrete_energy()).abs());
+            largest = largest.max((fixed.discrete_energy().unwrap_or(f64::NAN) - start.node().energy).abs());
         }
         assert!((largest / expected - 1.0).abs() < 1e-4, "{q0}, {h0}: {largest:e}");
     }
@@ -82,7 +83,7 @@ fn condition_numbers_are_those_of_the_scaling() {
         let (mut turns, mut forward) = (0, integrator.v()[0] > 0.0);
         while turns < 2 {
             let (node, previous) = (*integrator.node(), integrator.h());
-            let step = integrator.step().unwrap_or_else(|error| panic!("{error}"));
+            let step = integrator.detailed_step().unwrap_or_else(|error| panic!("{error}"));
             let (_, _, v) = step.midpoint;
             let equations = vi_core::stepping::EnergyStepping::extended_system(integrator.system(), &node, step.h, &v);
             let condition = Condition::of(&equations, step.h, &v, previous);
@@ -108,7 +109,7 @@ fn steps_of_the_damped_oscillator_grow_until_there_is_none() {
             .unwrap_or_else(|error| panic!("{error}"));
         let (mut steps, mut at_100) = (0_u32, None);
         let error = loop {
-            match integrator.step() {
+            match integrator.detailed_step() {
                 Ok(step) => {
                     steps += 1;
                     assert!(step.energy.is_finite() && step.h > 0.0);
@@ -133,12 +134,12 @@ fn single_precision_runs_as_well() {
     let system = UnitMass(DoubleWell);
     let start = EnergyPreserving::from_midpoint(&system, 0.0_f32, [0.74], [0.0], 0.1);
     let mut integrator = start.unwrap_or_else(|error| panic!("{error}"));
-    let energy = integrator.discrete_energy();
-    let mut fixed = FixedStep::new(&system, State::at(&system, 0.0_f32, [0.74], [0.0]), 0.1)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let energy = integrator.last_step().energy;
+    let mut fixed =
+        system.at(0.0_f32, [0.74], [0.0]).integrate(FixedStep, 0.1).unwrap_or_else(|error| panic!("{error}"));
     let mut worst = 0.0_f32;
     for _ in 0..10_000 {
-        let (t, q, v) = integrator.step().unwrap_or_else(|error| panic!("{error}")).midpoint;
+        let (t, q, v) = integrator.detailed_step().unwrap_or_else(|error| panic!("{error}")).midpoint;
         worst = worst.max((system.energy(t, &q, &v) - energy).abs());
         fixed.step().unwrap_or_else(|error| panic!("{error}"));
     }

@@ -5,9 +5,9 @@ use vi_core::error::Residuals;
 use vi_core::node::Node;
 use vi_core::stepping::EnergyStepping;
 use vi_core::stepping::FixedStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, StepError, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, SVector, Starts, State, StepError, lagrangian};
 
-fn last_error<const N: usize, S: EnergyStepping<N>>(run: &mut EnergyPreserving<S, N>) -> StepError {
+fn last_error<const N: usize, S: EnergyStepping<N>>(run: &mut Run<EnergyPreserving, S, N>) -> StepError {
     loop {
         if let Err(error) = run.step() {
             return error;
@@ -72,7 +72,7 @@ fn a_root_far_beyond_the_factor_is_found_at_any_frequency() {
 #[test]
 fn an_iteration_that_does_not_converge_shows_its_residuals() {
     let falling = State { t: 0.0, q: [0.1, 0.0].into(), p: [0.0, 0.0].into() };
-    let run = FixedStep::new(UnitMass(Kepler { mu: 1.0 }), falling, 1.0);
+    let run = UnitMass(Kepler { mu: 1.0 }).at_state(falling).integrate(FixedStep, 1.0);
     let error = run.unwrap_or_else(|error| panic!("{error}")).step().map_or_else(|error| error, |_| panic!("a step"));
     let StepError::NotConverged { residual, residuals, .. } = error else { panic!("{error}") };
     let list: Vec<f64> = residuals.iter().collect();
@@ -102,7 +102,7 @@ lagrangian! {
 #[test]
 fn a_value_that_is_lost_is_named() {
     let state = State::at(&Wire::default(), 0.0, [0.5], [1.0]);
-    let mut fixed = FixedStep::new(Wire::default(), state, 0.1).unwrap_or_else(|error| panic!("{error}"));
+    let mut fixed = Wire::default().at_state(state).integrate(FixedStep, 0.1).unwrap_or_else(|error| panic!("{error}"));
     let error = loop {
         if let Err(error) = fixed.step() {
             break error;

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 use vi_core::stepping::Batch;
-use vi_core::{FixedStep, State, StepError};
+use vi_core::{FixedStep, Starts, State, StepError};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, Kepler};
 
@@ -27,7 +27,7 @@ fn compare<S: Batch<N>, const N: usize>(name: &str, system: S, q: [f64; N], v: [
     let start =
         |i: u32| State::at(&system, 0.0, q.map(|q| q * (1.0 - 0.2 * f64::from(i) / f64::from(TRAJECTORIES))), v);
     let mut ensemble = Ensemble::new(vec![system; count], (0..TRAJECTORIES).map(start).collect(), 0.01)?;
-    let mut alone = FixedStep::new(system, start(0), 0.01)?;
+    let mut alone = system.at_state(start(0)).integrate(FixedStep, 0.01)?;
     let (mut together, mut single) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
         let begun = Instant::now();

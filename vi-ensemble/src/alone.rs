@@ -44,7 +44,7 @@ impl<I: Integrator<N>, const N: usize> Alone<I, N> {
 
     /// Goes on to the time `t`, by steps that are not counted.
     pub(crate) fn propagate_until(&mut self, t: f64) {
-        self.advance(|run, _| run.propagate_until(t).map(drop));
+        self.advance(|run, _| run.until(t).map(drop));
     }
 
     /// Lets the run go on, which counts its steps; where it cannot, it has ended.

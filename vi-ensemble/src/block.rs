@@ -17,7 +17,7 @@ use nalgebra::SVector;
 use vi_core::node::Node;
 use vi_core::stepping::Batch;
 use vi_core::support::{step_alone, weights as extrapolation};
-use vi_core::{FixedStep, State, StepError};
+use vi_core::{FixedStep, Starts, State, StepError};
 use vi_dispatch::Instructions;
 
 /// Velocities that the next one is extrapolated from, at most. Of coupled pendula (h = 0.01, amplitude 1) a polynomial of degree 6 is
@@ -73,7 +73,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             block.fixed.t.set(lane, state.t);
             block.verdict.running.set(lane, if number < count { u64::MAX } else { 0 });
             block.nodes[0].set(lane, &Node::new(*state, 0.0));
-            match FixedStep::new(system, *state, h) {
+            match system.at_state(*state).integrate(FixedStep, h) {
                 Ok(start) => block.velocities[0].set(lane, &start.v()),
                 Err(error) => block.end(number, *state, error),
             }

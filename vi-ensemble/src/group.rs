@@ -11,7 +11,7 @@ use crate::alone::Alone;
 use crate::block::Block;
 use crate::ended::Ended;
 use vi_core::stepping::Batch;
-use vi_core::{FixedStep, State};
+use vi_core::{FixedStep, Run, Starts, State};
 use vi_dispatch::Instructions;
 
 /// Degrees of freedom up to which trajectories go side by side.
@@ -21,7 +21,7 @@ const LARGEST: usize = 3;
 #[derive(Clone, Debug)]
 pub(crate) enum Group<S: Batch<N>, const N: usize> {
     Together(Box<Block<S, N>>),
-    Apart(Vec<Alone<FixedStep<S, N>, N>>),
+    Apart(Vec<Alone<Run<FixedStep, S, N>, N>>),
 }
 
 impl<S: Batch<N>, const N: usize> Group<S, N> {
@@ -31,7 +31,7 @@ impl<S: Batch<N>, const N: usize> Group<S, N> {
             return Self::Together(Box::new(Block::new(trajectories, h, instructions)));
         }
         let alone = |&(system, state): &(S, State<N>)| {
-            Alone::new(FixedStep::new(system, state, h).map_err(|error| Ended { state, steps: 0, error }))
+            Alone::new(system.at_state(state).integrate(FixedStep, h).map_err(|error| Ended { state, steps: 0, error }))
         };
         Self::Apart(trajectories.iter().map(alone).collect())
     }

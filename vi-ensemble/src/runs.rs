@@ -6,7 +6,7 @@
 use crate::alone::Alone;
 use crate::ended::Ended;
 use rayon::prelude::*;
-use vi_core::{Integrator, State};
+use vi_core::{Gauss, Starts, State};
 
 /// Many runs of one integrator: Gauss steps, compositions, energy-preserving steps. For fixed steps of order 2 of small systems
 /// [`Ensemble`](crate::Ensemble) is several times as fast. Threads are those of rayon's current pool.
@@ -19,10 +19,10 @@ use vi_core::{Integrator, State};
 /// let planet = Kepler::default();
 /// let runs = (0..100).map(|k| {
 ///     let start = State::at(&planet, 0.0, [0.4 + 0.001 * f64::from(k), 0.0], [0.0, 2.0]);
-///     Gauss::<_, 2, 8>::new(planet, start, 0.1)
+///     planet.at_state(start).integrate(Gauss::<8>, 0.1)
 /// });
 /// let mut runs = Runs::new(runs.collect::<Result<_, _>>()?);
-/// runs.propagate_until(5.0);
+/// runs.until(5.0);
 /// for result in runs.results() {
 ///     assert_eq!(result.map(|state| state.t), Ok(5.0));
 /// }
@@ -48,7 +48,7 @@ impl<I: Integrator<N> + Send, const N: usize> Runs<I, N> {
     /// Takes every run that has not ended to the time `t`, exactly; a run that cannot go there has ended with the reason. How an
     /// ended run [`Ended`] counts the steps of [`Runs::run`] only.
     pub fn propagate_until(&mut self, t: f64) {
-        self.all.par_iter_mut().for_each(|alone| alone.propagate_until(t));
+        self.all.par_iter_mut().for_each(|alone| alone.until(t));
     }
 
     /// The runs, in the order given, for what else they say: energies, paths, checkpoints; of one that has ended, how.

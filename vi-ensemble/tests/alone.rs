@@ -5,7 +5,7 @@ use vi_core::node::Node;
 use vi_core::rules::{By, Trapezoidal};
 use vi_core::stepping::Batch;
 use vi_core::support::step_alone;
-use vi_core::{FixedStep, Gauss, Integrator, State, StepError, lagrangian};
+use vi_core::{FixedStep, Gauss, Starts, State, StepError, lagrangian};
 use vi_ensemble::{Ended, Ensemble, Runs};
 use vi_systems::{
     ChargedParticle, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum, ParametricPendulum,
@@ -32,7 +32,7 @@ fn converged<S: Batch<N>, const N: usize>(
     h: f64,
     steps: u32,
 ) -> Result<State<N>, StepError> {
-    let mut v = FixedStep::new(system, start, h)?.v();
+    let mut v = system.at_state(start).integrate(FixedStep, h)?.v();
     let mut node = Node::new(start, 0.0);
     for _ in 0..steps {
         (node, v) = step_alone(&system, &node, h, v)?;
@@ -50,7 +50,7 @@ fn apart<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
 fn differences<S: Batch<N>, const N: usize>(starts: &[Start<S, N>], h: f64, steps: u32) -> Result<[f64; 2], StepError> {
     let mut worst = [0.0_f64; 2];
     for (i, (start, outcome)) in starts.iter().zip(outcomes(starts, h, u64::from(steps))?).enumerate() {
-        let mut alone = FixedStep::new(start.0, start.1, h)?;
+        let mut alone = start.0.at_state(start.1).integrate(FixedStep, h)?;
         for _ in 0..steps {
             alone.step()?;
         }
@@ -216,7 +216,7 @@ fn is_that_of_the_fixed_step<S: Batch<N>, const N: usize>(starts: &[Start<S, N>]
     let mut ensemble = Ensemble::new(systems, states, h)?;
     ensemble.run_observed(300, 100, |_| ());
     for (&(system, start), outcome) in starts.iter().zip(ensemble.results()) {
-        let mut alone = FixedStep::new(system, start, h)?;
+        let mut alone = system.at_state(start).integrate(FixedStep, h)?;
         let failure = (0..300_u64).find_map(|steps| alone.step().err().map(|error| (steps, error)));
         let state = alone.state();
         assert_eq!(outcome, failure.map_or(Ok(state), |(steps, error)| Err(Ended { state, steps, error })));
@@ -253,7 +253,7 @@ fn a_run_ends_where_the_fixed_step_does() -> Result<(), StepError> {
     let all = outcomes(&starts, 0.01, 200)?;
     let mut worst = [0.0_f64; 2];
     for (start, outcome) in starts.iter().zip(&all) {
-        let mut alone = FixedStep::new(start.0, start.1, 0.01)?;
+        let mut alone = start.0.at_state(start.1).integrate(FixedStep, 0.01)?;
         let failure = (0..200_u64).find_map(|step| alone.step().err().map(|error| (step, error)));
         let (state, steps) = match outcome {
             Ok(state) => {
@@ -292,7 +292,7 @@ fn the_last_state_is_a_good_one() -> Result<(), StepError> {
     let ledge = |a| Ledge { a };
     let starts: Vec<_> = spread(80, 0.2, 2.0).map(|a| (ledge(a), State::at(&ledge(a), 0.0, [0.0], [0.0]))).collect();
     for (&(system, start), outcome) in starts.iter().zip(outcomes(&starts, 0.01, 400)?) {
-        let mut alone = FixedStep::new(system, start, 0.01)?;
+        let mut alone = system.at_state(start).integrate(FixedStep, 0.01)?;
         let taken = (0..400_u64).find(|_| alone.step().is_err());
         let Err(Ended { state, steps, error }) = outcome else { panic!("{} goes on", system.a) };
         assert_eq!(Some(steps), taken);
@@ -385,11 +385,11 @@ fn runs_of_any_integrator_are_what_each_is_alone() {
     // The last one falls into the sun.
     let speeds = [1.0, 1.1, 0.9, 1.3, 0.0];
     let start = |speed: f64| State::at(&planet, 0.0, [1.0, 0.0], [0.0, speed]);
-    let gauss = |speed: f64| Gauss::<_, 2, 6>::new(planet, start(speed), 0.1);
+    let gauss = |speed: f64| planet.at_state(start(speed)).integrate(Gauss::<6>, 0.1);
     let all: Result<Vec<_>, _> = speeds.into_iter().map(gauss).collect();
     let mut runs = Runs::new(all.expect("valid"));
     runs.run(37);
-    runs.propagate_until(11.17);
+    runs.until(11.17);
     runs.run(5);
     let results: Vec<_> = runs.results().collect();
     for (speed, result) in speeds.into_iter().zip(&results) {
@@ -398,7 +398,7 @@ fn runs_of_any_integrator_are_what_each_is_alone() {
             for _ in 0..37 {
                 alone.step()?;
             }
-            alone.propagate_until(11.17)?;
+            alone.until(11.17)?;
             for _ in 0..4 {
                 alone.step()?;
             }

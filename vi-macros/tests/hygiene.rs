@@ -16,7 +16,7 @@
 
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, StepError};
 
 /// Nothing that a binding may be named after.
 macro_rules! constants {
@@ -28,7 +28,7 @@ fn run<const N: usize, S: EnergyStepping<N> + Copy>(system: S) -> [SVector<f64, 
     let place = |i: usize| 0.3 + 0.2 * f64::from(u8::try_from(i).expect("few coordinates"));
     let (q, v) = (SVector::from_fn(|i, _| place(i)), SVector::from_fn(|i, _| 0.5 - place(i)));
     let fixed = || -> Result<_, StepError> {
-        Ok(FixedStep::new(system, State::at(&system, 0.0, q, v), 0.01)?.take(20).last().expect("a step")?.q)
+        Ok(system.at(0.0, q, v).integrate(FixedStep, 0.01)?.take(20).last().expect("a step")?.q)
     };
     let energy = || -> Result<_, StepError> {
         Ok(EnergyPreserving::from_midpoint(system, 0.0, q, v, 0.01)?.take(20).last().expect("a step")?.q)

@@ -5,7 +5,7 @@
 use vi_core::lagrangian::Parameters;
 use vi_core::real::{Dual, Real};
 use vi_core::stepping::{Batch, EnergyStepping};
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, State, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, lagrangian};
 
 lagrangian! {
     /// Elastic pendulum whose pivot moves, its bob above a curved ground: positions are named, velocities follow.
@@ -91,7 +91,14 @@ lagrangian! {
 fn ends<S: EnergyStepping<2> + Copy>(system: S) -> [SVector<f64, 2>; 2] {
     let (q, v) = ([0.4, -0.7], [0.3, 1.1]);
     let start = State::at(&system, 0.0, q, v);
-    let fixed = FixedStep::new(system, start, 0.02).expect("a start").take(100).last().expect("steps").expect("a step");
+    let fixed = system
+        .at_state(start)
+        .integrate(FixedStep, 0.02)
+        .expect("a start")
+        .take(100)
+        .last()
+        .expect("steps")
+        .expect("a step");
     let energy = EnergyPreserving::from_midpoint(system, 0.0, q, v, 0.02).expect("a start");
     [fixed.q, energy.take(100).last().expect("steps").expect("a step").q]
 }
@@ -166,7 +173,7 @@ fn every_entry_of_a_long_array_acts_in_its_place() {
     assert!(error < 3e-16, "{error:e}");
     assert!(acceleration.amax() > 1.0);
     let h = 0.1;
-    let end = FixedStep::new(chain, State::at(&chain, 0.0, q, v), h).expect("a start").step().expect("a step").q;
+    let end = chain.at(0.0, q, v).integrate(FixedStep, h).expect("a start").step().expect("a step").q;
     let by_velocity = Long::from_fn(|i, _| chain.m[i] * (end[i] - q[i]) / h);
     let residual = (by_velocity - force(&((q + end) / 2.0)) * (h / 2.0) - momentum).amax();
     // Measured 1.3e-14, of momenta up to 17.

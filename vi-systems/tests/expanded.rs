@@ -22,7 +22,7 @@ use std::fs;
 use std::path::Path;
 use vi_codegen::inspect::{Stage, source, stage};
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, State};
+use vi_core::{EnergyPreserving, FixedStep, Starts, State};
 
 /// The expansion of the one system that a text declares.
 fn expansion(text: &str) -> String {
@@ -57,7 +57,7 @@ fn every_system_expands_to_the_same_bytes_twice() {
 fn bits<S: EnergyStepping<N>, const N: usize>(system: &S, q: [f64; N], v: [f64; N], h: f64) -> Vec<u64> {
     let mut numbers = Vec::new();
     let start = State::at(system, 0.0, q, v);
-    for state in FixedStep::new(system, start, h).expect("a start").take(200) {
+    for state in system.at_state(start).integrate(FixedStep, h).expect("a start").take(200) {
         let State { t, q, p, .. } = state.expect("a step");
         numbers.push(t);
         numbers.extend(q.iter().chain(p.iter()));

@@ -24,7 +24,7 @@ use vi_core::check::{self, Checked, Place};
 use vi_core::composition::Scheme;
 use vi_core::node::Node;
 use vi_core::stepping::{EnergyStepping, FixedStepping};
-use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, State, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, lagrangian};
 
 /// Steps of each system by each integrator.
 const STEPS: usize = 40_000;
@@ -150,7 +150,7 @@ fn hunted<const N: usize, S: FixedStepping<N>>(
 
 fn by_fixed_steps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
     let found = hunted(scene, STEPS, |state, h, steps, found| {
-        let Ok(mut run) = FixedStep::new(scene.system, state, h).map_err(assert_typed) else { return };
+        let Ok(mut run) = scene.system.at_state(state).integrate(FixedStep, h).map_err(assert_typed) else { return };
         for _ in 0..steps {
             let before = *run.node();
             if let Err(error) = run.step() {
@@ -188,7 +188,7 @@ fn by_energy_preserving_steps<const N: usize, S: EnergyStepping<N>>(scene: &Scen
 fn by_substeps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
     for scheme in [Scheme::TRIPLE_JUMP_4, Scheme::KAHAN_LI_8] {
         let found = hunted(scene, STEPS / scheme.weights.len(), |state, h, steps, found| {
-            let run = Composition::new(scene.system, scheme, state, h);
+            let run = scene.system.at_state(state).integrate(scheme, h);
             let Ok(mut run) = run.map_err(assert_typed) else { return };
             for _ in 0..steps {
                 let mut node = *run.node();

@@ -20,7 +20,7 @@ use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::{Real, Rounded};
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{EnergyPreservingGauss, Gauss, Integrator, SVector, ScaledGauss, State, StepError, lagrangian};
+use vi_core::{EnergyPreservingGauss, Gauss, SVector, Starts, State, StepError, lagrangian};
 
 /// Steps of each system by each integrator that are judged.
 const STEPS: usize = 400;
@@ -330,7 +330,7 @@ fn by_gauss_steps<Y: Convertible<N> + FixedStepping<N> + Collocation<N>, const N
     scene: &Scene<Y, N>,
 ) {
     let judge = Judge { system: &scene.system, tableau: Tableau::<S>::new(), is_scaled: false, shift: None };
-    let begin = |state, h| Gauss::<_, N, S>::new(scene.system, state, h);
+    let begin = |state, h| scene.system.at_state(state).integrate(Gauss::<S>, h);
     hunted(scene, "Gauss steps", &judge, begin, |run| (run.h(), run.residual()));
 }
 
@@ -340,11 +340,11 @@ where
 {
     // Large enough for steps to exist anywhere near the scene, and far from what would outweigh the energy.
     let state = State::at(&scene.system, 0.0, scene.q, scene.v);
-    let density = vi_core::gauss::energy::step_density::<_, N, S>(&scene.system, &state).expect("a density");
+    let density = vi_core::gauss::step_density::<_, N, S>(&scene.system, &state).expect("a density");
     let shift = 4.0 * density.abs();
     let judge =
         Judge { system: &scene.system, tableau: Tableau::<S>::new(), is_scaled: false, shift: Some(constant * shift) };
-    let begin = |state, h| EnergyPreservingGauss::<_, N, S>::new(scene.system, state, h)?.with_shift(shift);
+    let begin = |state, h| scene.system.at_state(state).integrate(EnergyPreservingGauss::<S>, h)?.with_shift(shift);
     hunted(scene, "energy-preserving Gauss steps", &judge, begin, |run| (run.h(), run.residual()));
 }
 
@@ -371,7 +371,7 @@ mod sudden {
 fn hunt_scaled<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usize>(scene: &Scene<Y, N>) {
     fn by<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usize, const S: usize>(scene: &Scene<Y, N>) {
         let judge = Judge { system: &scene.system, tableau: Tableau::<S>::new(), is_scaled: true, shift: None };
-        let begin = |state, dtau| ScaledGauss::<_, N, S>::new(scene.system, state, dtau);
+        let begin = |state, dtau| scene.system.at_state(state).integrate(Gauss::<S>.in_transformed_time(), dtau);
         hunted(scene, "steps in scaled time", &judge, begin, |run| (run.dtau(), run.residual()));
     }
     by::<_, N, 2>(scene);

@@ -19,8 +19,8 @@ use super::report::{CheckFailure, Report};
 use super::sample::Course;
 use super::steps::{SOLVED, Slots};
 use super::subject::{EnergyChecked, Place, STEPS};
-use crate::method::EnergyPreserving;
 use crate::lagrangian::Lagrangian;
+use crate::method::EnergyPreserving;
 use crate::node::Node;
 use crate::state::State;
 

@@ -18,9 +18,9 @@ use super::length;
 use super::report::{CheckFailure, Report};
 use super::sample::Course;
 use super::subject::{EnergyChecked, Place, STEPS};
-use crate::method::EnergyPreserving;
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
+use crate::method::EnergyPreserving;
 use crate::node::Node;
 use nalgebra::SVector;
 

@@ -239,7 +239,9 @@ where
 }
 
 /// What a number changes by in all directions, sorted: the covector at the start of a step, and the changes by the parameters of the step.
-fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(changes: &[f64]) -> (Covector<N>, Vec<f64>) {
+fn sorted<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+    changes: &[f64],
+) -> (Covector<N>, Vec<f64>) {
     let mut changes = changes.iter().copied();
     let mut next = || changes.next().unwrap_or(0.0);
     let q = SVector::from_fn(|_, _| next());

@@ -14,9 +14,7 @@ use crate::momentum::steps::Steps;
 use crate::node::Node;
 use crate::real::{Dual, Real, Slopes};
 use crate::run::Run;
-use crate::stepping::{
-    Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives,
-};
+use crate::stepping::{Discretized, EnergyStepping, ExtendedDerivatives, FixedStepping, MomentumDerivatives};
 use nalgebra::{SMatrix, SVector};
 
 /// A method whose steps have derivatives.

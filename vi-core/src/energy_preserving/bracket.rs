@@ -12,8 +12,8 @@
 
 use super::equations::{self, EnergyStep, NoStep};
 use super::interval::Last;
-use crate::method::bounds::RATIO;
 use crate::error::StepError;
+use crate::method::bounds::RATIO;
 use crate::momentum::newton as momentum;
 use crate::newton::{Failure, roundings};
 use crate::node::Node;

@@ -99,7 +99,11 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
     ///
     /// # Errors
     /// Why there is no step.
-    pub(crate) fn next<S: EnergyStepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Result<After<N, T>, StepError> {
+    pub(crate) fn next<S: EnergyStepping<N, T>>(
+        &self,
+        system: &S,
+        node: &Node<N, T>,
+    ) -> Result<After<N, T>, StepError> {
         if let Some(phase) = self.phase {
             return self.next_in_phase(system, node, phase);
         }
@@ -144,11 +148,7 @@ impl<const N: usize, T: Scalar> Lengths<N, T> {
     }
 
     /// The forward step from `node`, within the bounds.
-    fn next_step<S: EnergyStepping<N, T>>(
-        &self,
-        system: &S,
-        node: &Node<N, T>,
-    ) -> Result<EnergyStep<N, T>, StepError> {
+    fn next_step<S: EnergyStepping<N, T>>(&self, system: &S, node: &Node<N, T>) -> Result<EnergyStep<N, T>, StepError> {
         let last = &self.last;
         let ratio = T::real(RATIO);
         let range = (last.h / ratio, last.h * ratio);

@@ -10,7 +10,10 @@ use nalgebra::SVector;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(serialize = "T: crate::real::Real + serde::Serialize", deserialize = "T: crate::real::Real + serde::Deserialize<'de>"))
+    serde(bound(
+        serialize = "T: crate::real::Real + serde::Serialize",
+        deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
+    ))
 )]
 pub(crate) struct Last<const N: usize, T> {
     pub(crate) v: SVector<T, N>,

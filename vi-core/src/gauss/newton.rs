@@ -44,7 +44,10 @@ impl<const N: usize> Linearization<N> {
 
     /// Whether the equations are linearized at the same point, for the same length.
     fn is_at(&self, other: &Self) -> bool {
-        self.h.to_bits() == other.h.to_bits() && self.t.to_bits() == other.t.to_bits() && self.q == other.q && self.v == other.v
+        self.h.to_bits() == other.h.to_bits()
+            && self.t.to_bits() == other.t.to_bits()
+            && self.q == other.q
+            && self.v == other.v
     }
 
     /// Whether every number of it is finite.

@@ -33,13 +33,7 @@ pub struct Polynomial<const N: usize, const S: usize> {
 
 impl<const N: usize, const S: usize> Polynomial<N, S> {
     /// The motion over the step of length h from the node `before`, whose state was `start`.
-    pub(crate) fn over(
-        system: &Rare<'_, N>,
-        before: &Node<N>,
-        h: f64,
-        stages: Stages<N, S>,
-        start: State<N>,
-    ) -> Self {
+    pub(crate) fn over(system: &Rare<'_, N>, before: &Node<N>, h: f64, stages: Stages<N, S>, start: State<N>) -> Self {
         let equations = equations(system, before, h, stages);
         let x = equations.start();
         let velocity = equations.velocity();

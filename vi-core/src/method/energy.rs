@@ -321,6 +321,19 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Run<EnergyPreserving, S
         self.memory.last.density
     }
 
+    /// Takes one step and returns it with its interval, its density and how it was found.
+    ///
+    /// # Errors
+    /// Those of [`Run::step`].
+    pub fn detailed_step(&mut self) -> Result<Step<N, T>, StepError> {
+        self.step().map(|_| self.last_step())
+    }
+
+    /// An iterator of [`Run::detailed_step`]; it never ends.
+    pub fn detailed_steps(&mut self) -> impl Iterator<Item = Result<Step<N, T>, StepError>> + '_ {
+        core::iter::from_fn(|| Some(self.detailed_step()))
+    }
+
     /// The last step: its interval, and how it was found. Before the first step the interval from which the run starts.
     pub fn last_step(&self) -> Step<N, T> {
         let Self { node, memory, .. } = self;

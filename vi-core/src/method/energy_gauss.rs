@@ -163,12 +163,7 @@ where
     ///
     /// # Errors
     /// Those of a Gauss step; [`StepError::NonFinite`] if its energy is not finite.
-    fn tried(
-        &self,
-        h: f64,
-        beside: Option<&Tried<N, K>>,
-        cache: &mut Cache<N, K>,
-    ) -> Result<Tried<N, K>, StepError> {
+    fn tried(&self, h: f64, beside: Option<&Tried<N, K>>, cache: &mut Cache<N, K>) -> Result<Tried<N, K>, StepError> {
         let Self { system, instructions, node, stages: last, course } = *self;
         let stages = beside.map_or_else(
             || self.guess(h),
@@ -406,11 +401,7 @@ fn check_shift<const K: usize>(t: f64, h: f64, shift: f64, size: f64) -> Result<
 }
 
 /// The memory before the first step, which keeps the energy of the node.
-fn begun<S, const N: usize, const K: usize>(
-    system: &S,
-    node: &Node<N>,
-    h: f64,
-) -> Result<Lengths<N, K>, StepError>
+fn begun<S, const N: usize, const K: usize>(system: &S, node: &Node<N>, h: f64) -> Result<Lengths<N, K>, StepError>
 where
     S: Collocation<N>,
 {

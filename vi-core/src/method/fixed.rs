@@ -52,7 +52,10 @@ impl FixedStep {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
-    serde(bound(serialize = "T: crate::real::Real + serde::Serialize", deserialize = "T: crate::real::Real + serde::Deserialize<'de>"))
+    serde(bound(
+        serialize = "T: crate::real::Real + serde::Serialize",
+        deserialize = "T: crate::real::Real + serde::Deserialize<'de>"
+    ))
 )]
 pub struct Velocities<const N: usize, T = f64> {
     pub(crate) steps: Steps<N, T>,
@@ -95,11 +98,7 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn attempt(
-        &self,
-        at: Problem<'_, S, Self::Prepared, N, T>,
-        memory: &Velocities<N, T>,
-    ) -> Result<Found<N, T>, ()> {
+    fn attempt(&self, at: Problem<'_, S, Self::Prepared, N, T>, memory: &Velocities<N, T>) -> Result<Found<N, T>, ()> {
         let Problem { system, prepared, node, h } = at;
         if memory.steps.is_common::<S>()
             && let Some(solved) = memory.steps.common(system, node, prepared)

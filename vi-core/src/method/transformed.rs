@@ -78,11 +78,7 @@ where
     }
 
     #[inline(always)]
-    fn attempt(
-        &self,
-        at: Problem<'_, S, Instructions, N>,
-        memory: &Self::Memory,
-    ) -> Result<Self::Step, Self::Left> {
+    fn attempt(&self, at: Problem<'_, S, Instructions, N>, memory: &Self::Memory) -> Result<Self::Step, Self::Left> {
         let Problem { system, prepared, node, h } = at;
         if !memory.pause.is_over() {
             return Err(None);

@@ -76,11 +76,7 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
 
 impl<Y, const N: usize, T: Scalar> Checkpoint<Y, N, T> {
     /// What is stored, if it is of this system by this rule with these parameters.
-    fn run_of<S: Lagrangian<N, T>>(
-        self,
-        system: &S,
-        rule: Option<&'static str>,
-    ) -> Result<Stored<Y, N, T>, StepError> {
+    fn run_of<S: Lagrangian<N, T>>(self, system: &S, rule: Option<&'static str>) -> Result<Stored<Y, N, T>, StepError> {
         let other = |parameter, stored, given| StepError::OtherSystem { system: S::NAME, parameter, stored, given };
         let names = self.parameters.iter().map(|(name, _)| name.as_str());
         if self.system != S::NAME || self.rule.as_deref() != rule || !names.eq(S::PARAMETERS.iter().copied()) {

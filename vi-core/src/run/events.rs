@@ -82,7 +82,11 @@ pub struct Events<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Events<'a, N> {
-    pub(super) fn new<M: Method<S, N>, S: Lagrangian<N> + Copy>(run: &'a mut Run<M, S, N>, wanted: &'a [Event<'a, N>], until: f64) -> Self {
+    pub(super) fn new<M: Method<S, N>, S: Lagrangian<N> + Copy>(
+        run: &'a mut Run<M, S, N>,
+        wanted: &'a [Event<'a, N>],
+        until: f64,
+    ) -> Self {
         let run = Box::new(Ahead { run, ahead: None });
         Self { run, wanted, until, signs: vec![None; wanted.len()], found: Vec::new(), is_over: false }
     }

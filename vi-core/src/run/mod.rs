@@ -288,9 +288,7 @@ fn changed<S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar>(
     change(&mut system);
     let values = (0..S::PARAMETERS.len()).map(|index| system.parameter(index));
     match values.into_iter().find(|value| !value.is_finite()) {
-        Some(value) => {
-            Err(StepError::InvalidInput { input: "a parameter", allowed: "finite", value: value.to_f64() })
-        }
+        Some(value) => Err(StepError::InvalidInput { input: "a parameter", allowed: "finite", value: value.to_f64() }),
         None => Ok(system),
     }
 }

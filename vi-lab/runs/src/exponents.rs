@@ -7,7 +7,7 @@ use crate::simulation::vector;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::Lyapunov;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{Gauss, Integrator as _, State, StepError};
+use vi_core::{Gauss, Run, Starts, State, StepError};
 
 /// Stages of the Gauss steps, which the command has anyway.
 const STAGES: usize = 8;
@@ -27,7 +27,7 @@ pub trait Exponents {
     fn exponents(&self) -> Vec<f64>;
 }
 
-impl<S, const N: usize> Exponents for Lyapunov<Gauss<S, N, STAGES>, N>
+impl<S, const N: usize> Exponents for Lyapunov<Run<Gauss<STAGES>, S, N>, N>
 where
     S: Collocation<N> + Convertible<N> + FixedStepping<N>,
 {
@@ -58,6 +58,6 @@ where
 {
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;
-    let run = Gauss::<S, N, STAGES>::new(system, State::at(&system, plan.t, q, v), plan.h)?;
+    let run = system.at(plan.t, q, v).integrate(Gauss::<STAGES>, plan.h)?;
     Ok(Box::new(Lyapunov::new(run, count)?))
 }

@@ -11,11 +11,11 @@ use crate::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 use crate::start;
 use core::cell::Cell;
 use vi_core::collocation::Collocation;
-use vi_core::integrator::{Crossing, Direction, Event};
+use vi_core::run::{Crossing, Direction, Event};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Integrator, Lagrangian,
-    SVector, ScaledGauss, Scheme, State, StepError,
+    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
+    Lagrangian, Run, SVector, Starts, State, StepError,
 };
 
 /// A node, its energies, and the length of the step that led to it.
@@ -217,10 +217,16 @@ where
     let state = State::at(&system, t, q, v);
     let counting = Counting::new(system, evaluations);
     match plan.method {
-        Method::Fixed => Ok(Run::boxed(FixedStep::new(counting, state, plan.h)?, evaluations)),
-        Method::Suzuki4 => Ok(Run::boxed(Composition::new(counting, Scheme::SUZUKI_4, state, plan.h)?, evaluations)),
-        Method::KahanLi6 => Ok(Run::boxed(Composition::new(counting, Scheme::KAHAN_LI_6, state, plan.h)?, evaluations)),
-        Method::KahanLi8 => Ok(Run::boxed(Composition::new(counting, Scheme::KAHAN_LI_8, state, plan.h)?, evaluations)),
+        Method::Fixed => Ok(Run::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations)),
+        Method::Suzuki4 => {
+            Ok(Run::boxed(counting.at_state(state).integrate(Composition::SUZUKI_4, plan.h)?, evaluations))
+        }
+        Method::KahanLi6 => {
+            Ok(Run::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_6, plan.h)?, evaluations))
+        }
+        Method::KahanLi8 => {
+            Ok(Run::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_8, plan.h)?, evaluations))
+        }
         Method::Gauss => match (plan.stages.unwrap_or(USUAL_STAGES), plan.dtau) {
             (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
             (8, None) => gauss::<S, N, 8>(system, state, plan.h, evaluations),
@@ -257,7 +263,7 @@ where
             EnergyPreserving::from_points(counting, (t, q), second)?
         }
     };
-    let in_the_middle = |run: &EnergyPreserving<Counting<'a, S>, N>| {
+    let in_the_middle = |run: &Run<EnergyPreserving, Counting<'a, S>, N>| {
         let v = run.v();
         let (t, q) = run.node().midpoint(-run.h(), &v);
         Ok((t, run.system().energy(t, &q, &v)))
@@ -287,15 +293,15 @@ fn energy<'a, S, const N: usize, const STAGES: usize>(
 where
     S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
 {
-    let integrator = EnergyPreservingGauss::<_, N, STAGES>::new(Called(system), state, plan.h)?;
+    let integrator = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.h)?;
     let integrator = match plan.shift {
         None => integrator,
         Some(Shift::Of(shift)) => integrator.with_shift(shift)?,
         Some(Shift::Over(time)) => integrator.with_shift_from(time)?,
     };
     let run = Run::new(integrator.with_fallback(fallback(plan)), evaluations);
-    let count = |run: &EnergyPreservingGauss<Called<S>, N, STAGES>| u64::from(run.iterations()) * STAGES as u64;
-    let shifted = |run: &EnergyPreservingGauss<Called<S>, N, STAGES>| ShiftedEnergy {
+    let count = |run: &Run<EnergyPreservingGauss<STAGES>, Called<S>, N>| u64::from(run.iterations()) * STAGES as u64;
+    let shifted = |run: &Run<EnergyPreservingGauss<STAGES>, Called<S>, N>| ShiftedEnergy {
         energy: run.shifted_energy(),
         shift: run.shift(),
     };
@@ -317,8 +323,9 @@ where
     if !S::SCALES_TIME {
         return Err(StepError::NoTimeScale { system: S::NAME });
     }
-    let run = Run::new(ScaledGauss::<_, N, STAGES>::new(Called(system), state, dtau)?, evaluations);
-    let count = |run: &ScaledGauss<Called<S>, N, STAGES>| u64::from(run.iterations()) * STAGES as u64;
+    let run =
+        Run::new(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?, evaluations);
+    let count = |run: &Run<InTransformedTime<Gauss<STAGES>>, Called<S>, N>| u64::from(run.iterations()) * STAGES as u64;
     Ok(Box::new(Run { uncounted: Some(count), ..run }))
 }
 
@@ -332,8 +339,8 @@ fn gauss<'a, S, const N: usize, const STAGES: usize>(
 where
     S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
 {
-    let run = Run::new(Gauss::<S, N, STAGES>::new(system, state, h)?, evaluations);
-    let count = |run: &Gauss<S, N, STAGES>| u64::from(run.iterations()) * STAGES as u64;
+    let run = Run::new(system.at_state(state).integrate(Gauss::<STAGES>, h)?, evaluations);
+    let count = |run: &Run<Gauss<STAGES>, S, N>| u64::from(run.iterations()) * STAGES as u64;
     Ok(Box::new(Run { uncounted: Some(count), ..run }))
 }
 

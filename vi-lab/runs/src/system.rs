@@ -11,10 +11,10 @@ use crate::simulation::{self, Simulation, vector};
 use core::cell::Cell;
 use vi_core::check::Motion;
 use vi_core::collocation::Collocation;
-use vi_core::gauss::energy::step_density;
+use vi_core::gauss::step_density;
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::{Convertible, EnergyStepping};
-use vi_core::{Called, SVector, State, StepError};
+use vi_core::{Called, Gauss, SVector, State, StepError};
 
 /// A system with its parameters.
 pub trait System: Send + Sync {

@@ -5,7 +5,7 @@
 use super::ending::Ending;
 use super::scene::{Cut, Keep, Passing, Sweep};
 use super::shape::{Column, Shape};
-use vi_core::integrator::Direction;
+use vi_core::run::Direction;
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
 use vi_runs::plan::Plan;

@@ -616,7 +616,7 @@ fn each_mistake_is_told_with_what_to_write() {
         ("T = dot(x)^2 / 2;", "`let T = …;`"),
         ("let a = 1", "every clause ends with `;`"),
         ("order = 4;", "`Gauss::<_, N, S>::new`"),
-        ("h = 0.01;", "`FixedStep::new(system, State::at(&system, t, q, v), h)`"),
+        ("h = 0.01;", "`system.at(t, q, v).integrate(FixedStep, h)`"),
     ] {
         told(&format!("{written} {REST}"), wanted);
     }

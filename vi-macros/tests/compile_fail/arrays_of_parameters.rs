@@ -1,4 +1,4 @@
-use vi_core::{FixedStep, State, lagrangian};
+use vi_core::{lagrangian, FixedStep, Starts, State};
 
 lagrangian! {
     pub struct Broken {
@@ -15,6 +15,6 @@ lagrangian! {
 fn main() {
     let broken = Broken { m: [2.0, 1.0], k: [1.0, 2.0], ..Broken::default() };
     println!("{:?} {:?}", broken.m, broken.c[2]);
-    let run = FixedStep::new(broken, State::at(&broken, 0.0, [1.0, 0.0], [0.0, 0.0]), 0.01);
+    let run = broken.at(0.0, [1.0, 0.0], [0.0, 0.0]).integrate(FixedStep, 0.01);
     println!("{:?}", run.map(|mut run| run.step()));
 }

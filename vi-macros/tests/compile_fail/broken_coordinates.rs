@@ -1,4 +1,5 @@
 //! Of a system whose coordinates could not be read nothing is said but that.
+use vi_core::{FixedStep, Starts};
 
 mod broken {
     vi_core::lagrangian! {
@@ -14,7 +15,7 @@ mod broken {
 fn main() {
     let system = broken::Oscillator { m: 2.0 };
     let state = vi_core::State::at(&system, 0.0, [1.0], [0.0]);
-    let mut run = vi_core::FixedStep::new(system, state, 0.01).expect("a valid start");
+    let mut run = system.at_state(state).integrate(FixedStep, 0.01).expect("a valid start");
     let _ = run.step();
     let _ = vi_core::EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1);
 }

@@ -4,10 +4,7 @@ use vi_core::derivatives::{Covector, Lyapunov, Objective, Tangent, Variation, gr
 use vi_core::lagrangian::Parameters;
 use vi_core::rules::{By, Trapezoidal};
 use vi_core::stepping::Batch;
-use vi_core::{
-    Called, Composition, DiscreteLagrangian, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Integrator,
-    Lagrangian, ScaledGauss, Scheme, State, lagrangian,
-};
+use vi_core::{lagrangian, Called, Composition, DiscreteLagrangian, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Lagrangian, Starts, State};
 
 lagrangian! {
     struct Oscillator {
@@ -35,19 +32,19 @@ fn main() -> Result<(), vi_core::StepError> {
     let mut system = Oscillator { m: 2.0, ..Oscillator::default() };
     *system.parameter_mut("k[0]").expect("a parameter") = 3.0;
     let start = State::at(&system, 0.0, [1.0], [0.0]);
-    let fixed = || FixedStep::new(system, start, 0.1).expect("a start");
-    fixed().propagate_until(1.0)?;
-    FixedStep::new(By::new(&system, Trapezoidal), start, 0.1)?.step()?;
-    Composition::new(&system, Scheme::KAHAN_LI_8, start, 0.1)?.propagate_until(1.0)?;
-    Gauss::<_, 1, 4>::new(system, start, 0.1)?.propagate_until(1.0)?;
-    Gauss::<_, 1, 4>::new(By::new(system, Trapezoidal), start, 0.1)?.step()?;
-    Gauss::<_, 1, 4>::new(Called(system), start, 0.1)?.step()?;
-    ScaledGauss::<_, 1, 4>::new(system, start, 0.1)?.propagate_until(1.0)?;
-    EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1)?.propagate_until(1.0)?;
-    EnergyPreservingGauss::<_, 1, 2>::new(system, start, 0.1)?.propagate_until(1.0)?;
-    vi_core::gauss::energy::step_density::<_, 1, 2>(&system, &start)?;
+    let fixed = || system.at_state(start).integrate(FixedStep, 0.1).expect("a start");
+    fixed().until(1.0)?;
+    By::new(&system, Trapezoidal).at_state(start).integrate(FixedStep, 0.1)?.step()?;
+    system.at_state(start).integrate(Composition::KAHAN_LI_8, 0.1)?.until(1.0)?;
+    system.at_state(start).integrate(Gauss::<4>, 0.1)?.until(1.0)?;
+    By::new(system, Trapezoidal).at_state(start).integrate(Gauss::<4>, 0.1)?.step()?;
+    Called(system).at_state(start).integrate(Gauss::<4>, 0.1)?.step()?;
+    system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 0.1)?.until(1.0)?;
+    EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1)?.until(1.0)?;
+    system.at_state(start).integrate(EnergyPreservingGauss::<2>, 0.1)?.until(1.0)?;
+    vi_core::gauss::step_density::<_, 1, 2>(&system, &start)?;
     Tangent::new(fixed(), Variation::of_state()).step()?;
-    Tangent::new(Gauss::<_, 1, 4>::new(system, start, 0.1)?, Variation::of_state()).step()?;
+    Tangent::new(system.at_state(start).integrate(Gauss::<4>, 0.1)?, Variation::of_state()).step()?;
     Tangent::new(EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1)?, Variation::of_state()).step()?;
     Lyapunov::new(fixed(), 1)?.advance(10)?;
     gradient(&fixed(), 10, 3, &End)?;

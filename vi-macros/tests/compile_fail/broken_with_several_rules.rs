@@ -1,5 +1,5 @@
 use vi_core::rules::{By, Trapezoidal};
-use vi_core::{FixedStep, State, lagrangian};
+use vi_core::{lagrangian, FixedStep, Starts, State};
 
 lagrangian! {
     struct Oscillator {
@@ -12,6 +12,6 @@ lagrangian! {
 fn main() {
     let system = Oscillator::default();
     let start = State::at(&system, 0.0, [1.0], [0.0]);
-    let _ = FixedStep::new(&system, start, 0.1);
-    let _ = FixedStep::new(By::new(&system, Trapezoidal), start, 0.1);
+    let _ = system.at_state(start).integrate(FixedStep, 0.1);
+    let _ = By::new(&system, Trapezoidal).at_state(start).integrate(FixedStep, 0.1);
 }

@@ -1,6 +1,6 @@
 //! As many numbers as the system has coordinates, in whatever form.
 
-use vi_core::{EnergyPreserving, SVector, State, lagrangian};
+use vi_core::{lagrangian, EnergyPreserving, State, SVector};
 
 lagrangian! {
     struct Pendulum {

@@ -1,5 +1,5 @@
 use vi_core::rules::{By, Trapezoidal};
-use vi_core::{EnergyPreserving, lagrangian};
+use vi_core::{lagrangian, EnergyPreserving};
 
 lagrangian! {
     struct Oscillator {

@@ -1,4 +1,4 @@
-use vi_core::{EnergyPreserving, lagrangian};
+use vi_core::{lagrangian, EnergyPreserving};
 
 lagrangian! {
     struct Oscillator {

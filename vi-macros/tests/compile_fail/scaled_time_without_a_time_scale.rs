@@ -1,4 +1,4 @@
-use vi_core::{ScaledGauss, State, lagrangian};
+use vi_core::{lagrangian, Gauss, Starts, State};
 
 lagrangian! {
     struct Oscillator {
@@ -11,5 +11,5 @@ lagrangian! {
 fn main() {
     let oscillator = Oscillator::default();
     let start = State::at(&oscillator, 0.0, [1.0], [0.0]);
-    let _ = ScaledGauss::<_, 1, 4>::new(oscillator, start, 0.1);
+    let _ = oscillator.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 0.1);
 }

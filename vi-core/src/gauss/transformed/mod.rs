@@ -24,8 +24,8 @@ use crate::real::{Lane, Real, Rounded};
 use crate::stepping::Convertible;
 use equations::{Clock, Rates, Scaled};
 pub use path::Polynomial;
-pub use rates::{After, LastRates};
 pub(crate) use rates::time_scale;
+pub use rates::{After, LastRates};
 use vi_dispatch::{Instructions, Loop};
 
 /// What a step of the length Δτ is solved from.

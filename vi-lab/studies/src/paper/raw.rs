@@ -8,7 +8,7 @@
 use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::stepping::{EnergyStepping, ExtendedSystem};
-use vi_core::{DiscreteLagrangian, EnergyPreserving, Interval, SVector, State};
+use vi_core::{DiscreteLagrangian, EnergyPreserving, Interval, Run, SVector, State};
 
 /// What the equations are solved for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,9 @@ pub(crate) struct RawNode {
 
 impl RawNode {
     /// The node that an integrator starts from.
-    pub(crate) fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(integrator: &EnergyPreserving<S, 1>) -> Self {
+    pub(crate) fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
+        integrator: &Run<EnergyPreserving, S, 1>,
+    ) -> Self {
         Self { state: integrator.state(), energy: integrator.discrete_energy(), h: integrator.h(), v: integrator.v().x }
     }
 

@@ -11,7 +11,7 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, UNBOUNDED};
-use vi_core::{Composition, Scheme, State};
+use vi_core::{Scheme, Starts, State};
 use vi_report::chart::{Axis, Chart, Class, Look, Series, boundary};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
@@ -163,7 +163,7 @@ fn limit(stable: impl Fn(f64) -> bool) -> f64 {
 fn after_one_step(scheme: Scheme, ch: f64) -> Option<f64> {
     let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
     let start = State::at(&system, 0.0, [0.0], [1.0]);
-    Some(Composition::new(system, scheme, start, 1.0).ok()?.step().ok()?.p.x.abs())
+    Some(system.at_state(start).integrate(scheme, 1.0).ok()?.step().ok()?.p.x.abs())
 }
 
 /// Whether one step of `a = −c v` does not make the speed larger.
@@ -176,7 +176,7 @@ fn class(scheme: Scheme, ch: f64, h_omega: f64) -> Class {
     let system = DampedOscillator { m: 1.0, k: h_omega * h_omega, c: ch };
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND };
     let state = State::at(&system, 0.0, [1.0], [0.0]);
-    let course = Composition::new(system, scheme, state, 1.0).map(|mut run| {
+    let course = system.at_state(state).integrate(scheme, 1.0).map(|mut run| {
         // Displacement and momentum both: at an extreme one of them vanishes.
         Course::of(limit, || {
             run.step().map(|state| {

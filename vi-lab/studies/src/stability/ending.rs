@@ -5,7 +5,7 @@
 
 use core::cell::Cell;
 use vi_core::stepping::{EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, SVector, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError};
 use vi_report::chart::Class;
 use vi_runs::plan::Plan;
 use vi_runs::system::System;
@@ -124,7 +124,9 @@ impl Course {
         limit: Limit,
     ) -> Self {
         let state = State::at(&system, 0.0, q, v);
-        Self::begun(FixedStep::new(system, state, h), limit, |run| run.step().map(|state| (state.t, state.q.amax())))
+        Self::begun(system.at_state(state).integrate(FixedStep, h), limit, |run| {
+            run.step().map(|state| (state.t, state.q.amax()))
+        })
     }
 
     /// Runs the energy-preserving integrator from the midpoint `(q, v)` of the first interval.

@@ -8,7 +8,7 @@ use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, OWN, UNBOUNDED};
 use super::trial::{Oscillator, trapezoidal};
 use vi_core::stepping::FixedStepping;
-use vi_core::{FixedStep, State, StepError};
+use vi_core::{FixedStep, Starts, State, StepError};
 use vi_report::chart::{Axis, Class, boundary};
 use vi_report::failure::Failure;
 
@@ -77,7 +77,7 @@ fn class<S: FixedStepping<1>>(system: S, h: f64, zeta: f64) -> Class {
     let rate = (-zeta).max(0.0);
     let limit = Limit { steps: STEPS, until: GROWTH / rate, bound: BOUND };
     let state = State::at(&system, 0.0, [1.0], [0.0]);
-    let course = FixedStep::new(system, state, h).map(|mut run| {
+    let course = system.at_state(state).integrate(FixedStep, h).map(|mut run| {
         // Displacement and momentum both: at an extreme one of them vanishes.
         Course::of(limit, || {
             run.step().map(|state| {

@@ -4,7 +4,7 @@ use super::super::book::{Book, Verdict};
 use super::super::raw::{RawNode, Unknowns};
 use super::super::{Study, unexpected};
 use super::runs::Case;
-use vi_core::{FixedStep, Lagrangian, SVector, StepError};
+use vi_core::{FixedStep, Lagrangian, SVector, Starts, StepError};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::{extremes, order, scientific};
@@ -82,7 +82,7 @@ impl Rung {
             raw = raw.and_then(|node| node.next(&system, Unknowns::Points));
             rung.raw = raw.map_or(f64::NAN, |node| rung.raw.max((node.energy - e1).abs()));
         }
-        let fixed = FixedStep::new(system, state, case.h0)?.take(length).find(|state| match state {
+        let fixed = system.at_state(state).integrate(FixedStep, case.h0)?.take(length).find(|state| match state {
             Ok(state) => state.t >= COMPARED,
             Err(_) => true,
         });

@@ -2,7 +2,7 @@
 //!
 //! In: a [`Case`]. Out: a [`Run`]: samples of the beginning, the growth of the energy error over the whole run.
 
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, SVector, Starts, StepError};
 use vi_report::progress::Progress;
 use vi_runs::start::second_point;
 use vi_systems::DoubleWell;
@@ -67,7 +67,7 @@ impl Case {
     }
 
     /// The energy-preserving integrator at the paper's start.
-    pub(super) fn start(&self) -> Result<EnergyPreserving<DoubleWell, 1>, StepError> {
+    pub(super) fn start(&self) -> Result<Run<EnergyPreserving, DoubleWell, 1>, StepError> {
         let system = DoubleWell::default();
         let q0 = SVector::from([self.q0]);
         let second = second_point(&system, 0.0, q0, SVector::zeros(), self.h0)?;
@@ -92,7 +92,7 @@ impl Run {
         }
         adaptive.end(steps);
 
-        let mut integrator = FixedStep::new(system, state, case.h0)?;
+        let mut integrator = system.at_state(state).integrate(FixedStep, case.h0)?;
         let mut fixed = Track::new(case.h0);
         for index in 1..=steps {
             let before = integrator.state();

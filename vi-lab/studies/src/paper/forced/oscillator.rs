@@ -1,7 +1,7 @@
 //! The oscillator of the study: its exact motion, and its runs.
 
 use super::H0;
-use vi_core::{EnergyPreserving, FixedStep, SVector, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Run, SVector, Starts, StepError};
 use vi_systems::DampedOscillator;
 
 /// Natural frequency √(k/m).
@@ -51,7 +51,7 @@ pub(super) fn exact_energy(zeta: f64, t: f64) -> f64 {
 }
 
 /// The paper's start: the first interval ends in the exact motion.
-pub(super) fn start(zeta: f64) -> Result<EnergyPreserving<DampedOscillator, 1>, StepError> {
+pub(super) fn start(zeta: f64) -> Result<Run<EnergyPreserving, DampedOscillator, 1>, StepError> {
     let second = (H0, SVector::from([exact(zeta, H0).0]));
     EnergyPreserving::from_points(system(zeta), (0.0, SVector::from([1.0])), second)
 }
@@ -79,7 +79,7 @@ pub(super) fn fixed(zeta: f64, until: f64) -> Result<Run, StepError> {
     let first = start(zeta)?;
     let state = first.state();
     let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: first.discrete_energy(), h: H0 }];
-    let mut integrator = FixedStep::new(system(zeta), state, H0)?;
+    let mut integrator = system(zeta).at_state(state).integrate(FixedStep, H0)?;
     while integrator.state().t <= until {
         let state = integrator.step()?;
         let energy = integrator.discrete_energy().unwrap_or(f64::NAN);

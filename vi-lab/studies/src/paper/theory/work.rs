@@ -7,7 +7,7 @@ use super::super::book::Book;
 use super::super::unexpected;
 use core::cell::Cell;
 use core::f64::consts::TAU;
-use vi_core::{Called, Gauss, State, StepError};
+use vi_core::{Called, Gauss, Starts, State, StepError};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
@@ -158,7 +158,7 @@ impl Orbit {
     fn gauss<const S: usize>(&self, h: f64) -> Result<(f64, f64), StepError> {
         let (q, v) = self.start();
         let system = Called(Kepler::default());
-        let mut run = Gauss::<_, 2, S>::new(system, State::at(&system, 0.0, q, v), h)?;
+        let mut run = system.at(0.0, q, v).integrate(Gauss::<S>, h)?;
         let [mut sweeps, mut error] = [0.0, 0.0_f64];
         while run.state().t < PERIODS * TAU {
             let state = run.step()?;
