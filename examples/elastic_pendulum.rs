@@ -5,7 +5,7 @@
 
 use std::error::Error;
 use std::fmt::Write;
-use vi_core::{EnergyPreserving, FixedStep, Starts, State, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Starts, lagrangian};
 
 lagrangian! {
     /// A mass m on a rod of natural length l and stiffness k; r is the length of the rod, θ its angle from below.
@@ -46,7 +46,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Steps that find their own length, as long as there is one: with a force, that may end.
     println!("\nenergy-preserving steps\n{:>8} {:>10} {:>10} {:>12} {:>9}", "t", "r", "θ", "energy", "h");
-    for (count, step) in EnergyPreserving::from_midpoint(pendulum, 0.0, q, v, h)?.take(2000).enumerate() {
+    let mut run = EnergyPreserving::from_midpoint(pendulum, 0.0, q, v, h)?;
+    for (count, step) in run.detailed_steps().take(2000).enumerate() {
         match step {
             Ok(step) if (count + 1) % 250 == 0 => {
                 println!("{:8.3} {:10.5} {:10.5} {:12.6} {:9.6}", step.t, step.q[0], step.q[1], step.energy, step.h);

@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 use std::time::Instant;
-use vi_core::{Gauss, Run, Starts, State, StepError};
+use vi_core::{Gauss, Starts, State, StepError};
 use vi_systems::Kepler;
 
 /// Runs of each kind, of which the fastest counts.
@@ -18,14 +18,14 @@ const STEPS: [u32; 24] =
 const ERRORS: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
 /// One kind of run: seconds, relative error of the position, steps.
-struct Run {
+struct Course {
     seconds: f64,
     error: f64,
     steps: u32,
 }
 
 /// Runs of S stages, from few steps to many.
-fn runs<const S: usize>() -> Result<Vec<Run>, StepError> {
+fn runs<const S: usize>() -> Result<Vec<Course>, StepError> {
     let planet = Kepler::default();
     let start = State::at(&planet, 0.0, [0.4, 0.0], [0.0, 2.0]);
     let mut runs = Vec::new();
@@ -41,7 +41,7 @@ fn runs<const S: usize>() -> Result<Vec<Run>, StepError> {
         // Steps that are too long have no solution.
         let Ok(end) = end else { continue };
         // After whole periods the planet is where it began.
-        runs.push(Run { seconds, error: (end.q - start.q).norm() / start.q.norm(), steps });
+        runs.push(Course { seconds, error: (end.q - start.q).norm() / start.q.norm(), steps });
     }
     Ok(runs)
 }
@@ -53,7 +53,7 @@ fn print_fastest<const S: usize>() -> Result<(), StepError> {
     for error in ERRORS {
         let good = runs.iter().filter(|run| run.error <= error);
         match good.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
-            Some(Run { seconds, steps, .. }) => print!("  {error:.0e}: {:5.1} µs, {steps:3} steps", 1e6 * seconds),
+            Some(Course { seconds, steps, .. }) => print!("  {error:.0e}: {:5.1} µs, {steps:3} steps", 1e6 * seconds),
             None => print!("  {error:.0e}: none{:15}", ""),
         }
     }

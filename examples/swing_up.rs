@@ -17,7 +17,7 @@ use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use vi_core::derivatives::{Covector, Objective, gradient};
 use vi_core::nalgebra::{DMatrix, DVector};
-use vi_core::{Gauss, Run, SVector, State, StepError, lagrangian};
+use vi_core::{Gauss, Run, SVector, Starts, State, StepError, lagrangian};
 
 lagrangian! {
     /// A pole on a cart; the angle a is zero where the pole is upright.
@@ -33,7 +33,7 @@ lagrangian! {
 }
 
 /// Steps of order 4.
-type Run = Run<Gauss<2>, CartPole, 2>;
+type Swing = Run<Gauss<2>, CartPole, 2>;
 
 /// Length of a step, in seconds.
 const H: f64 = 0.1;
@@ -45,7 +45,7 @@ pub(crate) const TOLERANCE: f64 = 1e-8;
 /// The augmented Lagrangian `C + λ·z_K + (w/2) |z_K|²`.
 #[derive(Clone)]
 pub(crate) struct SwingUp {
-    start: Run,
+    start: Swing,
     /// λ.
     multipliers: SVector<f64, 4>,
     /// w.
@@ -57,7 +57,7 @@ impl SwingUp {
     pub(crate) fn new() -> Result<Self, StepError> {
         let pole = CartPole::default();
         let start = State::at(&pole, 0.0, [0.0, std::f64::consts::PI], [0.0, 0.0]);
-        Ok(Self { start: Run::new(pole, start, H)?, multipliers: SVector::zeros(), weight: 100.0 })
+        Ok(Self { start: pole.at_state(start).integrate(Gauss::<2>, H)?, multipliers: SVector::zeros(), weight: 100.0 })
     }
 
     /// Where forces lead.
@@ -100,8 +100,8 @@ struct Course<'a> {
     problem: &'a SwingUp,
 }
 
-impl Objective<Run, 2> for Course<'_> {
-    fn prepare(&self, step: u64, run: &mut Run) -> Result<(), StepError> {
+impl Objective<Gauss<2>, CartPole, 2> for Course<'_> {
+    fn prepare(&self, step: u64, run: &mut Swing) -> Result<(), StepError> {
         let force = usize::try_from(step).ok().and_then(|step| self.forces.get(step)).copied().unwrap_or(0.0);
         run.set_parameters(|pole| pole.u = force)
     }

@@ -132,7 +132,7 @@ fn energies<const N: usize, S: EnergyStepping<N> + Copy>(
     let wanted = system.energy(0.0, &q.into(), &v.into());
     let mut worst = 0.0_f64;
     for _ in 0..steps {
-        let step = run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
+        let step = run.detailed_step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
         let (t, q, v) = step.midpoint;
         worst = worst.max((system.energy(t, &q, &v) - wanted).abs());
     }

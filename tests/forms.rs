@@ -262,25 +262,25 @@ impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
 const STEPS: usize = 200;
 
 /// Where an integrator is after each of some steps, and the iterations of all.
-struct Run<const N: usize> {
+struct Course<const N: usize> {
     states: Vec<State<N>>,
     iterations: u32,
 }
 
 /// Fixed steps and energy-preserving ones.
-fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [Run<N>; 2] {
+fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [Course<N>; 2] {
     let panic = |error: StepError| -> ! { panic!("{}: {error}", S::NAME) };
     let mut stepper = system.at(0.0, q, v).integrate(FixedStep, h).unwrap_or_else(|error| panic(error));
-    let mut fixed = Run { states: Vec::new(), iterations: 0 };
+    let mut fixed = Course { states: Vec::new(), iterations: 0 };
     for _ in 0..STEPS {
         fixed.states.push(stepper.step().unwrap_or_else(|error| panic(error)));
         fixed.iterations += stepper.iterations();
     }
     let mut stepper = EnergyPreserving::from_midpoint(system, 0.0, q, v, h).unwrap_or_else(|error| panic(error));
-    let mut preserving = Run { states: Vec::new(), iterations: 0 };
+    let mut preserving = Course { states: Vec::new(), iterations: 0 };
     for _ in 0..STEPS {
-        preserving.iterations += stepper.step().unwrap_or_else(|error| panic(error)).iterations;
-        preserving.states.push(stepper.state());
+        preserving.states.push(stepper.step().unwrap_or_else(|error| panic(error)));
+        preserving.iterations += stepper.iterations();
     }
     [fixed, preserving]
 }

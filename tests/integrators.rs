@@ -1,9 +1,10 @@
 //! What all integrators share: states at times and on grids, events, inputs, other states; against closed forms and runs that begin anew.
 
 use core::f64::consts::{PI, TAU};
-use vi_core::run::{Crossing, Direction, Event, Path};
+use vi_core::run::{Crossing, DenseOutput, Direction, Event};
 use vi_core::{
-    Composition, EnergyPreserving, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State, StepError, lagrangian,
+    Composition, EnergyPreserving, FixedStep, Gauss, Lagrangian, Method, Run, SVector, Starts, State, StepError,
+    lagrangian,
 };
 use vi_systems::{DoubleWell, HarmonicOscillator, HenonHeiles, Kepler, Pendulum};
 
@@ -38,7 +39,7 @@ fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
 }
 
 /// The state at t by many steps that end there, of a run that is given anew for each number of them.
-fn ends_at<I: Integrator<N>, const N: usize>(mut run: I, t: f64) -> State<N> {
+fn ends_at<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(mut run: Run<M, S, N>, t: f64) -> State<N> {
     let state = run.until(t).expect("the run goes on");
     assert_eq!(state.t.to_bits(), t.to_bits());
     assert_eq!(state, run.state());
@@ -129,11 +130,11 @@ fn times_behind_or_beyond_all_are_typed_errors() {
 }
 
 /// States on a grid are as accurate as nodes, and the run takes the steps that it would have taken.
-fn is_undisturbed<I: Integrator<N>, const N: usize>(run: &I) {
+fn is_undisturbed<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run<M, S, N>) {
     let mut asked = run.clone();
     let mut plain = run.clone();
     let times: Vec<f64> = (0..=40).map(|k| f64::from(k) * 0.317).collect();
-    let states: Vec<_> = asked.states_at(times).map(|state| state.expect("solvable")).collect();
+    let states: Vec<_> = asked.states_at(times.iter().copied()).map(|state| state.expect("solvable")).collect();
     assert_eq!(states.len(), times.len());
     for (state, t) in states.iter().zip(&times) {
         assert_eq!(state.t.to_bits(), t.to_bits());
@@ -167,10 +168,13 @@ fn a_grid_leaves_the_run_as_it_is() {
 }
 
 /// The largest error of a path over the first step of a run, with that of its derivative.
-fn path_error<I: Integrator<2>>(mut run: I, exact: &Run<Gauss<10>, Kepler, 2>) -> f64 {
+fn path_error<M: Method<S, 2>, S: Lagrangian<2> + Copy>(
+    mut run: Run<M, S, 2>,
+    exact: &Run<Gauss<10>, Kepler, 2>,
+) -> f64 {
     let before = run.state();
     let after = run.step().expect("solvable");
-    let path = run.path(&before).expect("regular");
+    let path = run.dense_output(&before).expect("regular");
     let at_start = distance(&path.state(before.t), &before);
     // 8.3e-17.
     let at_end = distance(&path.state(after.t), &after);
@@ -203,7 +207,7 @@ fn paths_have_their_order_and_end_at_the_nodes() {
 }
 
 /// Zeros of the angle of a pendulum from 2 rad, rising.
-fn rising<I: Integrator<1>>(mut run: I, end: f64) -> Vec<f64> {
+fn rising<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, end: f64) -> Vec<f64> {
     let upward = |_: f64, q: &SVector<f64, 1>, _: &SVector<f64, 1>| q[0];
     let events = [Event::new(&upward, Direction::Rising)];
     let found: Vec<_> = run.events(&events, end).map(|crossing| crossing.expect("solvable")).collect();
@@ -363,7 +367,7 @@ fn a_section_of_henon_and_heiles() {
 }
 
 /// Goes on to the next impact, turns the momentum round, and returns the time.
-fn bounce<I: Integrator<1>>(run: &mut I, hits: &[Event<'_, 1>]) -> f64 {
+fn bounce<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: &mut Run<M, S, 1>, hits: &[Event<'_, 1>]) -> f64 {
     let hit = run.next_event(hits, 100.0).expect("solvable").expect("it falls");
     run.set_state(State { p: -hit.state.p, ..hit.state }).expect("valid");
     hit.state.t
@@ -385,7 +389,10 @@ fn a_ball_bounces() {
 }
 
 /// The largest difference between a step after changed parameters and the first step of a new run from there.
-fn difference<I: Integrator<1, System = Pushed>>(mut run: I, anew: impl Fn(Pushed, State<1>) -> I) -> f64 {
+fn difference<M: Method<Pushed, 1>>(
+    mut run: Run<M, Pushed, 1>,
+    anew: impl Fn(Pushed, State<1>) -> Run<M, Pushed, 1>,
+) -> f64 {
     let mut worst = 0.0_f64;
     for step in 0..200 {
         let u = (0.7 * f64::from(step)).sin() + if step % 50 < 25 { 1.0 } else { -1.0 };
@@ -405,9 +412,9 @@ fn difference<I: Integrator<1, System = Pushed>>(mut run: I, anew: impl Fn(Pushe
 fn changed_parameters_are_those_of_a_new_run() {
     let system = Pushed::default();
     let start = State::at(&system, 0.0, [0.4], [0.2]);
-    let fixed = |system, state| system.at_state(state).integrate(FixedStep, 0.1).expect("valid");
-    let composed = |system, state| system.at_state(state).integrate(Composition::SUZUKI_4, 0.1).expect("valid");
-    let gauss = |system, state| system.at_state(state).integrate(Gauss::<4>, 0.1).expect("valid");
+    let fixed = |system: Pushed, state| system.at_state(state).integrate(FixedStep, 0.1).expect("valid");
+    let composed = |system: Pushed, state| system.at_state(state).integrate(Composition::SUZUKI_4, 0.1).expect("valid");
+    let gauss = |system: Pushed, state| system.at_state(state).integrate(Gauss::<4>, 0.1).expect("valid");
     // 1.0e-15, 1.0e-15, 9.5e-16: the residuals of two guesses, and what sums carry below an ulp.
     let errors = [
         difference(fixed(system, start), fixed),
@@ -435,8 +442,8 @@ fn of_the_last_step_is_said_what_the_new_parameters_make_of_it() {
     // By hand: E1 = H at the middle of the step and the second half of the work, H at the node, v = p/m there.
     let energy = |x: f64, v: f64| m * v * v / 2.0 + k * x * x / 2.0 + x.powi(4) / 5.0;
     let (x0, x1) = (before.q[0], after.q[0]);
-    let path = fixed.path(&before).expect("regular");
-    let gauss_path = gauss.path(&gauss_before).expect("regular");
+    let path = fixed.dense_output(&before).expect("regular");
+    let gauss_path = gauss.dense_output(&gauss_before).expect("regular");
     let errors = [
         fixed.discrete_energy().expect("a step") - energy(f64::midpoint(x0, x1), (x1 - x0) / h) - u * (x1 - x0) / 2.0,
         fixed.energy().expect("regular") - energy(x1, after.p[0] / m),
@@ -461,7 +468,7 @@ fn the_energy_that_a_change_brings_is_accounted_for() {
     let mut run = EnergyPreserving::from_midpoint(system, 0.0, [0.7], [0.0], 0.02).expect("valid");
     let mut brought = 0.0;
     let mut work = 0.0;
-    let e0 = run.discrete_energy();
+    let e0 = run.node().energy;
     for step in 0..100 {
         if step % 10 == 5 {
             let before = run.energy().expect("regular");
@@ -471,19 +478,19 @@ fn the_energy_that_a_change_brings_is_accounted_for() {
         let q0 = run.state().q;
         run.step().expect("solvable");
         work += 0.3 * (run.state().q - q0)[0];
-        let error = run.discrete_energy() - e0 - brought - work;
+        let error = run.node().energy - e0 - brought - work;
         // 1.7e-16.
         assert!(error.abs() < 1e-15, "{step}: {error}");
     }
     assert!(brought > 1e-3, "{brought}");
     // H follows the energy that is kept.
-    let difference = run.energy().expect("regular") - run.discrete_energy();
+    let difference = run.energy().expect("regular") - run.node().energy;
     // 7.0e-5.
     assert!(difference.abs() < 1e-4, "{difference}");
 }
 
 /// Asserts that a run refuses parameters and states with which nothing moves, and goes on.
-fn refuses<I: Integrator<1, System = Pushed>>(mut run: I) {
+fn refuses<M: Method<Pushed, 1>>(mut run: Run<M, Pushed, 1>) {
     run.step().expect("solvable");
     let state = run.state();
     for m in [0.0, f64::NAN] {
@@ -513,7 +520,7 @@ fn parameters_with_which_nothing_moves_are_refused() {
 }
 
 /// The largest error of the energy at the nodes up to t = 7.
-fn largest_error_of_energy<I: Integrator<2>>(mut run: I) -> f64 {
+fn largest_error_of_energy<M: Method<S, 2>, S: Lagrangian<2> + Copy>(mut run: Run<M, S, 2>) -> f64 {
     let first = run.energy().expect("regular");
     let mut worst = 0.0_f64;
     while run.t() < 7.0 {
@@ -595,7 +602,11 @@ fn many_events_of_a_step_come_in_their_order_and_each_once() {
 }
 
 /// Times of the events of a function, met one by one and in one search; largest |g| there.
-fn met<I: Integrator<1>>(run: &I, wanted: &[Event<'_, 1>], until: f64) -> ([usize; 2], f64) {
+fn met<M: Method<S, 1>, S: Lagrangian<1> + Copy>(
+    run: &Run<M, S, 1>,
+    wanted: &[Event<'_, 1>],
+    until: f64,
+) -> ([usize; 2], f64) {
     let mut one_by_one = run.clone();
     let mut times = Vec::new();
     while let Some(crossing) = one_by_one.next_event(wanted, until).expect("the run goes on") {
@@ -664,14 +675,14 @@ fn an_event_at_the_end_of_a_search_is_met_once() {
 }
 
 /// The position after an eighth, the length of the step to the next event, and the velocity there.
-fn later<I: Integrator<1>>(mut run: I, wanted: &[Event<'_, 1>]) -> [f64; 3] {
+fn later<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, wanted: &[Event<'_, 1>]) -> [f64; 3] {
     let start = run.state();
     let state = run.clone().until(start.t + 0.125).expect("the run goes on");
     let crossing = run.next_event(wanted, start.t + 10.0).expect("the run goes on").expect("one");
     let mut run = run.clone();
     let before = run.state();
     run.step().expect("the run goes on");
-    let velocity = run.path(&before).expect("regular").velocity(before.t);
+    let velocity = run.dense_output(&before).expect("regular").velocity(before.t);
     [state.q[0], crossing.length, velocity[0]]
 }
 

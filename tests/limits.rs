@@ -3,13 +3,13 @@
 //! The product is zero in the limit, or the step ends in a typed error.
 
 use vi_core::collocation::Collocation;
-use vi_core::composition::{Composition, Scheme};
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, Variation, gradient};
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
 use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
 use vi_core::{
-    Composition, EnergyPreserving, Fallback, FixedStep, Gauss, SVector, Starts, State, StepError, lagrangian,
+    Composition, EnergyPreserving, Fallback, FixedStep, Gauss, Lagrangian, Method, Run, SVector, Starts, State,
+    StepError, lagrangian,
 };
 use vi_ensemble::Ensemble;
 
@@ -93,8 +93,8 @@ lagrangian! {
 }
 
 /// Takes steps until a time; how many of them end where `is_there` says, and the largest distance of the energy from the first.
-fn followed<I: Integrator<N>, const N: usize>(
-    mut run: I,
+fn followed<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+    mut run: Run<M, S, N>,
     until: f64,
     is_there: impl Fn(&SVector<f64, N>) -> bool,
 ) -> Result<(usize, f64), StepError> {
@@ -109,7 +109,7 @@ fn followed<I: Integrator<N>, const N: usize>(
 }
 
 /// The state after 60 steps.
-fn after<I: Integrator<1>>(run: Result<I, StepError>) -> State<1> {
+fn after<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: Result<Run<M, S, 1>, StepError>) -> State<1> {
     let mut run = run.expect("a valid start");
     for _ in 0..60 {
         run.step().expect("a step");
@@ -133,7 +133,7 @@ where
     is_on_parabola(&after(system.at_state(start).integrate(Gauss::<4>, 0.01)), "Gauss");
     let mut energy = EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.01).expect("a valid start");
     for _ in 0..60 {
-        let (t, q, v) = energy.step().expect("a step").midpoint;
+        let (t, q, v) = energy.detailed_step().expect("a step").midpoint;
         let off = (q[0] - 1.0 + t * t / 2.0).abs().max((v[0] + t).abs());
         // Measured: 1.2e-16.
         assert!(off < 2e-16, "energy-preserving: {off:e}");
@@ -233,7 +233,7 @@ fn a_drag_at_rest_has_no_slope() {
 }
 
 /// The errors of x, y and both momenta after a fall from rest of 2 seconds, against `v = √(g/c) tanh(√(g c) t)`.
-fn off<I: Integrator<2>>(mut run: I) -> f64 {
+fn off<M: Method<S, 2>, S: Lagrangian<2> + Copy>(mut run: Run<M, S, 2>) -> f64 {
     run.until(2.0).expect("a fall");
     let (state, root) = (run.state(), 0.3_f64.sqrt());
     let y = -(2.0 * root).cosh().ln() / 0.3;
@@ -327,7 +327,7 @@ fn what_has_no_limit_is_a_typed_error() {
 /// The last coordinate after 60 steps.
 struct Height;
 
-impl<I> Objective<I, 1> for Height {
+impl<M: Method<S, 1>, S> Objective<M, S, 1> for Height {
     fn parameters(&self) -> &[&str] {
         &["n", "k", "height"]
     }
@@ -337,9 +337,10 @@ impl<I> Objective<I, 1> for Height {
 }
 
 /// Variations after 60 steps.
-fn varied<I>(run: I, variations: Vec<Variation<1>>) -> Vec<[f64; 2]>
+fn varied<M, S>(run: Run<M, S, 1>, variations: Vec<Variation<1>>) -> Vec<[f64; 2]>
 where
-    I: Differentiable<1>,
+    M: Differentiable<S, 1>,
+    S: Lagrangian<1> + Copy,
 {
     let mut tangent = Tangent::new(run, variations);
     for _ in 0..60 {

@@ -1,7 +1,7 @@
 //! A run that is stored and resumed goes on bit for bit, for every way in which steps are taken; and only as what it was.
 
 use vi_core::stepping::FixedStepping;
-use vi_core::{EnergyPreserving, FixedStep, Run, Starts, State, StepError, fixed_step, lagrangian};
+use vi_core::{EnergyPreserving, FixedStep, Run, Starts, State, StepError, lagrangian, run::Checkpoint};
 use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler};
 
 lagrangian! {
@@ -30,7 +30,7 @@ fn resumes<const N: usize, S: FixedStepping<N>>(system: S, (q, v): ([f64; N], [f
     let mut resumed = whole.clone();
     for step in 0..steps {
         let text = serde_json::to_string(&resumed.checkpoint()).expect("numbers");
-        let stored: fixed_step::Checkpoint<N> = serde_json::from_str(&text).expect("the same numbers");
+        let stored: Checkpoint<_, N> = serde_json::from_str(&text).expect("the same numbers");
         resumed = Run::restart(system, FixedStep, stored).expect("a checkpoint of this system");
         let (next, again) = (whole.step(), resumed.step());
         assert_eq!(format!("{next:?}"), format!("{again:?}"), "{}, h = {h}, step {step}", S::NAME);
@@ -67,11 +67,11 @@ fn a_checkpoint_is_resumed_by_its_own_system_only() {
     assert!(other.to_string().contains("`mu` = 1.2"), "{other}");
 
     let text = serde_json::to_string(&run.checkpoint()).expect("numbers").replace("Kepler", "Keller");
-    let stored: fixed_step::Checkpoint<2> = serde_json::from_str(&text).expect("the same numbers");
+    let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("the same numbers");
     let other = Run::restart(system, FixedStep, stored).expect_err("another system");
     assert!(matches!(other, StepError::OtherSystem { parameter: None, .. }), "{other:?}");
 
     let both = EnergyPreserving::from_midpoint(system, 0.0, [1.0, 0.0], [0.0, 1.1], 0.01).expect("a start");
-    let other = EnergyPreserving::restart(Kepler { mu: -1.2 }, both.checkpoint()).expect_err("another parameter");
+    let other = Run::restart(Kepler { mu: -1.2 }, EnergyPreserving, both.checkpoint()).expect_err("another parameter");
     assert!(matches!(other, StepError::OtherSystem { parameter: Some("mu"), .. }), "{other:?}");
 }

@@ -6,7 +6,7 @@ use vi_core::rules::{By, Midpoint, Trapezoidal};
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{
     Composition, DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Run, SVector, Starts, State, StepError,
-    fixed_step, lagrangian,
+    lagrangian, run::Checkpoint,
 };
 
 /// One system with each of these lists of rules.
@@ -131,7 +131,7 @@ fn a_checkpoint_is_of_one_rule() {
     let mut whole = system.at_state(State::at(&surface, 0.3, q, v)).integrate(FixedStep, 0.02).expect("a start");
     for _ in 0..20 {
         let text = serde_json::to_string(&whole.checkpoint()).expect("numbers");
-        let stored: fixed_step::Checkpoint<2> = serde_json::from_str(&text).expect("the same numbers");
+        let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("the same numbers");
         let by_other = Run::restart(surface, FixedStep, stored.clone()).expect_err("another rule");
         assert!(matches!(by_other, StepError::OtherSystem { parameter: None, .. }), "{by_other:?}");
         let mut resumed = Run::restart(system, FixedStep, stored).expect("a checkpoint of this system by this rule");
@@ -142,7 +142,7 @@ fn a_checkpoint_is_of_one_rule() {
     // A checkpoint that was stored before rules had names is of the system's own.
     let text = serde_json::to_string(&own).expect("numbers").replace("\"rule\":null,", "");
     assert!(!text.contains("rule"), "{text}");
-    let stored: fixed_step::Checkpoint<2> = serde_json::from_str(&text).expect("the same numbers");
+    let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("the same numbers");
     assert!(Run::restart(surface, FixedStep, stored).is_ok());
 }
 

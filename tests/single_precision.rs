@@ -20,10 +20,10 @@ fn runs<const N: usize, T: Scalar, S: EnergyStepping<N, T> + Copy>(system: S, q:
     let start = State::at(&system, T::zero(), q, v);
     let mut fixed = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
     let mut energy_preserving = EnergyPreserving::from_midpoint(system, T::zero(), q, v, h).expect("a valid start");
-    let (energy, mut energy_error) = (energy_preserving.discrete_energy(), 0.0_f64);
+    let (energy, mut energy_error) = (energy_preserving.node().energy, 0.0_f64);
     for _ in 0..STEPS {
         fixed.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
-        let step = energy_preserving.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
+        let step = energy_preserving.detailed_step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
         let (t, q, v) = step.midpoint;
         energy_error = energy_error.max((system.energy(t, &q, &v) - energy).abs().to_f64() / T::EPSILON);
     }

@@ -20,7 +20,7 @@ fn deviation<const N: usize, S: EnergyStepping<N> + Copy>(
     let first = constant(h0, (0.2, q.into(), v.into()));
     let (mut worst, mut longest, mut shortest) = (0.0_f64, 0.0_f64, f64::INFINITY);
     while run.state().t < span {
-        let step = run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
+        let step = run.detailed_step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
         worst = worst.max((constant(step.h, step.midpoint) / first - 1.0).abs());
         (longest, shortest) = (longest.max(step.h), shortest.min(step.h));
     }

@@ -10,12 +10,12 @@ use crate::hand::{self, Compensated, Plain};
 use crate::newton::{Difference, Dual, Newton};
 use crate::pendulum::TriplePendulum;
 use crate::problem::Problem;
-use crate::run::{Adjoint, Stepper};
+use crate::run::Adjoint;
 use core::array::from_fn;
 use std::hint::black_box;
 use vi_core::derivatives::{Differentiable, Tangent, Variation};
-use vi_core::stepping::{Batch, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, Run, SVector, Starts, State};
+use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
+use vi_core::{EnergyPreserving, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State};
 use vi_ensemble::Ensemble;
 use vi_systems::{DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, NPendulum};
 
@@ -138,9 +138,10 @@ fn double_pendulum() -> Contest {
 }
 
 /// A run and its variations in 1, 2 and 4 directions, and its gradient by one sweep backwards, run included.
-fn derivatives<I, const N: usize>(name: &'static str, run: &I) -> Contest
+fn derivatives<M, S, const N: usize>(name: &'static str, run: &Run<M, S, N>) -> Contest
 where
-    I: Differentiable<N> + Stepper + 'static,
+    M: Differentiable<S, N> + 'static,
+    S: Convertible<N> + Lagrangian<N> + Copy + 'static,
 {
     let along = |count: usize| Tangent::new(run.clone(), Variation::of_state().into_iter().take(count).collect());
     Contest::new(name, run.clone())

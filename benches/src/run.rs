@@ -4,10 +4,9 @@
 //! inside, so that a step is inlined into it as in a user's program.
 
 use std::cell::Cell;
-use vi_core::collocation::Collocation;
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, gradient};
-use vi_core::stepping::{Batch, Convertible, EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, Gauss, Run, State, StepError};
+use vi_core::stepping::{Batch, Convertible};
+use vi_core::{Lagrangian, Method, State, StepError};
 use vi_ensemble::Ensemble;
 
 /// A stepper that takes one step at a time.
@@ -49,39 +48,14 @@ fn flat<const N: usize>(state: State<N>) -> Vec<f64> {
     [state.t].into_iter().chain(state.q.iter().copied()).chain(state.p.iter().copied()).collect()
 }
 
-impl<S: FixedStepping<N> + Clone, const N: usize> Stepper for Run<FixedStep, S, N> {
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Stepper for vi_core::Run<M, S, N> {
     #[inline]
     fn step(&mut self) {
-        taken(FixedStep::step(self));
+        taken(vi_core::Run::step(self));
     }
 
     fn state(&self) -> Vec<f64> {
-        flat(FixedStep::state(self))
-    }
-}
-
-impl<S: EnergyStepping<N> + Clone, const N: usize> Stepper for Run<EnergyPreserving, S, N> {
-    #[inline]
-    fn step(&mut self) {
-        taken(EnergyPreserving::step(self));
-    }
-
-    fn state(&self) -> Vec<f64> {
-        flat(EnergyPreserving::state(self))
-    }
-}
-
-impl<S, const N: usize, const STAGES: usize> Stepper for Run<Gauss<STAGES>, S, N>
-where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
-{
-    #[inline]
-    fn step(&mut self) {
-        taken(Gauss::step(self));
-    }
-
-    fn state(&self) -> Vec<f64> {
-        flat(Gauss::state(self))
+        flat(vi_core::Run::state(self))
     }
 }
 
@@ -97,7 +71,7 @@ impl<S: Batch<N>, const N: usize> Run for Ensemble<S, N> {
     }
 }
 
-impl<I: Differentiable<N>, const N: usize> Stepper for Tangent<I, N> {
+impl<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize> Stepper for Tangent<M, S, N> {
     fn step(&mut self) {
         taken(Tangent::step(self));
     }
@@ -108,14 +82,14 @@ impl<I: Differentiable<N>, const N: usize> Stepper for Tangent<I, N> {
 }
 
 /// The gradient of the last coordinate that a run reaches, and whether all of its nodes are kept, or as few as may be.
-pub struct Adjoint<I, const N: usize> {
+pub struct Adjoint<M: Method<S, N>, S, const N: usize> {
     /// The run.
-    pub run: I,
+    pub run: vi_core::Run<M, S, N>,
     /// Whether all nodes are kept.
     pub keeps_all: bool,
 }
 
-impl<I: Differentiable<N>, const N: usize> Run for Adjoint<I, N> {
+impl<M: Differentiable<S, N>, S: Convertible<N> + Lagrangian<N> + Copy, const N: usize> Run for Adjoint<M, S, N> {
     fn run(&self, steps: usize) -> Vec<f64> {
         let end = Cell::new(None);
         let kept = if self.keeps_all { steps } else { 0 };
@@ -131,7 +105,7 @@ struct Last<'a, const N: usize> {
     end: &'a Cell<Option<State<N>>>,
 }
 
-impl<I, const N: usize> Objective<I, N> for Last<'_, N> {
+impl<M: Method<S, N>, S, const N: usize> Objective<M, S, N> for Last<'_, N> {
     fn slope(&self, step: u64, state: &State<N>) -> Covector<N> {
         let mut slope = Covector::zero();
         if step == self.steps {

@@ -1,11 +1,10 @@
 //! Derivatives of motions where numbers are extreme: slopes without a bound, and coordinates in units that are far apart.
 
 use nalgebra::{DMatrix, SMatrix};
-use vi_core::composition::{Composition, Scheme};
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
 use vi_core::{
-    Composition, EnergyPreserving, Fallback, FixedStep, Gauss, Run, SVector, Starts, State, StepError, lagrangian,
-    nalgebra,
+    Composition, EnergyPreserving, Fallback, FixedStep, Gauss, Method, Run, SVector, Starts, State, StepError,
+    lagrangian, nalgebra,
 };
 
 lagrangian! {
@@ -21,7 +20,7 @@ lagrangian! {
 /// The last coordinate.
 struct Last;
 
-impl<I> Objective<I, 1> for Last {
+impl<M: Method<S, 1>, S> Objective<M, S, 1> for Last {
     fn slope(&self, step: u64, _state: &State<1>) -> Covector<1> {
         let weight = if step == 1 { 1.0 } else { 0.0 };
         Covector { q: SVector::repeat(weight), p: SVector::repeat(weight), ..Covector::zero() }
@@ -65,7 +64,7 @@ fn has_none(outcome: &Result<(), StepError>, t: f64, word: &str) -> bool {
 }
 
 /// Only the last step of a run is differentiated, and only by the parameters that its system has.
-fn differentiates_its_last_step<I: Differentiable<1, System = Hill>>(mut run: I) {
+fn differentiates_its_last_step<M: Differentiable<Hill, 1>>(mut run: Run<M, Hill, 1>) {
     let start = *run.node();
     let states = Variation::of_state;
     assert!(has_none(&run.vary(&start, &mut states()), start.t, "last"), "before any step");
@@ -155,7 +154,7 @@ fn names_and_indices_that_do_not_exist_are_told() {
 /// Wants the gradient with respect to a parameter that does not exist, and to one that does.
 struct Misspelt;
 
-impl<I> Objective<I, 1> for Misspelt {
+impl<M: Method<S, 1>, S> Objective<M, S, 1> for Misspelt {
     fn parameters(&self) -> &[&str] {
         &["kk", "c"]
     }
@@ -189,7 +188,7 @@ fn a_start_where_the_slope_of_a_force_has_no_bound_is_told() {
 /// The last coordinate after so many steps, by this weight.
 struct Weighted(u64, f64);
 
-impl<I> Objective<I, 1> for Weighted {
+impl<M: Method<S, 1>, S> Objective<M, S, 1> for Weighted {
     fn slope(&self, step: u64, _state: &State<1>) -> Covector<1> {
         let weight = if step == self.0 { self.1 } else { 0.0 };
         Covector { q: SVector::repeat(weight), ..Covector::zero() }

@@ -7,14 +7,20 @@ use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::Dual;
 use vi_core::stepping::{Convertible, Discretized, FixedStepping};
-use vi_core::{Composition, EnergyPreserving, FixedStep, Gauss, SVector, Starts, State, StepError, nalgebra};
+use vi_core::{
+    Composition, EnergyPreserving, FixedStep, Gauss, Lagrangian, Method, Run, SVector, Starts, State, StepError,
+    nalgebra,
+};
 use vi_systems::{
     ChargedParticle, DoublePendulum, DoubleWell, DoubleWellDuffing, FpuChain, HenonHeiles, Kepler, NPendulum,
     ParametricPendulum, Pendulum, RotatingHoop, SphericalPendulum,
 };
 
 /// The columns of the tangent map over `steps` steps.
-fn tangent_map<I: Differentiable<N>, const N: usize>(run: I, steps: usize) -> (I, DMatrix<f64>) {
+fn tangent_map<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+    run: Run<M, S, N>,
+    steps: usize,
+) -> (Run<M, S, N>, DMatrix<f64>) {
     let mut tangent = Tangent::new(run, Variation::of_state());
     for _ in 0..steps {
         tangent.step().expect("solvable");
@@ -140,13 +146,14 @@ impl<const N: usize> ToDual<N> for Node<N> {
 }
 
 /// The largest difference between variations and central differences of third order, relative to their size.
-fn differs<I, const N: usize>(
-    begin: impl Fn(&SVector<f64, N>, &SVector<f64, N>, f64) -> I,
+fn differs<M, S, const N: usize>(
+    begin: impl Fn(&SVector<f64, N>, &SVector<f64, N>, f64) -> Run<M, S, N>,
     steps: usize,
     name: &str,
 ) -> f64
 where
-    I: Differentiable<N>,
+    M: Differentiable<S, N>,
+    S: Lagrangian<N> + Copy,
 {
     let zeros = SVector::zeros();
     let end = |q: &SVector<f64, N>, p: &SVector<f64, N>, parameter: f64| {
@@ -157,7 +164,7 @@ where
         run.state()
     };
     let mut variations = Variation::of_state();
-    variations.push(Variation::of_parameter::<I::System>(name).expect("a parameter"));
+    variations.push(Variation::of_parameter::<S>(name).expect("a parameter"));
     let mut tangent = Tangent::new(begin(&zeros, &zeros, 0.0), variations.clone());
     for _ in 0..steps {
         tangent.step().expect("solvable");
@@ -218,7 +225,7 @@ fn an_energy_preserving_step_varies_in_its_length() {
     let (h, v) = (0.05, SVector::from([0.3, 0.5]));
     let first = EnergyPreserving::from_midpoint(system, 0.1, [0.6, -0.4], v, h).expect("valid");
     let state = first.state();
-    let energy = first.discrete_energy();
+    let energy = first.node().energy;
     let begin = |q: SVector<f64, 2>, p: SVector<f64, 2>, e: f64, a: f64| {
         let state = State { q: state.q + q, p: state.p + p, ..state };
         let system = Everything { a: 1.4 + a, ..system };
@@ -240,7 +247,7 @@ fn an_energy_preserving_step_varies_in_its_length() {
             for _ in 0..4 {
                 run.step().expect("solvable");
             }
-            (run.state(), run.discrete_energy())
+            (run.state(), run.node().energy)
         };
         // The length follows from a small difference: only short distances are linear.
         let s = 2e-6;
@@ -304,8 +311,8 @@ fn second_variations_are_differences_of_first_ones() {
 /// The squares of the distances from a course, at every node.
 struct Course;
 
-impl<I: Integrator<2, System = Everything>> Objective<I, 2> for Course {
-    fn prepare(&self, step: u64, run: &mut I) -> Result<(), StepError> {
+impl<M: Method<Everything, 2>> Objective<M, Everything, 2> for Course {
+    fn prepare(&self, step: u64, run: &mut Run<M, Everything, 2>) -> Result<(), StepError> {
         #[allow(clippy::cast_precision_loss)] // a few steps
         let step = step as f64;
         run.set_parameters(|system| system.c = 0.1 + 0.05 * step.sin())
@@ -328,7 +335,7 @@ fn of_time<const N: usize>() -> Variation<N> {
 
 #[test]
 fn adjoint_and_tangent_agree() {
-    fn worst<I: Differentiable<2, System = Everything>>(run: &I, steps: u64) -> f64 {
+    fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
         let mut all: Vec<_> = [1, 5, 1000].map(|kept| gradient(run, steps, kept, &Course).expect("solvable")).into();
         let found = all.pop().expect("three");
         // However many runs are kept.
@@ -341,7 +348,7 @@ fn adjoint_and_tangent_agree() {
         let mut run = run.clone();
         let mut varied = variations.clone();
         for step in 0..=steps {
-            let slope = Objective::<I, 2>::slope(&Course, step, &run.state());
+            let slope = Objective::<M, Everything, 2>::slope(&Course, step, &run.state());
             for (sum, variation) in forward.iter_mut().zip(&varied) {
                 *sum += slope.of(variation);
             }
@@ -379,7 +386,7 @@ fn adjoint_and_tangent_agree() {
 /// The squares of the times and of the coordinates of all nodes.
 struct Squares;
 
-impl<I> Objective<I, 1> for Squares {
+impl<M: Method<S, 1>, S> Objective<M, S, 1> for Squares {
     fn slope(&self, _step: u64, state: &State<1>) -> Covector<1> {
         Covector { t: 2.0 * state.t, q: state.q * 2.0, ..Covector::zero() }
     }
@@ -388,14 +395,18 @@ impl<I> Objective<I, 1> for Squares {
 #[test]
 fn the_time_of_an_autonomous_run_is_carried_back() {
     /// The largest difference of the gradient from variations that are carried along, and the derivative by the time of the start.
-    fn worst<I: Differentiable<1>>(run: &I, steps: u64) -> (f64, f64) {
+    fn worst<M, S>(run: &Run<M, S, 1>, steps: u64) -> (f64, f64)
+    where
+        M: Differentiable<S, 1>,
+        S: Convertible<1> + Lagrangian<1> + Copy,
+    {
         let start = gradient(run, steps, 3, &Squares).expect("solvable").start;
         let mut varied = Variation::of_state();
         varied.extend([of_time(), Variation { energy: 1.0, ..Variation::zero() }]);
         let mut run = run.clone();
         let mut forward = [0.0; 4];
         for step in 0..=steps {
-            let slope = Objective::<I, 1>::slope(&Squares, step, &run.state());
+            let slope = Objective::<M, S, 1>::slope(&Squares, step, &run.state());
             for (sum, variation) in forward.iter_mut().zip(&varied) {
                 *sum += slope.of(variation);
             }
@@ -406,7 +417,7 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
             }
         }
         let size = forward.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
-        let backward = [start.q[0], start.p[0], start.t, if I::KEEPS_ENERGY { start.energy } else { forward[3] }];
+        let backward = [start.q[0], start.p[0], start.t, if M::KEEPS_ENERGY { start.energy } else { forward[3] }];
         let off = forward.iter().zip(backward).map(|(one, other)| (one - other).abs() / size).fold(0.0, f64::max);
         (off, start.t)
     }
@@ -445,7 +456,7 @@ fn exponents_of_a_saddle() {
 }
 
 /// The largest exponent from two motions, whose distance is made small again after every step.
-fn separated<I: Integrator<N>, const N: usize>(run: &I, steps: u32) -> f64 {
+fn separated<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run<M, S, N>, steps: u32) -> f64 {
     const NEAR: f64 = 1e-7;
     let mut run = run.clone();
     let begin = run.t();
@@ -470,7 +481,10 @@ fn separated<I: Integrator<N>, const N: usize>(run: &I, steps: u32) -> f64 {
 
 #[test]
 fn exponents_of_chaotic_motion() {
-    fn both<I: Differentiable<N>, const N: usize>(run: &I, steps: u32) -> (Vec<f64>, f64) {
+    fn both<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
+        run: &Run<M, S, N>,
+        steps: u32,
+    ) -> (Vec<f64>, f64) {
         let mut lyapunov = Lyapunov::new(run.clone(), 2 * N).expect("all");
         lyapunov.advance(u64::from(steps)).expect("solvable");
         (lyapunov.exponents(), separated(run, steps))
@@ -504,8 +518,8 @@ struct Driven {
     inputs: [f64; 12],
 }
 
-impl<I: Integrator<2, System = Everything>> Objective<I, 2> for Driven {
-    fn prepare(&self, step: u64, run: &mut I) -> Result<(), StepError> {
+impl<M: Method<Everything, 2>> Objective<M, Everything, 2> for Driven {
+    fn prepare(&self, step: u64, run: &mut Run<M, Everything, 2>) -> Result<(), StepError> {
         let input = self.inputs[usize::try_from(step).unwrap_or(usize::MAX)];
         run.set_parameters(|system| system.a = input)
     }
@@ -521,7 +535,7 @@ impl<I: Integrator<2, System = Everything>> Objective<I, 2> for Driven {
 }
 
 impl Driven {
-    fn value<I: Integrator<2, System = Everything>>(&self, run: &I) -> f64 {
+    fn value<M: Method<Everything, 2>>(&self, run: &Run<M, Everything, 2>) -> f64 {
         let mut run = run.clone();
         for step in 0..12 {
             self.prepare(step, &mut run).expect("regular");
@@ -533,7 +547,7 @@ impl Driven {
 
 #[test]
 fn gradients_of_inputs_that_bring_energy() {
-    fn worst<I: Differentiable<2, System = Everything>>(run: &I) -> f64 {
+    fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>) -> f64 {
         let inputs = [0.0, 8.4, 9.1, 1.4, -7.6, -9.6, -2.8, 6.6, 9.9, 4.1, -5.4, -10.0].map(|part| 1.4 + 1e-3 * part);
         let found = gradient(run, 12, 3, &Driven { inputs }).expect("solvable");
         let mut worst = 0.0_f64;

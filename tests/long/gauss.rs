@@ -8,7 +8,7 @@ use crate::support::scenes::{self, Scene};
 use serde_json::Value;
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{FixedStep, Gauss, Lagrangian, Run, Starts, State, StepError, gauss, lagrangian};
+use vi_core::{FixedStep, Gauss, Lagrangian, Run, Starts, State, StepError, gauss, lagrangian, run::Checkpoint};
 use vi_systems::{
     DampedOscillator, DoublePendulum, DoubleWell, FpuChain, HarmonicOscillator, Kepler, Pendulum, SphericalPendulum,
 };
@@ -383,7 +383,7 @@ fn resumes<const N: usize, const S: usize>(system: impl System<N>, (q, v): ([f64
     let mut resumed = whole.clone();
     for step in 0..count {
         let text = serde_json::to_string(&resumed.checkpoint()).expect("numbers");
-        let stored: gauss::Checkpoint<N, S> = serde_json::from_str(&text).expect("the same numbers");
+        let stored: Checkpoint<_, N> = serde_json::from_str(&text).expect("the same numbers");
         resumed = Run::restart(system, Gauss, stored).expect("a checkpoint of this system");
         let (next, again) = (whole.step(), resumed.step());
         assert_eq!(format!("{next:?}"), format!("{again:?}"), "{} stages, h = {h}, step {step}", S);

@@ -16,7 +16,7 @@ fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S
     let (mut steps, mut iterations) = (0, 0);
     while steps < STEPS && run.state().t < scene.span {
         let before = run.state();
-        let step = run.step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
+        let step = run.detailed_step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
         (steps, iterations) = (steps + 1, iterations + step.iterations);
         // The spurious root leads back to the middle of the last interval; past a change of sign of D lies another one.
         assert!(step.h > 0.0 && step.t > before.t && step.midpoint.0 > middle, "{}: {step:?}", S::NAME);

@@ -3,10 +3,17 @@
 
 use vi_core::derivatives::{Tangent, Variation};
 use vi_core::stepping::FixedStepping;
-use vi_core::{Called, Composition, FixedStep, Gauss, Lagrangian, SVector, Starts, State, StepError, lagrangian};
+use vi_core::{
+    Called, Composition, FixedStep, Gauss, Lagrangian, Method, Run, SVector, Starts, State, StepError, lagrangian,
+};
 
 /// Asserts where a run is, and returns how far off: the largest difference of a coordinate or a velocity.
-fn off<const N: usize, I: Integrator<N>>(mut run: I, t: f64, q: [f64; N], v: [f64; N]) -> f64 {
+fn off<const N: usize, M: Method<S, N>, S: Lagrangian<N> + Copy>(
+    mut run: Run<M, S, N>,
+    t: f64,
+    q: [f64; N],
+    v: [f64; N],
+) -> f64 {
     let end = run.until(t).expect("solvable");
     let velocity = run.velocity().expect("regular");
     (end.q - SVector::from(q)).amax().max((velocity - SVector::from(v)).amax())

@@ -25,7 +25,7 @@ pub(crate) fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
     let (mut last, mut steps) = (None, 0);
     while steps < limit {
         let (before, h, v) = (run.state(), run.h(), run.v());
-        match run.step() {
+        match run.detailed_step() {
             Ok(step) => {
                 assert_step(S::NAME, &step);
                 assert!(step.t >= before.t && step.midpoint.0 >= before.t, "{}: {step:?}", S::NAME);

@@ -11,7 +11,7 @@ use crate::alone::Alone;
 use crate::block::Block;
 use crate::ended::Ended;
 use vi_core::stepping::Batch;
-use vi_core::{FixedStep, Run, Starts, State};
+use vi_core::{FixedStep, Starts, State};
 use vi_dispatch::Instructions;
 
 /// Degrees of freedom up to which trajectories go side by side.
@@ -21,7 +21,7 @@ const LARGEST: usize = 3;
 #[derive(Clone, Debug)]
 pub(crate) enum Group<S: Batch<N>, const N: usize> {
     Together(Box<Block<S, N>>),
-    Apart(Vec<Alone<Run<FixedStep, S, N>, N>>),
+    Apart(Vec<Alone<FixedStep, S, N>>),
 }
 
 impl<S: Batch<N>, const N: usize> Group<S, N> {

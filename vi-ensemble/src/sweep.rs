@@ -12,7 +12,6 @@
 //!
 //! What is left of a row then is carried to the next step. So a row itself is at most ε times this sum and that of the step before;
 //! where the sums shrink, that it is at most [`FLOOR`] ε times its own is asked too.
-use vi_core::FixedStep;
 
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;

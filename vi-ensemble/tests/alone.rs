@@ -414,5 +414,5 @@ fn runs_of_any_integrator_are_what_each_is_alone() {
         }
     }
     assert_eq!(runs.running(), 4);
-    assert_eq!(runs.integrators().filter(|run| run.is_ok_and(|run| (run.h() - 0.1).abs() < 1e-15)).count(), 4);
+    assert_eq!(runs.runs().filter(|run| run.is_ok_and(|run| (run.h() - 0.1).abs() < 1e-15)).count(), 4);
 }

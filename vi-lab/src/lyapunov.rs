@@ -2,7 +2,6 @@
 //!
 //! In: the command line. Out: estimates of the largest Lyapunov exponents along one run of Gauss steps, at times each twice the one before, so that a reader
 //! sees whether they have settled; as CSV on standard output. The directions are those of the tangent map of the steps themselves (`vi_core::derivatives`).
-use vi_core::Gauss;
 
 use crate::run;
 use clap::Args;

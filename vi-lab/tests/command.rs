@@ -1,5 +1,4 @@
 //! The command `vi-lab` as a user meets it: output, exit status, messages, files.
-use vi_core::Gauss;
 
 #[path = "command/ends.rs"]
 mod ends;

@@ -16,7 +16,7 @@
 
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::EnergyStepping;
-use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, StepError};
+use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, StepError};
 
 /// Nothing that a binding may be named after.
 macro_rules! constants {

@@ -62,7 +62,8 @@ fn bits<S: EnergyStepping<N>, const N: usize>(system: &S, q: [f64; N], v: [f64; 
         numbers.push(t);
         numbers.extend(q.iter().chain(p.iter()));
     }
-    for step in EnergyPreserving::from_midpoint(system, 0.0, q, v, h).expect("a start").take(200) {
+    let mut run = EnergyPreserving::from_midpoint(system, 0.0, q, v, h).expect("a start");
+    for step in run.detailed_steps().take(200) {
         let step = step.expect("a step");
         numbers.extend([step.t, step.energy, step.h]);
         numbers.extend(step.q.iter().chain(step.p.iter()));

@@ -21,10 +21,9 @@ use crate::support::Sequence;
 use crate::support::ending::assert_typed;
 use crate::support::scenes::Scene;
 use vi_core::check::{self, Checked, Place};
-use vi_core::composition::Scheme;
 use vi_core::node::Node;
 use vi_core::stepping::{EnergyStepping, FixedStepping};
-use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, lagrangian};
+use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, Starts, State, lagrangian};
 
 /// Steps of each system by each integrator.
 const STEPS: usize = 40_000;
@@ -172,7 +171,7 @@ fn by_energy_preserving_steps<const N: usize, S: EnergyStepping<N>>(scene: &Scen
         let Ok(mut run) = run.map_err(assert_typed) else { return };
         for _ in 0..steps {
             let before = *run.node();
-            let step = match run.step() {
+            let step = match run.detailed_step() {
                 Ok(step) => step,
                 Err(error) => return assert_typed(error),
             };
@@ -185,30 +184,31 @@ fn by_energy_preserving_steps<const N: usize, S: EnergyStepping<N>>(scene: &Scen
     found.finish(S::NAME, "energy-preserving steps");
 }
 
-fn by_substeps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
-    for scheme in [Scheme::TRIPLE_JUMP_4, Scheme::KAHAN_LI_8] {
-        let found = hunted(scene, STEPS / scheme.weights.len(), |state, h, steps, found| {
-            let run = scene.system.at_state(state).integrate(scheme, h);
-            let Ok(mut run) = run.map_err(assert_typed) else { return };
-            for _ in 0..steps {
-                let mut node = *run.node();
-                if let Err(error) = run.step() {
-                    return assert_typed(error);
-                }
-                for (weight, v) in scheme.weights.iter().zip(run.velocities()) {
-                    let h = h * weight;
-                    found.add(&Row::of_momentum(&scene.system, &node, h, &v));
-                    let increment = scene.system.momentum_residual(&node, h, &v).increment;
-                    node.advance(h, &v, &increment);
-                }
-                // The substeps are those that were taken.
-                assert_eq!(node.state(), run.state());
-                found.steps += 1;
+fn by_substeps<const N: usize, const K: usize, S>(scene: &Scene<S, N>, composition: Composition<K>, name: &str)
+where
+    S: FixedStepping<N>,
+{
+    let found = hunted(scene, STEPS / K, |state, h, steps, found| {
+        let run = scene.system.at_state(state).integrate(composition, h);
+        let Ok(mut run) = run.map_err(assert_typed) else { return };
+        for _ in 0..steps {
+            let mut node = *run.node();
+            if let Err(error) = run.step() {
+                return assert_typed(error);
             }
-        });
-        let found = Found { steps: found.steps * scheme.weights.len(), ..found };
-        found.finish(S::NAME, scheme.name);
-    }
+            for (weight, v) in composition.weights.iter().zip(run.velocities()) {
+                let h = h * weight;
+                found.add(&Row::of_momentum(&scene.system, &node, h, &v));
+                let increment = scene.system.momentum_residual(&node, h, &v).increment;
+                node.advance(h, &v, &increment);
+            }
+            // The substeps are those that were taken.
+            assert_eq!(node.state(), run.state());
+            found.steps += 1;
+        }
+    });
+    let found = Found { steps: found.steps * K, ..found };
+    found.finish(S::NAME, name);
 }
 
 fn hunt<const N: usize, S: Checked<N> + EnergyStepping<N>>(scene: Scene<S, N>) {
@@ -220,7 +220,8 @@ fn hunt_fixed_steps<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
     let place = Place { t: 0.0, q: scene.q.into(), v: scene.v.into(), h: scene.h / 10.0 };
     check::steps(&scene.system, &place).unwrap_or_else(|failure| panic!("{failure}"));
     by_fixed_steps(&scene);
-    by_substeps(&scene);
+    by_substeps(&scene, Composition::TRIPLE_JUMP_4, "triple jump 4");
+    by_substeps(&scene, Composition::KAHAN_LI_8, "Kahan–Li 8");
 }
 
 sudden::each_sudden!(hunt, hunt_fixed_steps);
@@ -246,7 +247,7 @@ fn stiff_steps_keep_the_energy() {
         let mut steps = 0;
         while steps < 200 {
             let before = *run.node();
-            let step = match run.step() {
+            let step = match run.detailed_step() {
                 Ok(step) => step,
                 Err(error) => {
                     assert_typed(error);

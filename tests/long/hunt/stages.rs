@@ -20,7 +20,7 @@ use vi_core::linear::Matrix;
 use vi_core::node::Node;
 use vi_core::real::{Real, Rounded};
 use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{EnergyPreservingGauss, Gauss, SVector, Starts, State, StepError, lagrangian};
+use vi_core::{EnergyPreservingGauss, Gauss, Method, Run, SVector, Starts, State, StepError, lagrangian};
 
 /// Steps of each system by each integrator that are judged.
 const STEPS: usize = 400;
@@ -272,14 +272,14 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
 }
 
 /// Steps of motions near a scene, each judged; `begin` starts one, `of` tells the length of the step taken last, in the time that it is taken in.
-fn hunted<I, Y, const N: usize, const S: usize>(
+fn hunted<M, Y, const N: usize, const S: usize>(
     scene: &Scene<Y, N>,
     name: &str,
     judge: &Judge<'_, Y, N, S>,
-    begin: impl Fn(State<N>, f64) -> Result<I, StepError>,
-    of: impl Fn(&I) -> (f64, f64),
+    begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
+    of: impl Fn(&Run<M, Y, N>) -> (f64, f64),
 ) where
-    I: Integrator<N, System = Y>,
+    M: Method<Y, N>,
     Y: Convertible<N> + FixedStepping<N>,
 {
     let (mut steps, mut motions, mut left_out, mut worst, mut reported) = (0, 0, 0, Off::default(), 0.0_f64);

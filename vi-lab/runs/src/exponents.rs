@@ -6,8 +6,8 @@ use crate::plan::Plan;
 use crate::simulation::vector;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::Lyapunov;
-use vi_core::stepping::{Convertible, FixedStepping};
-use vi_core::{Gauss, Run, Starts, State, StepError};
+use vi_core::stepping::Convertible;
+use vi_core::{Gauss, Starts, StepError};
 
 /// Stages of the Gauss steps, which the command has anyway.
 const STAGES: usize = 8;
@@ -27,9 +27,9 @@ pub trait Exponents {
     fn exponents(&self) -> Vec<f64>;
 }
 
-impl<S, const N: usize> Exponents for Lyapunov<Run<Gauss<STAGES>, S, N>, N>
+impl<S, const N: usize> Exponents for Lyapunov<Gauss<STAGES>, S, N>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         self.advance(steps)
@@ -54,7 +54,7 @@ where
 /// What the integrator says of the initial state.
 pub fn begin<'a, S, const N: usize>(system: S, plan: &Plan, count: usize) -> Result<Box<dyn Exponents + 'a>, StepError>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;

@@ -4,7 +4,7 @@
 
 use clap::ValueEnum;
 use serde::Deserialize;
-use vi_core::{EnergyPreserving, EnergyPreservingGauss, Gauss, Scheme};
+use vi_core::Scheme;
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]

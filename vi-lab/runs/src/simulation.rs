@@ -217,15 +217,15 @@ where
     let state = State::at(&system, t, q, v);
     let counting = Counting::new(system, evaluations);
     match plan.method {
-        Method::Fixed => Ok(Run::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations)),
+        Method::Fixed => Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations)),
         Method::Suzuki4 => {
-            Ok(Run::boxed(counting.at_state(state).integrate(Composition::SUZUKI_4, plan.h)?, evaluations))
+            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::SUZUKI_4, plan.h)?, evaluations))
         }
         Method::KahanLi6 => {
-            Ok(Run::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_6, plan.h)?, evaluations))
+            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_6, plan.h)?, evaluations))
         }
         Method::KahanLi8 => {
-            Ok(Run::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_8, plan.h)?, evaluations))
+            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_8, plan.h)?, evaluations))
         }
         Method::Gauss => match (plan.stages.unwrap_or(USUAL_STAGES), plan.dtau) {
             (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
@@ -268,8 +268,8 @@ where
         let (t, q) = run.node().midpoint(-run.h(), &v);
         Ok((t, run.system().energy(t, &q, &v)))
     };
-    let run = Run::new(integrator.with_fallback(fallback(plan)), evaluations);
-    Ok(Box::new(Run { sampled_energy: in_the_middle, ..run }))
+    let run = Simulated::new(integrator.with_fallback(fallback(plan)), evaluations);
+    Ok(Box::new(Simulated { sampled_energy: in_the_middle, ..run }))
 }
 
 /// What is done where there is no energy-preserving step.
@@ -299,14 +299,14 @@ where
         Some(Shift::Of(shift)) => integrator.with_shift(shift)?,
         Some(Shift::Over(time)) => integrator.with_shift_from(time)?,
     };
-    let run = Run::new(integrator.with_fallback(fallback(plan)), evaluations);
+    let run = Simulated::new(integrator.with_fallback(fallback(plan)), evaluations);
     let count = |run: &Run<EnergyPreservingGauss<STAGES>, Called<S>, N>| u64::from(run.iterations()) * STAGES as u64;
     let shifted = |run: &Run<EnergyPreservingGauss<STAGES>, Called<S>, N>| ShiftedEnergy {
         energy: run.shifted_energy(),
         shift: run.shift(),
     };
     let shifted = plan.shift.map(|_| shifted as fn(&_) -> _);
-    Ok(Box::new(Run { uncounted: Some(count), shifted, ..run }))
+    Ok(Box::new(Simulated { uncounted: Some(count), shifted, ..run }))
 }
 
 /// Starts a run by Gauss steps of so many stages in scaled time.
@@ -323,10 +323,12 @@ where
     if !S::SCALES_TIME {
         return Err(StepError::NoTimeScale { system: S::NAME });
     }
-    let run =
-        Run::new(Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?, evaluations);
+    let run = Simulated::new(
+        Called(system).at_state(state).integrate(Gauss::<STAGES>.in_transformed_time(), dtau)?,
+        evaluations,
+    );
     let count = |run: &Run<InTransformedTime<Gauss<STAGES>>, Called<S>, N>| u64::from(run.iterations()) * STAGES as u64;
-    Ok(Box::new(Run { uncounted: Some(count), ..run }))
+    Ok(Box::new(Simulated { uncounted: Some(count), ..run }))
 }
 
 /// Starts a run by Gauss steps of so many stages.
@@ -339,9 +341,9 @@ fn gauss<'a, S, const N: usize, const STAGES: usize>(
 where
     S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
 {
-    let run = Run::new(system.at_state(state).integrate(Gauss::<STAGES>, h)?, evaluations);
+    let run = Simulated::new(system.at_state(state).integrate(Gauss::<STAGES>, h)?, evaluations);
     let count = |run: &Run<Gauss<STAGES>, S, N>| u64::from(run.iterations()) * STAGES as u64;
-    Ok(Box::new(Run { uncounted: Some(count), ..run }))
+    Ok(Box::new(Simulated { uncounted: Some(count), ..run }))
 }
 
 /// A vector of the system's size.
@@ -358,16 +360,16 @@ pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVe
     }
 }
 
-/// A run by an integrator.
-struct Run<'a, I, const N: usize> {
-    integrator: I,
+/// A run by a method, with what its rows need.
+struct Simulated<'a, M: vi_core::Method<S, N>, S, const N: usize> {
+    run: Run<M, S, N>,
     /// Time and H where the method keeps H best.
-    sampled_energy: fn(&I) -> Result<(f64, f64), StepError>,
+    sampled_energy: fn(&Run<M, S, N>) -> Result<(f64, f64), StepError>,
     evaluations: &'a Cell<u64>,
     /// The evaluations of the last step, where its system does not count them.
-    uncounted: Option<fn(&I) -> u64>,
+    uncounted: Option<fn(&Run<M, S, N>) -> u64>,
     /// What steps with a shift keep.
-    shifted: Option<fn(&I) -> ShiftedEnergy>,
+    shifted: Option<fn(&Run<M, S, N>) -> ShiftedEnergy>,
     /// Length of the last step, if it was shorter than those of the run.
     shortened: Option<f64>,
 }
@@ -375,95 +377,97 @@ struct Run<'a, I, const N: usize> {
 /// Part of a step by which its length may be off and it still counts as the next step of the run.
 const ROUNDED: f64 = 1e-9;
 
-impl<'a, I: Integrator<N> + 'a, const N: usize> Run<'a, I, N> {
+impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: usize> Simulated<'a, M, S, N> {
     /// A run whose system counts its evaluations, and which keeps H best at the nodes.
-    fn new(integrator: I, evaluations: &'a Cell<u64>) -> Self {
-        let at_the_node = |run: &I| Ok((run.t(), run.energy()?));
-        Self { integrator, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None, shortened: None }
+    fn new(run: Run<M, S, N>, evaluations: &'a Cell<u64>) -> Self {
+        let at_the_node = |run: &Run<M, S, N>| Ok((run.t(), run.energy()?));
+        Self { run, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None, shortened: None }
     }
 
     /// The same, its type erased.
-    fn boxed(integrator: I, evaluations: &'a Cell<u64>) -> Box<dyn Simulation + 'a> {
-        Box::new(Self::new(integrator, evaluations))
+    fn boxed(run: Run<M, S, N>, evaluations: &'a Cell<u64>) -> Box<dyn Simulation + 'a> {
+        Box::new(Self::new(run, evaluations))
     }
 
-    /// Adds the evaluations of the step that `integrator` took last.
-    fn count(&self, integrator: &I) {
+    /// Adds the evaluations of the last step of a run.
+    fn count(&self, run: &Run<M, S, N>) {
         if let Some(of_a_step) = self.uncounted {
-            self.evaluations.update(|count| count + of_a_step(integrator));
+            self.evaluations.update(|count| count + of_a_step(run));
         }
     }
 }
 
-impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
+impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: usize> Simulation
+    for Simulated<'a, M, S, N>
+{
     fn t(&self) -> f64 {
-        self.integrator.t()
+        self.run.t()
     }
 
     fn q(&self) -> &[f64] {
-        self.integrator.node().q.as_slice()
+        self.run.node().q.as_slice()
     }
 
     fn p(&self) -> &[f64] {
-        self.integrator.node().p.as_slice()
+        self.run.node().p.as_slice()
     }
 
     fn h(&self) -> f64 {
-        self.shortened.unwrap_or_else(|| self.integrator.h())
+        self.shortened.unwrap_or_else(|| self.run.h())
     }
 
     fn energy(&self) -> Result<f64, StepError> {
-        self.integrator.energy()
+        self.run.energy()
     }
 
     fn discrete_energy(&self) -> Option<f64> {
         // A step of another length is none of those whose energy is kept.
-        if self.shortened.is_some() { None } else { self.integrator.discrete_energy() }
+        if self.shortened.is_some() { None } else { self.run.discrete_energy() }
     }
 
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
-        self.shifted.map(|of| of(&self.integrator))
+        self.shifted.map(|of| of(&self.run))
     }
 
     fn sampled_energy(&self) -> Result<(f64, f64), StepError> {
-        (self.sampled_energy)(&self.integrator)
+        (self.sampled_energy)(&self.run)
     }
 
     fn advance(&mut self) -> Result<(), StepError> {
-        self.integrator.step_apart()?;
-        self.count(&self.integrator);
+        self.run.single_step()?;
+        self.count(&self.run);
         self.shortened = None;
         Ok(())
     }
 
     fn advance_to(&mut self, end: f64) -> Result<(), StepError> {
-        let (left, h) = (self.integrator.time_to(end), self.integrator.h());
+        let (left, h) = (self.run.time_to(end), self.run.h());
         let rounding = (f64::EPSILON * end.abs()).min(ROUNDED * h.abs());
         let is_beyond = |left: f64| left * h.signum() < -rounding;
-        if is_beyond(left - self.integrator.longest()) {
+        if is_beyond(left - self.run.longest()) {
             // Steps that find their length have to be taken to know it.
-            let ahead = if I::LONGEST > 1.0 { Some(self.integrator.after_a_step()?) } else { None };
+            let ahead = if M::FINDS_LENGTH { Some(self.run.after_a_step()?) } else { None };
             let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
-                self.integrator.end_at(end)?;
+                self.run.end_at(end)?;
                 self.shortened = Some(left);
                 return Ok(());
             };
-            self.integrator = ahead;
-            self.count(&self.integrator);
+            self.run = ahead;
+            self.count(&self.run);
         } else {
             self.advance()?;
         }
-        if self.integrator.time_to(end).abs() <= rounding {
-            self.integrator.set_time(end);
+        if self.run.time_to(end).abs() <= rounding {
+            self.run.set_time(end);
         }
         Ok(())
     }
 
     fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
-        let system = *self.integrator.system();
+        let system = *self.run.system();
         let value = |t: f64, q: &SVector<f64, N>, _: &SVector<f64, N>| section.value(t, q.as_slice());
         let wanted = [Event::new(&value, section.direction())];
-        for crossing in self.integrator.events(&wanted, end) {
+        for crossing in self.run.events(&wanted, end) {
             let Crossing { state, length, .. } = crossing?;
             take(Row {
                 t: state.t,
@@ -479,16 +483,16 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
     }
 
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
-        // The loop has an integrator of its own: behind a pointer its numbers would go through memory in every step.
-        let mut integrator = self.integrator.clone();
+        // The loop has a run of its own: behind a pointer its numbers would go through memory in every step.
+        let mut run = self.run.clone();
         let mut taken = 0;
         let mut outcome = Ok(());
-        while outcome.is_ok() && taken < most && integrator.t() < end {
-            outcome = integrator.step().map(drop);
-            self.count(&integrator);
+        while outcome.is_ok() && taken < most && run.t() < end {
+            outcome = run.step().map(drop);
+            self.count(&run);
             taken += 1;
         }
-        self.integrator = integrator;
+        self.run = run;
         outcome.map(|()| taken)
     }
 }

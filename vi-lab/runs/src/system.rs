@@ -14,7 +14,7 @@ use vi_core::collocation::Collocation;
 use vi_core::gauss::step_density;
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::{Convertible, EnergyStepping};
-use vi_core::{Called, Gauss, SVector, State, StepError};
+use vi_core::{Called, SVector, State, StepError};
 
 /// A system with its parameters.
 pub trait System: Send + Sync {

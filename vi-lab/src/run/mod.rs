@@ -31,7 +31,7 @@ pub(crate) use request::{Length, Request};
 use shift::Wanted;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
-use vi_core::{Gauss, StepError};
+use vi_core::StepError;
 use vi_report::failure::{Failure, advice};
 use vi_report::input::{count, number};
 use vi_report::interrupt::{Interrupt, Signal};

@@ -9,7 +9,7 @@ use crate::sweep::scene::Sweep;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use vi_core::{Gauss, StepError};
+use vi_core::StepError;
 use vi_report::catalogue;
 use vi_report::failure::Failure;
 use vi_report::input::number;

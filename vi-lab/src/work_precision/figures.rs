@@ -280,7 +280,7 @@ mod tests {
     use super::super::reference::Agreement;
     use super::super::study::Run;
     use super::*;
-    use vi_core::{Run, StepError};
+    use vi_core::StepError;
     use vi_runs::rival::Ended;
 
     /// Two runs of the energy-preserving integrator, off by 1e-12 and 1e-14, and one that ended.

@@ -4,7 +4,7 @@ use vi_core::derivatives::{Covector, Lyapunov, Objective, Tangent, Variation, gr
 use vi_core::lagrangian::Parameters;
 use vi_core::rules::{By, Trapezoidal};
 use vi_core::stepping::Batch;
-use vi_core::{lagrangian, Called, Composition, DiscreteLagrangian, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Lagrangian, Starts, State};
+use vi_core::{lagrangian, Called, Composition, DiscreteLagrangian, EnergyPreserving, EnergyPreservingGauss, FixedStep, Gauss, Lagrangian, Method, Starts, State};
 
 lagrangian! {
     struct Oscillator {
@@ -18,7 +18,7 @@ lagrangian! {
 
 struct End;
 
-impl<I> Objective<I, 1> for End {
+impl<M: Method<S, 1>, S> Objective<M, S, 1> for End {
     fn slope(&self, _: u64, _: &State<1>) -> Covector<1> {
         Covector::zero()
     }

@@ -1,4 +1,4 @@
-use vi_core::{Lagrangian, lagrangian};
+use vi_core::{lagrangian, Lagrangian};
 
 lagrangian! {
     pub struct Broken {

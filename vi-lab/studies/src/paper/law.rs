@@ -89,7 +89,7 @@ where
     let mut integrator = EnergyPreserving::from_points(system, (0.0, q0), second)?;
     let mut values = Vec::new();
     while integrator.state().t < UNTIL {
-        let step = integrator.step()?;
+        let step = integrator.detailed_step()?;
         let (t, q, v) = step.midpoint;
         values.push(step.h * root(system.step_density(t, &q, &v)?));
     }

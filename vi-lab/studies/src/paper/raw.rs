@@ -35,7 +35,7 @@ impl RawNode {
     pub(crate) fn first<S: EnergyStepping<1> + DiscreteLagrangian<1>>(
         integrator: &Run<EnergyPreserving, S, 1>,
     ) -> Self {
-        Self { state: integrator.state(), energy: integrator.discrete_energy(), h: integrator.h(), v: integrator.v().x }
+        Self { state: integrator.state(), energy: integrator.node().energy, h: integrator.h(), v: integrator.v().x }
     }
 
     /// The next node; none where there is no step, or the iteration leaves the numbers.
@@ -44,8 +44,10 @@ impl RawNode {
         system: &S,
         unknowns: Unknowns,
     ) -> Option<Self> {
-        let guess =
-            EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v]).ok()?.step().ok()?;
+        let guess = EnergyPreserving::from_state(system, self.state, self.energy, self.h, [self.v])
+            .ok()?
+            .detailed_step()
+            .ok()?;
         match unknowns {
             Unknowns::Points => self.polished(system, (guess.t, guess.q.x)),
             Unknowns::Velocity => self.polished_velocity(system, (guess.midpoint.2.x, guess.h)),
@@ -184,7 +186,7 @@ mod tests {
         let mut stepper = EnergyPreserving::from_midpoint(system, 0.0, [1.0], [0.0], 0.1).expect("a valid start");
         for _ in 0..20 {
             let before = RawNode::first(&stepper);
-            let step = stepper.step().expect("a step");
+            let step = stepper.detailed_step().expect("a step");
             // A guess that is wrong by a part in ten thousand.
             let guess = (before.state.t + step.h * 1.0001, before.state.q.x + step.h * step.midpoint.2.x);
             let found = before.polished(&system, guess).expect("a solution");

@@ -11,7 +11,7 @@
 
 use super::atlas::{Atlas, Axes, Labels};
 use super::ending::{Course, Ending, LASTING, Limit, UNBOUNDED};
-use vi_core::{Scheme, Starts, State};
+use vi_core::{Composition, Scheme, Starts, State};
 use vi_report::chart::{Axis, Chart, Class, Look, Series, boundary};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
@@ -159,11 +159,36 @@ fn limit(stable: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
+/// Evaluates an expression for the composition of a scheme, whose number of substeps is part of its type.
+macro_rules! composed {
+    ($scheme:expr, $method:ident => $value:expr) => {
+        match $scheme.weights.len() {
+            3 => {
+                let $method = Composition::TRIPLE_JUMP_4;
+                $value
+            }
+            5 => {
+                let $method = Composition::SUZUKI_4;
+                $value
+            }
+            9 => {
+                let $method = Composition::KAHAN_LI_6;
+                $value
+            }
+            _ => {
+                let $method = Composition::KAHAN_LI_8;
+                $value
+            }
+        }
+    };
+}
+
 /// The factor of the speed over one step of `a = −c v`; none where the step fails.
 fn after_one_step(scheme: Scheme, ch: f64) -> Option<f64> {
     let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
     let start = State::at(&system, 0.0, [0.0], [1.0]);
-    Some(system.at_state(start).integrate(scheme, 1.0).ok()?.step().ok()?.p.x.abs())
+    let end = composed!(scheme, method => system.at_state(start).integrate(method, 1.0).ok()?.step().ok()?);
+    Some(end.p.x.abs())
 }
 
 /// Whether one step of `a = −c v` does not make the speed larger.
@@ -176,14 +201,14 @@ fn class(scheme: Scheme, ch: f64, h_omega: f64) -> Class {
     let system = DampedOscillator { m: 1.0, k: h_omega * h_omega, c: ch };
     let limit = Limit { steps: STEPS, until: f64::INFINITY, bound: BOUND };
     let state = State::at(&system, 0.0, [1.0], [0.0]);
-    let course = system.at_state(state).integrate(scheme, 1.0).map(|mut run| {
+    let measure = |state: State<1>| {
         // Displacement and momentum both: at an extreme one of them vanishes.
-        Course::of(limit, || {
-            run.step().map(|state| {
-                let size = state.q.x.hypot(state.p.x);
-                (if size < REST { f64::INFINITY } else { state.t }, size)
-            })
-        })
+        let size = state.q.x.hypot(state.p.x);
+        (if size < REST { f64::INFINITY } else { state.t }, size)
+    };
+    let start = system.at_state(state);
+    let course = composed!(scheme, method => {
+        start.integrate(method, 1.0).map(|mut run| Course::of(limit, || run.step().map(measure)))
     });
     match course.map_or_else(Ending::Failing, |course| course.ending) {
         Ending::Lasting => DECAYS,

@@ -78,8 +78,10 @@ fn ended(zeta: f64, h0: f64) -> (f64, f64) {
 /// Time and relative length of the steps up to t = 100, or to the end.
 fn lengths(zeta: f64) -> Vec<(f64, f64)> {
     let h0 = 0.01;
-    let run = EnergyPreserving::from_midpoint(oscillator(zeta), 0.0, [1.0], [0.0], h0);
-    let steps = run.into_iter().flatten().map_while(Result::ok).take(200_000);
+    let Ok(mut run) = EnergyPreserving::from_midpoint(oscillator(zeta), 0.0, [1.0], [0.0], h0) else {
+        return Vec::new();
+    };
+    let steps = run.detailed_steps().map_while(Result::ok).take(200_000);
     steps.take_while(|step| step.t < 100.0).map(|step| (step.t, step.h / h0)).collect()
 }
 

@@ -70,7 +70,7 @@ fn rung(h0: f64) -> Result<Rung, StepError> {
     let q0 = SVector::from([Q0]);
     let second = second_point(&system, 0.0, q0, SVector::zeros(), h0)?;
     let mut run = EnergyPreserving::from_points(system, (0.0, q0), second)?;
-    let energy = run.discrete_energy();
+    let energy = run.node().energy;
     let [points, velocity] = [Unknowns::Points, Unknowns::Velocity].map(|unknowns| {
         let mut node = Some(RawNode::first(&run));
         let mut worst = 0.0_f64;
@@ -82,7 +82,7 @@ fn rung(h0: f64) -> Result<Rung, StepError> {
     });
     let mut scaled = 0.0_f64;
     for _ in 0..STEPS {
-        let (t, q, v) = run.step()?.midpoint;
+        let (t, q, v) = run.detailed_step()?.midpoint;
         scaled = scaled.max((system.energy(t, &q, &v) - energy).abs());
     }
     Ok(Rung { h0, points, velocity, scaled })

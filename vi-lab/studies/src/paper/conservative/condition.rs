@@ -69,7 +69,7 @@ fn along(case: Case, length: u32) -> Result<Vec<Condition>, StepError> {
     for _ in 0..length {
         let node = *integrator.node();
         let before = integrator.h();
-        let step = integrator.step()?;
+        let step = integrator.detailed_step()?;
         let (_, _, v) = step.midpoint;
         let equations = system.extended_system(&node, step.h, &v);
         numbers.push(Condition::of(&equations, step.h, &v, before));

@@ -1,7 +1,7 @@
 //! The discrete energy error of both integrators.
 
 use super::super::book::{Book, Verdict};
-use super::runs::{Run, Track};
+use super::runs::{Pair, Track};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::scientific;
@@ -11,7 +11,7 @@ use vi_report::table::Table;
 const PUBLISHED: f64 = 1e-14;
 
 /// The section: the error over some oscillations, its growth over the long run, and a table.
-pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
+pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
     book.section("Discrete energy");
     book.prose(
         "The discrete energy <i>E<sub>k</sub></i> = −<i>D</i><sub>3</sub><i>L<sub>d</sub></i> is what the integrator \
@@ -48,7 +48,7 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
 }
 
 /// The fixed step's error is bounded, and of second order.
-fn fixed_claim(book: &mut Book, runs: &[Run]) {
+fn fixed_claim(book: &mut Book, runs: &[Pair]) {
     let ratios: Vec<String> = runs
         .chunks(2)
         .filter_map(|pair| match pair {
@@ -70,7 +70,7 @@ fn fixed_claim(book: &mut Book, runs: &[Run]) {
 }
 
 /// The error over the first oscillations on a linear axis.
-fn oscillation(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
+fn oscillation(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
     for run in runs.iter().filter(|run| run.case.h0 > 0.05) {
         let name = if run.case.q0 < 0.9 { "energy-0.74" } else { "energy-0.995" };
         let points = |track: &Track| track.samples.iter().map(|sample| (sample.t, sample.error)).collect();
@@ -97,7 +97,7 @@ fn oscillation(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
 }
 
 /// The largest error so far against the iteration, both logarithmic.
-fn growth(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
+fn growth(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
     for (pair, name) in runs.chunks(2).zip(["energy-growth-0.74", "energy-growth-0.995"]) {
         let mut series = Vec::new();
         for run in pair {

@@ -66,13 +66,13 @@ impl Rung {
         let mut integrator = case.start()?;
         let system = *integrator.system();
         let state = integrator.state();
-        let e1 = integrator.discrete_energy();
+        let e1 = integrator.node().energy;
         let length = steps(case.h0, study);
         let mut raw = Some(RawNode::first(&integrator));
         let mut rung = Self { h0: case.h0, energy: 0.0, raw: 0.0, steps: (case.h0, case.h0), trajectory: None };
         let mut adaptive = None;
         for _ in 0..length {
-            let step = integrator.step()?;
+            let step = integrator.detailed_step()?;
             let (t, q, v) = step.midpoint;
             rung.energy = rung.energy.max((system.energy(t, &q, &v) - e1).abs());
             rung.steps = extremes([rung.steps.0, rung.steps.1, step.h]);

@@ -12,7 +12,7 @@ mod step_length;
 
 use super::book::Book;
 use super::{Study, unexpected};
-use runs::{Case, Run};
+use runs::{Case, Pair};
 use vi_report::failure::Failure;
 use vi_report::page::math::{frac, id, num, op, row, sup};
 use vi_report::progress::Progress;
@@ -30,7 +30,7 @@ pub(super) fn chapter(book: &mut Book, study: Study, progress: &mut Progress) ->
     let mut runs = Vec::new();
     for case in CASES {
         progress.message(format!("double well, {}", case.label()));
-        runs.push(Run::of(case, study.steps, progress).map_err(unexpected("double well"))?);
+        runs.push(Pair::of(case, study.steps, progress).map_err(unexpected("double well"))?);
     }
     book.section("A particle in a double well");
     let half_v2 = row(&[frac(&num("1"), &num("2")), id("m"), sup(&id("v"), &num("2"))]);

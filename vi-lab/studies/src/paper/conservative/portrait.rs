@@ -1,7 +1,7 @@
 //! Phase portraits of both integrators, with the level sets of H behind.
 
 use super::super::book::Book;
-use super::runs::{Run, Sample};
+use super::runs::{Pair, Sample};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 
@@ -38,7 +38,7 @@ const PORTRAITS: [Portrait; 2] = [
 const FINENESS: u32 = 400;
 
 /// The section: one portrait per amplitude, at the larger step, where a difference could be seen.
-pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
+pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
     book.section("Phase portraits");
     book.prose(
         "Both integrators are symplectic, and both stay on a closed curve. They differ in where they put their points: the \
@@ -53,7 +53,7 @@ pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn figure(book: &mut Book, portrait: &Portrait, run: &Run) -> Result<(), Failure> {
+fn figure(book: &mut Book, portrait: &Portrait, run: &Pair) -> Result<(), Failure> {
     let points = |samples: &[Sample]| {
         let oscillation = samples.iter().take_while(|sample| sample.t < portrait.until);
         oscillation.map(|sample| (sample.q, sample.v)).collect::<Vec<_>>()

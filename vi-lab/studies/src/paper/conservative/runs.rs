@@ -1,6 +1,6 @@
 //! The long runs of the four cases, by both integrators from the same first interval.
 //!
-//! In: a [`Case`]. Out: a [`Run`]: samples of the beginning, the growth of the energy error over the whole run.
+//! In: a [`Case`]. Out: a [`Pair`]: samples of the beginning, the growth of the energy error over the whole run.
 
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, SVector, Starts, StepError};
 use vi_report::progress::Progress;
@@ -51,7 +51,7 @@ pub(super) struct Track {
 
 /// Both runs of a case.
 #[derive(Clone, Debug)]
-pub(super) struct Run {
+pub(super) struct Pair {
     /// Amplitude and initial step.
     pub(super) case: Case,
     /// The energy-preserving integrator.
@@ -75,16 +75,16 @@ impl Case {
     }
 }
 
-impl Run {
+impl Pair {
     /// Runs both integrators over `steps` steps.
     pub(super) fn of(case: Case, steps: u32, progress: &mut Progress) -> Result<Self, StepError> {
         let mut integrator = case.start()?;
         let system = *integrator.system();
         let state = integrator.state();
-        let energy = integrator.discrete_energy();
+        let energy = integrator.node().energy;
         let mut adaptive = Track::new(case.h0);
         for index in 1..=steps {
-            let step = integrator.step()?;
+            let step = integrator.detailed_step()?;
             let (t, q, v) = step.midpoint;
             let error = system.energy(t, &q, &v) - energy;
             adaptive.take(index, Sample { t, q: q.x, v: v.x, h: step.h, error }, step.iterations);

@@ -2,7 +2,7 @@
 
 use super::super::book::{Book, Verdict};
 use super::super::unexpected;
-use super::runs::Run;
+use super::runs::Pair;
 use vi_core::{Lagrangian, Run, SVector};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
@@ -10,7 +10,7 @@ use vi_report::page::math::{frac, id, num, op, row, sub, sup};
 use vi_systems::DoubleWell;
 
 /// The section: h/h0 against the iteration, with the step law over it.
-pub(super) fn section(book: &mut Book, runs: &[Run]) -> Result<(), Failure> {
+pub(super) fn section(book: &mut Book, runs: &[Pair]) -> Result<(), Failure> {
     book.section("Step length");
     book.prose(
         "The step length is a function of the place on the orbit. The paper observes that it oscillates with the motion; \
@@ -67,12 +67,12 @@ fn law() -> String {
     [h(id("k")), op("="), h(num("0")), sup(&ratio, &third), op("("), correction, op(")")].concat()
 }
 
-fn computed(run: &Run) -> Vec<(f64, f64)> {
+fn computed(run: &Pair) -> Vec<(f64, f64)> {
     run.energy.samples.iter().zip(1_u32..).map(|(sample, k)| (f64::from(k), sample.h / run.case.h0)).collect()
 }
 
 /// `(D_1/D_k)^{1/3}`, scaled to the first step.
-fn predicted(run: &Run) -> Result<Vec<(f64, f64)>, Failure> {
+fn predicted(run: &Pair) -> Result<Vec<(f64, f64)>, Failure> {
     let system = DoubleWell::default();
     let mut first = None;
     let mut points = Vec::new();

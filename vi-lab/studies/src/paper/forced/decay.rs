@@ -2,7 +2,7 @@
 
 use super::super::book::{Book, Verdict};
 use super::super::unexpected;
-use super::oscillator::{OMEGA, Run, Sample, energy_preserving, exact, exact_energy, fixed};
+use super::oscillator::{OMEGA, Sample, Sampled, energy_preserving, exact, exact_energy, fixed};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::numbers::scientific;
@@ -30,7 +30,7 @@ pub(super) fn section(book: &mut Book) -> Result<(), Failure> {
     energy_error(book, &adaptive, &constant)
 }
 
-fn pairs(run: &Run, value: impl Fn(&Sample) -> f64) -> Vec<(f64, f64)> {
+fn pairs(run: &Sampled, value: impl Fn(&Sample) -> f64) -> Vec<(f64, f64)> {
     run.samples.iter().map(|sample| (sample.t, value(sample))).collect()
 }
 
@@ -38,7 +38,7 @@ fn curve(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     (0..=FINENESS).map(|index| UNTIL * f64::from(index) / f64::from(FINENESS)).map(|t| (t, value(t))).collect()
 }
 
-fn trajectory(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Failure> {
+fn trajectory(book: &mut Book, adaptive: &Sampled, constant: &Sampled) -> Result<(), Failure> {
     let chart = Chart {
         name: "damped-trajectory",
         title: format!("Damped trajectory, ζ = {ZETA}"),
@@ -62,7 +62,7 @@ fn trajectory(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Fai
     )
 }
 
-fn error(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Failure> {
+fn error(book: &mut Book, adaptive: &Sampled, constant: &Sampled) -> Result<(), Failure> {
     let distance = |sample: &Sample| {
         let (q, v) = exact(ZETA, sample.t);
         (sample.q - q).hypot((sample.v - v) / OMEGA)
@@ -86,7 +86,7 @@ fn error(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Failure>
     )
 }
 
-fn energy(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Failure> {
+fn energy(book: &mut Book, adaptive: &Sampled, constant: &Sampled) -> Result<(), Failure> {
     let chart = Chart {
         name: "damped-energy",
         title: format!("Energy of the damped oscillator, ζ = {ZETA}"),
@@ -102,7 +102,7 @@ fn energy(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Failure
     book.figure(&chart, "Computed and exact energy on a logarithmic axis: both decay as e<sup>−2<i>ζωt</i></sup>.")
 }
 
-fn energy_error(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), Failure> {
+fn energy_error(book: &mut Book, adaptive: &Sampled, constant: &Sampled) -> Result<(), Failure> {
     let relative = |sample: &Sample| sample.energy / exact_energy(ZETA, sample.t) - 1.0;
     let chart = Chart {
         name: "damped-energy-error",
@@ -116,8 +116,8 @@ fn energy_error(book: &mut Book, adaptive: &Run, constant: &Run) -> Result<(), F
         ],
     };
     let largest = |largest: f64, error: f64| largest.max(error.abs());
-    let last = |run: &Run| run.samples.iter().rev().take(200).map(relative).fold(0.0, largest);
-    let early = |run: &Run| run.samples.iter().take(400).map(relative).fold(0.0, largest);
+    let last = |run: &Sampled| run.samples.iter().rev().take(200).map(relative).fold(0.0, largest);
+    let early = |run: &Sampled| run.samples.iter().take(400).map(relative).fold(0.0, largest);
     book.figure(
         &chart,
         &format!(

@@ -2,7 +2,7 @@
 
 use super::super::book::{Book, Verdict};
 use super::super::unexpected;
-use super::oscillator::{OMEGA, Run, energy_preserving};
+use super::oscillator::{OMEGA, Sampled, energy_preserving};
 use super::{DAMPING, H0};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
@@ -64,12 +64,12 @@ pub(super) fn negative(book: &mut Book) -> Result<(), Failure> {
 }
 
 /// h/h0 of the step that passes a time.
-fn ratio_at(run: &Run, t: f64) -> f64 {
+fn ratio_at(run: &Sampled, t: f64) -> f64 {
     run.samples.iter().find(|sample| sample.t >= t).map_or(f64::NAN, |sample| sample.h / H0)
 }
 
 /// Largest relative deviation from the law up to a time.
-fn deviation(zeta: f64, run: &Run, until: f64) -> f64 {
+fn deviation(zeta: f64, run: &Sampled, until: f64) -> f64 {
     let relative = |t: f64, h: f64| (h / (H0 * (zeta * OMEGA * t).exp()) - 1.0).abs();
     run.samples
         .iter()
@@ -79,7 +79,13 @@ fn deviation(zeta: f64, run: &Run, until: f64) -> f64 {
 }
 
 /// h/h0 against t, with the law over it.
-fn in_time(book: &mut Book, runs: &[(f64, Run)], until: f64, name: &'static str, title: &str) -> Result<(), Failure> {
+fn in_time(
+    book: &mut Book,
+    runs: &[(f64, Sampled)],
+    until: f64,
+    name: &'static str,
+    title: &str,
+) -> Result<(), Failure> {
     let mut series = Vec::new();
     for ((zeta, run), look) in runs.iter().zip(Look::OTHERS) {
         let points = run.samples.iter().take_while(|sample| sample.t <= until).map(|sample| (sample.t, sample.h / H0));
@@ -107,7 +113,7 @@ fn in_time(book: &mut Book, runs: &[(f64, Run)], until: f64, name: &'static str,
 }
 
 /// h against the iteration, to the last step.
-fn to_the_end(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
+fn to_the_end(book: &mut Book, runs: &[(f64, Sampled)]) -> Result<(), Failure> {
     let mut series = Vec::new();
     for ((zeta, run), look) in runs.iter().zip(Look::OTHERS) {
         let points = run.samples.iter().zip(1_u32..).map(|(sample, k)| (f64::from(k), sample.h)).collect();
@@ -128,7 +134,7 @@ fn to_the_end(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
     )
 }
 
-fn table(book: &mut Book, runs: &[(f64, Run)]) -> Result<(), Failure> {
+fn table(book: &mut Book, runs: &[(f64, Sampled)]) -> Result<(), Failure> {
     let head = ["ζ", "h/h₀ at t = 100", "exp(ζωt)", "last step", "1/(ζωh₀)", "last h", "how it ends"];
     let mut table = Table::new("step-growth-table", head);
     let mut ends = Vec::new();

@@ -24,7 +24,7 @@ pub(super) struct Sample {
 
 /// A run, and how it ended.
 #[derive(Clone, Debug)]
-pub(super) struct Run {
+pub(super) struct Sampled {
     /// The nodes.
     pub(super) samples: Vec<Sample>,
     /// The error that ended it; none where it was long enough.
@@ -57,35 +57,34 @@ pub(super) fn start(zeta: f64) -> Result<Run<EnergyPreserving, DampedOscillator,
 }
 
 /// The energy-preserving run until a time is passed, the steps are used up, or a step fails.
-pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Run, StepError> {
-    let integrator = start(zeta)?;
+pub(super) fn energy_preserving(zeta: f64, until: f64, most: u32) -> Result<Sampled, StepError> {
+    let mut integrator = start(zeta)?;
     let state = integrator.state();
-    let mut samples =
-        vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: integrator.discrete_energy(), h: H0 }];
-    for step in integrator.take(usize::try_from(most).unwrap_or(usize::MAX)) {
+    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: integrator.node().energy, h: H0 }];
+    for step in integrator.detailed_steps().take(usize::try_from(most).unwrap_or(usize::MAX)) {
         match step {
             Ok(step) => samples.push(Sample { t: step.t, q: step.q.x, v: step.p.x, energy: step.energy, h: step.h }),
-            Err(error) => return Ok(Run { samples, end: Some(error) }),
+            Err(error) => return Ok(Sampled { samples, end: Some(error) }),
         }
         if samples.last().is_some_and(|sample| sample.t > until) {
             break;
         }
     }
-    Ok(Run { samples, end: None })
+    Ok(Sampled { samples, end: None })
 }
 
 /// The fixed-step run from the same first interval.
-pub(super) fn fixed(zeta: f64, until: f64) -> Result<Run, StepError> {
+pub(super) fn fixed(zeta: f64, until: f64) -> Result<Sampled, StepError> {
     let first = start(zeta)?;
     let state = first.state();
-    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: first.discrete_energy(), h: H0 }];
+    let mut samples = vec![Sample { t: state.t, q: state.q.x, v: state.p.x, energy: first.node().energy, h: H0 }];
     let mut integrator = system(zeta).at_state(state).integrate(FixedStep, H0)?;
     while integrator.state().t <= until {
         let state = integrator.step()?;
         let energy = integrator.discrete_energy().unwrap_or(f64::NAN);
         samples.push(Sample { t: state.t, q: state.q.x, v: state.p.x, energy, h: H0 });
     }
-    Ok(Run { samples, end: None })
+    Ok(Sampled { samples, end: None })
 }
 
 #[cfg(test)]
