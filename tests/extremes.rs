@@ -3,8 +3,8 @@
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{
-    EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, SVector, Starts, State, StepError,
-    lagrangian, run::Checkpoint,
+    EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Lagrangian, Run, SVector, Starts, State,
+    StepError, lagrangian, run::Checkpoint,
 };
 use vi_systems::{HarmonicOscillator, Pendulum};
 
