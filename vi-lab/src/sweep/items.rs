@@ -7,12 +7,10 @@
 use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
+use super::schema::MOST;
 use vi_report::failure::Failure;
 use vi_runs::plan::Plan;
 use vi_runs::system::System;
-
-/// Items are counted in columns of numbers.
-const MOST: u64 = 1 << 53;
 
 /// All runs of a sweep.
 #[derive(Clone, Debug, PartialEq)]

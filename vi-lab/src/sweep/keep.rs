@@ -1,10 +1,10 @@
 //! What is kept of each run, and in which columns.
 //!
-//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Shape`]s of its tables.
+//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Schema`]s of its tables.
 
 use super::ending::Ending;
 use super::scene::{Cut, Keep, Passing, Sweep};
-use super::shape::{Column, Shape};
+use super::schema::{Column, Schema};
 use vi_core::integrator::Direction;
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
@@ -44,7 +44,7 @@ impl Kept {
     }
 
     /// The tables: one with a row for each run, then those that are asked for.
-    pub(super) fn shapes<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Shape> {
+    pub(super) fn schemas<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Schema> {
         let item = || Column::count("item");
         let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();
         if self.has(Keep::Ending) {
@@ -61,17 +61,17 @@ impl Kept {
         if self.has(Keep::Energy) {
             runs.extend(["error_H", "error_E"].map(Column::number));
         }
-        let mut shapes = vec![Shape { suffix: String::new(), columns: runs }];
+        let mut schemas = vec![Schema { table: "runs".to_owned(), columns: runs }];
         let nodes: Vec<Column> = core::iter::once(item()).chain(rows.into_iter().map(Column::number)).collect();
         if self.section.is_some() {
             // A crossing is no node: it has no discrete energies and no h.
             let columns = nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }].to_vec();
-            shapes.push(Shape { suffix: "section".to_owned(), columns });
+            schemas.push(Schema { table: "section".to_owned(), columns });
         }
         if self.has(Keep::Series) {
-            shapes.push(Shape { suffix: "series".to_owned(), columns: nodes });
+            schemas.push(Schema { table: "series".to_owned(), columns: nodes });
         }
-        shapes
+        schemas
     }
 
     /// In words.

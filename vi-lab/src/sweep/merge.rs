@@ -1,12 +1,10 @@
-//! Parts put together.
+//! Merges parts into tables.
 //!
-//! In: the parts of a sweep. Out: its tables: first the rows of shard 0, then those of shard 1, and so on, each in the order of its chunks, which is that of
-//! the runs; so they are the same bytes however the sweep was divided.
+//! In: the parts of a sweep. Out: its tables, with the rows in the order of the runs. So they are the same bytes however the sweep was divided.
 
-use super::part::Part;
+use super::part::{Description, Part};
 use super::sink::{Format, Target};
 use clap::Args;
-use std::fs;
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
 
@@ -16,9 +14,9 @@ const MOST_NAMES: usize = 5;
 /// The command line of `vi-lab merge`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-The parts must be all shards of one sweep, each of them whole. What is wrong with them is told, with exit status 2, and nothing is written. The parts stay.")]
+The parts must be all shards of one sweep, each with all its runs. Otherwise a message names what is wrong, the exit status is 2, and nothing is written. The parts stay.")]
 pub(crate) struct Arguments {
-    /// Parts that `vi-lab sweep --shard` has written
+    /// Folders that `vi-lab sweep --shard` has written
     #[arg(value_name = "PART", required = true)]
     parts: Vec<PathBuf>,
     /// File to write, .csv, .npy or .parquet; tables of series and sections go beside it
@@ -26,118 +24,101 @@ pub(crate) struct Arguments {
     output: PathBuf,
 }
 
-/// Puts parts together, and says what came of it.
+/// Merges parts, and returns a summary.
 ///
 /// # Errors
-/// [`Failure::Input`] where the parts are not all of one sweep, [`Failure::File`] where a file cannot be read or written.
+/// [`Failure::Input`] if the parts are not all of one sweep or have changed, [`Failure::File`] if a file cannot be read or written.
 pub(crate) fn merge(arguments: &Arguments) -> Result<String, Failure> {
     Format::of(&arguments.output)?;
-    let mut parts: Vec<Part> = arguments.parts.iter().map(|path| Part::read(path)).collect::<Result<_, _>>()?;
-    parts.sort_by_key(|part| part.heading().shard.index);
-    check(&parts).map_err(Failure::Input)?;
+    let mut parts: Vec<Part> = arguments.parts.iter().map(|folder| Part::open(folder)).collect::<Result<_, _>>()?;
+    parts.sort_by_key(|part| part.heading.shard.index);
+    check(&parts)?;
     write(&parts, &arguments.output)
 }
 
-/// Whether the parts are all of one sweep.
-fn check(parts: &[Part]) -> Result<(), String> {
-    let Some(first) = parts.first() else { return Err("there are no parts".to_owned()) };
-    let count = first.heading().shard.count;
-    let shown = |part: &Part| part.path().display().to_string();
+/// Whether parts, in the order of their shards, are all of one sweep.
+fn check(parts: &[Part]) -> Result<(), Failure> {
+    let wrong = |message: String| Err(Failure::Input(message));
+    let [first, ..] = parts else { return wrong("there are no parts".to_owned()) };
+    let shown = |part: &Part| part.folder.display().to_string();
+    let count = first.heading.shard.count;
+    let mut previous: Option<&Part> = None;
     for part in parts {
-        if let Some((name, here, there)) = first.heading().study.difference(&part.heading().study) {
-            return Err(format!(
-                "{} and {} are of different sweeps, by their {name}: {here} there, {there} here",
-                shown(first),
-                shown(part)
+        let (one, other, shard) = (shown(first), shown(part), part.heading.shard);
+        if let Some((name, here, there)) = first.heading.sweep.difference(&part.heading.sweep) {
+            return wrong(format!(
+                "{one} and {other} are of different sweeps, by their {name}: {here} there, {there} here"
             ));
         }
-        if part.heading().shard.count != count {
-            let (one, other) = (first.heading().shard, part.heading().shard);
-            return Err(format!(
-                "{} is shard {one} and {} is shard {other}: the parts of a sweep are one of as many",
-                shown(first),
-                shown(part)
-            ));
+        if shard.count != count {
+            let first = first.heading.shard;
+            return wrong(format!("{one} is shard {first} and {other} is shard {shard}: name shards I/{count} only"));
         }
+        if let Some(previous) = previous.filter(|previous| previous.heading.shard == shard) {
+            return wrong(format!("{} and {other} are both shard {shard}", shown(previous)));
+        }
+        previous = Some(part);
     }
-    for pair in parts.windows(2) {
-        if pair[0].heading().shard == pair[1].heading().shard {
-            return Err(format!(
-                "{} and {} are both shard {}",
-                shown(&pair[0]),
-                shown(&pair[1]),
-                pair[0].heading().shard
-            ));
-        }
-    }
-    let is_there = |index: &u64| parts.binary_search_by_key(index, |part| part.heading().shard.index).is_ok();
+    let is_there = |index: &u64| parts.binary_search_by_key(index, |part| part.heading.shard.index).is_ok();
     let missing: Vec<String> = (0..count)
         .filter(|index| !is_there(index))
         .take(MOST_NAMES + 1)
         .map(|index| format!("{index}/{count}"))
         .collect();
     if !missing.is_empty() {
-        return Err(format!("not all shards are there: {} missing", listed(&missing)));
+        return wrong(format!("not all shards are there: {} missing", listed(&missing)));
     }
-    let begun: Vec<String> = parts.iter().filter(|part| !part.missing().is_empty()).map(unfinished).collect();
+    let mut begun = Vec::new();
+    for part in parts {
+        let (present, chunks) = (part.present()?, part.heading.chunks());
+        if present < chunks {
+            begun.push(format!("{} has {present} of {chunks} chunks", shown(part)));
+        }
+    }
     if begun.is_empty() {
-        Ok(())
-    } else {
-        Err(format!("not all runs are there: {}; `vi-lab sweep` goes on with them", listed(&begun)))
+        return Ok(());
     }
+    wrong(format!("not all runs are there: {}; `vi-lab sweep` goes on with them", listed(&begun)))
 }
 
-/// How far a part came.
-fn unfinished(part: &Part) -> String {
-    let chunks = part.heading().chunks();
-    let done = chunks - part.missing().len() as u64;
-    format!("{} has {done} of {chunks} chunks", part.path().display())
-}
-
-/// Some names.
+/// The first names.
 fn listed(names: &[String]) -> String {
     let more = if names.len() > MOST_NAMES { ", …" } else { "" };
     names.iter().take(MOST_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ") + more
 }
 
-/// Writes the tables of parts that are whole and in their order, and says what is in them.
+/// Writes the tables of parts in the order of their shards, and returns a summary.
 ///
 /// # Errors
-/// [`Failure::File`] where a file cannot be read or written.
+/// [`Failure::Input`] if a part has changed, [`Failure::File`] if a file cannot be read or written.
 pub(super) fn write(parts: &[Part], output: &Path) -> Result<String, Failure> {
-    let Some(first) = parts.first() else { return Ok(String::new()) };
-    let study = &first.heading().study;
+    let Some(Description { schemas, items, .. }) = parts.first().map(|first| &first.heading.sweep) else {
+        return Ok(String::new());
+    };
+    let description = &parts[0].heading.sweep;
     let mut targets = Vec::new();
-    for (table, shape) in study.shapes.iter().enumerate() {
-        let rows = parts.iter().map(|part| part.rows(table)).sum();
-        let mut target = Target::create(&named(output, &shape.suffix), study, shape, rows)?;
-        for numbers in parts.iter().flat_map(|part| part.table(table)) {
-            target.write(&numbers?)?;
-        }
-        targets.push(target);
+    for (index, schema) in schemas.iter().enumerate() {
+        // `study.series.csv` beside `study.csv`.
+        let extension = output.extension().unwrap_or_default().to_string_lossy();
+        let other = || output.with_extension(format!("{}.{extension}", schema.table));
+        targets.push(Target::create(if index == 0 { output.to_owned() } else { other() }, description, schema)?);
     }
-    targets.into_iter().try_for_each(Target::finish)?;
-    Ok(summary(output, study.items, parts.iter().map(Part::failed).sum()))
+    let mut failed = 0;
+    for part in parts {
+        failed += part.read(&mut |table, row| targets[table].write(row))?;
+    }
+    // All or none: no table is replaced before all of them are on the disk.
+    let files = targets.into_iter().map(Target::finish).collect::<Result<Vec<_>, _>>()?;
+    for (path, file) in files {
+        file.finish().map_err(|error| Failure::file(path, error))?;
+    }
+    Ok(summary(output, *items, failed))
 }
 
-/// What a user is told at the end.
+/// What the command prints at the end.
 pub(super) fn summary(path: &Path, runs: u64, failed: u64) -> String {
     let ended =
         if failed == 0 { "all reached their end".to_owned() } else { format!("{failed} did not reach their end") };
     let runs = if runs == 1 { "1 run".to_owned() } else { format!("{runs} runs") };
     format!("{}: {runs}, {ended}", path.display())
-}
-
-/// The file of a table: `study.series.csv` beside `study.csv`.
-fn named(output: &Path, suffix: &str) -> PathBuf {
-    let extension = output.extension().unwrap_or_default().to_string_lossy();
-    if suffix.is_empty() { output.to_owned() } else { output.with_extension(format!("{suffix}.{extension}")) }
-}
-
-/// Removes a part whose rows stand in tables.
-///
-/// # Errors
-/// [`Failure::File`] where it cannot be removed.
-pub(super) fn remove(part: &Path) -> Result<(), Failure> {
-    fs::remove_file(part).map_err(|error| Failure::file(part, error))
 }

@@ -23,18 +23,20 @@ pub(crate) mod merge;
 mod part;
 mod random;
 pub(crate) mod scene;
-mod shape;
+mod schema;
 mod shard;
 mod sink;
 mod study;
 
-use crate::place::beside;
+use crate::place::{beside, sync_folder};
 use clap::Args;
-use part::Growing;
+use part::Part;
 use shard::Shard;
 use sink::Format;
 use std::env;
 use std::path::PathBuf;
+use std::slice;
+use std::sync::Arc;
 use study::Study;
 use vi_report::failure::Failure;
 
@@ -74,16 +76,18 @@ pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
     let study = Study::read(scene)?;
     Format::of(output)?;
     let Shard { index, count } = shard.unwrap_or(Shard::WHOLE);
-    let path = beside(output, &format!("{index}-of-{count}.part"));
+    let folder = beside(output, &format!("{index}-of-{count}.part"));
     let heading = study.heading(Shard { index, count });
-    let mut growing = Growing::resume(&path, &heading)?;
-    crew::work(study, &mut growing)?;
-    growing.settle()?;
-    let Growing { part, .. } = growing;
+    let part = Arc::new(Part::resume(&folder, heading)?);
+    crew::work(study, &part)?;
     if shard.is_some() {
-        return Ok(merge::summary(&path, part.rows(0), part.failed()));
+        let failed = part.read(&mut |_, _| Ok(()))?;
+        sync_folder(&folder);
+        return Ok(merge::summary(&folder, part.heading.runs(), failed));
     }
-    let summary = merge::write(&[part], output)?;
-    merge::remove(&path)?;
+    let summary = merge::write(slice::from_ref(&*part), output)?;
+    // The chunks go when the tables are on the disk.
+    sync_folder(output.parent().unwrap_or(output));
+    part.remove()?;
     Ok(summary)
 }

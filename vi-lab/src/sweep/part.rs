@@ -1,114 +1,125 @@
-//! The file in which a shard stands while it is made, and until it is put together with the others.
+//! The folder of a shard while its sweep is under way: a heading, and one CSV file for each chunk of runs.
 //!
-//! In: a [`Heading`] and [`Chunk`]s, in the order in which they are finished. Out: the file: a magic line, the heading, and each chunk, the last two
-//! as their length, a checksum (CRC-32) and bytes; numbers are little-endian, those of tables float64. AFTER ANY END of the process, the file holds every
-//! chunk that was finished, and perhaps a piece of one more, which is cut off when the file is opened again.
-//!
-//! A chunk is some runs that follow each other: each begins with its number and how many of its runs failed, then comes for each table the
-//! number of its rows, then their numbers.
+//! `sweep.json` is the [`Heading`]. `K.csv` is chunk K. Its first line has the fingerprint of the heading and K, and its last line counts rows and
+//! failures. Between them are the rows, each behind the name of its table; the row of a run follows its rows in other tables. A process writes
+//! a chunk under a temporary name, syncs it and renames it. So every chunk that is there is whole, even if two processes wrote it.
 
-use super::shape::Shape;
+use super::schema::{Column, MOST, Schema};
 use super::shard::Shard;
-use crate::place;
-use core::num::NonZeroU64;
+use crate::place::{self, Temporary};
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, BufRead as _, BufReader, BufWriter, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
 
-/// How a part begins.
-const MAGIC: &[u8] = b"vi-lab part 1\n";
-/// Bytes of a length and a checksum.
-const FRAME: usize = 12;
+/// The file of the heading.
+const HEADING: &str = "sweep.json";
+/// The file that a process locks while it works on the part.
+const LOCK: &str = "lock";
+/// Bytes of an entry of a row at most, with its comma.
+const LONGEST_ENTRY: usize = 64;
 
-/// What a part is of.
+/// Which runs a part holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Heading {
-    /// The sweep.
-    pub(super) study: Description,
-    /// Which part of it.
+    pub(super) sweep: Description,
     pub(super) shard: Shard,
-    /// Runs in a chunk, but for the last.
+    /// Runs in each chunk but the last.
     pub(super) chunk: u64,
 }
 
-/// A sweep, as far as its tables depend on it.
+/// Everything that the tables of a sweep depend on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Description {
-    /// Names and what they are: version, system, method, what differs from run to run.
+    /// Names and values: version, system, method, what differs from run to run.
     pub(super) facts: Vec<(String, String)>,
     /// The number of runs.
     pub(super) items: u64,
-    /// The tables.
-    pub(super) shapes: Vec<Shape>,
+    /// The tables; the first has a row for each run.
+    pub(super) schemas: Vec<Schema>,
 }
 
-/// Some runs that follow each other.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Chunk {
-    /// Its place among the chunks of the shard.
-    pub(super) number: u64,
-    /// How many of its runs did not reach their end.
-    pub(super) failed: u64,
-    /// The numbers of each table, row by row.
-    pub(super) tables: Vec<Vec<f64>>,
-}
-
-/// What stands before the rows of a chunk.
-struct Head {
-    number: u64,
-    failed: u64,
-    /// Rows of each table.
-    rows: Vec<u64>,
-}
-
-/// What is in the file of a part.
+/// The part of one shard.
 #[derive(Debug)]
 pub(super) struct Part {
-    path: PathBuf,
-    heading: Heading,
-    /// Where the frames of the chunks that are there begin, by the numbers of the chunks.
-    offsets: Vec<Option<NonZeroU64>>,
-    /// How many of the runs that are there did not reach their end.
-    failed: u64,
-    /// The rows of each table that are there.
-    rows: Vec<u64>,
-    /// Where the last whole chunk ends.
-    end: u64,
+    pub(super) folder: PathBuf,
+    pub(super) heading: Heading,
+    fingerprint: u64,
+    /// Locked until the part is dropped.
+    _lock: Option<File>,
 }
 
-/// A part that grows.
-#[derive(Debug)]
-pub(super) struct Growing {
-    /// What is in it.
-    pub(super) part: Part,
-    file: File,
+/// Gets a row, and the index of its table.
+pub(super) type Take<'a> = dyn FnMut(usize, &[f64]) -> Result<(), Failure> + 'a;
+
+/// A chunk that is being written.
+pub(super) struct Chunk<'a> {
+    schemas: &'a [Schema],
+    file: BufWriter<File>,
+    temporary: Temporary,
+    text: String,
+    rows: u64,
+    failed: u64,
 }
 
 impl Heading {
-    /// Whether there can be such a part, so that a foreign file is none.
+    /// The heading of the part in a folder.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if there is none, or no sweep has it.
+    fn read(folder: &Path) -> Result<Self, Failure> {
+        let shown = folder.display();
+        let text = place::text(&folder.join(HEADING));
+        let text = text.map_err(|failure| Failure::Input(format!("{shown} is not a part of a sweep: {failure}")))?;
+        serde_json::from_str(&text).ok().filter(Self::is_possible).ok_or_else(|| {
+            let what = "is not the heading of a sweep of this version of vi-lab; remove this part, and make it again";
+            Failure::Input(format!("{shown}/{HEADING} {what}"))
+        })
+    }
+
+    /// Whether a sweep can have this heading. Names of tables become names of files.
     fn is_possible(&self) -> bool {
-        self.chunk > 0 && self.shard.index < self.shard.count
+        let Self { sweep: Description { items, schemas, .. }, shard, chunk } = self;
+        let is_table = |schema: &Schema| {
+            ["runs", "section", "series"].contains(&schema.table.as_str())
+                && schema.columns.first() == Some(&Column::count("item"))
+        };
+        (1..MOST).contains(chunk)
+            && *items < MOST
+            && shard.index < shard.count
+            && schemas.first().is_some_and(|first| first.table == "runs")
+            && schemas.iter().all(is_table)
+            && schemas.windows(2).all(|pair| pair[0].table < pair[1].table)
     }
 
     /// Number of chunks.
     pub(super) fn chunks(&self) -> u64 {
-        let items = self.shard.items(self.study.items);
-        (items.end - items.start).div_ceil(self.chunk)
+        self.runs().div_ceil(self.chunk)
     }
 
-    /// The items of a chunk.
-    pub(super) fn items(&self, number: u64) -> Range<u64> {
-        let items = self.shard.items(self.study.items);
-        let start = items.start + number * self.chunk;
+    /// Number of runs.
+    pub(super) fn runs(&self) -> u64 {
+        let items = self.shard.items(self.sweep.items);
+        items.end - items.start
+    }
+
+    /// The runs of a chunk.
+    pub(super) fn items(&self, chunk: u64) -> Range<u64> {
+        let items = self.shard.items(self.sweep.items);
+        let start = items.start + chunk * self.chunk;
         start..items.end.min(start + self.chunk)
+    }
+
+    fn json(&self) -> String {
+        // Names, words and counts are always JSON.
+        serde_json::to_string_pretty(self).unwrap_or_default()
     }
 }
 
 impl Description {
-    /// The first fact that is another one in `other`: its name, and what it is here and there.
+    /// The first fact that differs in `other`: its name, and its values here and there.
     pub(super) fn difference<'a>(&'a self, other: &'a Self) -> Option<(&'a str, &'a str, &'a str)> {
         let mut pairs = self.facts.iter().zip(&other.facts);
         let differs = pairs.find(|(here, there)| here != there);
@@ -117,353 +128,453 @@ impl Description {
     }
 }
 
-impl Growing {
-    /// The part at a path, to go on with; a new one where there is none.
+impl Part {
+    /// The part in a folder, to add chunks to it; makes it if there is none.
     ///
     /// # Errors
-    /// [`Failure::Input`] where the file is something else, of another sweep, or another process works on it; [`Failure::File`] where
-    /// it cannot be read or written.
-    pub(super) fn resume(path: &Path, heading: &Heading) -> Result<Self, Failure> {
-        let failed = |error| Failure::file(path, error);
-        if path.exists() {
-            place::check_regular(path)?;
-        }
-        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => {
-                return Err(Failure::Input(format!("another process works on {}; wait for it", path.display())));
+    /// [`Failure::Input`] if the folder is something else or of another sweep, or another process works on it; [`Failure::File`] if
+    /// a file cannot be read or written.
+    pub(super) fn resume(folder: &Path, heading: Heading) -> Result<Self, Failure> {
+        let shown = folder.display();
+        let failed = |error| Failure::file(folder, error);
+        match fs::create_dir(folder) {
+            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(failed(error)),
+            _ if !folder.is_dir() => {
+                return Err(Failure::Input(format!("{shown} is not a folder; remove it, or name another output")));
             }
-            // Some file systems of clusters know no locks.
-            Ok(()) | Err(TryLockError::Error(_)) => {}
+            _ => {}
         }
-        let begun = beginning(heading);
-        let mut start = Vec::new();
-        (&file).take(begun.len() as u64).read_to_end(&mut start).map_err(failed)?;
-        if start.len() < begun.len() && begun.starts_with(&start) {
-            // New, or ended before its heading was whole.
-            write_at(&file, 0, &begun).map_err(failed)?;
+        let lock = folder.join(LOCK);
+        if lock.exists() {
+            place::check_regular(&lock)?;
         }
-        let part = Part::read(path)?;
-        if let Some((name, there, here)) = part.heading.study.difference(&heading.study) {
-            return Err(Failure::Input(format!(
-                "{} is of another sweep, by its {name}: {there} there, {here} here; remove it, or name another output",
-                path.display()
-            )));
+        let lock = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(lock).map_err(failed)?;
+        match lock.try_lock() {
+            Ok(()) => remove_temporaries(folder).map_err(failed)?,
+            Err(TryLockError::WouldBlock) => {
+                return Err(Failure::Input(format!("another process works on {shown}; wait for it")));
+            }
+            // Some file systems of clusters have no locks. Two processes then write the same chunks.
+            Err(TryLockError::Error(_)) => {}
         }
-        if part.heading != *heading {
-            return Err(Failure::Input(format!("{} is another shard; remove it", path.display())));
+        if folder.join(HEADING).exists() {
+            let there = Heading::read(folder)?;
+            if let Some((name, there, here)) = there.sweep.difference(&heading.sweep) {
+                return Err(Failure::Input(format!(
+                    "{shown} is of another sweep, by its {name}: {there} there, {here} here; remove it, or name another output"
+                )));
+            }
+            if there != heading {
+                return Err(Failure::Input(format!("{shown} is another shard; remove it")));
+            }
+        } else {
+            place::replace(&folder.join(HEADING), &heading.json()).map_err(failed)?;
         }
-        file.set_len(part.end).map_err(failed)?;
-        Ok(Self { part, file })
+        Ok(Self::of(folder, heading, Some(lock)))
     }
 
-    /// Adds a chunk.
+    /// The part in a folder, to read it.
     ///
     /// # Errors
-    /// [`Failure::File`] where it cannot be written; the file is then what it was.
-    pub(super) fn append(&mut self, chunk: &Chunk) -> Result<(), Failure> {
-        let Self { part, file } = self;
-        let shapes = &part.heading.study.shapes;
-        let bytes = frame(&chunk.bytes(shapes));
-        if let Err(error) = write_at(file, part.end, &bytes) {
-            let _ = file.set_len(part.end);
-            return Err(Failure::file(&part.path, error));
+    /// [`Failure::Input`] if there is none.
+    pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
+        Ok(Self::of(folder, Heading::read(folder)?, None))
+    }
+
+    fn of(folder: &Path, heading: Heading, lock: Option<File>) -> Self {
+        let fingerprint = fingerprint(&[heading.json().as_str()]);
+        Self { folder: folder.to_owned(), heading, fingerprint, _lock: lock }
+    }
+
+    /// The file of a chunk.
+    fn path(&self, chunk: u64) -> PathBuf {
+        self.folder.join(format!("{chunk}.csv"))
+    }
+
+    /// The first line of a chunk.
+    fn first_line(&self, chunk: u64) -> String {
+        format!("# vi-lab sweep {:016x}, chunk {chunk}\n", self.fingerprint)
+    }
+
+    /// Whether a chunk is there.
+    pub(super) fn has(&self, chunk: u64) -> bool {
+        self.path(chunk).exists()
+    }
+
+    /// Number of chunks that are there.
+    ///
+    /// # Errors
+    /// [`Failure::File`] if the folder cannot be read.
+    pub(super) fn present(&self) -> Result<u64, Failure> {
+        let mut present = 0;
+        let failed = |error| Failure::file(&self.folder, error);
+        for entry in fs::read_dir(&self.folder).map_err(failed)? {
+            let name = entry.map_err(failed)?.file_name();
+            let number = name.to_str().and_then(|name| name.strip_suffix(".csv")?.parse::<u64>().ok());
+            let is_chunk =
+                number.is_some_and(|number| number < self.heading.chunks() && self.path(number).ends_with(&name));
+            present += u64::from(is_chunk);
         }
-        if let Some(head) = Head::of(&bytes[FRAME..], shapes) {
-            part.add(&head);
+        Ok(present)
+    }
+
+    /// Writes a chunk: `fill` adds its runs.
+    ///
+    /// # Errors
+    /// [`Failure::File`] if it cannot be written; the chunk is then not there.
+    pub(super) fn write(
+        &self,
+        number: u64,
+        fill: impl FnOnce(&mut Chunk<'_>) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let path = self.path(number);
+        let written = Temporary::create(&path).and_then(|(temporary, file)| {
+            let file = BufWriter::with_capacity(1 << 16, file);
+            let text = self.first_line(number);
+            let mut chunk = Chunk { schemas: &self.heading.sweep.schemas, file, temporary, text, rows: 0, failed: 0 };
+            fill(&mut chunk)?;
+            chunk.finish()
+        });
+        written.map_err(|error| {
+            let advice = "the other chunks are whole; once this is mended, the same command goes on from them";
+            Failure::file(path, io::Error::new(error.kind(), format!("{error}; {advice}")))
+        })
+    }
+
+    /// Reads all chunks: `take` gets every row with the index of its table. Returns how many runs did not reach their end.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if a chunk is not there, is of another sweep, or was changed; [`Failure::File`] if it cannot be read.
+    pub(super) fn read(&self, take: &mut Take) -> Result<u64, Failure> {
+        (0..self.heading.chunks()).try_fold(0, |failed, number| Ok(failed + self.read_chunk(number, take)?))
+    }
+
+    #[allow(clippy::cast_precision_loss, clippy::float_cmp)] // items below 2^53, which are exact
+    fn read_chunk(&self, number: u64, take: &mut Take) -> Result<u64, Failure> {
+        let schemas = &self.heading.sweep.schemas;
+        let path = self.path(number);
+        place::check_regular(&path)?;
+        let failed = |error| Failure::file(&path, error);
+        let shown = path.display();
+        let longest = LONGEST_ENTRY * schemas.iter().map(|schema| schema.columns.len() + 1).max().unwrap_or(1);
+        let mut file = BufReader::with_capacity(1 << 16, File::open(&path).map_err(failed)?);
+        let mut items = self.heading.items(number);
+        let (mut row, mut line, mut rows) = (Vec::new(), Vec::new(), 0_u64);
+        for place in 1_u64.. {
+            let wrong = |what: &str| {
+                let remedy = "remove this file, and run the same `vi-lab sweep` again";
+                Failure::Input(format!("{shown}, line {place}: {what}; {remedy}"))
+            };
+            line.clear();
+            (&mut file).take(longest as u64).read_until(b'\n', &mut line).map_err(failed)?;
+            let text = str::from_utf8(&line).ok().and_then(|line| line.strip_suffix('\n'));
+            let text = text.ok_or_else(|| wrong("the line is cut off or no text"))?;
+            if place == 1 {
+                if text != self.first_line(number).trim_end() {
+                    return Err(wrong("this is a chunk of another sweep, or another chunk"));
+                }
+            } else if let Some(counts) = text.strip_prefix('#') {
+                let failures =
+                    counts.strip_prefix(&format!(" {rows} rows, ")).and_then(|end| end.strip_suffix(" failed"));
+                let failures = failures.and_then(|failures| failures.parse().ok()).filter(|failures| *failures <= rows);
+                let failures = failures.filter(|_| items.is_empty());
+                let failures = failures.ok_or_else(|| wrong("rows above are missing or added"))?;
+                return match file.fill_buf().map_err(failed)? {
+                    [] => Ok(failures),
+                    _ => Err(wrong("there is more after the last line")),
+                };
+            } else {
+                let (table, text) = text.split_once(',').unwrap_or_default();
+                let table = schemas.iter().position(|schema| schema.table == table);
+                let table = table.ok_or_else(|| wrong("the line begins with no table of this sweep"))?;
+                schemas[table].read(text, &mut row).map_err(|what| wrong(&what))?;
+                if items.is_empty() || row[0] != items.start as f64 {
+                    return Err(wrong(&format!("a row of run {} cannot be here: rows are missing or added", row[0])));
+                }
+                take(table, &row)?;
+                rows += 1;
+                items.start += u64::from(table == 0);
+            }
         }
-        part.end += bytes.len() as u64;
+        Ok(0)
+    }
+
+    /// Removes the folder.
+    ///
+    /// # Errors
+    /// [`Failure::File`] if it cannot be removed.
+    pub(super) fn remove(&self) -> Result<(), Failure> {
+        fs::remove_dir_all(&self.folder).map_err(|error| Failure::file(&self.folder, error))
+    }
+}
+
+impl Chunk<'_> {
+    /// Adds the rows of one run, and empties the tables.
+    ///
+    /// # Errors
+    /// Why they cannot be written.
+    pub(super) fn add(&mut self, tables: &mut [Vec<f64>], is_failed: bool) -> io::Result<()> {
+        for (schema, numbers) in self.schemas.iter().zip(tables).rev() {
+            for row in numbers.chunks_exact(schema.columns.len()) {
+                self.text.clear();
+                schema.write(row, &mut self.text);
+                write!(self.file, "{},{}", schema.table, self.text)?;
+                self.rows += 1;
+            }
+            numbers.clear();
+        }
+        self.failed += u64::from(is_failed);
         Ok(())
     }
 
-    /// Waits until the file is on the disk.
-    ///
-    /// # Errors
-    /// [`Failure::File`] where it is not.
-    pub(super) fn settle(&self) -> Result<(), Failure> {
-        self.file.sync_all().map_err(|error| Failure::file(&self.part.path, error))
+    /// Puts the file in its place.
+    fn finish(mut self) -> io::Result<()> {
+        writeln!(self.file, "# {} rows, {} failed", self.rows, self.failed)?;
+        self.file.into_inner()?.sync_all()?;
+        self.temporary.finish()
     }
 }
 
-impl Part {
-    /// What is in the file at a path: its heading, and the chunks up to the first that is not whole.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] where the file is no part, [`Failure::File`] where it cannot be read.
-    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let failed = |error| Failure::file(path, error);
-        if path.exists() {
-            place::check_regular(path)?;
-        }
-        let file = File::open(path).map_err(failed)?;
-        let length = file.metadata().map_err(failed)?.len();
-        let mut reader = BufReader::with_capacity(1 << 16, file);
-        let mut magic = Vec::new();
-        let mut end = MAGIC.len() as u64;
-        (&mut reader).take(end).read_to_end(&mut magic).map_err(failed)?;
-        let bytes = if magic == MAGIC { framed(&mut reader, length - end).map_err(failed)? } else { None };
-        let heading = bytes.and_then(|bytes| Some((bytes.len(), serde_json::from_slice::<Heading>(&bytes).ok()?)));
-        let Some((size, heading)) = heading.filter(|(_, heading)| heading.is_possible()) else {
-            return Err(Failure::Input(format!("{} is no part of a sweep", path.display())));
-        };
-        end += (FRAME + size) as u64;
-        let offsets = vec![None; usize::try_from(heading.chunks()).unwrap_or_default()];
-        let rows = vec![0; heading.study.shapes.len()];
-        let mut part = Self { path: path.to_owned(), heading, offsets, failed: 0, rows, end };
-        while let Some(bytes) = framed(&mut reader, length - part.end).map_err(failed)? {
-            let head = Head::of(&bytes, &part.heading.study.shapes).filter(|head| head.number < part.heading.chunks());
-            let Some(head) = head else { break };
-            part.add(&head);
-            part.end += (FRAME + bytes.len()) as u64;
-        }
-        Ok(part)
-    }
-
-    /// Counts a chunk that begins at the end.
-    fn add(&mut self, head: &Head) {
-        let free = usize::try_from(head.number).ok().and_then(|number| self.offsets.get_mut(number));
-        if let Some(free) = free.filter(|free| free.is_none()) {
-            *free = NonZeroU64::new(self.end);
-            self.failed += head.failed;
-            self.rows.iter_mut().zip(&head.rows).for_each(|(sum, rows)| *sum += rows);
+/// Removes what processes that were killed left of chunks.
+fn remove_temporaries(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_name().to_string_lossy().contains(".csv.tmp-") {
+            fs::remove_file(entry.path())?;
         }
     }
-
-    /// Where it is.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// What it is of.
-    pub(super) fn heading(&self) -> &Heading {
-        &self.heading
-    }
-
-    /// The numbers of the chunks that are not there.
-    pub(super) fn missing(&self) -> Vec<u64> {
-        (0..).zip(&self.offsets).filter(|(_, offset)| offset.is_none()).map(|(number, _)| number).collect()
-    }
-
-    /// How many of the runs that are there did not reach their end.
-    pub(super) fn failed(&self) -> u64 {
-        self.failed
-    }
-
-    /// Rows of a table that are there.
-    pub(super) fn rows(&self, table: usize) -> u64 {
-        self.rows.get(table).copied().unwrap_or(0)
-    }
-
-    /// The numbers of one table, chunk after chunk.
-    ///
-    /// # Errors
-    /// [`Failure::File`] where a chunk cannot be read, or is not there.
-    pub(super) fn table(&self, table: usize) -> impl Iterator<Item = Result<Vec<f64>, Failure>> + '_ {
-        let numbers = move |offset: &Option<NonZeroU64>| {
-            let offset = offset.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof));
-            let numbers = offset.and_then(|offset| self.numbers(offset.get(), table));
-            numbers.map_err(|error| Failure::file(&self.path, error))
-        };
-        self.offsets.iter().map(numbers)
-    }
-
-    /// The numbers of one table in the chunk whose frame begins at a place.
-    fn numbers(&self, offset: u64, table: usize) -> io::Result<Vec<f64>> {
-        let shapes = &self.heading.study.shapes;
-        // Opened for each chunk: there may be more parts than a process may have open files.
-        let mut file = File::open(&self.path)?;
-        file.seek(SeekFrom::Start(offset + FRAME as u64))?;
-        let mut head = vec![0; Head::size(shapes)];
-        file.read_exact(&mut head)?;
-        let Head { rows, .. } = Head::read(&head, shapes).ok_or(io::ErrorKind::UnexpectedEof)?;
-        let mut sizes = rows.iter().zip(shapes).map(|(rows, shape)| 8 * rows * wide(shape));
-        let before: u64 = sizes.by_ref().take(table).sum();
-        let size = sizes.next().unwrap_or(0);
-        file.seek(SeekFrom::Start(offset + (FRAME + head.len()) as u64 + before))?;
-        let mut bytes = Vec::new();
-        file.take(size).read_to_end(&mut bytes)?;
-        if bytes.len() as u64 != size {
-            return Err(io::Error::from(io::ErrorKind::UnexpectedEof));
-        }
-        Ok(bytes.chunks_exact(8).map(|bytes| f64::from_bits(number_of(bytes))).collect())
-    }
+    Ok(())
 }
 
-impl Head {
-    /// Bytes that it takes.
-    fn size(shapes: &[Shape]) -> usize {
-        8 * (2 + shapes.len())
-    }
-
-    /// The head with which these bytes begin.
-    fn read(bytes: &[u8], shapes: &[Shape]) -> Option<Self> {
-        let mut numbers = bytes.get(..Self::size(shapes))?.chunks_exact(8).map(number_of);
-        Some(Self { number: numbers.next()?, failed: numbers.next()?, rows: numbers.collect() })
-    }
-
-    /// The head of these bytes; none where they are no chunk of these tables.
-    fn of(bytes: &[u8], shapes: &[Shape]) -> Option<Self> {
-        let head = Self::read(bytes, shapes)?;
-        let mut entries = head.rows.iter().zip(shapes).map(|(rows, shape)| rows.checked_mul(wide(shape)));
-        let entries = entries.try_fold(0_u64, |sum, entries| sum.checked_add(entries?))?;
-        let size = entries.checked_mul(8)?.checked_add(Self::size(shapes) as u64)?;
-        (size == bytes.len() as u64).then_some(head)
-    }
-}
-
-impl Chunk {
-    fn bytes(&self, shapes: &[Shape]) -> Vec<u8> {
-        let rows = self.tables.iter().zip(shapes).map(|(numbers, shape)| numbers.len() as u64 / wide(shape).max(1));
-        let head = [self.number, self.failed].into_iter().chain(rows);
-        let numbers = self.tables.iter().flatten().map(|number| number.to_bits());
-        head.chain(numbers).flat_map(u64::to_le_bytes).collect()
-    }
-}
-
-/// Columns of a table.
-fn wide(shape: &Shape) -> u64 {
-    shape.columns.len() as u64
-}
-
-/// Eight bytes as a number.
-fn number_of(bytes: &[u8]) -> u64 {
-    bytes.try_into().map_or(0, u64::from_le_bytes)
-}
-
-/// Magic line and heading.
-fn beginning(heading: &Heading) -> Vec<u8> {
-    // Names, words and counts are always JSON.
-    let text = serde_json::to_vec(heading).unwrap_or_default();
-    [MAGIC, &frame(&text)].concat()
-}
-
-/// Bytes behind their length and checksum.
-fn frame(bytes: &[u8]) -> Vec<u8> {
-    let length = (bytes.len() as u64).to_le_bytes();
-    let checksum = checksum(&length, bytes).to_le_bytes();
-    [length.as_slice(), checksum.as_slice(), bytes].concat()
-}
-
-/// The next framed bytes, of which at most `left` are left; none at the end, and where they are not whole.
-fn framed(reader: &mut impl Read, left: u64) -> io::Result<Option<Vec<u8>>> {
-    if left < FRAME as u64 {
-        return Ok(None);
-    }
-    let mut head = [0; FRAME];
-    reader.read_exact(&mut head)?;
-    let (length, sum) = head.split_at(8);
-    let size = number_of(length);
-    let Some(size) = usize::try_from(size).ok().filter(|_| size <= left - FRAME as u64) else { return Ok(None) };
-    let mut bytes = vec![0; size];
-    reader.read_exact(&mut bytes)?;
-    Ok((sum == checksum(length, &bytes).to_le_bytes()).then_some(bytes))
-}
-
-/// CRC-32 of bytes and what stands before them.
-fn checksum(before: &[u8], bytes: &[u8]) -> u32 {
-    let mut hasher = crc32fast::Hasher::new();
-    hasher.update(before);
-    hasher.update(bytes);
-    hasher.finalize()
-}
-
-/// Writes bytes at a place of a file.
-fn write_at(mut file: &File, place: u64, bytes: &[u8]) -> io::Result<()> {
-    file.seek(SeekFrom::Start(place))?;
-    file.write_all(bytes)
+/// FNV-1a of texts, 64 bits: the same in every version of this program.
+pub(super) fn fingerprint(texts: &[&str]) -> u64 {
+    let bytes = texts.iter().flat_map(|text| text.bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::shape::Column;
     use super::*;
-    use std::fs;
 
+    /// A folder for one test, which goes with the value.
+    struct Place(PathBuf);
+
+    impl Place {
+        fn new(name: &str) -> Self {
+            let place = Self(std::env::temp_dir().join(format!("vi-lab-{name}-{}", std::process::id())));
+            let _ = fs::remove_dir_all(&place.0);
+            place
+        }
+
+        fn resume(&self, heading: &Heading) -> Result<Part, String> {
+            let part = Part::resume(&self.0, heading.clone());
+            part.map_err(|failure| failure.to_string().replace(&self.0.display().to_string(), "PART"))
+        }
+
+        fn part(&self) -> Part {
+            self.resume(&heading()).unwrap_or_else(|message| panic!("{message}"))
+        }
+    }
+
+    impl Drop for Place {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    /// The second half of ten runs, in chunks of two.
     fn heading() -> Heading {
         let columns = vec![Column::count("item"), Column::number("x")];
-        let shapes =
-            ["", "series"].map(|suffix| Shape { suffix: suffix.to_owned(), columns: columns.clone() }).to_vec();
+        let schemas =
+            ["runs", "series"].map(|table| Schema { table: table.to_owned(), columns: columns.clone() }).to_vec();
         let facts = vec![("system".to_owned(), "Kepler".to_owned())];
-        Heading { study: Description { facts, items: 10, shapes }, shard: Shard { index: 1, count: 2 }, chunk: 2 }
+        Heading { sweep: Description { facts, items: 10, schemas }, shard: Shard { index: 1, count: 2 }, chunk: 2 }
     }
 
-    fn chunk(number: u64) -> Chunk {
-        let row = vec![5.0, 1.5, 6.0, f64::MIN_POSITIVE];
-        Chunk { number, failed: 1, tables: vec![row.clone(), [row.as_slice(), &[6.0, -0.0]].concat()] }
+    /// Run k with k - 4 rows of series, of which run 6 fails.
+    #[allow(clippy::cast_precision_loss)] // a few
+    fn fill(heading: &Heading, number: u64, chunk: &mut Chunk<'_>) -> io::Result<()> {
+        heading.items(number).try_for_each(|item| {
+            let series = (4..item).flat_map(|x| [item as f64, 1.0 / x as f64]).collect();
+            chunk.add(&mut [vec![item as f64, -0.5], series], item == 6)
+        })
     }
 
-    fn resumed(path: &Path) -> Growing {
-        Growing::resume(path, &heading()).unwrap_or_else(|failure| panic!("{failure}"))
+    fn write(part: &Part, number: u64) {
+        let written = part.write(number, |chunk| fill(&part.heading, number, chunk));
+        written.unwrap_or_else(|failure| panic!("{failure}"));
+    }
+
+    fn message(part: &Part) -> Option<String> {
+        let read = part.read(&mut |_, _| Ok(()));
+        read.err().map(|failure| failure.to_string().replace(&format!("{}/", part.folder.display()), ""))
+    }
+
+    const REMEDY: &str = "; remove this file, and run the same `vi-lab sweep` again";
+
+    #[test]
+    fn chunks_are_there_once_they_are_whole() {
+        let place = Place::new("chunks");
+        let part = place.part();
+        assert_eq!((part.heading.chunks(), part.heading.items(2)), (3, 9..10));
+        for number in [2, 0] {
+            write(&part, number);
+        }
+        let failed = part.write(1, |chunk| {
+            fill(&part.heading, 1, chunk)?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
+        });
+        let message = failed.map_err(|failure| (failure.exit_status(), failure.to_string()));
+        let advice =
+            "no storage space; the other chunks are whole; once this is mended, the same command goes on from them";
+        assert_eq!(message, Err((1, format!("{}: {advice}", part.path(1).display()))));
+        for other in ["01.csv", "3.csv", "+1.csv", "1.csv.tmp-1-0", "a.csv"] {
+            fs::write(part.folder.join(other), "").expect("a file");
+        }
+        assert_eq!((part.present().ok(), [0, 1, 2].map(|number| part.has(number))), (Some(2), [true, false, true]));
+        drop(part);
+        let part = place.part();
+        assert!(!part.folder.join("1.csv.tmp-1-0").exists(), "what a killed process left is removed");
+        write(&part, 1);
+        let mut rows = Vec::new();
+        let read = part.read(&mut |table, row| {
+            rows.push((table, row.to_vec()));
+            Ok(())
+        });
+        assert_eq!(read.ok(), Some(1));
+        let runs: Vec<f64> = rows.iter().filter(|(table, _)| *table == 0).map(|(_, row)| row[0]).collect();
+        assert_eq!((runs, rows.len()), (vec![5.0, 6.0, 7.0, 8.0, 9.0], 20));
+        assert_eq!(rows[..2], [(1, vec![5.0, 0.25]), (0, vec![5.0, -0.5])]);
     }
 
     #[test]
-    fn a_part_that_is_cut_anywhere_or_spoiled_keeps_the_chunks_before() {
-        let path = std::env::temp_dir().join(format!("vi-lab-part-{}", std::process::id()));
-        let _ = fs::remove_file(&path);
-        let mut growing = resumed(&path);
-        assert_eq!((growing.part.missing(), growing.part.heading().items(2)), (vec![0, 1, 2], 9..10));
-        let empty = growing.part.end;
-        for number in [2, 0] {
-            growing.append(&chunk(number)).unwrap_or_else(|failure| panic!("{failure}"));
+    fn two_processes_that_write_one_chunk_leave_it_whole() {
+        let place = Place::new("two");
+        let part = place.part();
+        write(&part, 0);
+        let alone = fs::read(part.path(0)).expect("the chunk");
+        // A file system without locks: the second begins and ends while the first writes.
+        let other = Part::open(&place.0).unwrap_or_else(|failure| panic!("{failure}"));
+        let both = part.write(0, |chunk| {
+            write(&other, 0);
+            assert_eq!(fs::read(part.path(0)).expect("the chunk"), alone);
+            fill(&part.heading, 0, chunk)
+        });
+        assert!(both.is_ok());
+        assert_eq!(fs::read(part.path(0)).expect("the chunk"), alone);
+    }
+
+    #[test]
+    fn a_chunk_that_was_changed_is_refused() {
+        let place = Place::new("changed");
+        let part = place.part();
+        (0..3).for_each(|number| write(&part, number));
+        let whole = fs::read_to_string(part.path(0)).expect("the chunk");
+        let lines: Vec<&str> = whole.lines().collect();
+        assert_eq!(lines[1..5], ["series,5,0.25", "runs,5,-0.5", "series,6,0.25", "series,6,0.2"]);
+        let without = |line: usize| [&lines[..line], &lines[line + 1..]].concat().join("\n") + "\n";
+        let changed = |line: usize, text: &str| whole.replacen(lines[line], text, 1);
+        let counts = "rows above are missing or added";
+        for (text, line, what) in [
+            (String::new(), 1, "the line is cut off or no text"),
+            (without(0), 1, "this is a chunk of another sweep, or another chunk"),
+            (without(1), 6, counts),
+            (without(2), 3, "a row of run 6 cannot be here: rows are missing or added"),
+            (without(5), 6, counts),
+            (without(6), 7, "the line is cut off or no text"),
+            (changed(3, "series,6,0.25\nseries,6,0.25"), 8, counts),
+            (changed(2, "runs,5,-0.5\nruns,5,-0.5"), 4, "a row of run 5 cannot be here: rows are missing or added"),
+            (changed(5, "runs,6,-0.5\nruns,7,-0.5"), 7, "a row of run 7 cannot be here: rows are missing or added"),
+            (changed(1, "series,6,0.25"), 2, "a row of run 6 cannot be here: rows are missing or added"),
+            (changed(2, "runs,5"), 3, "the row of `runs` has 1 columns instead of 2"),
+            (changed(2, "runs,5,-0.5,1.0"), 3, "the row of `runs` has 3 columns instead of 2"),
+            (changed(2, "runs,5,half"), 3, "`half` cannot be an entry of the column `x`"),
+            (changed(2, "runs,-5,0.5"), 3, "`-5` cannot be an entry of the column `item`"),
+            (changed(2, "section,5,0.5"), 3, "the line begins with no table of this sweep"),
+            (changed(2, ""), 3, "the line begins with no table of this sweep"),
+            (changed(2, &"9".repeat(1000)), 3, "the line is cut off or no text"),
+            (changed(6, "# 5 rows, 18446744073709551615 failed"), 7, counts),
+            (changed(6, "# 5 rows, 1 failed\nruns,7,-0.5"), 7, "there is more after the last line"),
+        ] {
+            fs::write(part.path(0), &text).expect("the chunk is written");
+            assert_eq!(message(&part), Some(format!("0.csv, line {line}: {what}{REMEDY}")), "{text}");
         }
-        let Growing { part, file } = growing;
-        drop(file);
-        assert_eq!((part.missing(), part.failed(), part.rows(0), part.rows(1)), (vec![1], 2, 4, 6));
-        for table in 0..2 {
-            let numbers: Vec<_> = part.table(table).map(Result::ok).collect();
-            let expected = chunk(0).tables[table].clone();
-            assert_eq!(numbers, [Some(expected.clone()), None, Some(expected)], "the one between is not there");
+        // A file that is cut anywhere.
+        for length in 0..whole.len() {
+            fs::write(part.path(0), &whole[..length]).expect("the chunk is written");
+            let found = message(&part).unwrap_or_default();
+            assert!(found.ends_with(&format!("the line is cut off or no text{REMEDY}")), "{length}: {found}");
         }
-        let first = empty + (part.end - empty) / 2;
-        let whole = fs::read(&path).expect("the part");
-        for length in 0..=whole.len() as u64 {
-            fs::write(&path, &whole[..usize::try_from(length).expect("a length")]).expect("the file is written");
-            let expected = if length < first { vec![0, 1, 2] } else { vec![0, 1] };
-            let expected = if length == whole.len() as u64 { vec![1] } else { expected };
-            let part = resumed(&path).part;
-            let end = fs::metadata(&path).expect("the file").len();
-            assert_eq!((part.missing(), part.end), (expected, end), "{length} bytes");
-        }
-        // A bit anywhere: the heading is refused, a chunk is done again.
-        for place in 0..whole.len() {
-            let mut spoiled = whole.clone();
-            spoiled[place] ^= 4;
-            fs::write(&path, spoiled).expect("the file is written");
-            let part = Growing::resume(&path, &heading());
-            if (place as u64) < empty {
-                assert!(part.is_err(), "byte {place}");
-            } else {
-                let expected = if (place as u64) < first { vec![0, 1, 2] } else { vec![0, 1] };
-                assert_eq!(
-                    part.map(|growing| growing.part.missing()).map_err(|failure| failure.to_string()),
-                    Ok(expected),
-                    "byte {place}"
-                );
-            }
-        }
-        fs::remove_file(&path).expect("the file can be removed");
+        fs::write(part.path(0), b"\xff\n").expect("the chunk is written");
+        assert_eq!(message(&part), Some(format!("0.csv, line 1: the line is cut off or no text{REMEDY}")));
+        fs::copy(part.path(1), part.path(0)).expect("a copy");
+        let another = "this is a chunk of another sweep, or another chunk";
+        assert_eq!(message(&part), Some(format!("0.csv, line 1: {another}{REMEDY}")));
+        fs::write(part.path(0), &whole).expect("the chunk is written");
+        assert_eq!(message(&part), None);
     }
 
     #[test]
     fn another_sweep_another_shard_and_a_second_process_are_refused() {
-        let path = std::env::temp_dir().join(format!("vi-lab-other-part-{}", std::process::id()));
-        let _ = fs::remove_file(&path);
-        let shown = path.display().to_string();
-        let message = |heading: &Heading| Growing::resume(&path, heading).err().map(|failure| failure.to_string());
-        let part = resumed(&path);
-        assert_eq!(message(&heading()), Some(format!("another process works on {shown}; wait for it")));
+        let place = Place::new("other");
+        let message = |heading: &Heading| place.resume(heading).err();
+        let part = place.part();
+        assert_eq!(message(&heading()).as_deref(), Some("another process works on PART; wait for it"));
         drop(part);
+        assert_eq!(message(&heading()), None);
         let mut other = heading();
         other.shard.index = 0;
-        assert_eq!(message(&other), Some(format!("{shown} is another shard; remove it")));
-        other.study.facts[0].1 = "Pendulum".to_owned();
-        let expected = format!(
-            "{shown} is of another sweep, by its system: Kepler there, Pendulum here; remove it, or name another output"
-        );
-        assert_eq!(message(&other), Some(expected));
-        fs::write(&path, "item,x\n1,2\n").expect("the file is written");
-        assert_eq!(message(&heading()), Some(format!("{shown} is no part of a sweep")));
-        assert_eq!(fs::read_to_string(&path).expect("the file"), "item,x\n1,2\n", "what is no part stays as it is");
-        fs::remove_file(&path).expect("the file can be removed");
+        assert_eq!(message(&other).as_deref(), Some("PART is another shard; remove it"));
+        other.sweep.facts[0].1 = "Pendulum".to_owned();
+        let expected =
+            "PART is of another sweep, by its system: Kepler there, Pendulum here; remove it, or name another output";
+        assert_eq!(message(&other).as_deref(), Some(expected));
+    }
+
+    #[test]
+    fn headings_that_no_sweep_has_are_refused() {
+        let place = Place::new("headings");
+        drop(place.part());
+        let path = place.0.join(HEADING);
+        let good = fs::read_to_string(&path).expect("the heading");
+        let good: serde_json::Value = serde_json::from_str(&good).expect("JSON");
+        assert!(Part::open(&place.0).is_ok());
+        for (pointer, value) in [
+            ("/sweep/items", "1e18"),
+            ("/sweep/items", "1000000000000000000"),
+            ("/sweep/items", "-1"),
+            ("/chunk", "0"),
+            ("/chunk", "18446744073709551615"),
+            ("/shard/index", "2"),
+            ("/shard/count", "0"),
+            ("/sweep/schemas", "[]"),
+            ("/sweep/schemas/0/columns", "[]"),
+            ("/sweep/schemas/1/columns", "[]"),
+            ("/sweep/schemas/1/columns/0/name", "\"x\""),
+            ("/sweep/schemas/0/table", "\"series\""),
+            ("/sweep/schemas/1/table", "\"runs\""),
+            ("/sweep/schemas/1/table", "\"../series\""),
+            ("/sweep/schemas/1/table", "\"\""),
+        ] {
+            let mut heading = good.clone();
+            *heading.pointer_mut(pointer).expect("an entry") = serde_json::from_str(value).expect("JSON");
+            fs::write(&path, heading.to_string()).expect("the heading is written");
+            let message = Part::open(&place.0).err().map(|failure| failure.to_string()).unwrap_or_default();
+            let what = "is not the heading of a sweep of this version of vi-lab; remove this part, and make it again";
+            assert_eq!(message, format!("{} {what}", path.display()), "{pointer} {value}");
+        }
+        // The most that a heading can claim takes neither memory nor time.
+        let mut heading = good.clone();
+        *heading.pointer_mut("/sweep/items").expect("an entry") = (MOST - 1).into();
+        fs::write(&path, heading.to_string()).expect("the heading is written");
+        let part = Part::open(&place.0).unwrap_or_else(|failure| panic!("{failure}"));
+        let last = part.heading.chunks() - 1;
+        assert_eq!((part.present().ok(), part.heading.items(last).end), (Some(0), MOST - 1));
+    }
+
+    #[test]
+    fn fingerprints_are_those_of_fnv_1a() {
+        // Published with the function.
+        assert_eq!([fingerprint(&[]), fingerprint(&["foo", "bar"])], [0xcbf2_9ce4_8422_2325, 0x8594_4171_f739_67e8]);
     }
 }

@@ -6,7 +6,7 @@ use super::course::{Course, Member};
 use super::ending::Ending;
 use super::items::Items;
 use super::keep::Kept;
-use super::part::{Chunk, Description, Heading};
+use super::part::{Description, Heading, Part, fingerprint};
 use super::scene::Keep;
 use super::shard::Shard;
 use crate::run::{Length, Request, method};
@@ -15,10 +15,10 @@ use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
 use vi_report::numbers::{about, assigned, short};
 
-/// Steps in a chunk: some hundredths of a second of fixed steps.
-const STEPS: f64 = 5e4;
+/// Steps in a chunk: some tenths of a second of fixed steps, which take longer than the sync of a file.
+const STEPS: f64 = 5e5;
 /// Runs in a chunk, however short.
-const MOST_ITEMS: u64 = 1024;
+const MOST_ITEMS: u64 = 1 << 14;
 /// Chunks of a shard at least, where it has as many runs, so that all cores have work.
 const FEWEST_CHUNKS: u64 = 64;
 /// Bytes of rows of one run that are held at once.
@@ -71,7 +71,7 @@ impl Study {
         let balanced = (items.end - items.start).div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
         let short = (STEPS / length.steps(plan).max(1.0)).max(1.0) as u64;
-        Heading { study: self.description(), shard, chunk: balanced.min(short) }
+        Heading { sweep: self.description(), shard, chunk: balanced.min(short) }
     }
 
     /// All on which its tables depend.
@@ -81,15 +81,11 @@ impl Study {
             Length::Steps(steps) => format!("{steps} steps"),
             Length::Until(end) => format!("until t = {}", short(*end)),
         };
-        let sources = catalogue::sources().fold(0, |sum, text| {
-            let mut hasher = crc32fast::Hasher::new_with_initial(sum);
-            hasher.update(text.as_bytes());
-            hasher.finalize()
-        });
+        let sources = fingerprint(&catalogue::sources().collect::<Vec<_>>());
         let facts = [
             ("vi-lab", VERSION.to_owned()),
             ("system", system.name().to_owned()),
-            ("sources", format!("{sources:08x}")),
+            ("sources", format!("{sources:016x}")),
             ("parameters", assigned(&system.parameters())),
             ("method", method::in_words(plan)),
             ("step", format!("h = {}", short(plan.h))),
@@ -99,18 +95,22 @@ impl Study {
             ("keep", self.kept.words(&system.coordinates())),
         ];
         let facts = facts.map(|(name, fact)| (name.to_owned(), fact)).to_vec();
-        let shapes = self.kept.shapes(self.items.names(), &system.coordinates());
-        Description { facts, items: self.items.count(), shapes }
+        let schemas = self.kept.schemas(self.items.names(), &system.coordinates());
+        Description { facts, items: self.items.count(), schemas }
     }
 
-    /// The runs of a chunk.
-    pub(super) fn chunk(&self, heading: &Heading, number: u64) -> Chunk {
-        let mut chunk = Chunk { number, failed: 0, tables: vec![Vec::new(); heading.study.shapes.len()] };
-        for item in heading.items(number) {
-            let ending = self.follow(item, &mut chunk.tables);
-            chunk.failed += u64::from(ending != Ending::REACHED);
-        }
-        chunk
+    /// Takes the runs of a chunk, and writes it.
+    ///
+    /// # Errors
+    /// [`Failure::File`] if it cannot be written.
+    pub(super) fn chunk(&self, part: &Part, number: u64) -> Result<(), Failure> {
+        let mut tables = vec![Vec::new(); part.heading.sweep.schemas.len()];
+        part.write(number, |chunk| {
+            part.heading.items(number).try_for_each(|item| {
+                let ending = self.follow(item, &mut tables);
+                chunk.add(&mut tables, ending != Ending::REACHED)
+            })
+        })
     }
 
     /// Adds the rows of a run to the tables.

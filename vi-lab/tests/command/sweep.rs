@@ -1,11 +1,21 @@
 //! Sweeps: parts against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
 
-use super::{array, bits, lab, path, rows, send, start, temporary};
+use super::{array, bits, lab, path, rows, send, temporary};
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
+
+/// Names and bytes of chunks.
+type Chunks = BTreeMap<String, Vec<u8>>;
+
+/// The names of the files of a folder; none if it is not there.
+fn names(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).into_iter().flatten().flatten();
+    files.map(|file| file.file_name().into_string().expect("text")).collect()
+}
 
 /// A folder for one test, with a scene in it; it goes with the value.
 pub(super) struct Folder(PathBuf);
@@ -39,8 +49,13 @@ impl Folder {
 
     /// Whether a file is left that stood in for another.
     fn has_temporary(&self) -> bool {
-        let files = fs::read_dir(&self.0).expect("the folder");
-        files.flatten().any(|file| file.file_name().to_string_lossy().contains(".tmp"))
+        names(&self.0).iter().any(|name| name.contains(".tmp"))
+    }
+
+    /// The chunks of a part.
+    fn chunks(&self, part: &str) -> Chunks {
+        let names = names(&self.0.join(part)).into_iter().filter(|name| name.ends_with(".csv"));
+        names.map(|name| (name.clone(), self.read(&format!("{part}/{name}")))).collect()
     }
 
     pub(super) fn text(&self, name: &str) -> String {
@@ -81,6 +96,13 @@ impl Drop for Folder {
     }
 }
 
+/// Starts the command with one thread: the work left does not depend on the number of cores.
+fn start(arguments: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vi-lab"));
+    command.args(arguments).env("RAYON_NUM_THREADS", "1");
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
+}
+
 /// Runs that reach their end and runs that do not, with all tables: 48 of them.
 const MIXED: &str = "
 system = \"double-well\"
@@ -107,6 +129,15 @@ method = \"energy\"
 steps = 20000
 [sweep]
 over = [{ name = \"q\", from = 0.71, to = 0.75, count = 80 }]
+";
+
+/// More runs than can be taken, 500 in a chunk.
+const ENDLESS: &str = "
+system = \"kepler\"
+steps = 1000
+[sweep]
+over = [{ name = \"x\", uniform = [0.9, 1.1] }]
+samples = 1e15
 ";
 
 /// The names of the parts of a sweep in so many shards.
@@ -248,19 +279,18 @@ fn crossings_are_where_the_motion_is_known() {
 fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
     let folder = Folder::new("killed", LONG);
     folder.sweep("whole.csv", &["--shard", "0/1"]);
-    let whole = folder.read("whole.csv.0-of-1.part");
-    let (scene, output) = (folder.scene(), folder.at("killed.csv"));
-    let part = folder.at("killed.csv.0-of-1.part");
-    let length = || fs::metadata(&part).map_or(0, |part| part.len());
-    // A frame, a head, and two rows of ten numbers.
-    let chunk = 12 + 24 + 2 * 10 * 8;
-    let heading = whole.len() - 40 * chunk;
-    let whole_chunks = |part: &[u8]| part[..part.len() - (part.len() - heading) % chunk].to_vec();
-    let mut before: Vec<u8> = Vec::new();
+    let whole = folder.chunks("whole.csv.0-of-1.part");
+    assert_eq!(whole.len(), 40);
+    let (scene, output, part) = (folder.scene(), folder.at("killed.csv"), "killed.csv.0-of-1.part");
+    let times = |chunks: &Chunks| -> Vec<_> {
+        let time =
+            |name: &String| fs::metadata(folder.at(&format!("{part}/{name}"))).and_then(|chunk| chunk.modified());
+        chunks.keys().map(|name| (name.clone(), time(name).expect("a time"))).collect()
+    };
+    let mut before = Vec::new();
     for (signal, status) in [("-KILL", None), ("-INT", Some(130)), ("-KILL", None), ("-TERM", Some(143))] {
         let child = start(&["sweep", &scene, "-o", &output, "--shard", "0/1"]);
-        let wanted = before.len() as u64 + whole.len() as u64 / 10;
-        while length() < wanted {
+        while folder.chunks(part).len() < before.len() + 4 {
             sleep(Duration::from_millis(1));
         }
         send(signal, &child);
@@ -273,13 +303,18 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
                 "{errors}"
             );
         }
-        let after = whole_chunks(&fs::read(&part).expect("the part"));
-        assert!(after.starts_with(&before) && after.len() > before.len() && after.len() < whole.len(), "{signal}");
+        let chunks = folder.chunks(part);
+        assert!(chunks.len() < 40 && chunks.iter().all(|(name, chunk)| whole[name] == *chunk), "{signal}");
+        let after = times(&chunks);
+        assert!(before.iter().all(|chunk| after.contains(chunk)), "no chunk is written twice");
         before = after;
     }
     folder.sweep("killed.csv", &["--shard", "0/1"]);
-    let after = fs::read(&part).expect("the part");
-    assert!(after.starts_with(&before) && after.len() == whole.len(), "every chunk is there once");
+    let chunks = folder.chunks(part);
+    let after = times(&chunks);
+    assert!(chunks == whole && before.iter().all(|chunk| after.contains(chunk)));
+    let is_temporary = |name: &str| name.contains(".tmp");
+    assert!(!names(&folder.0.join(part)).iter().any(|name| is_temporary(name)), "what was killed is removed");
     for name in ["whole", "killed"] {
         assert_eq!(
             folder.merge(&[&format!("{name}.csv.0-of-1.part")], &format!("{name}.csv")),
@@ -289,30 +324,163 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
     assert_eq!(folder.text("killed.csv"), folder.text("whole.csv"));
 }
 
+/// Six runs of 4, 8, … 128 steps, each in a chunk that is as long as its series.
+const GROWING: &str = "
+system = \"double-well\"
+until = 1.0
+[sweep]
+over = [{ name = \"h\", from = 0.25, to = 0.0078125, count = 6, spacing = \"log\" }]
+keep = [\"ending\", \"end\", \"series\"]
+";
+
 #[cfg(unix)]
 #[test]
 fn a_disk_that_is_full_keeps_the_chunks_before() {
-    let folder = Folder::new("full-sweep", MIXED);
-    folder.sweep("whole.csv", &[]);
-    // The part has more than one block of 512 bytes for each of 48 chunks; a table has more than forty.
+    let folder = Folder::new("full-sweep", GROWING);
+    folder.sweep("whole.csv", &["--shard", "0/1"]);
+    let whole = folder.chunks("whole.csv.0-of-1.part");
+    // 20 blocks of 512 bytes: more than five of the chunks and the heading have, less than the last chunk and the table of the series.
+    let lengths: Vec<usize> = whole.values().map(Vec::len).collect();
+    assert!(lengths[4] < 10240 && lengths[5] > 10240, "{lengths:?}");
     let limited = "trap '' XFSZ; ulimit -f 20; exec \"$0\" \"$@\"";
     let run = |arguments: &[&str]| {
         let all = [["-c", limited, env!("CARGO_BIN_EXE_vi-lab")].as_slice(), arguments].concat();
-        let Output { status, stderr, .. } = Command::new("sh").args(all).output().expect("the shell runs");
+        let Output { status, stderr, .. } =
+            Command::new("sh").env("RAYON_NUM_THREADS", "1").args(all).output().expect("the shell runs");
         (status.code(), String::from_utf8(stderr).expect("text"))
     };
     let (scene, output) = (folder.scene(), folder.at("full.csv"));
     let part = folder.at("full.csv.0-of-1.part");
     let (status, errors) = run(&["sweep", &scene, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
-    assert!(errors.starts_with(&format!("error: {part}: ")), "{errors}");
+    let advice = "the other chunks are whole; once this is mended, the same command goes on from them\n";
+    assert!(errors.starts_with(&format!("error: {part}/5.csv: ")) && errors.ends_with(advice), "{errors}");
+    let kept = folder.chunks("full.csv.0-of-1.part");
+    assert!(kept.len() == 5 && kept.iter().all(|(name, chunk)| whole[name] == *chunk));
+    assert!(!names(&folder.0.join("full.csv.0-of-1.part")).iter().any(|name| name.contains(".tmp")));
     folder.sweep("full.csv", &["--shard", "0/1"]);
+    folder.file("full.csv", "mine");
+    folder.file("full.series.csv", "mine");
     let (status, errors) = run(&["merge", &part, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
-    assert!(errors.starts_with(&format!("error: {output}")) && !folder.has_temporary(), "{errors}");
+    let series = folder.at("full.series.csv");
+    assert!(errors.starts_with(&format!("error: {series}: ")) && !folder.has_temporary(), "{errors}");
+    assert_eq!(["full.csv", "full.series.csv"].map(|table| folder.text(table)), ["mine", "mine"]);
     folder.sweep("full.csv", &[]);
-    for table in ["", ".section", ".series"] {
+    folder.sweep("whole.csv", &[]);
+    for table in ["", ".series"] {
         assert_eq!(folder.text(&format!("full{table}.csv")), folder.text(&format!("whole{table}.csv")));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_second_process_is_refused_while_the_first_works() {
+    let folder = Folder::new("second", ENDLESS);
+    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.0-of-1.part");
+    let first = start(&["sweep", &scene, "-o", &output]);
+    while folder.chunks(part).is_empty() {
+        sleep(Duration::from_millis(1));
+    }
+    let second = lab(&["sweep", &scene, "-o", &output]);
+    let message = format!("error: another process works on {}; wait for it\n", folder.at(part));
+    assert_eq!(second, (Some(2), String::new(), message));
+    let before = folder.chunks(part);
+    while folder.chunks(part).len() < before.len() + 2 {
+        sleep(Duration::from_millis(1));
+    }
+    send("-INT", &first);
+    let ended = first.wait_with_output().expect("the command ends");
+    assert_eq!(ended.status.code(), Some(130));
+    let after = folder.chunks(part);
+    assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_sweep_of_any_length_starts_in_bounded_memory_and_goes_on() {
+    let scene =
+        "system = \"kepler\"\nsteps = 1000\n[sweep]\nover = [{ name = \"x\", uniform = [0.9, 1.1] }]\nsamples = 1e15\n";
+    let folder = Folder::new("endless", scene);
+    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.0-of-1.part");
+    // A byte for each of the 2e12 chunks would be a thousand times this limit of 2 GB.
+    let limited = "ulimit -v 2000000; exec \"$0\" \"$@\"";
+    let mut before = Chunks::new();
+    for _ in 0..2 {
+        let child = Command::new("sh")
+            .args(["-c", limited, env!("CARGO_BIN_EXE_vi-lab"), "sweep", &scene, "-o", &output])
+            .env("RAYON_NUM_THREADS", "2")
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the shell runs");
+        while folder.chunks(part).len() < before.len() + 2 {
+            sleep(Duration::from_millis(1));
+        }
+        send("-INT", &child);
+        let Output { status, stderr, .. } = child.wait_with_output().expect("the command ends");
+        let errors = String::from_utf8(stderr).expect("text");
+        assert_eq!(status.code(), Some(130), "{errors}");
+        assert!(errors.contains(" of 2000000000000 chunks, from which the same command goes on"), "{errors}");
+        let after = folder.chunks(part);
+        assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
+        before = after;
+    }
+    let (status, errors) = folder.merge(&[part], "merged.csv");
+    let expected = format!("{part} has {} of 2000000000000 chunks; `vi-lab sweep` goes on with them", before.len());
+    assert_eq!((status, errors), (Some(2), format!("error: not all runs are there: {expected}\n")));
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let folder = Folder::new("threads", MIXED);
+    let (scene, part) = (folder.scene(), "a.csv.0-of-1.part");
+    let mut first: Option<Chunks> = None;
+    for threads in ["1", "2", "5"] {
+        let status = Command::new(env!("CARGO_BIN_EXE_vi-lab"))
+            .args(["sweep", &scene, "-o", &folder.at("a.csv"), "--shard", "0/1"])
+            .env("RAYON_NUM_THREADS", threads)
+            .stdout(Stdio::null())
+            .status();
+        assert!(status.expect("the command runs").success());
+        let chunks = folder.chunks(part);
+        assert_eq!(chunks.len(), 48);
+        assert!(*first.get_or_insert_with(|| chunks.clone()) == chunks, "{threads} threads");
+        fs::remove_dir_all(folder.at(part)).expect("the part goes");
+    }
+}
+
+#[test]
+fn a_chunk_that_was_changed_is_named_and_made_again() {
+    let folder = Folder::new("changed", MIXED);
+    folder.sweep("whole.csv", &[]);
+    folder.sweep("a.csv", &["--shard", "0/1"]);
+    let part = "a.csv.0-of-1.part";
+    let path = folder.at(&format!("{part}/7.csv"));
+    let good = fs::read_to_string(&path).expect("a chunk");
+    let lines = good.lines().count();
+    let remedy = "remove this file, and run the same `vi-lab sweep` again";
+    let counts = "rows above are missing or added";
+    for (bad, line, what) in [
+        (good.replacen("series,7,0.025,", "series,7,zero,", 1), 2, "`zero` cannot be an entry of the column `t`"),
+        (good.replacen("series,7,0.025,", "series,7,", 1), 2, "the row of `series` has 6 columns instead of 7"),
+        (good.replacen("\nseries,", "\nseries,7,0.0,0.0,0.0,0.0,0.0,0.0\nseries,", 1), lines + 1, counts),
+        (good.trim_end().to_owned(), lines, "the line is cut off or no text"),
+        (good.replacen("chunk 7", "chunk 8", 1), 1, "this is a chunk of another sweep, or another chunk"),
+    ] {
+        assert!(bad != good);
+        fs::write(&path, bad).expect("the chunk is written");
+        let expected = (Some(2), format!("error: {part}/7.csv, line {line}: {what}; {remedy}\n"));
+        assert_eq!(folder.merge(&[part], "a.csv"), expected);
+        let (status, said, errors) = lab(&["sweep", &folder.scene(), "-o", &folder.at("a.csv")]);
+        assert_eq!((status, errors.replace(&folder.at(""), "")), expected, "{said}");
+        assert!(!folder.0.join("a.csv").exists() && !folder.has_temporary());
+    }
+    fs::remove_file(&path).expect("the chunk goes");
+    let missing = format!("{part} has 47 of 48 chunks; `vi-lab sweep` goes on with them");
+    assert_eq!(folder.merge(&[part], "a.csv"), (Some(2), format!("error: not all runs are there: {missing}\n")));
+    folder.sweep("a.csv", &[]);
+    for table in ["", ".section", ".series"] {
+        assert!(folder.read(&format!("a{table}.csv")) == folder.read(&format!("whole{table}.csv")), "{table}");
     }
 }
 
@@ -327,17 +495,15 @@ fn parts_that_do_not_belong_together_are_refused() {
     fs::write(folder.scene(), short.replace("0.75", "0.76")).expect("a scene");
     folder.sweep("b.csv", &["--shard", "1/2"]);
     let [first, second, third] = ["a.csv.0-of-2.part", "a.csv.1-of-2.part", "a.csv.0-of-3.part"];
-    let half = folder.read(second);
-    fs::write(folder.at("half.part"), &half[..half.len() - 1]).expect("a part");
-    fs::write(folder.at("other.part"), "item,v_y\n").expect("a file");
+    fs::create_dir(folder.at("other.part")).expect("a folder");
+    folder.file("other.part/sweep.json", "{}");
     let sweep = |to: &str| format!("q from 0.71 to {to}, 10 values");
+    let chunk = folder.read(&format!("{second}/2.csv"));
+    fs::remove_file(folder.at(&format!("{second}/2.csv"))).expect("a chunk goes");
     for (parts, message) in [
         (vec![first], "not all shards are there: 1/2 missing".to_owned()),
         (vec![first, first], format!("{first} and {first} are both shard 0/2")),
-        (
-            vec![third, first],
-            format!("{third} is shard 0/3 and {first} is shard 0/2: the parts of a sweep are one of as many"),
-        ),
+        (vec![third, first], format!("{third} is shard 0/3 and {first} is shard 0/2: name shards I/3 only")),
         (
             vec![first, "b.csv.1-of-2.part"],
             format!(
@@ -347,27 +513,46 @@ fn parts_that_do_not_belong_together_are_refused() {
             ),
         ),
         (
-            vec![first, "half.part"],
-            "not all runs are there: half.part has 4 of 5 chunks; `vi-lab sweep` goes on with them".to_owned(),
+            vec![first, second],
+            format!("not all runs are there: {second} has 4 of 5 chunks; `vi-lab sweep` goes on with them"),
         ),
-        (vec!["other.part"], "other.part is no part of a sweep".to_owned()),
+        (
+            vec!["other.part"],
+            "other.part/sweep.json is not the heading of a sweep of this version of vi-lab; remove this part, and make it \
+             again"
+                .to_owned(),
+        ),
     ] {
         assert_eq!(folder.merge(&parts, "merged.csv"), (Some(2), format!("error: {message}\n")));
     }
     let (status, errors) = folder.merge(&["none.part"], "merged.csv");
-    assert!(status == Some(1) && errors.starts_with("error: none.part: "), "{errors}");
+    let expected = "error: none.part is not a part of a sweep: none.part/sweep.json: ";
+    assert!(status == Some(2) && errors.starts_with(expected), "{errors}");
     assert_eq!(
         folder.merge(&[first, second], "merged.xls"),
         (Some(2), "error: the output `merged.xls` must end in .csv, .npy or .parquet\n".to_owned())
     );
+    // A chunk of the same name of another sweep.
+    fs::copy(folder.at("b.csv.1-of-2.part/2.csv"), folder.at(&format!("{second}/2.csv"))).expect("a copy");
+    let (status, errors) = folder.merge(&[first, second], "merged.csv");
+    let expected = format!("error: {second}/2.csv, line 1: this is a chunk of another sweep, or another chunk; ");
+    assert!(status == Some(2) && errors.starts_with(&expected), "{errors}");
     assert!(!folder.0.join("merged.csv").exists());
+    fs::write(folder.at(&format!("{second}/2.csv")), chunk).expect("the chunk is written");
+    assert_eq!(folder.merge(&[first, second], "merged.csv"), (Some(0), String::new()));
     // A part that is there already is gone on with, if it is of the same sweep.
     assert!(folder.sweep("b.csv", &["--shard", "1/2"]).contains("b.csv.1-of-2.part: 5 runs, all reached their end"));
-    fs::rename(folder.at("b.csv.1-of-2.part"), folder.at("refused.csv.1-of-2.part")).expect("a part");
-    let message = "refused.csv.1-of-2.part is of another sweep, by its system: DoubleWell there, Kepler here; remove it, or name \
-                   another output";
+    let part = "refused.csv.1-of-2.part";
+    fs::rename(folder.at("b.csv.1-of-2.part"), folder.at(part)).expect("a part");
     let over = "[sweep]\nover = [{ name = \"v_y\", values = [1.0] }]\n";
-    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message);
+    let message =
+        |fact: &str| format!("{part} is of another sweep, by its {fact} here; remove it, or name another output");
+    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message("system: DoubleWell there, Kepler"));
+    // Another version of the program.
+    let heading = folder.text(&format!("{part}/sweep.json"));
+    let version = env!("CARGO_PKG_VERSION");
+    folder.file(&format!("{part}/sweep.json"), &heading.replacen(&format!("\"{version}\""), "\"0.0.9\"", 1));
+    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message(&format!("vi-lab: 0.0.9 there, {version}")));
 }
 
 #[test]
