@@ -1,10 +1,11 @@
-//! All cores at work on a part.
+//! All cores at work on the chunks of a shard.
 //!
-//! The threads make one missing chunk after the other; the main thread waits for them and for signals. AFTER A SIGNAL the chunks under way are lost with the
+//! The threads take one chunk after the other; the main thread waits for them and for signals. After a signal the chunks under way are lost with the
 //! process, so that no run has to look for signals.
 
-use super::part::Part;
+use super::chunks::Chunks;
 use super::study::Study;
+use core::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -16,26 +17,26 @@ use vi_report::progress::Progress;
 /// Time between two looks for a signal.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Makes the chunks that are missing.
+/// Makes those of some chunks that are not there.
 ///
 /// # Errors
 /// [`Failure::Interrupted`] after a signal, [`Failure::File`] if a chunk cannot be written.
-pub(super) fn work(study: Study, part: &Arc<Part>) -> Result<(), Failure> {
+pub(super) fn work(study: Study, chunks: &Arc<Chunks>, numbers: &Range<u64>) -> Result<(), Failure> {
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
-    let chunks = part.heading.chunks();
-    let mut present = part.present()?;
-    let mut progress = Progress::new(chunks.saturating_sub(present));
+    let (all, mut done) = (numbers.end - numbers.start, 0);
+    let mut progress = Progress::new(all);
     let (sender, results) = mpsc::channel();
-    let next = AtomicU64::new(0);
-    let shared = Arc::clone(part);
+    // One by one: a list of chunks would grow with the number of runs.
+    let (next, end) = (AtomicU64::new(numbers.start), numbers.end);
+    let shared = Arc::clone(chunks);
     rayon::spawn_broadcast(move |_| {
         loop {
-            // One by one: a list of chunks would grow with the number of runs.
             let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= chunks {
+            if number >= end {
                 break;
             }
-            if !shared.has(number) && sender.send(study.chunk(&shared, number)).is_err() {
+            let result = if shared.is_made(number) { Ok(()) } else { study.chunk(&shared, number) };
+            if sender.send(result).is_err() {
                 break;
             }
         }
@@ -44,14 +45,14 @@ pub(super) fn work(study: Study, part: &Arc<Part>) -> Result<(), Failure> {
         match results.recv_timeout(PATIENCE) {
             Ok(result) => {
                 result?;
-                present += 1;
+                done += 1;
                 progress.advance_by(1);
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }
-        if let Some(signal) = interrupt.signal().filter(|_| present < chunks) {
-            let reached = format!("{present} of {chunks} chunks, from which the same command goes on");
+        if let Some(signal) = interrupt.signal().filter(|_| done < all) {
+            let reached = format!("{done} of {all} chunks, from which the same command goes on");
             return Err(Failure::Interrupted { signal, reached });
         }
     }

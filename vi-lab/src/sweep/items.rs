@@ -154,7 +154,10 @@ mod tests {
                 "over = [{ name = \"x\", uniform = [0, 1] }]",
                 "the sweep has random values: say with `samples` how many, such as samples = 100",
             ),
-            ("over = [{ name = \"x\", uniform = [0, 1, 2] }]\nsamples = 3", "needs two numbers, not 3"),
+            (
+                "over = [{ name = \"x\", uniform = [0, 1, 2] }]\nsamples = 3",
+                "the sweep over `x` needs two numbers, not 3",
+            ),
             ("over = [{ name = \"x\", values = [1] }]\nsamples = 3", "the sweep has `samples`, but no random values"),
             (
                 "over = [{ name = \"x\", from = 0, to = 1, count = 1e10 }, { name = \"y\", from = 0, to = 1, count = 1e10 }]",

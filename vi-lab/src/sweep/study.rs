@@ -2,25 +2,24 @@
 //!
 //! In: a scene with `[sweep]`. Out: a [`Study`], its description, and rows for each run.
 
-use super::course::{Course, Member};
+use super::chunks::{Chunks, Description, fingerprint};
 use super::ending::Ending;
 use super::items::Items;
 use super::keep::Kept;
-use super::part::{Description, Heading, Part, fingerprint};
+use super::outcome::{Member, Outcome};
 use super::scene::Keep;
-use super::shard::Shard;
 use crate::run::{Length, Request, method};
 use vi_report::catalogue;
 use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
 use vi_report::numbers::{about, assigned, short};
 
-/// Steps in a chunk: some tenths of a second of fixed steps, which take longer than the sync of a file.
-const STEPS: f64 = 5e5;
+/// Steps in a chunk: a tenth of a second of fixed steps, many times longer than the sync of a file.
+const STEPS: f64 = 2e5;
 /// Runs in a chunk, however short.
 const MOST_ITEMS: u64 = 1 << 14;
-/// Chunks of a shard at least, where it has as many runs, so that all cores have work.
-const FEWEST_CHUNKS: u64 = 64;
+/// Chunks at least, if there are as many runs, so that all cores have work.
+const FEWEST_CHUNKS: u64 = 256;
 /// Bytes of rows of one run that are held at once.
 const MOST_BYTES: f64 = 1.6e7;
 
@@ -64,19 +63,13 @@ impl Study {
         )))
     }
 
-    /// What a part of it begins with.
-    pub(super) fn heading(&self, shard: Shard) -> Heading {
-        let Request { plan, length, .. } = &self.request;
-        let items = shard.items(self.items.count());
-        let balanced = (items.end - items.start).div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
-        let short = (STEPS / length.steps(plan).max(1.0)).max(1.0) as u64;
-        Heading { sweep: self.description(), shard, chunk: balanced.min(short) }
-    }
-
-    /// All on which its tables depend.
-    fn description(&self) -> Description {
+    /// Everything that its tables depend on.
+    pub(super) fn description(&self) -> Description {
         let Request { system, plan, length, every, .. } = &self.request;
+        let items = self.items.count();
+        let balanced = items.div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
+        let chunk = balanced.min((STEPS / length.steps(plan).max(1.0)).max(1.0) as u64);
         let length = match length {
             Length::Steps(steps) => format!("{steps} steps"),
             Length::Until(end) => format!("until t = {}", short(*end)),
@@ -96,17 +89,17 @@ impl Study {
         ];
         let facts = facts.map(|(name, fact)| (name.to_owned(), fact)).to_vec();
         let schemas = self.kept.schemas(self.items.names(), &system.coordinates());
-        Description { facts, items: self.items.count(), schemas }
+        Description { facts, items, chunk, schemas }
     }
 
     /// Takes the runs of a chunk, and writes it.
     ///
     /// # Errors
     /// [`Failure::File`] if it cannot be written.
-    pub(super) fn chunk(&self, part: &Part, number: u64) -> Result<(), Failure> {
-        let mut tables = vec![Vec::new(); part.heading.sweep.schemas.len()];
-        part.write(number, |chunk| {
-            part.heading.items(number).try_for_each(|item| {
+    pub(super) fn chunk(&self, chunks: &Chunks, number: u64) -> Result<(), Failure> {
+        let mut tables = vec![Vec::new(); chunks.description.schemas.len()];
+        chunks.write(number, |chunk| {
+            chunks.description.runs(&(number..number + 1)).try_for_each(|item| {
                 let ending = self.follow(item, &mut tables);
                 chunk.add(&mut tables, ending != Ending::REACHED)
             })
@@ -123,36 +116,36 @@ impl Study {
         let mut series = if self.kept.has(Keep::Series) { tables.next() } else { None };
 
         let member = self.member(item);
-        let mut course = Course::of(&member, &mut |simulation| {
+        let mut outcome = Outcome::of(&member, &mut |simulation| {
             if let Some(series) = &mut series {
                 series.push(number);
                 series.extend(simulation.row().entries().map(|entry| entry.unwrap_or(f64::NAN)));
             }
         });
         if let Some((section, crossings)) = section {
-            let crossed = course.cross(&member, section, &mut |row| {
+            let crossed = outcome.cross(&member, section, &mut |row| {
                 crossings.extend([number, row.t].into_iter().chain(row.q).chain(row.p));
                 crossings.push(row.energy.unwrap_or(f64::NAN));
             });
-            if course.ending == Ending::REACHED && crossed.is_err() {
-                course.ending = Ending::NO_SECTION;
+            if outcome.ending == Ending::REACHED && crossed.is_err() {
+                outcome.ending = Ending::NO_SECTION;
             }
         }
         runs.push(number);
         runs.extend(self.items.values(item));
         if self.kept.has(Keep::Ending) {
-            runs.extend([course.ending.number(), course.steps as f64]);
+            runs.extend([outcome.ending.number(), outcome.steps as f64]);
         }
         if self.kept.has(Keep::End) {
-            runs.extend(course.end(self.request.columns().len()));
+            runs.extend(outcome.end(self.request.columns().len()));
         }
         if self.kept.has(Keep::Extremes) {
-            runs.extend(course.extremes());
+            runs.extend(outcome.extremes());
         }
         if self.kept.has(Keep::Energy) {
-            runs.extend(course.errors());
+            runs.extend(outcome.errors());
         }
-        course.ending
+        outcome.ending
     }
 
     /// The run of an item.

@@ -1,4 +1,4 @@
-//! Sweeps: parts against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
+//! Sweeps: shards against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
 
 use super::{array, bits, lab, path, rows, send, temporary};
 use std::collections::BTreeMap;
@@ -54,7 +54,9 @@ impl Folder {
 
     /// The chunks of a part.
     fn chunks(&self, part: &str) -> Chunks {
-        let names = names(&self.0.join(part)).into_iter().filter(|name| name.ends_with(".csv"));
+        let names = names(&self.0.join(part))
+            .into_iter()
+            .filter(|name| Path::new(name).extension().is_some_and(|extension| extension == "csv"));
         names.map(|name| (name.clone(), self.read(&format!("{part}/{name}")))).collect()
     }
 
@@ -68,6 +70,13 @@ impl Folder {
         let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
         assert_eq!((status, errors.as_str()), (Some(0), ""));
         said
+    }
+
+    /// Whether the tables of a sweep of `MIXED` are those of one that was not divided.
+    fn is_whole(&self, name: &str, what: &str) {
+        for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
+            assert!(self.read(&format!("{name}.{file}")) == self.read(&format!("whole.{file}")), "{file} of {what}");
+        }
     }
 
     /// A merge of parts; status and what was said on standard error.
@@ -122,7 +131,7 @@ keep = [\"ending\", \"end\", \"extremes\", \"energy\", \"series\"]
 section = { coordinate = \"q\", at = 0.75, direction = \"both\" }
 ";
 
-/// Runs of 20000 steps, two in a chunk.
+/// Runs of 20000 steps, each a chunk.
 const LONG: &str = "
 system = \"double-well\"
 method = \"energy\"
@@ -131,7 +140,7 @@ steps = 20000
 over = [{ name = \"q\", from = 0.71, to = 0.75, count = 80 }]
 ";
 
-/// More runs than can be taken, 500 in a chunk.
+/// More runs than can be taken, 200 in a chunk.
 const ENDLESS: &str = "
 system = \"kepler\"
 steps = 1000
@@ -140,33 +149,42 @@ over = [{ name = \"x\", uniform = [0.9, 1.1] }]
 samples = 1e15
 ";
 
-/// The names of the parts of a sweep in so many shards.
-fn parts(count: usize) -> Vec<String> {
-    (0..count).map(|index| format!("{count}.csv.{index}-of-{count}.part")).collect()
-}
-
 #[test]
 fn shards_are_the_whole_byte_for_byte() {
     let folder = Folder::new("shards", MIXED);
     let said = folder.sweep("whole.csv", &[]);
     assert!(said.contains("whole.csv: 48 runs, 12 did not reach their end"), "{said}");
     folder.sweep("whole.npy", &[]);
-    assert!(!folder.0.join("whole.csv.0-of-1.part").exists(), "its rows stand in tables");
-    for count in [1, 2, 7] {
-        for index in 0..count {
+    assert!(!folder.0.join("whole.csv.part").exists(), "its rows stand in tables");
+    for count in [1, 2, 7, 100] {
+        let part = format!("{count}.csv.part");
+        // In any order, and some twice.
+        for index in (0..count).rev().chain([0]) {
             folder.sweep(&format!("{count}.csv"), &["--shard", &format!("{index}/{count}")]);
         }
-        let parts = parts(count);
-        let mut parts: Vec<&str> = parts.iter().map(String::as_str).collect();
-        parts.reverse();
         for output in ["merged.csv", "merged.npy"] {
-            assert_eq!(folder.merge(&parts, output), (Some(0), String::new()));
+            assert_eq!(folder.merge(&[&part], output), (Some(0), String::new()));
         }
-        for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
-            let (merged, whole) = (folder.read(&format!("merged.{file}")), folder.read(&format!("whole.{file}")));
-            assert!(merged == whole, "{file} of {count} shards");
-        }
+        folder.is_whole("merged", &format!("{count} shards"));
     }
+    // Machines without a common file system have folders of their own. The number of shards may change.
+    for (output, shard) in [("a.csv", "0/3"), ("b.csv", "2/3"), ("b.csv", "1/2")] {
+        folder.sweep(output, &["--shard", shard]);
+    }
+    let missing = "chunk 16 of 48 is missing, runs 16 to 16; `vi-lab sweep` makes it";
+    let expected = (Some(2), format!("error: not all runs are there: {missing}\n"));
+    assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], "c.csv"), expected);
+    folder.sweep("a.csv", &["--shard", "0/2"]);
+    for output in ["c.csv", "c.npy"] {
+        assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], output), (Some(0), String::new()));
+    }
+    folder.is_whole("c", "two folders");
+    // Without --shard the sweep makes what is missing, merges and removes the folder.
+    for output in ["b.csv", "b.npy"] {
+        folder.sweep(output, &[]);
+    }
+    folder.is_whole("b", "a sweep that goes on from shards");
+    assert!(!folder.0.join("b.csv.part").exists());
     let description: serde_json::Value = serde_json::from_slice(&folder.read("whole.npy.json")).expect("JSON");
     let words = description["words"]["ending"].as_array().expect("words");
     for table in ["", ".section", ".series"] {
@@ -279,9 +297,9 @@ fn crossings_are_where_the_motion_is_known() {
 fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
     let folder = Folder::new("killed", LONG);
     folder.sweep("whole.csv", &["--shard", "0/1"]);
-    let whole = folder.chunks("whole.csv.0-of-1.part");
-    assert_eq!(whole.len(), 40);
-    let (scene, output, part) = (folder.scene(), folder.at("killed.csv"), "killed.csv.0-of-1.part");
+    let whole = folder.chunks("whole.csv.part");
+    assert_eq!(whole.len(), 80);
+    let (scene, output, part) = (folder.scene(), folder.at("killed.csv"), "killed.csv.part");
     let times = |chunks: &Chunks| -> Vec<_> {
         let time =
             |name: &String| fs::metadata(folder.at(&format!("{part}/{name}"))).and_then(|chunk| chunk.modified());
@@ -289,8 +307,8 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
     };
     let mut before = Vec::new();
     for (signal, status) in [("-KILL", None), ("-INT", Some(130)), ("-KILL", None), ("-TERM", Some(143))] {
-        let child = start(&["sweep", &scene, "-o", &output, "--shard", "0/1"]);
-        while folder.chunks(part).len() < before.len() + 4 {
+        let child = start(&["sweep", &scene, "-o", &output]);
+        while folder.chunks(part).len() < before.len() + 8 {
             sleep(Duration::from_millis(1));
         }
         send(signal, &child);
@@ -299,29 +317,25 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
         assert_eq!(ended.code(), status, "{errors}");
         if status.is_some() {
             assert!(
-                errors.contains(" of 40 chunks, from which the same command goes on; the output up to there is whole"),
+                errors.contains(" of 80 chunks, from which the same command goes on; the output up to there is whole"),
                 "{errors}"
             );
         }
         let chunks = folder.chunks(part);
-        assert!(chunks.len() < 40 && chunks.iter().all(|(name, chunk)| whole[name] == *chunk), "{signal}");
+        assert!(chunks.len() < 80 && chunks.iter().all(|(name, chunk)| whole[name] == *chunk), "{signal}");
         let after = times(&chunks);
         assert!(before.iter().all(|chunk| after.contains(chunk)), "no chunk is written twice");
+        let temporary = names(&folder.0.join(part)).into_iter().filter(|name| name.contains(".tmp"));
+        assert!(temporary.count() <= 1, "what the process before left is removed");
         before = after;
     }
     folder.sweep("killed.csv", &["--shard", "0/1"]);
     let chunks = folder.chunks(part);
     let after = times(&chunks);
     assert!(chunks == whole && before.iter().all(|chunk| after.contains(chunk)));
-    let is_temporary = |name: &str| name.contains(".tmp");
-    assert!(!names(&folder.0.join(part)).iter().any(|name| is_temporary(name)), "what was killed is removed");
-    for name in ["whole", "killed"] {
-        assert_eq!(
-            folder.merge(&[&format!("{name}.csv.0-of-1.part")], &format!("{name}.csv")),
-            (Some(0), String::new())
-        );
-    }
-    assert_eq!(folder.text("killed.csv"), folder.text("whole.csv"));
+    folder.sweep("killed.csv", &[]);
+    assert_eq!(folder.merge(&["whole.csv.part"], "whole.csv"), (Some(0), String::new()));
+    assert!(folder.text("killed.csv") == folder.text("whole.csv") && !folder.0.join(part).exists());
 }
 
 /// Six runs of 4, 8, … 128 steps, each in a chunk that is as long as its series.
@@ -338,7 +352,7 @@ keep = [\"ending\", \"end\", \"series\"]
 fn a_disk_that_is_full_keeps_the_chunks_before() {
     let folder = Folder::new("full-sweep", GROWING);
     folder.sweep("whole.csv", &["--shard", "0/1"]);
-    let whole = folder.chunks("whole.csv.0-of-1.part");
+    let whole = folder.chunks("whole.csv.part");
     // 20 blocks of 512 bytes: more than five of the chunks and the heading have, less than the last chunk and the table of the series.
     let lengths: Vec<usize> = whole.values().map(Vec::len).collect();
     assert!(lengths[4] < 10240 && lengths[5] > 10240, "{lengths:?}");
@@ -350,14 +364,14 @@ fn a_disk_that_is_full_keeps_the_chunks_before() {
         (status.code(), String::from_utf8(stderr).expect("text"))
     };
     let (scene, output) = (folder.scene(), folder.at("full.csv"));
-    let part = folder.at("full.csv.0-of-1.part");
+    let part = folder.at("full.csv.part");
     let (status, errors) = run(&["sweep", &scene, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
     let advice = "the other chunks are whole; once this is mended, the same command goes on from them\n";
     assert!(errors.starts_with(&format!("error: {part}/5.csv: ")) && errors.ends_with(advice), "{errors}");
-    let kept = folder.chunks("full.csv.0-of-1.part");
+    let kept = folder.chunks("full.csv.part");
     assert!(kept.len() == 5 && kept.iter().all(|(name, chunk)| whole[name] == *chunk));
-    assert!(!names(&folder.0.join("full.csv.0-of-1.part")).iter().any(|name| name.contains(".tmp")));
+    assert!(!names(&folder.0.join("full.csv.part")).iter().any(|name| name.contains(".tmp")));
     folder.sweep("full.csv", &["--shard", "0/1"]);
     folder.file("full.csv", "mine");
     folder.file("full.series.csv", "mine");
@@ -377,7 +391,7 @@ fn a_disk_that_is_full_keeps_the_chunks_before() {
 #[test]
 fn a_second_process_is_refused_while_the_first_works() {
     let folder = Folder::new("second", ENDLESS);
-    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.0-of-1.part");
+    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.part");
     let first = start(&["sweep", &scene, "-o", &output]);
     while folder.chunks(part).is_empty() {
         sleep(Duration::from_millis(1));
@@ -402,8 +416,8 @@ fn a_sweep_of_any_length_starts_in_bounded_memory_and_goes_on() {
     let scene =
         "system = \"kepler\"\nsteps = 1000\n[sweep]\nover = [{ name = \"x\", uniform = [0.9, 1.1] }]\nsamples = 1e15\n";
     let folder = Folder::new("endless", scene);
-    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.0-of-1.part");
-    // A byte for each of the 2e12 chunks would be a thousand times this limit of 2 GB.
+    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.part");
+    // A bit for each of the chunks would be 300 times this limit of 2 GB.
     let limited = "ulimit -v 2000000; exec \"$0\" \"$@\"";
     let mut before = Chunks::new();
     for _ in 0..2 {
@@ -420,20 +434,21 @@ fn a_sweep_of_any_length_starts_in_bounded_memory_and_goes_on() {
         let Output { status, stderr, .. } = child.wait_with_output().expect("the command ends");
         let errors = String::from_utf8(stderr).expect("text");
         assert_eq!(status.code(), Some(130), "{errors}");
-        assert!(errors.contains(" of 2000000000000 chunks, from which the same command goes on"), "{errors}");
+        assert!(errors.contains(" of 5000000000000 chunks, from which the same command goes on"), "{errors}");
         let after = folder.chunks(part);
         assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
         before = after;
     }
-    let (status, errors) = folder.merge(&[part], "merged.csv");
-    let expected = format!("{part} has {} of 2000000000000 chunks; `vi-lab sweep` goes on with them", before.len());
-    assert_eq!((status, errors), (Some(2), format!("error: not all runs are there: {expected}\n")));
+    let missing = (0..1000).find(|number| !before.contains_key(&format!("{number}.csv"))).expect("a chunk");
+    let runs = format!("runs {} to {}", 200 * missing, 200 * missing + 199);
+    let expected = format!("chunk {missing} of 5000000000000 is missing, {runs}; `vi-lab sweep` makes it");
+    assert_eq!(folder.merge(&[part], "merged.csv"), (Some(2), format!("error: not all runs are there: {expected}\n")));
 }
 
 #[test]
 fn the_number_of_threads_changes_no_byte() {
     let folder = Folder::new("threads", MIXED);
-    let (scene, part) = (folder.scene(), "a.csv.0-of-1.part");
+    let (scene, part) = (folder.scene(), "a.csv.part");
     let mut first: Option<Chunks> = None;
     for threads in ["1", "2", "5"] {
         let status = Command::new(env!("CARGO_BIN_EXE_vi-lab"))
@@ -454,7 +469,7 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
     let folder = Folder::new("changed", MIXED);
     folder.sweep("whole.csv", &[]);
     folder.sweep("a.csv", &["--shard", "0/1"]);
-    let part = "a.csv.0-of-1.part";
+    let part = "a.csv.part";
     let path = folder.at(&format!("{part}/7.csv"));
     let good = fs::read_to_string(&path).expect("a chunk");
     let lines = good.lines().count();
@@ -465,7 +480,6 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
         (good.replacen("series,7,0.025,", "series,7,", 1), 2, "the row of `series` has 6 columns instead of 7"),
         (good.replacen("\nseries,", "\nseries,7,0.0,0.0,0.0,0.0,0.0,0.0\nseries,", 1), lines + 1, counts),
         (good.trim_end().to_owned(), lines, "the line is cut off or no text"),
-        (good.replacen("chunk 7", "chunk 8", 1), 1, "this is a chunk of another sweep, or another chunk"),
     ] {
         assert!(bad != good);
         fs::write(&path, bad).expect("the chunk is written");
@@ -475,9 +489,11 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
         assert_eq!((status, errors.replace(&folder.at(""), "")), expected, "{said}");
         assert!(!folder.0.join("a.csv").exists() && !folder.has_temporary());
     }
-    fs::remove_file(&path).expect("the chunk goes");
-    let missing = format!("{part} has 47 of 48 chunks; `vi-lab sweep` goes on with them");
-    assert_eq!(folder.merge(&[part], "a.csv"), (Some(2), format!("error: not all runs are there: {missing}\n")));
+    // What is no chunk of this sweep is refused, and made again. So is one that is not there.
+    fs::write(&path, good.replacen("chunk 7", "chunk 8", 1)).expect("the chunk is written");
+    let another = format!("{part}/7.csv, line 1: this is a chunk of another sweep, or another chunk; {remedy}");
+    assert_eq!(folder.merge(&[part], "a.csv"), (Some(2), format!("error: {another}\n")));
+    fs::remove_file(folder.at(&format!("{part}/9.csv"))).expect("the chunk goes");
     folder.sweep("a.csv", &[]);
     for table in ["", ".section", ".series"] {
         assert!(folder.read(&format!("a{table}.csv")) == folder.read(&format!("whole{table}.csv")), "{table}");
@@ -485,74 +501,63 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
 }
 
 #[test]
-fn parts_that_do_not_belong_together_are_refused() {
+fn chunks_that_do_not_belong_together_are_refused() {
     let folder = Folder::new("merge", LONG);
     let short = LONG.replace("20000", "50").replace("80", "10");
     fs::write(folder.scene(), &short).expect("a scene");
-    for shard in ["0/2", "1/2", "0/3"] {
-        folder.sweep("a.csv", &["--shard", shard]);
-    }
+    folder.sweep("a.csv", &["--shard", "1/2"]);
     fs::write(folder.scene(), short.replace("0.75", "0.76")).expect("a scene");
-    folder.sweep("b.csv", &["--shard", "1/2"]);
-    let [first, second, third] = ["a.csv.0-of-2.part", "a.csv.1-of-2.part", "a.csv.0-of-3.part"];
+    folder.sweep("b.csv", &["--shard", "0/2"]);
+    let (first, second) = ("a.csv.part", "b.csv.part");
     fs::create_dir(folder.at("other.part")).expect("a folder");
     folder.file("other.part/sweep.json", "{}");
-    let sweep = |to: &str| format!("q from 0.71 to {to}, 10 values");
-    let chunk = folder.read(&format!("{second}/2.csv"));
-    fs::remove_file(folder.at(&format!("{second}/2.csv"))).expect("a chunk goes");
+    let sweep = |to: &str| format!("`q from 0.71 to {to}, 10 values`");
+    let other = format!("its sweep is {}, not {}", sweep("0.76"), sweep("0.75"));
+    let remedy = "remove other.part, and run `vi-lab sweep` again";
     for (parts, message) in [
-        (vec![first], "not all shards are there: 1/2 missing".to_owned()),
-        (vec![first, first], format!("{first} and {first} are both shard 0/2")),
-        (vec![third, first], format!("{third} is shard 0/3 and {first} is shard 0/2: name shards I/3 only")),
+        (vec![first, second], format!("{second} is of another sweep than {first}: {other}")),
         (
-            vec![first, "b.csv.1-of-2.part"],
-            format!(
-                "{first} and b.csv.1-of-2.part are of different sweeps, by their sweep: {} there, {} here",
-                sweep("0.75"),
-                sweep("0.76")
-            ),
-        ),
-        (
-            vec![first, second],
-            format!("not all runs are there: {second} has 4 of 5 chunks; `vi-lab sweep` goes on with them"),
+            vec![first],
+            "not all runs are there: chunk 0 of 10 is missing, runs 0 to 0; `vi-lab sweep` makes it".to_owned(),
         ),
         (
             vec!["other.part"],
-            "other.part/sweep.json is not the heading of a sweep of this version of vi-lab; remove this part, and make it \
-             again"
-                .to_owned(),
+            format!("other.part/sweep.json does not describe a sweep of this version of vi-lab; {remedy}"),
         ),
     ] {
         assert_eq!(folder.merge(&parts, "merged.csv"), (Some(2), format!("error: {message}\n")));
     }
     let (status, errors) = folder.merge(&["none.part"], "merged.csv");
-    let expected = "error: none.part is not a part of a sweep: none.part/sweep.json: ";
+    let expected = "error: none.part has no chunks of a sweep: none.part/sweep.json: ";
     assert!(status == Some(2) && errors.starts_with(expected), "{errors}");
     assert_eq!(
-        folder.merge(&[first, second], "merged.xls"),
+        folder.merge(&[first], "merged.xls"),
         (Some(2), "error: the output `merged.xls` must end in .csv, .npy or .parquet\n".to_owned())
     );
-    // A chunk of the same name of another sweep.
-    fs::copy(folder.at("b.csv.1-of-2.part/2.csv"), folder.at(&format!("{second}/2.csv"))).expect("a copy");
-    let (status, errors) = folder.merge(&[first, second], "merged.csv");
-    let expected = format!("error: {second}/2.csv, line 1: this is a chunk of another sweep, or another chunk; ");
+    // Chunks of another sweep, under the right names.
+    for number in 0..5 {
+        let name = format!("{number}.csv");
+        fs::copy(folder.at(&format!("{second}/{name}")), folder.at(&format!("{first}/{name}"))).expect("a copy");
+    }
+    let (status, errors) = folder.merge(&[first], "merged.csv");
+    let expected = format!("error: {first}/0.csv, line 1: this is a chunk of another sweep, or another chunk; ");
     assert!(status == Some(2) && errors.starts_with(&expected), "{errors}");
-    assert!(!folder.0.join("merged.csv").exists());
-    fs::write(folder.at(&format!("{second}/2.csv")), chunk).expect("the chunk is written");
-    assert_eq!(folder.merge(&[first, second], "merged.csv"), (Some(0), String::new()));
-    // A part that is there already is gone on with, if it is of the same sweep.
-    assert!(folder.sweep("b.csv", &["--shard", "1/2"]).contains("b.csv.1-of-2.part: 5 runs, all reached their end"));
-    let part = "refused.csv.1-of-2.part";
-    fs::rename(folder.at("b.csv.1-of-2.part"), folder.at(part)).expect("a part");
+    assert!(!folder.0.join("merged.csv").exists() && !folder.has_temporary());
+    fs::write(folder.scene(), &short).expect("a scene");
+    assert!(folder.sweep("a.csv", &["--shard", "0/2"]).contains("a.csv.part: 5 runs, all reached their end"));
+    assert_eq!(folder.merge(&[first], "merged.csv"), (Some(0), String::new()));
+    // A sweep goes on from its own chunks only.
+    let part = "refused.csv.part";
+    fs::rename(folder.at(second), folder.at(part)).expect("a folder");
     let over = "[sweep]\nover = [{ name = \"v_y\", values = [1.0] }]\n";
-    let message =
-        |fact: &str| format!("{part} is of another sweep, by its {fact} here; remove it, or name another output");
-    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message("system: DoubleWell there, Kepler"));
-    // Another version of the program.
+    let message = |fact: &str| format!("{part} is of another sweep: its {fact}; remove it, or name another output");
+    for shard in [&[][..], &["--shard", "1/2"]] {
+        assert_eq!(folder.refused(over, shard), message("system is `DoubleWell`, not `Kepler`"));
+    }
     let heading = folder.text(&format!("{part}/sweep.json"));
     let version = env!("CARGO_PKG_VERSION");
     folder.file(&format!("{part}/sweep.json"), &heading.replacen(&format!("\"{version}\""), "\"0.0.9\"", 1));
-    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message(&format!("vi-lab: 0.0.9 there, {version}")));
+    assert_eq!(folder.refused(over, &[]), message(&format!("vi-lab is `0.0.9`, not `{version}`")));
 }
 
 #[test]
@@ -653,9 +658,7 @@ fn hyperqueue_makes_the_same_bytes() {
     let run =
         python(&["-c", HYPERQUEUE, env!("CARGO_BIN_EXE_vi-lab"), &scene, &output, &inside, "7"]).expect("python runs");
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let parts = parts(7);
-    let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
-    assert_eq!(folder.merge(&parts, "merged.csv"), (Some(0), String::new()));
+    assert_eq!(folder.merge(&["7.csv.part"], "merged.csv"), (Some(0), String::new()));
     assert!(folder.read("merged.csv") == folder.read("whole.csv"));
     println!("tested with HyperQueue: seven tasks");
 }

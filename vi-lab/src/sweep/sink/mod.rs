@@ -6,7 +6,7 @@
 #[cfg(feature = "parquet")]
 mod parquet;
 
-use super::part::Description;
+use super::chunks::Description;
 use super::schema::{Kind, Schema};
 use crate::npy;
 use crate::place::{self, Temporary, beside};
@@ -74,11 +74,14 @@ impl Format {
 }
 
 impl<'a> Target<'a> {
-    /// A new table at a path.
+    /// A new table: `study.csv` for the runs, `study.series.csv` beside it for their series.
     ///
     /// # Errors
     /// [`Failure::File`] if it cannot be made.
-    pub(super) fn create(path: PathBuf, description: &'a Description, schema: &'a Schema) -> Result<Self, Failure> {
+    pub(super) fn create(output: &Path, description: &'a Description, schema: &'a Schema) -> Result<Self, Failure> {
+        let extension = output.extension().unwrap_or_default().to_string_lossy();
+        let beside_it = || output.with_extension(format!("{}.{extension}", schema.table));
+        let path = if schema.table == "runs" { output.to_owned() } else { beside_it() };
         let format = Format::of(&path)?;
         let created = Temporary::create(&path).and_then(|(temporary, file)| {
             let mut buffer = BufWriter::with_capacity(1 << 16, file.try_clone()?);

@@ -1,6 +1,6 @@
 //! A table as Parquet: numbers as doubles, counts as integers, words as text; facts are key and value of the file.
 
-use super::super::part::Description;
+use super::super::chunks::Description;
 use super::super::schema::{Column, Kind, Schema, word};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
