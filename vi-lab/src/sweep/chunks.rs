@@ -41,15 +41,6 @@ pub(super) struct Chunks {
     _lock: Option<File>,
 }
 
-/// A chunk that is being written.
-pub(super) struct Chunk<'a> {
-    schemas: &'a [Schema],
-    file: BufWriter<File>,
-    text: String,
-    rows: u64,
-    failed: u64,
-}
-
 /// Takes a row, with the index of its table.
 pub(super) type Take<'a> = dyn FnMut(usize, &[f64]) -> Result<(), Failure> + 'a;
 
@@ -180,30 +171,45 @@ impl Chunks {
             && found == first.as_bytes()
     }
 
-    /// Writes a chunk: `fill` adds its runs.
+    /// Writes a chunk. `follow` adds the rows of a run to the tables, and returns whether it failed.
     ///
     /// # Errors
     /// [`Failure::File`] if it cannot be written; the chunk is then not there.
-    pub(super) fn write(
-        &self,
-        number: u64,
-        fill: impl FnOnce(&mut Chunk<'_>) -> io::Result<()>,
-    ) -> Result<(), Failure> {
+    pub(super) fn write(&self, number: u64, follow: impl FnMut(u64, &mut [Vec<f64>]) -> bool) -> Result<(), Failure> {
         let path = self.path(number);
-        let written = Temporary::create(&path).and_then(|(temporary, file)| {
-            let file = BufWriter::with_capacity(1 << 16, file);
-            let schemas = &self.description.schemas;
-            let mut chunk = Chunk { schemas, file, text: String::new(), rows: 0, failed: 0 };
-            chunk.file.write_all(self.first_line(number).as_bytes())?;
-            fill(&mut chunk)?;
-            writeln!(chunk.file, "# {} rows, {} failed", chunk.rows, chunk.failed)?;
-            chunk.file.into_inner()?.sync_all()?;
-            temporary.finish()
-        });
-        written.map_err(|error| {
+        self.try_write(&path, number, follow).map_err(|error| {
             let advice = "the other chunks are whole; once this is mended, the same command goes on from them";
             Failure::file(path, io::Error::new(error.kind(), format!("{error}; {advice}")))
         })
+    }
+
+    fn try_write(
+        &self,
+        path: &Path,
+        number: u64,
+        mut follow: impl FnMut(u64, &mut [Vec<f64>]) -> bool,
+    ) -> io::Result<()> {
+        let (temporary, file) = Temporary::create(path)?;
+        let mut file = BufWriter::with_capacity(1 << 16, file);
+        file.write_all(self.first_line(number).as_bytes())?;
+        let schemas = &self.description.schemas;
+        let mut tables = vec![Vec::new(); schemas.len()];
+        let (mut text, mut rows, mut failed) = (String::new(), 0_u64, 0_u64);
+        for item in self.description.runs(&(number..number + 1)) {
+            failed += u64::from(follow(item, &mut tables));
+            for (schema, numbers) in schemas.iter().zip(&mut tables).rev() {
+                for row in numbers.chunks_exact(schema.columns.len()) {
+                    text.clear();
+                    schema.write(row, &mut text);
+                    write!(file, "{},{text}", schema.table)?;
+                    rows += 1;
+                }
+                numbers.clear();
+            }
+        }
+        writeln!(file, "# {rows} rows, {failed} failed")?;
+        file.into_inner()?.sync_all()?;
+        temporary.finish()
     }
 
     /// Reads a chunk: `take` gets every row. Returns how many of its runs did not reach their end.
@@ -255,26 +261,6 @@ impl Chunks {
             }
             lines += 1;
         }
-    }
-}
-
-impl Chunk<'_> {
-    /// Adds the rows of one run, and empties the tables.
-    ///
-    /// # Errors
-    /// Why they cannot be written.
-    pub(super) fn add(&mut self, tables: &mut [Vec<f64>], is_failed: bool) -> io::Result<()> {
-        for (schema, numbers) in self.schemas.iter().zip(tables).rev() {
-            for row in numbers.chunks_exact(schema.columns.len()) {
-                self.text.clear();
-                schema.write(row, &mut self.text);
-                write!(self.file, "{},{}", schema.table, self.text)?;
-                self.rows += 1;
-            }
-            numbers.clear();
-        }
-        self.failed += u64::from(is_failed);
-        Ok(())
     }
 }
 
@@ -335,16 +321,14 @@ mod tests {
 
     /// Run k with k rows of series. Run 3 fails.
     #[allow(clippy::cast_precision_loss)] // a few
-    fn fill(number: u64, chunk: &mut Chunk<'_>) -> io::Result<()> {
-        description().runs(&(number..number + 1)).try_for_each(|item| {
-            let series = (0..item).flat_map(|place| [item as f64, 0.5 * place as f64]).collect();
-            chunk.add(&mut [vec![item as f64, -0.5], series], item == 3)
-        })
+    fn follow(item: u64, tables: &mut [Vec<f64>]) -> bool {
+        tables[0].extend([item as f64, -0.5]);
+        tables[1].extend((0..item).flat_map(|place| [item as f64, 0.5 * place as f64]));
+        item == 3
     }
 
     fn write(chunks: &Chunks, number: u64) {
-        let written = chunks.write(number, |chunk| fill(number, chunk));
-        written.unwrap_or_else(|failure| panic!("{failure}"));
+        chunks.write(number, follow).unwrap_or_else(|failure| panic!("{failure}"));
     }
 
     /// What a chunk is refused for.
@@ -364,15 +348,18 @@ mod tests {
         let chunks = place.chunks();
         assert_eq!((chunks.description.chunks(), chunks.description.runs(&(1..3))), (3, 2..5));
         write(&chunks, 2);
-        let failed = chunks.write(1, |chunk| {
-            fill(1, chunk)?;
-            Err(io::Error::from(io::ErrorKind::StorageFull))
-        });
-        let message = failed.map_err(|failure| (failure.exit_status(), failure.to_string()));
-        let advice =
-            "no storage space; the other chunks are whole; once this is mended, the same command goes on from them";
-        assert_eq!(message, Err((1, format!("{}: {advice}", chunks.path(1).display()))));
+        // A folder has its name: the file cannot get it.
+        fs::create_dir(chunks.path(1)).expect("a folder");
+        let failure = chunks.write(1, follow).expect_err("no file");
+        let (status, message) = (failure.exit_status(), failure.to_string());
+        let advice = "; the other chunks are whole; once this is mended, the same command goes on from them";
+        let start = format!("{}: ", chunks.path(1).display());
+        assert!(status == 1 && message.starts_with(&start) && message.ends_with(advice), "{message}");
         assert_eq!([0, 1, 2].map(|number| chunks.is_made(number)), [false, false, true]);
+        fs::remove_dir(chunks.path(1)).expect("the folder goes");
+        let names = fs::read_dir(&place.0).expect("the folder").flatten().map(|file| file.file_name());
+        let names: std::collections::BTreeSet<_> = names.collect();
+        assert_eq!(names, ["2.csv", LOCK, DESCRIPTION].map(Into::into).into(), "no piece is left");
         fs::write(place.0.join("1.csv.tmp-1-0"), "# vi-").expect("a file");
         drop(chunks);
         let chunks = place.chunks();
@@ -397,10 +384,10 @@ mod tests {
         let alone = fs::read(chunks.path(1)).expect("the chunk");
         // The second begins and ends while the first writes.
         let other = Chunks::open(&place.0).unwrap_or_else(|failure| panic!("{failure}"));
-        let both = chunks.write(1, |chunk| {
+        let both = chunks.write(1, |item, tables| {
             write(&other, 1);
             assert_eq!(fs::read(chunks.path(1)).expect("the chunk"), alone);
-            fill(1, chunk)
+            follow(item, tables)
         });
         assert!(both.is_ok());
         assert_eq!(fs::read(chunks.path(1)).expect("the chunk"), alone);

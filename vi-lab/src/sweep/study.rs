@@ -2,7 +2,7 @@
 //!
 //! In: a scene with `[sweep]`. Out: a [`Study`], its description, and rows for each run.
 
-use super::chunks::{Chunks, Description, fingerprint};
+use super::chunks::{Description, fingerprint};
 use super::ending::Ending;
 use super::items::Items;
 use super::keep::Kept;
@@ -92,26 +92,12 @@ impl Study {
         Description { facts, items, chunk, schemas }
     }
 
-    /// Takes the runs of a chunk, and writes it.
-    ///
-    /// # Errors
-    /// [`Failure::File`] if it cannot be written.
-    pub(super) fn chunk(&self, chunks: &Chunks, number: u64) -> Result<(), Failure> {
-        let mut tables = vec![Vec::new(); chunks.description.schemas.len()];
-        chunks.write(number, |chunk| {
-            chunks.description.runs(&(number..number + 1)).try_for_each(|item| {
-                let ending = self.follow(item, &mut tables);
-                chunk.add(&mut tables, ending != Ending::REACHED)
-            })
-        })
-    }
-
-    /// Adds the rows of a run to the tables.
+    /// Takes a run, adds its rows to the tables, and returns whether it failed.
     #[allow(clippy::cast_precision_loss)] // items are fewer than 2^53, and so are steps
-    fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> Ending {
+    pub(super) fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> bool {
         let number = item as f64;
         let mut tables = tables.iter_mut();
-        let Some(runs) = tables.next() else { return Ending::REACHED };
+        let Some(runs) = tables.next() else { return false };
         let section = self.kept.section.as_ref().and_then(|section| Some((section, tables.next()?)));
         let mut series = if self.kept.has(Keep::Series) { tables.next() } else { None };
 
@@ -145,7 +131,7 @@ impl Study {
         if self.kept.has(Keep::Energy) {
             runs.extend(outcome.errors());
         }
-        outcome.ending
+        outcome.ending != Ending::REACHED
     }
 
     /// The run of an item.
