@@ -54,7 +54,7 @@ impl Items {
         Ok(Self { axes, samples, seed: sweep.seed, count })
     }
 
-    /// How many.
+    /// The number of runs.
     pub(crate) fn count(&self) -> u64 {
         self.count
     }
@@ -79,7 +79,7 @@ impl Items {
         values
     }
 
-    /// Makes a system and a plan those of a run.
+    /// Gives a system and a plan the values of a run.
     pub(crate) fn set(&self, item: u64, system: &mut dyn System, plan: &mut Plan) {
         for (axis, value) in self.axes.iter().zip(self.values(item)) {
             axis.quantity.set(value, system, plan);

@@ -11,16 +11,15 @@ use vi_report::numbers::short;
 use vi_runs::plan::Plan;
 use vi_runs::simulation::{Row, Section};
 
-/// Steps of a period at least, so that none is passed over.
+/// Steps of a period at least, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
 
 /// What is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
     kinds: Vec<Keep>,
-    /// The section whose crossings are kept.
     pub(super) section: Option<Section>,
-    /// Whether rows have the energy that steps with a shift keep.
+    /// Whether rows have the shifted energy.
     is_shifted: bool,
 }
 
@@ -28,7 +27,7 @@ impl Kept {
     /// What the scene asks for.
     ///
     /// # Errors
-    /// [`Failure::Input`] where nothing is kept, something twice, or the section is none.
+    /// [`Failure::Input`] if nothing is kept, or there is no such section.
     pub(super) fn of(sweep: &Sweep, coordinates: &[&str], plan: &Plan) -> Result<Self, Failure> {
         let section = sweep.section.as_ref().map(|cut| section(cut, coordinates, plan)).transpose();
         let section = section.map_err(|message| Failure::Input(format!("the section {message}")))?;
@@ -38,12 +37,11 @@ impl Kept {
         Ok(Self { kinds: sweep.keep.clone(), section, is_shifted: plan.shift.is_some() })
     }
 
-    /// Whether this is kept.
     pub(super) fn has(&self, keep: Keep) -> bool {
         self.kinds.contains(&keep)
     }
 
-    /// The tables: one with a row for each run, then those that are asked for.
+    /// The tables: one with a row for each run, then the others in the order of their names.
     pub(super) fn schemas<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Schema> {
         let item = || Column::count("item");
         let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();

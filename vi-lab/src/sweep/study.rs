@@ -1,6 +1,4 @@
-//! A sweep, ready to be run: the run that all its runs are like, what differs, and what is kept.
-//!
-//! In: a scene with `[sweep]`. Out: a [`Study`], its description, and rows for each run.
+//! A sweep, ready to be run: what its runs have in common, what differs, and what is kept of each.
 
 use super::chunks::{Description, fingerprint};
 use super::ending::Ending;
@@ -20,7 +18,7 @@ const STEPS: f64 = 2e5;
 const MOST_ITEMS: u64 = 1 << 14;
 /// Chunks at least, if there are as many runs, so that all cores have work.
 const FEWEST_CHUNKS: u64 = 256;
-/// Bytes of rows of one run that are held at once.
+/// Bytes of the series of one run at most: they are held in memory.
 const MOST_BYTES: f64 = 1.6e7;
 
 /// A sweep.
@@ -45,7 +43,7 @@ impl Study {
         Ok(study)
     }
 
-    /// Whether the rows of one run are few enough to be held.
+    /// Refuses a series that memory may not hold.
     #[allow(clippy::cast_precision_loss)] // an estimate
     fn check_series(&self) -> Result<(), Failure> {
         let columns = self.request.columns().len() + 1;
