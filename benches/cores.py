@@ -48,8 +48,7 @@ def by_threads(program, scene, table, count):
 
 def by_processes(program, scene, table, count):
     shards = [[program, "sweep", scene, "-o", table, "--shard", f"{i}/{count}"] for i in range(count)]
-    parts = [f"{table}.{i}-of-{count}.part" for i in range(count)]
-    return elapsed([shards, [[program, "merge", *parts, "-o", table]]], 1)
+    return elapsed([shards, [[program, "merge", f"{table}.part", "-o", table]]], 1)
 
 
 WAYS = {"threads of one process": by_threads, "processes of one thread, merged": by_processes}

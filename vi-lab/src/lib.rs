@@ -64,9 +64,9 @@ enum Action {
     WorkPrecision(work_precision::Arguments),
     /// Estimate the largest Lyapunov exponents of a system along one run
     Lyapunov(lyapunov::Arguments),
-    /// Take many runs of one scene, over parameters, initial values and steps: on all cores, or one part of many
+    /// Take many runs of one scene, over parameters, initial values and steps: on all cores, or one share of many
     Sweep(sweep::Arguments),
-    /// Put the parts of a sweep together
+    /// Merge the chunks of a sweep into tables
     Merge(sweep::merge::Arguments),
     /// Show what the systems in a file become, stage by stage
     Expand(expand::Arguments),

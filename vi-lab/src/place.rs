@@ -91,7 +91,14 @@ impl Drop for Temporary {
 pub(crate) fn replace(path: &Path, text: &str) -> io::Result<()> {
     let (temporary, mut file) = Temporary::create(path)?;
     file.write_all(text.as_bytes())?;
+    file.sync_all()?;
     temporary.finish()
+}
+
+/// Waits until the names in a folder are on the disk, on systems that can.
+pub(crate) fn sync_folder(folder: &Path) {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
 /// Whether a file can be made at a path, were it not for permissions: its folder is there, and the path is no folder itself. `what` is what the file is.

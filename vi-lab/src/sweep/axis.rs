@@ -1,10 +1,9 @@
-//! One quantity over which a sweep goes, and the values that it takes.
+//! One quantity over which a sweep goes, and its values, all of them finite.
 //!
-//! In: an [`Over`] of the scene. Out: an [`Axis`]: with values of its own it is a direction of the grid, and has
-//! [`Axis::point`]s; a random one has none, and takes an [`Axis::draw`] in each run. AFTER THIS every value is finite.
+//! An axis with values of its own is a direction of the grid, and has [`Axis::point`]s. A random one has none: [`Axis::draw`] returns its value in a run.
 
 use super::random::{normal, uniform};
-use super::scene::{Over, Spacing, Two};
+use super::scene::{Over, Spacing};
 use core::fmt;
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
@@ -16,46 +15,46 @@ use vi_runs::system::System;
 pub(super) struct Axis {
     /// Its name, in the scene and as a column.
     pub(super) name: String,
-    /// What it is.
     pub(super) quantity: Quantity,
-    /// Its place among the axes, by which its random numbers are its own.
-    place: u64,
+    /// Its index among the axes, which selects its random numbers.
+    index: u64,
     choice: Choice,
 }
 
-/// Which values a quantity takes.
+/// The values of a quantity.
 #[derive(Clone, Debug, PartialEq)]
 enum Choice {
-    /// These.
     Values(Vec<f64>),
-    /// So many from one to another.
     Range { from: f64, to: f64, count: u64, spacing: Spacing },
-    /// Between two.
-    Uniform { low: f64, high: f64 },
-    /// Between two, by its logarithm.
-    LogUniform { low: f64, high: f64 },
-    /// About one.
-    Normal { mean: f64, deviation: f64 },
+    Random(Law, [f64; 2]),
+}
+
+/// A law of random numbers, with two parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Law {
+    Uniform,
+    LogUniform,
+    Normal,
 }
 
 impl Axis {
     /// The axis that a scene describes.
     ///
     /// # Errors
-    /// [`Failure::Input`] where the system has no such quantity, or its values are none.
-    pub(super) fn of(over: &Over, place: u64, system: &dyn System) -> Result<Self, Failure> {
+    /// [`Failure::Input`] if the system has no such quantity, or it has no values.
+    pub(super) fn of(over: &Over, index: u64, system: &dyn System) -> Result<Self, Failure> {
         let quantity = Quantity::named(system, &over.name)?;
-        let wrong = |what: String| Failure::Input(format!("the sweep over `{}` {what}", over.name));
-        let choice = Choice::of(over).map_err(wrong)?;
-        Ok(Self { name: over.name.clone(), quantity, place, choice })
+        let choice = Choice::of(over).and_then(|choice| choice.check().map(|()| choice));
+        let choice = choice.map_err(|what| Failure::Input(format!("the sweep over `{}` {what}", over.name)))?;
+        Ok(Self { name: over.name.clone(), quantity, index, choice })
     }
 
-    /// The number of its points on the grid; none of a random one.
+    /// The number of its points on the grid; `None` if it is random.
     pub(super) fn points(&self) -> Option<u64> {
         match &self.choice {
             Choice::Values(values) => u64::try_from(values.len()).ok(),
             Choice::Range { count, .. } => Some(*count),
-            Choice::Uniform { .. } | Choice::LogUniform { .. } | Choice::Normal { .. } => None,
+            Choice::Random(..) => None,
         }
     }
 
@@ -75,102 +74,105 @@ impl Axis {
                     Spacing::Log => from * (to / from).powf(part),
                 }
             }
-            _ => f64::NAN,
+            Choice::Random(..) => f64::NAN,
         }
     }
 
     /// The value in the run whose random numbers begin with `seed`.
     pub(super) fn draw(&self, seed: u64) -> f64 {
-        let places = [2 * self.place, 2 * self.place + 1];
-        match &self.choice {
-            Choice::Uniform { low, high } => low + (high - low) * uniform(seed, places[0]),
-            Choice::LogUniform { low, high } => low * (high / low).powf(uniform(seed, places[0])),
-            Choice::Normal { mean, deviation } => mean + deviation * normal(seed, places),
+        let places = [2 * self.index, 2 * self.index + 1];
+        match self.choice {
+            Choice::Random(Law::Uniform, [low, high]) => low + (high - low) * uniform(seed, places[0]),
+            Choice::Random(Law::LogUniform, [low, high]) => low * (high / low).powf(uniform(seed, places[0])),
+            Choice::Random(Law::Normal, [mean, deviation]) => mean + deviation * normal(seed, places),
             _ => f64::NAN,
         }
     }
 }
 
 impl Choice {
-    /// The one choice that is written.
+    /// The one choice that a scene makes.
     fn of(over: &Over) -> Result<Self, String> {
         let Over { values, from, to, count, spacing, uniform, log_uniform, normal, .. } = over;
         let is_range = from.is_some() || to.is_some() || count.is_some() || spacing.is_some();
-        let choices = [values.is_some(), is_range, uniform.is_some(), log_uniform.is_some(), normal.is_some()];
-        let known = "values = […], from, to and count, uniform = […], log_uniform = […], normal = […]";
-        if choices.into_iter().filter(|is_written| *is_written).count() != 1 {
-            return Err(format!("needs one of these: {known}"));
-        }
-        let choice = match (values, uniform, log_uniform, normal) {
-            (Some(values), ..) => Self::Values(values.clone()),
-            (_, Some(Two([low, high])), ..) => Self::Uniform { low: *low, high: *high },
-            (_, _, Some(Two([low, high])), _) => Self::LogUniform { low: *low, high: *high },
-            (.., Some(Two([mean, deviation]))) => Self::Normal { mean: *mean, deviation: *deviation },
-            _ => {
-                let (Some(from), Some(to), Some(count)) = (*from, *to, *count) else {
-                    return Err("needs all of `from`, `to` and `count`".to_owned());
-                };
-                Self::Range { from, to, count, spacing: spacing.unwrap_or(Spacing::Linear) }
+        let laws = [(Law::Uniform, uniform), (Law::LogUniform, log_uniform), (Law::Normal, normal)];
+        let mut random = laws.into_iter().filter_map(|(law, numbers)| Some((law, numbers.as_ref()?)));
+        match (values, is_range, random.next(), random.next()) {
+            (Some(values), false, None, _) => Ok(Self::Values(values.clone())),
+            (None, true, None, _) => {
+                let numbers = from.zip(*to).zip(*count);
+                let ((from, to), count) = numbers.ok_or("needs all of `from`, `to` and `count`")?;
+                Ok(Self::Range { from, to, count, spacing: spacing.unwrap_or(Spacing::Linear) })
             }
-        };
-        choice.check().map(|()| choice)
+            (None, false, Some((law, numbers)), None) => {
+                let two = numbers.as_slice().try_into();
+                let two = two.map_err(|_| format!("needs two numbers, not {}", numbers.len()))?;
+                Ok(Self::Random(law, two))
+            }
+            _ => {
+                let known = "values = […], from, to and count, uniform = […], log_uniform = […], normal = […]";
+                Err(format!("needs one of these: {known}"))
+            }
+        }
     }
 
     /// Whether every value is a finite number.
     fn check(&self) -> Result<(), String> {
         let (numbers, is_logarithmic) = match self {
-            Self::Values(values) => (values.clone(), false),
-            Self::Range { from, to, spacing, .. } => (vec![*from, *to], *spacing == Spacing::Log),
-            Self::Uniform { low, high } => (vec![*low, *high], false),
-            Self::LogUniform { low, high } => (vec![*low, *high], true),
-            Self::Normal { mean, deviation } => (vec![*mean, *deviation], false),
+            Self::Values(values) => (values.as_slice(), false),
+            Self::Range { from, to, spacing, .. } => (&[*from, *to][..], *spacing == Spacing::Log),
+            Self::Random(law, numbers) => (numbers.as_slice(), *law == Law::LogUniform),
         };
         if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
             return Err(format!("must have finite numbers, not {number}"));
         }
-        if is_logarithmic && !numbers.windows(2).all(|pair| (pair[1] / pair[0]).is_normal() && pair[1] / pair[0] > 0.0)
-        {
-            return Err("goes by the logarithm: give two numbers of one sign, neither of them zero".to_owned());
-        }
-        match self {
-            Self::Values(values) if values.is_empty() => Err("has no values".to_owned()),
-            Self::Range { count: 0, .. } => Err("has no values: `count` must be at least 1".to_owned()),
+        let is_ratio = |pair: &[f64]| (pair[1] / pair[0]).is_normal() && pair[1] / pair[0] > 0.0;
+        let what = match self {
+            _ if is_logarithmic && !numbers.windows(2).all(is_ratio) => {
+                "goes by the logarithm: give two numbers of one sign, neither of them zero"
+            }
+            Self::Values(values) if values.is_empty() => "has no values",
+            Self::Range { count: 0, .. } => "has no values: `count` must be at least 1",
             Self::Range { from, to, count: 1, .. } if from.to_bits() != to.to_bits() => {
-                Err("goes from one value to another: `count` must be at least 2".to_owned())
+                "goes from one value to another: `count` must be at least 2"
             }
-            Self::Uniform { low, high } | Self::LogUniform { low, high } if low >= high => {
-                Err("must give a lower and a higher number, in this order".to_owned())
+            Self::Random(Law::Uniform | Law::LogUniform, [low, high]) if low >= high => {
+                "must give a lower and a higher number, in this order"
             }
-            Self::Uniform { low, high } | Self::Range { from: low, to: high, .. } if !(high - low).is_finite() => {
-                Err("goes over more than a number can hold".to_owned())
+            Self::Random(Law::Uniform, [low, high]) | Self::Range { from: low, to: high, .. }
+                if !(high - low).is_finite() =>
+            {
+                "goes over more than a number can hold"
             }
-            Self::Normal { deviation, .. } if *deviation <= 0.0 => {
-                Err("must have a positive deviation, the second number of `normal`".to_owned())
+            Self::Random(Law::Normal, [_, deviation]) if *deviation <= 0.0 => {
+                "must have a positive deviation, the second number of `normal`"
             }
-            _ => Ok(()),
-        }
+            _ => return Ok(()),
+        };
+        Err(what.to_owned())
     }
 }
 
 impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, choice, .. } = self;
-        match choice {
+        let values = match &self.choice {
             Choice::Values(values) => {
-                write!(f, "{name} = {}", values.iter().map(|value| short(*value)).collect::<Vec<_>>().join(", "))
+                format!("= {}", values.iter().map(|value| short(*value)).collect::<Vec<_>>().join(", "))
             }
             Choice::Range { from, to, count, spacing } => {
                 let spacing = if *spacing == Spacing::Log { ", in equal ratios" } else { "" };
-                write!(f, "{name} from {} to {}, {count} values{spacing}", short(*from), short(*to))
+                format!("from {} to {}, {count} values{spacing}", short(*from), short(*to))
             }
-            Choice::Uniform { low, high } => write!(f, "{name} random from {} to {}", short(*low), short(*high)),
-            Choice::LogUniform { low, high } => {
-                write!(f, "{name} random from {} to {} by its logarithm", short(*low), short(*high))
+            Choice::Random(law, [a, b]) => {
+                let (a, b) = (short(*a), short(*b));
+                match law {
+                    Law::Uniform => format!("random from {a} to {b}"),
+                    Law::LogUniform => format!("random from {a} to {b} by its logarithm"),
+                    Law::Normal => format!("random about {a}, deviation {b}"),
+                }
             }
-            Choice::Normal { mean, deviation } => {
-                write!(f, "{name} random about {}, deviation {}", short(*mean), short(*deviation))
-            }
-        }
+        };
+        write!(f, "{} {values}", self.name)
     }
 }
 
@@ -215,20 +217,20 @@ mod tests {
             draws.sort_by(f64::total_cmp);
             (draws[0], draws[500], draws[1000])
         };
-        let (low, middle, high) = draws(Over { uniform: Some(Two([2.0, 4.0])), ..Over::default() });
+        let (low, middle, high) = draws(Over { uniform: Some(vec![2.0, 4.0]), ..Over::default() });
         assert!(
             low > 2.0 && low < 2.02 && (middle - 3.0).abs() < 0.13 && high < 4.0 && high > 3.98,
             "{low} {middle} {high}"
         );
-        let (low, middle, high) = draws(Over { log_uniform: Some(Two([1e-4, 1.0])), ..Over::default() });
+        let (low, middle, high) = draws(Over { log_uniform: Some(vec![1e-4, 1.0]), ..Over::default() });
         assert!(low > 1e-4 && (middle.log10() + 2.0).abs() < 0.26 && high < 1.0, "{low} {middle} {high}");
-        let (low, middle, high) = draws(Over { normal: Some(Two([5.0, 0.1])), ..Over::default() });
+        let (low, middle, high) = draws(Over { normal: Some(vec![5.0, 0.1]), ..Over::default() });
         assert!(low > 4.5 && (middle - 5.0).abs() < 0.016 && high < 5.5, "{low} {middle} {high}");
     }
 
     #[test]
     fn what_gives_no_values_is_named() {
-        let both = Over { values: Some(vec![1.0]), uniform: Some(Two([0.0, 1.0])), ..Over::default() };
+        let both = Over { values: Some(vec![1.0]), uniform: Some(vec![0.0, 1.0]), ..Over::default() };
         for (over, message) in [
             (
                 Over::default(),
@@ -241,6 +243,7 @@ mod tests {
             (Over { from: Some(1.0), ..Over::default() }, "needs all of `from`, `to` and `count`"),
             (Over { values: Some(Vec::new()), ..Over::default() }, "has no values"),
             (Over { values: Some(vec![f64::NAN]), ..Over::default() }, "must have finite numbers, not NaN"),
+            (Over { uniform: Some(vec![0.0, 1.0, 2.0]), ..Over::default() }, "needs two numbers, not 3"),
             (range(0.0, 1.0, 0, None), "has no values: `count` must be at least 1"),
             (range(0.0, 1.0, 1, None), "goes from one value to another: `count` must be at least 2"),
             (range(-f64::MAX, f64::MAX, 3, None), "goes over more than a number can hold"),
@@ -249,11 +252,11 @@ mod tests {
                 "goes by the logarithm: give two numbers of one sign, neither of them zero",
             ),
             (
-                Over { uniform: Some(Two([1.0, 1.0])), ..Over::default() },
+                Over { uniform: Some(vec![1.0, 1.0]), ..Over::default() },
                 "must give a lower and a higher number, in this order",
             ),
             (
-                Over { normal: Some(Two([1.0, 0.0])), ..Over::default() },
+                Over { normal: Some(vec![1.0, 0.0]), ..Over::default() },
                 "must have a positive deviation, the second number of `normal`",
             ),
         ] {

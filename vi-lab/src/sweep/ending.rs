@@ -2,12 +2,11 @@
 
 use vi_core::StepError;
 
-/// How a run ended: a place in [`Ending::WORDS`].
+/// How a run ended: an index of [`Ending::WORDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Ending(u8);
 
 impl Ending {
-    /// What a table says of it.
     pub(super) const WORDS: [&str; 14] = [
         "reached its end",
         "no forward step",
@@ -24,16 +23,14 @@ impl Ending {
         "section not found",
         "another failure",
     ];
-    /// All steps were taken.
     pub(super) const REACHED: Self = Self(0);
-    /// The values of the run are none that a run can have.
     pub(super) const WRONG_INPUT: Self = Self(10);
-    /// The steps became so short that the end is out of reach.
+    /// The end is out of reach.
     pub(super) const TOO_SHORT: Self = Self(11);
-    /// The run reached its end, and its crossings of the section could not all be located.
+    /// The run reached its end, but not all of its crossings could be located.
     pub(super) const NO_SECTION: Self = Self(12);
 
-    /// That of a step that fails.
+    /// The ending by a step that fails.
     pub(super) fn of(error: StepError) -> Self {
         Self(match error {
             StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => 1,
@@ -50,7 +47,7 @@ impl Ending {
         })
     }
 
-    /// Its place among the words.
+    /// Its index among the words.
     pub(super) fn number(self) -> f64 {
         f64::from(self.0)
     }

@@ -7,12 +7,10 @@
 use super::axis::Axis;
 use super::random::bits;
 use super::scene::Sweep;
+use super::schema::MOST;
 use vi_report::failure::Failure;
 use vi_runs::plan::Plan;
 use vi_runs::system::System;
-
-/// Items are counted in columns of numbers.
-const MOST: u64 = 1 << 53;
 
 /// All runs of a sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +54,7 @@ impl Items {
         Ok(Self { axes, samples, seed: sweep.seed, count })
     }
 
-    /// How many.
+    /// The number of runs.
     pub(crate) fn count(&self) -> u64 {
         self.count
     }
@@ -81,7 +79,7 @@ impl Items {
         values
     }
 
-    /// Makes a system and a plan those of a run.
+    /// Gives a system and a plan the values of a run.
     pub(crate) fn set(&self, item: u64, system: &mut dyn System, plan: &mut Plan) {
         for (axis, value) in self.axes.iter().zip(self.values(item)) {
             axis.quantity.set(value, system, plan);
@@ -156,7 +154,10 @@ mod tests {
                 "over = [{ name = \"x\", uniform = [0, 1] }]",
                 "the sweep has random values: say with `samples` how many, such as samples = 100",
             ),
-            ("over = [{ name = \"x\", uniform = [0, 1, 2] }]\nsamples = 3", "needs two numbers, not 3"),
+            (
+                "over = [{ name = \"x\", uniform = [0, 1, 2] }]\nsamples = 3",
+                "the sweep over `x` needs two numbers, not 3",
+            ),
             ("over = [{ name = \"x\", values = [1] }]\nsamples = 3", "the sweep has `samples`, but no random values"),
             (
                 "over = [{ name = \"x\", from = 0, to = 1, count = 1e10 }, { name = \"y\", from = 0, to = 1, count = 1e10 }]",

@@ -1,26 +1,25 @@
 //! What is kept of each run, and in which columns.
 //!
-//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Shape`]s of its tables.
+//! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Schema`]s of its tables.
 
 use super::ending::Ending;
 use super::scene::{Cut, Keep, Passing, Sweep};
-use super::shape::{Column, Shape};
+use super::schema::{Column, Schema};
 use vi_core::run::Direction;
 use vi_report::failure::Failure;
 use vi_report::numbers::short;
 use vi_runs::plan::Plan;
 use vi_runs::simulation::{Row, Section};
 
-/// Steps of a period at least, so that none is passed over.
+/// Steps of a period at least, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
 
 /// What is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
     kinds: Vec<Keep>,
-    /// The section whose crossings are kept.
     pub(super) section: Option<Section>,
-    /// Whether rows have the energy that steps with a shift keep.
+    /// Whether rows have the shifted energy.
     is_shifted: bool,
 }
 
@@ -28,7 +27,7 @@ impl Kept {
     /// What the scene asks for.
     ///
     /// # Errors
-    /// [`Failure::Input`] where nothing is kept, something twice, or the section is none.
+    /// [`Failure::Input`] if nothing is kept, or there is no such section.
     pub(super) fn of(sweep: &Sweep, coordinates: &[&str], plan: &Plan) -> Result<Self, Failure> {
         let section = sweep.section.as_ref().map(|cut| section(cut, coordinates, plan)).transpose();
         let section = section.map_err(|message| Failure::Input(format!("the section {message}")))?;
@@ -38,13 +37,12 @@ impl Kept {
         Ok(Self { kinds: sweep.keep.clone(), section, is_shifted: plan.shift.is_some() })
     }
 
-    /// Whether this is kept.
     pub(super) fn has(&self, keep: Keep) -> bool {
         self.kinds.contains(&keep)
     }
 
-    /// The tables: one with a row for each run, then those that are asked for.
-    pub(super) fn shapes<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Shape> {
+    /// The tables: one with a row for each run, then the others in the order of their names.
+    pub(super) fn schemas<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Schema> {
         let item = || Column::count("item");
         let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();
         if self.has(Keep::Ending) {
@@ -61,17 +59,17 @@ impl Kept {
         if self.has(Keep::Energy) {
             runs.extend(["error_H", "error_E"].map(Column::number));
         }
-        let mut shapes = vec![Shape { suffix: String::new(), columns: runs }];
+        let mut schemas = vec![Schema { table: "runs".to_owned(), columns: runs }];
         let nodes: Vec<Column> = core::iter::once(item()).chain(rows.into_iter().map(Column::number)).collect();
         if self.section.is_some() {
             // A crossing is no node: it has no discrete energies and no h.
             let columns = nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }].to_vec();
-            shapes.push(Shape { suffix: "section".to_owned(), columns });
+            schemas.push(Schema { table: "section".to_owned(), columns });
         }
         if self.has(Keep::Series) {
-            shapes.push(Shape { suffix: "series".to_owned(), columns: nodes });
+            schemas.push(Schema { table: "series".to_owned(), columns: nodes });
         }
-        shapes
+        schemas
     }
 
     /// In words.

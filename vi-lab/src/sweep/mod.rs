@@ -1,47 +1,48 @@
 //! `vi-lab sweep` and `vi-lab merge`: many runs of one scene, on all cores and on many machines.
 //!
-//! In: a scene with a table `[sweep]`. Out: a table with a row for each run; beside it, where asked for, one of their nodes and one of the crossings of a section.
-//! A process makes one part of the runs, a [`shard`], in a file that holds all that is finished whatever ends it: the same command goes on there. Run k
-//! depends on k alone, so parts put together are the same bytes as the whole.
+//! In: a scene with a table `[sweep]`. Out: a table with a row for each run and, if asked for, one of their nodes and one of the crossings of a section.
+//! A process makes chunks of runs, each a file that is there only when it is whole. So the same command goes on after any interruption. Run k depends on k alone, so the
+//! tables are the same bytes however the work was divided.
 //!
-//! | module | part of a sweep |
+//! | module | what it does |
 //! |---|---|
 //! | [`scene`] | the table as it is written |
 //! | [`axis`], [`random`], [`items`] | which runs there are |
-//! | [`keep`], [`shape`], [`ending`] | what is kept of each, in which columns |
-//! | [`study`], [`course`] | a run becomes rows |
-//! | [`shard`], [`part`], [`crew`] | which runs this process takes, the file in which they stand, the threads |
-//! | [`merge`], [`sink`] | parts become tables |
+//! | [`keep`], [`schema`], [`ending`] | what is kept of each, in which columns |
+//! | [`study`], [`outcome`] | a run becomes rows |
+//! | [`shard`], [`crew`], [`chunks`] | which chunks this process makes, its threads, their files |
+//! | [`merge`], [`sink`] | chunks become tables |
 
 mod axis;
-mod course;
+mod chunks;
 mod crew;
 mod ending;
 pub(crate) mod items;
 mod keep;
 pub(crate) mod merge;
-mod part;
+mod outcome;
 mod random;
 pub(crate) mod scene;
-mod shape;
+mod schema;
 mod shard;
 mod sink;
 mod study;
 
-use crate::place::beside;
+use crate::place::{beside, sync_folder};
+use chunks::Chunks;
 use clap::Args;
-use part::Growing;
 use shard::Shard;
 use sink::Format;
-use std::env;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::{env, fs, slice};
 use study::Study;
 use vi_report::failure::Failure;
 
 /// The command line of `vi-lab sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Scene: the entries of a run, and a table [sweep]: `over`, the quantities that differ from run to run; `samples` and `seed`, where some are random; `keep`; `section`. \
+Scene: the entries of a run, and a table [sweep]: `over`, the quantities that differ from run to run; `samples` and `seed`, if some are random; `keep`; `section`. \
 docs/cluster.md has all of them.
 
 Columns: item, the number of the run; the quantities of `over`; with keep = [\"ending\"] ending and steps; \"end\" the last node as end_t, end_ coordinates and momenta, end_H, end_E, \
@@ -49,41 +50,45 @@ end_h; \"extremes\" min_ and max_ of the coordinates and of H over all nodes; \"
 \"series\" writes FILE.series.csv with every Nth node of each run (`every` of the scene), `section` FILE.section.csv with its crossings; both begin with the item. `vi-lab run \
 SCENE --item K` is one of the runs alone.
 
-A run that fails has its ending, and the sweep goes on. Until all is there the runs stand in FILE.I-of-N.part; the same command goes on with it, however it ended.
+A run that fails is recorded, and the sweep goes on. The folder FILE.part holds the chunks of runs that are finished; after any interruption the same command goes on from them. \
+Shards share this folder; `vi-lab merge` writes FILE from it.
 
 Exit status: 0 all runs were taken, whatever their ends; 1 a file failed; 2 the input is wrong; 130 and 143 the sweep was interrupted (SIGINT, SIGTERM).")]
 pub(crate) struct Arguments {
     /// Scene file with a table [sweep]
     #[arg(value_name = "SCENE.toml")]
     scene: String,
-    /// File to write, .csv, .npy or .parquet; with --shard what its part is named after
+    /// File to write, .csv, .npy or .parquet
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Makes the part I of N only, I from 0 on; with N alone, I is the number of the array task [default: that of a Slurm array]
+    /// Makes only the chunks I of N equal shares, I from 0 on; with N alone, I is the number of the array task [default: that of a Slurm array]
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     shard: Option<String>,
 }
 
-/// Takes the runs of a scene, and says what came of them.
+/// Takes the runs of a scene, and returns a summary.
 ///
 /// # Errors
-/// [`Failure::Input`] for wrong input, [`Failure::File`] where a file cannot be read or written, [`Failure::Interrupted`] after a signal.
+/// [`Failure::Input`] for wrong input, [`Failure::File`] if a file cannot be read or written, [`Failure::Interrupted`] after a signal.
 pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
     let Arguments { scene, output, shard } = arguments;
     let shard = Shard::of(shard.as_deref(), |name| env::var(name).ok())?;
     let study = Study::read(scene)?;
     Format::of(output)?;
-    let Shard { index, count } = shard.unwrap_or(Shard::WHOLE);
-    let path = beside(output, &format!("{index}-of-{count}.part"));
-    let heading = study.heading(Shard { index, count });
-    let mut growing = Growing::resume(&path, &heading)?;
-    crew::work(study, &mut growing)?;
-    growing.settle()?;
-    let Growing { part, .. } = growing;
+    let folder = beside(output, "part");
+    let chunks = Arc::new(Chunks::resume(&folder, study.description(), shard.is_none())?);
+    let numbers = shard.unwrap_or(Shard::WHOLE).chunks(chunks.description.chunks());
+    crew::work(study, &chunks, &numbers)?;
     if shard.is_some() {
-        return Ok(merge::summary(&path, part.rows(0), part.failed()));
+        sync_folder(&folder);
+        let runs = chunks.description.runs(&numbers);
+        let mut numbers = numbers;
+        let failed = numbers.try_fold(0, |sum, number| Ok(sum + chunks.read(number, &mut |_, _| Ok(()))?))?;
+        return Ok(merge::summary(&folder, runs.end - runs.start, failed));
     }
-    let summary = merge::write(&[part], output)?;
-    merge::remove(&path)?;
+    let summary = merge::write(&chunks, slice::from_ref(&*chunks), output)?;
+    // The chunks go when the tables are on the disk.
+    sync_folder(output.parent().unwrap_or(output));
+    fs::remove_dir_all(&folder).map_err(|error| Failure::file(&folder, error))?;
     Ok(summary)
 }

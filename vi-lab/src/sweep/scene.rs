@@ -20,18 +20,14 @@ use vi_report::input::count_of_scene;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Sweep {
-    /// What differs from run to run.
     pub(super) over: Vec<Over>,
     /// Runs for each point of the grid.
     #[serde(default, deserialize_with = "count_of_scene")]
     pub(super) samples: Option<u64>,
-    /// What random numbers begin with.
     #[serde(default)]
     pub(super) seed: u64,
-    /// What is kept of a run.
-    #[serde(default = "usual")]
+    #[serde(default = "default_keep")]
     pub(super) keep: Vec<Keep>,
-    /// The section whose crossings are kept.
     pub(super) section: Option<Cut>,
 }
 
@@ -42,52 +38,30 @@ impl Sweep {
     }
 }
 
-/// A quantity and its values.
+/// A quantity and its values, in one of five ways.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Over {
-    /// Name of the quantity.
     pub(super) name: String,
-    /// Its values, one by one.
     pub(super) values: Option<Vec<f64>>,
-    /// The first of a range.
     pub(super) from: Option<f64>,
-    /// The last of a range.
     pub(super) to: Option<f64>,
-    /// How many there are in a range.
     #[serde(default, deserialize_with = "count_of_scene")]
     pub(super) count: Option<u64>,
-    /// How they lie in a range.
     pub(super) spacing: Option<Spacing>,
-    /// Random, equally likely between two values.
-    pub(super) uniform: Option<Two>,
-    /// Random, its logarithm equally likely between those of two values.
-    pub(super) log_uniform: Option<Two>,
-    /// Random, normally distributed: mean and standard deviation.
-    pub(super) normal: Option<Two>,
+    /// Lowest and highest value.
+    pub(super) uniform: Option<Vec<f64>>,
+    /// Lowest and highest value.
+    pub(super) log_uniform: Option<Vec<f64>>,
+    /// Mean and standard deviation.
+    pub(super) normal: Option<Vec<f64>>,
 }
 
-/// Two numbers, and not more.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "Vec<f64>")]
-pub(crate) struct Two(pub(super) [f64; 2]);
-
-impl TryFrom<Vec<f64>> for Two {
-    type Error = String;
-
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let count = numbers.len();
-        numbers.try_into().map(Self).map_err(|_| format!("needs two numbers, not {count}"))
-    }
-}
-
-/// How the values of a range lie.
+/// The spacing of a range: equal distances or equal ratios.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Spacing {
-    /// At equal distances.
     Linear,
-    /// In equal ratios.
     Log,
 }
 
@@ -107,17 +81,13 @@ pub(crate) enum Keep {
     Series,
 }
 
-/// A section.
+/// A section: a coordinate passes a value, or a period of time passes.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cut {
-    /// The coordinate that has a value.
     pub(super) coordinate: Option<String>,
-    /// The value.
     pub(super) at: Option<f64>,
-    /// How the coordinate passes it.
     pub(super) direction: Option<Passing>,
-    /// The time from one crossing to the next.
     pub(super) period: Option<f64>,
 }
 
@@ -125,15 +95,11 @@ pub(crate) struct Cut {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Passing {
-    /// From below.
     Rising,
-    /// From above.
     Falling,
-    /// Either.
     Both,
 }
 
-/// What is kept where nothing is said.
-fn usual() -> Vec<Keep> {
+fn default_keep() -> Vec<Keep> {
     vec![Keep::Ending, Keep::End]
 }

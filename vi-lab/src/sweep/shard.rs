@@ -1,95 +1,87 @@
-//! Which part of a sweep this process does.
+//! Which part of a sweep this process takes: `--shard I/N` or `--shard N`, and what the scheduler of a cluster says in the environment.
 //!
-//! In: `--shard I/N` or `--shard N`, and what a cluster's scheduler says in the environment. Out: a [`Shard`], or none for the whole. Shards are
-//! numbered from 0, as the tasks of an array are; the runs of one stand next to each other, so that parts put together in their order
-//! are the whole.
+//! Shards are numbered from 0, as the tasks of an array are. The chunks of a shard follow each other.
 
-use core::fmt;
 use core::ops::Range;
-use serde::{Deserialize, Serialize};
 use vi_report::failure::Failure;
 
-/// One of some parts of equal size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// One of `count` parts of equal size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
-    /// Which one, from 0 on.
+    /// From 0 on.
     pub(super) index: u64,
-    /// How many there are.
     pub(super) count: u64,
 }
 
+/// A number of the environment; `None` if it is not set.
+type Number<'a> = &'a dyn Fn(&str) -> Result<Option<u64>, String>;
+
 impl Shard {
-    /// All of it.
+    /// All of the sweep.
     pub(super) const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// The shard that is asked for, or that of the array task which this process is.
+    /// The shard that is asked for, or the one of the array task which this process is; `None` without either.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a shard that there is not, and where the environment does not say how many there are, or which one this is.
+    /// [`Failure::Input`] if there is no such shard, or the environment does not say which one this is.
     pub(super) fn of(asked: Option<&str>, variable: impl Fn(&str) -> Option<String>) -> Result<Option<Self>, Failure> {
-        let asked = asked.map(Asked::parse).transpose().map_err(Failure::Input)?;
-        let shard = match asked {
-            Some(Asked { index: Some(index), count }) => Ok(Some(Self { index, count })),
-            Some(Asked { index: None, count }) => task(&variable).and_then(|index| match index {
-                Some(index) => Ok(Some(Self { index, count })),
-                None => Err(format!(
-                    "`--shard {count}` is for a task of an array, whose number HQ_TASK_ID or SLURM_ARRAY_TASK_ID tells; \
-                     elsewhere write --shard I/{count}"
-                )),
-            }),
-            None => scheduled(&variable),
+        let number = |name: &str| {
+            let Some(text) = variable(name) else { return Ok(None) };
+            let remedy = format!("write --shard I/N, or unset {name} for the whole");
+            let number = text.trim().parse().map(Some);
+            number.map_err(|_| format!("{name} is `{text}`, which is no number of a scheduler; {remedy}"))
         };
+        let shard = asked.map_or_else(|| scheduled(&number), |text| parse(text, &number).map(Some));
         match shard.map_err(Failure::Input)? {
-            Some(Self { index, count }) if index >= count => Err(Failure::Input(match count {
-                0 => "there must be at least one shard".to_owned(),
-                _ => format!(
-                    "there is no shard {index}/{count}: they are numbered from 0/{count} to {}/{count}",
-                    count - 1
-                ),
-            })),
+            Some(Self { count: 0, .. }) => Err(Failure::Input("there must be at least one shard".to_owned())),
+            Some(Self { index, count }) if index >= count => Err(Failure::Input(format!(
+                "there is no shard {index}/{count}: they are numbered from 0/{count} to {}/{count}",
+                count - 1
+            ))),
             shard => Ok(shard),
         }
     }
 
-    /// The items of this shard, of so many.
-    pub(super) fn items(self, all: u64) -> Range<u64> {
+    /// The chunks of this shard, of so many.
+    pub(super) fn chunks(self, all: u64) -> Range<u64> {
         let begin =
             |index: u64| u64::try_from(u128::from(all) * u128::from(index) / u128::from(self.count)).unwrap_or(all);
         begin(self.index)..begin(self.index + 1)
     }
 }
 
-/// A number of the environment; none where it is not set.
-fn number(variable: impl Fn(&str) -> Option<String>, name: &str) -> Result<Option<u64>, String> {
-    let Some(text) = variable(name) else { return Ok(None) };
-    let number = text.trim().parse().map(Some);
-    number.map_err(|_| {
-        format!(
-            "{name} is `{text}`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole"
-        )
-    })
-}
-
-/// Which task of an array this process is.
-fn task(variable: &impl Fn(&str) -> Option<String>) -> Result<Option<u64>, String> {
-    let task = number(variable, "HQ_TASK_ID")?;
-    if task.is_some() { Ok(task) } else { number(variable, "SLURM_ARRAY_TASK_ID") }
-}
-
-/// The shard that a scheduler says; none where there is no scheduler.
-fn scheduled(variable: &impl Fn(&str) -> Option<String>) -> Result<Option<Shard>, String> {
-    match number(variable, "HQ_TASK_ID")? {
-        Some(0) => Ok(None),
-        Some(task) => Err(format!(
-            "this is task {task} of HyperQueue, which does not say how many there are; write --shard N, and number \
-             the tasks from 0 to N - 1"
-        )),
-        None => slurm(|name| number(variable, name)),
+/// The shard of `--shard I/N`, or of `--shard N` in a task of an array.
+fn parse(text: &str, number: Number<'_>) -> Result<Shard, String> {
+    let wrong =
+        || format!("`--shard {text}` must be I/N, or N in a task of an array: two whole numbers, I from 0 to N - 1");
+    let whole = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
+    if let Some((index, count)) = text.split_once('/') {
+        return Ok(Shard { index: whole(index)?, count: whole(count)? });
     }
+    let count = whole(text)?;
+    let task = number("HQ_TASK_ID").transpose().or_else(|| number("SLURM_ARRAY_TASK_ID").transpose());
+    let index = task.transpose()?.ok_or_else(|| {
+        format!(
+            "`--shard {count}` is for a task of an array, whose number HQ_TASK_ID or SLURM_ARRAY_TASK_ID tells; \
+             elsewhere write --shard I/{count}"
+        )
+    })?;
+    Ok(Shard { index, count })
 }
 
-/// The shard of a task of a Slurm array; none where there is no array.
-fn slurm(number: impl Fn(&str) -> Result<Option<u64>, String>) -> Result<Option<Shard>, String> {
+/// The shard that a scheduler says; `None` if there is no array of tasks.
+fn scheduled(number: Number<'_>) -> Result<Option<Shard>, String> {
+    match number("HQ_TASK_ID")? {
+        // A job that is not an array.
+        Some(0) => return Ok(None),
+        Some(task) => {
+            return Err(format!(
+                "this is task {task} of HyperQueue, which does not say how many there are; write --shard N, and number \
+                 the tasks from 0 to N - 1"
+            ));
+        }
+        None => {}
+    }
     let (Some(task), Some(count)) = (number("SLURM_ARRAY_TASK_ID")?, number("SLURM_ARRAY_TASK_COUNT")?) else {
         return Ok(None);
     };
@@ -103,35 +95,6 @@ fn slurm(number: impl Fn(&str) -> Result<Option<u64>, String>) -> Result<Option<
         ));
     }
     Ok(Some(Shard { index: task - first, count }))
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.index, self.count)
-    }
-}
-
-/// What stands behind `--shard`.
-struct Asked {
-    index: Option<u64>,
-    count: u64,
-}
-
-impl Asked {
-    /// What stands there.
-    ///
-    /// # Errors
-    /// What it must be.
-    fn parse(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse().ok();
-        let (index, count) = match text.split_once('/') {
-            Some((index, count)) => (number(index).map(Some), number(count)),
-            None => (Some(None), number(text)),
-        };
-        index.zip(count).map(|(index, count)| Self { index, count }).ok_or_else(|| {
-            format!("`--shard {text}` must be I/N, or N in a task of an array: two whole numbers, I from 0 to N - 1")
-        })
-    }
 }
 
 #[cfg(test)]
@@ -217,9 +180,9 @@ mod tests {
     }
 
     #[test]
-    fn shards_cover_all_items_once() {
+    fn shards_cover_all_chunks_once() {
         for (all, count) in [(0, 3), (5, 7), (12, 1), (100, 7), (u64::MAX >> 11, 1000)] {
-            let ranges = (0..count).map(|index| Shard { index, count }.items(all));
+            let ranges = (0..count).map(|index| Shard { index, count }.chunks(all));
             let end = ranges.fold(0, |end, range| {
                 assert!(range.start == end && range.end >= end && range.end - end <= all / count + 1);
                 range.end

@@ -1,27 +1,24 @@
-//! A sweep, ready to be run: the run that all its runs are like, what differs, and what is kept.
-//!
-//! In: a scene with `[sweep]`. Out: a [`Study`], its description, and rows for each run.
+//! A sweep, ready to be run: what its runs have in common, what differs, and what is kept of each.
 
-use super::course::{Course, Member};
+use super::chunks::{Description, fingerprint};
 use super::ending::Ending;
 use super::items::Items;
 use super::keep::Kept;
-use super::part::{Chunk, Description, Heading};
+use super::outcome::{Member, Outcome};
 use super::scene::Keep;
-use super::shard::Shard;
 use crate::run::{Length, Request, method};
 use vi_report::catalogue;
 use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
 use vi_report::numbers::{about, assigned, short};
 
-/// Steps in a chunk: some hundredths of a second of fixed steps.
-const STEPS: f64 = 5e4;
+/// Steps in a chunk: a tenth of a second of fixed steps, many times longer than the sync of a file.
+const STEPS: f64 = 2e5;
 /// Runs in a chunk, however short.
-const MOST_ITEMS: u64 = 1024;
-/// Chunks of a shard at least, where it has as many runs, so that all cores have work.
-const FEWEST_CHUNKS: u64 = 64;
-/// Bytes of rows of one run that are held at once.
+const MOST_ITEMS: u64 = 1 << 14;
+/// Chunks at least, if there are as many runs, so that all cores have work.
+const FEWEST_CHUNKS: u64 = 256;
+/// Bytes of the series of one run at most: they are held in memory.
 const MOST_BYTES: f64 = 1.6e7;
 
 /// A sweep.
@@ -46,7 +43,7 @@ impl Study {
         Ok(study)
     }
 
-    /// Whether the rows of one run are few enough to be held.
+    /// Refuses a series that memory may not hold.
     #[allow(clippy::cast_precision_loss)] // an estimate
     fn check_series(&self) -> Result<(), Failure> {
         let columns = self.request.columns().len() + 1;
@@ -64,32 +61,22 @@ impl Study {
         )))
     }
 
-    /// What a part of it begins with.
-    pub(super) fn heading(&self, shard: Shard) -> Heading {
-        let Request { plan, length, .. } = &self.request;
-        let items = shard.items(self.items.count());
-        let balanced = (items.end - items.start).div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
-        let short = (STEPS / length.steps(plan).max(1.0)).max(1.0) as u64;
-        Heading { study: self.description(), shard, chunk: balanced.min(short) }
-    }
-
-    /// All on which its tables depend.
-    fn description(&self) -> Description {
+    /// Everything that its tables depend on.
+    pub(super) fn description(&self) -> Description {
         let Request { system, plan, length, every, .. } = &self.request;
+        let items = self.items.count();
+        let balanced = items.div_ceil(FEWEST_CHUNKS).clamp(1, MOST_ITEMS);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at least 1
+        let chunk = balanced.min((STEPS / length.steps(plan).max(1.0)).max(1.0) as u64);
         let length = match length {
             Length::Steps(steps) => format!("{steps} steps"),
             Length::Until(end) => format!("until t = {}", short(*end)),
         };
-        let sources = catalogue::sources().fold(0, |sum, text| {
-            let mut hasher = crc32fast::Hasher::new_with_initial(sum);
-            hasher.update(text.as_bytes());
-            hasher.finalize()
-        });
+        let sources = fingerprint(&catalogue::sources().collect::<Vec<_>>());
         let facts = [
             ("vi-lab", VERSION.to_owned()),
             ("system", system.name().to_owned()),
-            ("sources", format!("{sources:08x}")),
+            ("sources", format!("{sources:016x}")),
             ("parameters", assigned(&system.parameters())),
             ("method", method::in_words(plan)),
             ("step", format!("h = {}", short(plan.h))),
@@ -99,60 +86,50 @@ impl Study {
             ("keep", self.kept.words(&system.coordinates())),
         ];
         let facts = facts.map(|(name, fact)| (name.to_owned(), fact)).to_vec();
-        let shapes = self.kept.shapes(self.items.names(), &system.coordinates());
-        Description { facts, items: self.items.count(), shapes }
+        let schemas = self.kept.schemas(self.items.names(), &system.coordinates());
+        Description { facts, items, chunk, schemas }
     }
 
-    /// The runs of a chunk.
-    pub(super) fn chunk(&self, heading: &Heading, number: u64) -> Chunk {
-        let mut chunk = Chunk { number, failed: 0, tables: vec![Vec::new(); heading.study.shapes.len()] };
-        for item in heading.items(number) {
-            let ending = self.follow(item, &mut chunk.tables);
-            chunk.failed += u64::from(ending != Ending::REACHED);
-        }
-        chunk
-    }
-
-    /// Adds the rows of a run to the tables.
+    /// Takes a run, adds its rows to the tables, and returns whether it failed.
     #[allow(clippy::cast_precision_loss)] // items are fewer than 2^53, and so are steps
-    fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> Ending {
+    pub(super) fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> bool {
         let number = item as f64;
         let mut tables = tables.iter_mut();
-        let Some(runs) = tables.next() else { return Ending::REACHED };
+        let Some(runs) = tables.next() else { return false };
         let section = self.kept.section.as_ref().and_then(|section| Some((section, tables.next()?)));
         let mut series = if self.kept.has(Keep::Series) { tables.next() } else { None };
 
         let member = self.member(item);
-        let mut course = Course::of(&member, &mut |simulation| {
+        let mut outcome = Outcome::of(&member, &mut |simulation| {
             if let Some(series) = &mut series {
                 series.push(number);
                 series.extend(simulation.row().entries().map(|entry| entry.unwrap_or(f64::NAN)));
             }
         });
         if let Some((section, crossings)) = section {
-            let crossed = course.cross(&member, section, &mut |row| {
+            let crossed = outcome.cross(&member, section, &mut |row| {
                 crossings.extend([number, row.t].into_iter().chain(row.q).chain(row.p));
                 crossings.push(row.energy.unwrap_or(f64::NAN));
             });
-            if course.ending == Ending::REACHED && crossed.is_err() {
-                course.ending = Ending::NO_SECTION;
+            if outcome.ending == Ending::REACHED && crossed.is_err() {
+                outcome.ending = Ending::NO_SECTION;
             }
         }
         runs.push(number);
         runs.extend(self.items.values(item));
         if self.kept.has(Keep::Ending) {
-            runs.extend([course.ending.number(), course.steps as f64]);
+            runs.extend([outcome.ending.number(), outcome.steps as f64]);
         }
         if self.kept.has(Keep::End) {
-            runs.extend(course.end(self.request.columns().len()));
+            runs.extend(outcome.end(self.request.columns().len()));
         }
         if self.kept.has(Keep::Extremes) {
-            runs.extend(course.extremes());
+            runs.extend(outcome.extremes());
         }
         if self.kept.has(Keep::Energy) {
-            runs.extend(course.errors());
+            runs.extend(outcome.errors());
         }
-        course.ending
+        outcome.ending != Ending::REACHED
     }
 
     /// The run of an item.

@@ -2,6 +2,7 @@
 
 use super::lab;
 use super::sweep::Folder;
+use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::Command;
@@ -45,24 +46,47 @@ fn what_is_read_must_be_a_file() {
         assert!(made.success());
         file
     };
-    let [scene, source, rival, part] = ["a.toml", "a.rs", "kepler.csv", "a.csv.0-of-1.part"].map(pipe);
+    let [scene, source, rival, part] = ["a.toml", "a.rs", "kepler.csv", "a.csv.part"].map(pipe);
     let output = folder.at("a.csv");
     // Each would wait for a writer for ever.
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 6] = [
         (&["run", &scene], &scene),
         (&["sweep", &scene, "-o", &output], &scene),
         (&["lyapunov", &scene], &scene),
         (&["expand", &source], &source),
         (&["explain", &source], &source),
         (&["work-precision", "kepler", "--rival", &rival], &rival),
-        (&["merge", &part, "-o", &output], &part),
-        (&["sweep", &folder.scene(), "-o", &output], &part),
     ];
     for (arguments, file) in cases {
         let (status, output, errors) = lab(arguments);
         assert_eq!((status, output.as_str()), (Some(2), ""), "{arguments:?}");
         assert_eq!(errors, format!("error: {file} is no regular file; give the name of one\n"), "{arguments:?}");
     }
+    // Chunks are files in a folder.
+    let sweep = || lab(&["sweep", &folder.scene(), "-o", &output]);
+    let merge = || lab(&["merge", &part, "-o", &output]);
+    let refused = |message: String| (Some(2), String::new(), format!("error: {message}\n"));
+    assert_eq!(sweep(), refused(format!("{part} is not a folder; remove it, or name another output")));
+    let (status, _, errors) = merge();
+    assert!(status == Some(2) && errors.starts_with(&format!("error: {part} has no chunks of a sweep: ")), "{errors}");
+    fs::remove_file(&part).expect("the pipe goes");
+    fs::create_dir(&part).expect("a folder");
+    let lock = pipe("a.csv.part/lock");
+    assert_eq!(sweep(), refused(format!("{lock} is no regular file; give the name of one")));
+    fs::remove_file(lock).expect("the pipe goes");
+    let heading = pipe("a.csv.part/sweep.json");
+    let no_file = format!("{heading} is no regular file; give the name of one");
+    for told in [sweep(), merge()] {
+        assert_eq!(told, refused(format!("{part} has no chunks of a sweep: {no_file}")));
+    }
+    fs::remove_file(heading).expect("the pipe goes");
+    // The description is there after a shard without chunks.
+    let (status, _, errors) = lab(&["sweep", &folder.scene(), "-o", &output, "--shard", "0/2"]);
+    assert_eq!((status, errors.as_str()), (Some(0), ""));
+    let chunk = pipe("a.csv.part/0.csv");
+    assert_eq!(merge(), refused(format!("{chunk} is no regular file; give the name of one")));
+    let (status, _, errors) = sweep();
+    assert_eq!((status, errors.as_str()), (Some(0), ""), "what is no chunk is made again");
 }
 
 #[test]

@@ -1,11 +1,21 @@
-//! Sweeps: parts against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
+//! Sweeps: shards against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
 
-use super::{array, bits, lab, path, rows, send, start, temporary};
+use super::{array, bits, lab, path, rows, send, temporary};
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
+
+/// Names and bytes of chunks.
+type Chunks = BTreeMap<String, Vec<u8>>;
+
+/// The names of the files of a folder; none if it is not there.
+fn names(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).into_iter().flatten().flatten();
+    files.map(|file| file.file_name().into_string().expect("text")).collect()
+}
 
 /// A folder for one test, with a scene in it; it goes with the value.
 pub(super) struct Folder(PathBuf);
@@ -39,8 +49,15 @@ impl Folder {
 
     /// Whether a file is left that stood in for another.
     fn has_temporary(&self) -> bool {
-        let files = fs::read_dir(&self.0).expect("the folder");
-        files.flatten().any(|file| file.file_name().to_string_lossy().contains(".tmp"))
+        names(&self.0).iter().any(|name| name.contains(".tmp"))
+    }
+
+    /// The chunks of a part.
+    fn chunks(&self, part: &str) -> Chunks {
+        let names = names(&self.0.join(part))
+            .into_iter()
+            .filter(|name| Path::new(name).extension().is_some_and(|extension| extension == "csv"));
+        names.map(|name| (name.clone(), self.read(&format!("{part}/{name}")))).collect()
     }
 
     pub(super) fn text(&self, name: &str) -> String {
@@ -53,6 +70,13 @@ impl Folder {
         let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
         assert_eq!((status, errors.as_str()), (Some(0), ""));
         said
+    }
+
+    /// Whether the tables of a sweep of `MIXED` are those of one that was not divided.
+    fn is_whole(&self, name: &str, what: &str) {
+        for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
+            assert!(self.read(&format!("{name}.{file}")) == self.read(&format!("whole.{file}")), "{file} of {what}");
+        }
     }
 
     /// A merge of parts; status and what was said on standard error.
@@ -81,6 +105,13 @@ impl Drop for Folder {
     }
 }
 
+/// Starts the command with one thread: the work left does not depend on the number of cores.
+fn start(arguments: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vi-lab"));
+    command.args(arguments).env("RAYON_NUM_THREADS", "1");
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
+}
+
 /// Runs that reach their end and runs that do not, with all tables: 48 of them.
 const MIXED: &str = "
 system = \"double-well\"
@@ -100,7 +131,7 @@ keep = [\"ending\", \"end\", \"extremes\", \"energy\", \"series\"]
 section = { coordinate = \"q\", at = 0.75, direction = \"both\" }
 ";
 
-/// Runs of 20000 steps, two in a chunk.
+/// Runs of 20000 steps, each a chunk.
 const LONG: &str = "
 system = \"double-well\"
 method = \"energy\"
@@ -109,10 +140,14 @@ steps = 20000
 over = [{ name = \"q\", from = 0.71, to = 0.75, count = 80 }]
 ";
 
-/// The names of the parts of a sweep in so many shards.
-fn parts(count: usize) -> Vec<String> {
-    (0..count).map(|index| format!("{count}.csv.{index}-of-{count}.part")).collect()
-}
+/// More runs than can be taken, 200 in a chunk.
+const ENDLESS: &str = "
+system = \"kepler\"
+steps = 1000
+[sweep]
+over = [{ name = \"x\", uniform = [0.9, 1.1] }]
+samples = 1e15
+";
 
 #[test]
 fn shards_are_the_whole_byte_for_byte() {
@@ -120,22 +155,36 @@ fn shards_are_the_whole_byte_for_byte() {
     let said = folder.sweep("whole.csv", &[]);
     assert!(said.contains("whole.csv: 48 runs, 12 did not reach their end"), "{said}");
     folder.sweep("whole.npy", &[]);
-    assert!(!folder.0.join("whole.csv.0-of-1.part").exists(), "its rows stand in tables");
-    for count in [1, 2, 7] {
-        for index in 0..count {
+    assert!(!folder.0.join("whole.csv.part").exists(), "its rows stand in tables");
+    for count in [1, 2, 7, 100] {
+        let part = format!("{count}.csv.part");
+        // In any order, and some twice.
+        for index in (0..count).rev().chain([0]) {
             folder.sweep(&format!("{count}.csv"), &["--shard", &format!("{index}/{count}")]);
         }
-        let parts = parts(count);
-        let mut parts: Vec<&str> = parts.iter().map(String::as_str).collect();
-        parts.reverse();
         for output in ["merged.csv", "merged.npy"] {
-            assert_eq!(folder.merge(&parts, output), (Some(0), String::new()));
+            assert_eq!(folder.merge(&[&part], output), (Some(0), String::new()));
         }
-        for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
-            let (merged, whole) = (folder.read(&format!("merged.{file}")), folder.read(&format!("whole.{file}")));
-            assert!(merged == whole, "{file} of {count} shards");
-        }
+        folder.is_whole("merged", &format!("{count} shards"));
     }
+    // Machines without a common file system have folders of their own. The number of shards may change.
+    for (output, shard) in [("a.csv", "0/3"), ("b.csv", "2/3"), ("b.csv", "1/2")] {
+        folder.sweep(output, &["--shard", shard]);
+    }
+    let missing = "chunk 16 of 48 is missing, runs 16 to 16; `vi-lab sweep` makes it";
+    let expected = (Some(2), format!("error: not all runs are there: {missing}\n"));
+    assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], "c.csv"), expected);
+    folder.sweep("a.csv", &["--shard", "0/2"]);
+    for output in ["c.csv", "c.npy"] {
+        assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], output), (Some(0), String::new()));
+    }
+    folder.is_whole("c", "two folders");
+    // Without --shard the sweep makes what is missing, merges and removes the folder.
+    for output in ["b.csv", "b.npy"] {
+        folder.sweep(output, &[]);
+    }
+    folder.is_whole("b", "a sweep that goes on from shards");
+    assert!(!folder.0.join("b.csv.part").exists());
     let description: serde_json::Value = serde_json::from_slice(&folder.read("whole.npy.json")).expect("JSON");
     let words = description["words"]["ending"].as_array().expect("words");
     for table in ["", ".section", ".series"] {
@@ -248,19 +297,18 @@ fn crossings_are_where_the_motion_is_known() {
 fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
     let folder = Folder::new("killed", LONG);
     folder.sweep("whole.csv", &["--shard", "0/1"]);
-    let whole = folder.read("whole.csv.0-of-1.part");
-    let (scene, output) = (folder.scene(), folder.at("killed.csv"));
-    let part = folder.at("killed.csv.0-of-1.part");
-    let length = || fs::metadata(&part).map_or(0, |part| part.len());
-    // A frame, a head, and two rows of ten numbers.
-    let chunk = 12 + 24 + 2 * 10 * 8;
-    let heading = whole.len() - 40 * chunk;
-    let whole_chunks = |part: &[u8]| part[..part.len() - (part.len() - heading) % chunk].to_vec();
-    let mut before: Vec<u8> = Vec::new();
+    let whole = folder.chunks("whole.csv.part");
+    assert_eq!(whole.len(), 80);
+    let (scene, output, part) = (folder.scene(), folder.at("killed.csv"), "killed.csv.part");
+    let times = |chunks: &Chunks| -> Vec<_> {
+        let time =
+            |name: &String| fs::metadata(folder.at(&format!("{part}/{name}"))).and_then(|chunk| chunk.modified());
+        chunks.keys().map(|name| (name.clone(), time(name).expect("a time"))).collect()
+    };
+    let mut before = Vec::new();
     for (signal, status) in [("-KILL", None), ("-INT", Some(130)), ("-KILL", None), ("-TERM", Some(143))] {
-        let child = start(&["sweep", &scene, "-o", &output, "--shard", "0/1"]);
-        let wanted = before.len() as u64 + whole.len() as u64 / 10;
-        while length() < wanted {
+        let child = start(&["sweep", &scene, "-o", &output]);
+        while folder.chunks(part).len() < before.len() + 8 {
             sleep(Duration::from_millis(1));
         }
         send(signal, &child);
@@ -269,105 +317,247 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
         assert_eq!(ended.code(), status, "{errors}");
         if status.is_some() {
             assert!(
-                errors.contains(" of 40 chunks, from which the same command goes on; the output up to there is whole"),
+                errors.contains(" of 80 chunks, from which the same command goes on; the output up to there is whole"),
                 "{errors}"
             );
         }
-        let after = whole_chunks(&fs::read(&part).expect("the part"));
-        assert!(after.starts_with(&before) && after.len() > before.len() && after.len() < whole.len(), "{signal}");
+        let chunks = folder.chunks(part);
+        assert!(chunks.len() < 80 && chunks.iter().all(|(name, chunk)| whole[name] == *chunk), "{signal}");
+        let after = times(&chunks);
+        assert!(before.iter().all(|chunk| after.contains(chunk)), "no chunk is written twice");
+        let temporary = names(&folder.0.join(part)).into_iter().filter(|name| name.contains(".tmp"));
+        assert!(temporary.count() <= 1, "what the process before left is removed");
         before = after;
     }
     folder.sweep("killed.csv", &["--shard", "0/1"]);
-    let after = fs::read(&part).expect("the part");
-    assert!(after.starts_with(&before) && after.len() == whole.len(), "every chunk is there once");
-    for name in ["whole", "killed"] {
-        assert_eq!(
-            folder.merge(&[&format!("{name}.csv.0-of-1.part")], &format!("{name}.csv")),
-            (Some(0), String::new())
-        );
-    }
-    assert_eq!(folder.text("killed.csv"), folder.text("whole.csv"));
+    let chunks = folder.chunks(part);
+    let after = times(&chunks);
+    assert!(chunks == whole && before.iter().all(|chunk| after.contains(chunk)));
+    folder.sweep("killed.csv", &[]);
+    assert_eq!(folder.merge(&["whole.csv.part"], "whole.csv"), (Some(0), String::new()));
+    assert!(folder.text("killed.csv") == folder.text("whole.csv") && !folder.0.join(part).exists());
 }
+
+/// Six runs of 4, 8, … 128 steps, each in a chunk that is as long as its series.
+const GROWING: &str = "
+system = \"double-well\"
+until = 1.0
+[sweep]
+over = [{ name = \"h\", from = 0.25, to = 0.0078125, count = 6, spacing = \"log\" }]
+keep = [\"ending\", \"end\", \"series\"]
+";
 
 #[cfg(unix)]
 #[test]
 fn a_disk_that_is_full_keeps_the_chunks_before() {
-    let folder = Folder::new("full-sweep", MIXED);
-    folder.sweep("whole.csv", &[]);
-    // The part has more than one block of 512 bytes for each of 48 chunks; a table has more than forty.
+    let folder = Folder::new("full-sweep", GROWING);
+    folder.sweep("whole.csv", &["--shard", "0/1"]);
+    let whole = folder.chunks("whole.csv.part");
+    // 20 blocks of 512 bytes: more than five of the chunks and the heading have, less than the last chunk and the table of the series.
+    let lengths: Vec<usize> = whole.values().map(Vec::len).collect();
+    assert!(lengths[4] < 10240 && lengths[5] > 10240, "{lengths:?}");
     let limited = "trap '' XFSZ; ulimit -f 20; exec \"$0\" \"$@\"";
     let run = |arguments: &[&str]| {
         let all = [["-c", limited, env!("CARGO_BIN_EXE_vi-lab")].as_slice(), arguments].concat();
-        let Output { status, stderr, .. } = Command::new("sh").args(all).output().expect("the shell runs");
+        let Output { status, stderr, .. } =
+            Command::new("sh").env("RAYON_NUM_THREADS", "1").args(all).output().expect("the shell runs");
         (status.code(), String::from_utf8(stderr).expect("text"))
     };
     let (scene, output) = (folder.scene(), folder.at("full.csv"));
-    let part = folder.at("full.csv.0-of-1.part");
+    let part = folder.at("full.csv.part");
     let (status, errors) = run(&["sweep", &scene, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
-    assert!(errors.starts_with(&format!("error: {part}: ")), "{errors}");
+    let advice = "the other chunks are whole; once this is mended, the same command goes on from them\n";
+    assert!(errors.starts_with(&format!("error: {part}/5.csv: ")) && errors.ends_with(advice), "{errors}");
+    let kept = folder.chunks("full.csv.part");
+    assert!(kept.len() == 5 && kept.iter().all(|(name, chunk)| whole[name] == *chunk));
+    assert!(!names(&folder.0.join("full.csv.part")).iter().any(|name| name.contains(".tmp")));
     folder.sweep("full.csv", &["--shard", "0/1"]);
+    folder.file("full.csv", "mine");
+    folder.file("full.series.csv", "mine");
     let (status, errors) = run(&["merge", &part, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
-    assert!(errors.starts_with(&format!("error: {output}")) && !folder.has_temporary(), "{errors}");
+    let series = folder.at("full.series.csv");
+    assert!(errors.starts_with(&format!("error: {series}: ")) && !folder.has_temporary(), "{errors}");
+    assert_eq!(["full.csv", "full.series.csv"].map(|table| folder.text(table)), ["mine", "mine"]);
     folder.sweep("full.csv", &[]);
-    for table in ["", ".section", ".series"] {
+    folder.sweep("whole.csv", &[]);
+    for table in ["", ".series"] {
         assert_eq!(folder.text(&format!("full{table}.csv")), folder.text(&format!("whole{table}.csv")));
     }
 }
 
+#[cfg(unix)]
 #[test]
-fn parts_that_do_not_belong_together_are_refused() {
+fn a_second_process_is_refused_while_the_first_works() {
+    let folder = Folder::new("second", ENDLESS);
+    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.part");
+    let first = start(&["sweep", &scene, "-o", &output]);
+    while folder.chunks(part).is_empty() {
+        sleep(Duration::from_millis(1));
+    }
+    let second = lab(&["sweep", &scene, "-o", &output]);
+    let message = format!("error: another process works on {}; wait for it\n", folder.at(part));
+    assert_eq!(second, (Some(2), String::new(), message));
+    let before = folder.chunks(part);
+    while folder.chunks(part).len() < before.len() + 2 {
+        sleep(Duration::from_millis(1));
+    }
+    send("-INT", &first);
+    let ended = first.wait_with_output().expect("the command ends");
+    assert_eq!(ended.status.code(), Some(130));
+    let after = folder.chunks(part);
+    assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_sweep_of_any_length_starts_in_bounded_memory_and_goes_on() {
+    let scene =
+        "system = \"kepler\"\nsteps = 1000\n[sweep]\nover = [{ name = \"x\", uniform = [0.9, 1.1] }]\nsamples = 1e15\n";
+    let folder = Folder::new("endless", scene);
+    let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.part");
+    // A bit for each of the chunks would be 300 times this limit of 2 GB.
+    let limited = "ulimit -v 2000000; exec \"$0\" \"$@\"";
+    let mut before = Chunks::new();
+    for _ in 0..2 {
+        let child = Command::new("sh")
+            .args(["-c", limited, env!("CARGO_BIN_EXE_vi-lab"), "sweep", &scene, "-o", &output])
+            .env("RAYON_NUM_THREADS", "2")
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the shell runs");
+        while folder.chunks(part).len() < before.len() + 2 {
+            sleep(Duration::from_millis(1));
+        }
+        send("-INT", &child);
+        let Output { status, stderr, .. } = child.wait_with_output().expect("the command ends");
+        let errors = String::from_utf8(stderr).expect("text");
+        assert_eq!(status.code(), Some(130), "{errors}");
+        assert!(errors.contains(" of 5000000000000 chunks, from which the same command goes on"), "{errors}");
+        let after = folder.chunks(part);
+        assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
+        before = after;
+    }
+    let missing = (0..1000).find(|number| !before.contains_key(&format!("{number}.csv"))).expect("a chunk");
+    let runs = format!("runs {} to {}", 200 * missing, 200 * missing + 199);
+    let expected = format!("chunk {missing} of 5000000000000 is missing, {runs}; `vi-lab sweep` makes it");
+    assert_eq!(folder.merge(&[part], "merged.csv"), (Some(2), format!("error: not all runs are there: {expected}\n")));
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let folder = Folder::new("threads", MIXED);
+    let (scene, part) = (folder.scene(), "a.csv.part");
+    let mut first: Option<Chunks> = None;
+    for threads in ["1", "2", "5"] {
+        let status = Command::new(env!("CARGO_BIN_EXE_vi-lab"))
+            .args(["sweep", &scene, "-o", &folder.at("a.csv"), "--shard", "0/1"])
+            .env("RAYON_NUM_THREADS", threads)
+            .stdout(Stdio::null())
+            .status();
+        assert!(status.expect("the command runs").success());
+        let chunks = folder.chunks(part);
+        assert_eq!(chunks.len(), 48);
+        assert!(*first.get_or_insert_with(|| chunks.clone()) == chunks, "{threads} threads");
+        fs::remove_dir_all(folder.at(part)).expect("the part goes");
+    }
+}
+
+#[test]
+fn a_chunk_that_was_changed_is_named_and_made_again() {
+    let folder = Folder::new("changed", MIXED);
+    folder.sweep("whole.csv", &[]);
+    folder.sweep("a.csv", &["--shard", "0/1"]);
+    let part = "a.csv.part";
+    let path = folder.at(&format!("{part}/7.csv"));
+    let good = fs::read_to_string(&path).expect("a chunk");
+    let lines = good.lines().count();
+    let remedy = "remove this file, and run the same `vi-lab sweep` again";
+    let counts = "rows above are missing or added";
+    for (bad, line, what) in [
+        (good.replacen("series,7,0.025,", "series,7,zero,", 1), 2, "`zero` cannot be an entry of the column `t`"),
+        (good.replacen("series,7,0.025,", "series,7,", 1), 2, "the row of `series` has 6 columns instead of 7"),
+        (good.replacen("\nseries,", "\nseries,7,0.0,0.0,0.0,0.0,0.0,0.0\nseries,", 1), lines + 1, counts),
+        (good.trim_end().to_owned(), lines, "the line is cut off or no text"),
+    ] {
+        assert!(bad != good);
+        fs::write(&path, bad).expect("the chunk is written");
+        let expected = (Some(2), format!("error: {part}/7.csv, line {line}: {what}; {remedy}\n"));
+        assert_eq!(folder.merge(&[part], "a.csv"), expected);
+        let (status, said, errors) = lab(&["sweep", &folder.scene(), "-o", &folder.at("a.csv")]);
+        assert_eq!((status, errors.replace(&folder.at(""), "")), expected, "{said}");
+        assert!(!folder.0.join("a.csv").exists() && !folder.has_temporary());
+    }
+    // What is no chunk of this sweep is refused, and made again. So is one that is not there.
+    fs::write(&path, good.replacen("chunk 7", "chunk 8", 1)).expect("the chunk is written");
+    let another = format!("{part}/7.csv, line 1: this is a chunk of another sweep, or another chunk; {remedy}");
+    assert_eq!(folder.merge(&[part], "a.csv"), (Some(2), format!("error: {another}\n")));
+    fs::remove_file(folder.at(&format!("{part}/9.csv"))).expect("the chunk goes");
+    folder.sweep("a.csv", &[]);
+    for table in ["", ".section", ".series"] {
+        assert!(folder.read(&format!("a{table}.csv")) == folder.read(&format!("whole{table}.csv")), "{table}");
+    }
+}
+
+#[test]
+fn chunks_that_do_not_belong_together_are_refused() {
     let folder = Folder::new("merge", LONG);
     let short = LONG.replace("20000", "50").replace("80", "10");
     fs::write(folder.scene(), &short).expect("a scene");
-    for shard in ["0/2", "1/2", "0/3"] {
-        folder.sweep("a.csv", &["--shard", shard]);
-    }
+    folder.sweep("a.csv", &["--shard", "1/2"]);
     fs::write(folder.scene(), short.replace("0.75", "0.76")).expect("a scene");
-    folder.sweep("b.csv", &["--shard", "1/2"]);
-    let [first, second, third] = ["a.csv.0-of-2.part", "a.csv.1-of-2.part", "a.csv.0-of-3.part"];
-    let half = folder.read(second);
-    fs::write(folder.at("half.part"), &half[..half.len() - 1]).expect("a part");
-    fs::write(folder.at("other.part"), "item,v_y\n").expect("a file");
-    let sweep = |to: &str| format!("q from 0.71 to {to}, 10 values");
+    folder.sweep("b.csv", &["--shard", "0/2"]);
+    let (first, second) = ("a.csv.part", "b.csv.part");
+    fs::create_dir(folder.at("other.part")).expect("a folder");
+    folder.file("other.part/sweep.json", "{}");
+    let sweep = |to: &str| format!("`q from 0.71 to {to}, 10 values`");
+    let other = format!("its sweep is {}, not {}", sweep("0.76"), sweep("0.75"));
+    let remedy = "remove other.part, and run `vi-lab sweep` again";
     for (parts, message) in [
-        (vec![first], "not all shards are there: 1/2 missing".to_owned()),
-        (vec![first, first], format!("{first} and {first} are both shard 0/2")),
+        (vec![first, second], format!("{second} is of another sweep than {first}: {other}")),
         (
-            vec![third, first],
-            format!("{third} is shard 0/3 and {first} is shard 0/2: the parts of a sweep are one of as many"),
+            vec![first],
+            "not all runs are there: chunk 0 of 10 is missing, runs 0 to 0; `vi-lab sweep` makes it".to_owned(),
         ),
         (
-            vec![first, "b.csv.1-of-2.part"],
-            format!(
-                "{first} and b.csv.1-of-2.part are of different sweeps, by their sweep: {} there, {} here",
-                sweep("0.75"),
-                sweep("0.76")
-            ),
+            vec!["other.part"],
+            format!("other.part/sweep.json does not describe a sweep of this version of vi-lab; {remedy}"),
         ),
-        (
-            vec![first, "half.part"],
-            "not all runs are there: half.part has 4 of 5 chunks; `vi-lab sweep` goes on with them".to_owned(),
-        ),
-        (vec!["other.part"], "other.part is no part of a sweep".to_owned()),
     ] {
         assert_eq!(folder.merge(&parts, "merged.csv"), (Some(2), format!("error: {message}\n")));
     }
     let (status, errors) = folder.merge(&["none.part"], "merged.csv");
-    assert!(status == Some(1) && errors.starts_with("error: none.part: "), "{errors}");
+    let expected = "error: none.part has no chunks of a sweep: none.part/sweep.json: ";
+    assert!(status == Some(2) && errors.starts_with(expected), "{errors}");
     assert_eq!(
-        folder.merge(&[first, second], "merged.xls"),
+        folder.merge(&[first], "merged.xls"),
         (Some(2), "error: the output `merged.xls` must end in .csv, .npy or .parquet\n".to_owned())
     );
-    assert!(!folder.0.join("merged.csv").exists());
-    // A part that is there already is gone on with, if it is of the same sweep.
-    assert!(folder.sweep("b.csv", &["--shard", "1/2"]).contains("b.csv.1-of-2.part: 5 runs, all reached their end"));
-    fs::rename(folder.at("b.csv.1-of-2.part"), folder.at("refused.csv.1-of-2.part")).expect("a part");
-    let message = "refused.csv.1-of-2.part is of another sweep, by its system: DoubleWell there, Kepler here; remove it, or name \
-                   another output";
+    // Chunks of another sweep, under the right names.
+    for number in 0..5 {
+        let name = format!("{number}.csv");
+        fs::copy(folder.at(&format!("{second}/{name}")), folder.at(&format!("{first}/{name}"))).expect("a copy");
+    }
+    let (status, errors) = folder.merge(&[first], "merged.csv");
+    let expected = format!("error: {first}/0.csv, line 1: this is a chunk of another sweep, or another chunk; ");
+    assert!(status == Some(2) && errors.starts_with(&expected), "{errors}");
+    assert!(!folder.0.join("merged.csv").exists() && !folder.has_temporary());
+    fs::write(folder.scene(), &short).expect("a scene");
+    assert!(folder.sweep("a.csv", &["--shard", "0/2"]).contains("a.csv.part: 5 runs, all reached their end"));
+    assert_eq!(folder.merge(&[first], "merged.csv"), (Some(0), String::new()));
+    // A sweep goes on from its own chunks only.
+    let part = "refused.csv.part";
+    fs::rename(folder.at(second), folder.at(part)).expect("a folder");
     let over = "[sweep]\nover = [{ name = \"v_y\", values = [1.0] }]\n";
-    assert_eq!(folder.refused(over, &["--shard", "1/2"]), message);
+    let message = |fact: &str| format!("{part} is of another sweep: its {fact}; remove it, or name another output");
+    for shard in [&[][..], &["--shard", "1/2"]] {
+        assert_eq!(folder.refused(over, shard), message("system is `DoubleWell`, not `Kepler`"));
+    }
+    let heading = folder.text(&format!("{part}/sweep.json"));
+    let version = env!("CARGO_PKG_VERSION");
+    folder.file(&format!("{part}/sweep.json"), &heading.replacen(&format!("\"{version}\""), "\"0.0.9\"", 1));
+    assert_eq!(folder.refused(over, &[]), message(&format!("vi-lab is `0.0.9`, not `{version}`")));
 }
 
 #[test]
@@ -468,9 +658,7 @@ fn hyperqueue_makes_the_same_bytes() {
     let run =
         python(&["-c", HYPERQUEUE, env!("CARGO_BIN_EXE_vi-lab"), &scene, &output, &inside, "7"]).expect("python runs");
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let parts = parts(7);
-    let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
-    assert_eq!(folder.merge(&parts, "merged.csv"), (Some(0), String::new()));
+    assert_eq!(folder.merge(&["7.csv.part"], "merged.csv"), (Some(0), String::new()));
     assert!(folder.read("merged.csv") == folder.read("whole.csv"));
     println!("tested with HyperQueue: seven tasks");
 }

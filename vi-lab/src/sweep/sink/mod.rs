@@ -1,53 +1,53 @@
-//! Tables as files: CSV, NPY, and Parquet where the command is built with it.
+//! Tables as files: CSV, NPY, and Parquet if the command is built with it.
 //!
-//! In: a [`Description`], and the numbers of a table row by row. Out: the file. AFTER A FAILURE what was at the place of the file is
-//! there still: rows go to a file beside it, which takes the place when it is whole.
+//! CSV has the facts of the sweep as comments. NPY has float64, words as indices of a list in a JSON file beside it. If writing fails, the file that was there before stays: rows
+//! go to a temporary file, which replaces it when it is whole.
 
-mod csv;
-mod npy;
 #[cfg(feature = "parquet")]
 mod parquet;
 
-use super::part::Description;
-use super::shape::Shape;
+use super::chunks::Description;
+use super::schema::{Kind, Schema};
+use crate::npy;
 use crate::place::{self, Temporary, beside};
+use serde_json::{Map, Value, json};
 use std::fs::File;
-use std::io;
+use std::io::{self, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
-
-/// Where rows go.
-trait Sink {
-    /// Takes whole rows.
-    fn write(&mut self, rows: &[f64]) -> io::Result<()>;
-    /// Writes what is left, and gives the file back.
-    fn finish(self: Box<Self>) -> io::Result<File>;
-}
 
 /// How a table is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
-    /// Text.
     Csv,
-    /// An array of `NumPy`, and beside it a JSON file that says what is in it.
     Npy,
-    /// Columns, each of its kind.
     #[cfg(feature = "parquet")]
     Parquet,
 }
 
 /// A table that is being written.
-pub(super) struct Target {
+pub(super) struct Target<'a> {
     path: PathBuf,
-    sink: Box<dyn Sink>,
+    description: &'a Description,
+    schema: &'a Schema,
+    sink: Sink,
     temporary: Temporary,
 }
 
+/// The file of a format.
+enum Sink {
+    Csv(BufWriter<File>),
+    /// With the number of rows so far.
+    Npy(BufWriter<File>, u64),
+    #[cfg(feature = "parquet")]
+    Parquet(Box<parquet::Parquet>),
+}
+
 impl Format {
-    /// That of a path, at which a file can be made.
+    /// The format of a path at which a file can be made.
     ///
     /// # Errors
-    /// [`Failure::Input`] where there is no such format, or no file can be there.
+    /// [`Failure::Input`] if there is no such format, or no file can be there.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         let shown = path.display();
         let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
@@ -73,44 +73,98 @@ impl Format {
     }
 }
 
-impl Target {
-    /// The table of a number of rows at a path.
+impl<'a> Target<'a> {
+    /// A new table: `study.csv` for the runs, `study.series.csv` beside it for their series.
     ///
     /// # Errors
-    /// [`Failure::File`] where it cannot be made.
-    pub(super) fn create(path: &Path, study: &Description, shape: &Shape, rows: u64) -> Result<Self, Failure> {
-        let format = Format::of(path)?;
-        let created = Temporary::create(path).and_then(|(temporary, file)| -> io::Result<(Temporary, Box<dyn Sink>)> {
-            let sink: Box<dyn Sink> = match format {
-                Format::Csv => Box::new(csv::Csv::begin(file, study, shape)?),
+    /// [`Failure::File`] if it cannot be made.
+    pub(super) fn create(output: &Path, description: &'a Description, schema: &'a Schema) -> Result<Self, Failure> {
+        let extension = output.extension().unwrap_or_default().to_string_lossy();
+        let beside_it = || output.with_extension(format!("{}.{extension}", schema.table));
+        let path = if schema.table == "runs" { output.to_owned() } else { beside_it() };
+        let format = Format::of(&path)?;
+        let created = Temporary::create(&path).and_then(|(temporary, file)| {
+            let mut buffer = BufWriter::with_capacity(1 << 16, file.try_clone()?);
+            let sink = match format {
+                Format::Csv => {
+                    for (name, fact) in &description.facts {
+                        writeln!(buffer, "# {name}: {fact}")?;
+                    }
+                    writeln!(buffer, "# runs: {}\n{}", description.items, schema.heading())?;
+                    Sink::Csv(buffer)
+                }
                 Format::Npy => {
-                    place::replace(&beside(path, "json"), &npy::description(study, shape))?;
-                    Box::new(npy::Npy::begin(file, shape, rows)?)
+                    // The number of rows is known at the end. Every head has the same length.
+                    buffer.write_all(&npy::head(0, schema.columns.len()))?;
+                    Sink::Npy(buffer, 0)
                 }
                 #[cfg(feature = "parquet")]
-                Format::Parquet => Box::new(parquet::Parquet::begin(file, study, shape)?),
+                Format::Parquet => Sink::Parquet(Box::new(parquet::Parquet::begin(file, description, schema)?)),
             };
             Ok((temporary, sink))
         });
-        let (temporary, sink) = created.map_err(|error| Failure::file(path, error))?;
-        Ok(Self { path: path.to_owned(), sink, temporary })
+        let (temporary, sink) = created.map_err(|error| Failure::file(&path, error))?;
+        Ok(Self { path, description, schema, sink, temporary })
     }
 
-    /// Takes whole rows.
+    /// Adds a row.
     ///
     /// # Errors
-    /// [`Failure::File`] where they cannot be written.
-    pub(super) fn write(&mut self, rows: &[f64]) -> Result<(), Failure> {
-        self.sink.write(rows).map_err(|error| Failure::file(&self.path, error))
+    /// [`Failure::File`] if it cannot be written.
+    pub(super) fn write(&mut self, row: &[f64]) -> Result<(), Failure> {
+        let written = match &mut self.sink {
+            Sink::Csv(file) => {
+                let mut text = String::new();
+                self.schema.write(row, &mut text);
+                file.write_all(text.as_bytes())
+            }
+            Sink::Npy(file, rows) => {
+                *rows += 1;
+                row.iter().try_for_each(|number| file.write_all(&number.to_le_bytes()))
+            }
+            #[cfg(feature = "parquet")]
+            Sink::Parquet(file) => file.write(row),
+        };
+        written.map_err(|error| Failure::file(&self.path, error))
     }
 
-    /// Puts the file in its place.
+    /// Completes the file, which [`Temporary::finish`] then puts in its place.
     ///
     /// # Errors
-    /// [`Failure::File`] where it cannot be written.
-    pub(super) fn finish(self) -> Result<(), Failure> {
-        let Self { path, sink, temporary } = self;
-        let finished = sink.finish().and_then(|file| file.sync_all()).and_then(|()| temporary.finish());
-        finished.map_err(|error| Failure::file(&path, error))
+    /// [`Failure::File`] if it cannot be written.
+    pub(super) fn finish(self) -> Result<(PathBuf, Temporary), Failure> {
+        let Self { path, description, schema, sink, temporary } = self;
+        let finish = || -> io::Result<()> {
+            let file = match sink {
+                Sink::Csv(file) => file.into_inner()?,
+                Sink::Npy(file, rows) => {
+                    let mut file = file.into_inner()?;
+                    file.rewind()?;
+                    file.write_all(&npy::head(rows, schema.columns.len()))?;
+                    place::replace(&beside(&path, "json"), &legend(description, schema))?;
+                    file
+                }
+                #[cfg(feature = "parquet")]
+                Sink::Parquet(file) => file.finish()?,
+            };
+            file.sync_all()
+        };
+        match finish() {
+            Ok(()) => Ok((path, temporary)),
+            Err(error) => Err(Failure::file(&path, error)),
+        }
     }
+}
+
+/// The text beside an NPY file: facts, columns, and the words of columns that have some.
+fn legend(description: &Description, schema: &Schema) -> String {
+    let facts: Map<String, Value> = description.facts.iter().map(|(name, fact)| (name.clone(), json!(fact))).collect();
+    let columns: Vec<&str> = schema.columns.iter().map(|column| column.name.as_str()).collect();
+    let mut words = Map::new();
+    for column in &schema.columns {
+        if let Kind::Words(list) = &column.kind {
+            words.insert(column.name.clone(), json!(list));
+        }
+    }
+    format!("{:#}\n", json!({ "sweep": facts, "runs": description.items, "columns": columns, "words": words }))
 }

@@ -1,8 +1,7 @@
 //! A table as Parquet: numbers as doubles, counts as integers, words as text; facts are key and value of the file.
 
-use super::super::part::Description;
-use super::super::shape::{Column, Kind, Shape, word};
-use super::Sink;
+use super::super::chunks::Description;
+use super::super::schema::{Column, Kind, Schema, word};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -26,11 +25,11 @@ pub(super) struct Parquet {
 }
 
 impl Parquet {
-    pub(super) fn begin(file: File, study: &Description, shape: &Shape) -> io::Result<Self> {
+    pub(super) fn begin(file: File, study: &Description, schema: &Schema) -> io::Result<Self> {
         let facts = study.facts.iter().map(|(name, fact)| KeyValue::new(name.clone(), fact.clone())).collect();
         let properties = WriterProperties::builder().set_key_value_metadata(Some(facts)).build();
-        let writer = SerializedFileWriter::new(file, schema(shape)?, Arc::new(properties))?;
-        Ok(Self { writer, columns: shape.columns.clone(), rows: Vec::new() })
+        let writer = SerializedFileWriter::new(file, message_type(schema)?, Arc::new(properties))?;
+        Ok(Self { writer, columns: schema.columns.clone(), rows: Vec::new() })
     }
 
     /// Writes the rows as a group, column by column.
@@ -62,28 +61,31 @@ impl Parquet {
         self.rows.clear();
         Ok(())
     }
-}
 
-impl Sink for Parquet {
-    fn write(&mut self, rows: &[f64]) -> io::Result<()> {
-        // In groups of one size, so that the file does not depend on how the sweep was divided.
-        for row in rows.chunks_exact(self.columns.len()) {
-            self.rows.extend(row);
-            if self.rows.len() >= GROUP * self.columns.len() {
-                self.flush()?;
-            }
+    /// Adds a row. Groups have one size, so that the file does not depend on how the sweep was divided.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub(super) fn write(&mut self, row: &[f64]) -> io::Result<()> {
+        self.rows.extend(row);
+        if self.rows.len() >= GROUP * self.columns.len() {
+            self.flush()?;
         }
         Ok(())
     }
 
-    fn finish(mut self: Box<Self>) -> io::Result<File> {
+    /// Writes the rest, and returns the file.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub(super) fn finish(mut self) -> io::Result<File> {
         self.flush()?;
         Ok(self.writer.into_inner()?)
     }
 }
 
 /// The columns with their types.
-fn schema(shape: &Shape) -> Result<TypePtr, ParquetError> {
+fn message_type(schema: &Schema) -> Result<TypePtr, ParquetError> {
     let field = |column: &Column| {
         let (physical, logical) = match column.kind {
             Kind::Number => (Physical::DOUBLE, None),
@@ -93,6 +95,6 @@ fn schema(shape: &Shape) -> Result<TypePtr, ParquetError> {
         let builder = Type::primitive_type_builder(&column.name, physical);
         builder.with_repetition(Repetition::REQUIRED).with_logical_type(logical).build().map(Arc::new)
     };
-    let fields = shape.columns.iter().map(field).collect::<Result<_, _>>()?;
+    let fields = schema.columns.iter().map(field).collect::<Result<_, _>>()?;
     Ok(Arc::new(Type::group_type_builder("sweep").with_fields(fields).build()?))
 }

@@ -1,0 +1,184 @@
+//! One run of a sweep. A run that cannot start or go on is not an error: its [`Outcome`] has an [`Ending`].
+
+use super::ending::Ending;
+use super::keep::STEPS_OF_A_PERIOD;
+use crate::run::{self, Length};
+use core::cell::Cell;
+use vi_core::StepError;
+use vi_runs::plan::Plan;
+use vi_runs::simulation::{Row, Section, Simulation};
+use vi_runs::system::System;
+
+/// A run that finds the lengths of its steps may take so many times more than was foreseen.
+const PATIENCE: f64 = 1000.0;
+
+/// A run to be taken.
+pub(super) struct Member {
+    pub(super) system: Box<dyn System>,
+    pub(super) plan: Plan,
+    pub(super) length: Length,
+    /// Every so many nodes one is shown.
+    pub(super) every: u64,
+    /// Whether the ranges of the coordinates and energies are kept.
+    pub(super) is_watched: bool,
+}
+
+/// What is known of a run that was taken.
+pub(super) struct Outcome {
+    pub(super) ending: Ending,
+    pub(super) steps: u64,
+    /// The last node; `None` if the run did not start.
+    last: Option<Row>,
+    /// The ranges of each coordinate, of H and of E; `None` of what has no values.
+    ranges: Vec<Option<Range>>,
+}
+
+/// First, smallest and largest value of a quantity: NaN once one of its values is NaN.
+#[derive(Clone, Copy)]
+struct Range {
+    first: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Range {
+    fn push(range: &mut Option<Self>, value: f64) {
+        let Self { first, low, high } = range.unwrap_or(Self { first: value, low: value, high: value });
+        *range = Some(Self { first, low: extreme(low, value, f64::min), high: extreme(high, value, f64::max) });
+    }
+}
+
+/// The smaller or larger of two numbers; NaN if one of them is.
+fn extreme(of: f64, value: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
+    if of.is_nan() || value.is_nan() { f64::NAN } else { choose(of, value) }
+}
+
+impl Outcome {
+    /// Takes a run; shows its first node, every so many, and the last.
+    pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Simulation)) -> Self {
+        let Member { system, plan, length, .. } = member;
+        let mut outcome =
+            Self { ending: Ending::WRONG_INPUT, steps: 0, last: None, ranges: vec![None; plan.q.len() + 2] };
+        if run::check(system.as_ref(), plan, *length).is_err() {
+            return outcome;
+        }
+        let evaluations = Cell::new(0);
+        match system.begin(plan, &evaluations) {
+            Ok(simulation) if length.is_before(simulation.as_ref()) => {}
+            Ok(mut simulation) => {
+                outcome.ending = outcome.follow(member, simulation.as_mut(), show);
+                outcome.last = Some(simulation.row());
+            }
+            Err(error) => outcome.ending = Ending::of(error),
+        }
+        outcome
+    }
+
+    /// Steps to the end.
+    fn follow(&mut self, member: &Member, run: &mut dyn Simulation, show: &mut dyn FnMut(&dyn Simulation)) -> Ending {
+        let Member { plan, length, every, is_watched, .. } = member;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a limit
+        let most = (PATIENCE * (length.steps(plan) + 1.0)) as u64;
+        let mut shown = 0;
+        show(run);
+        if *is_watched {
+            self.watch(run);
+        }
+        let ending = loop {
+            let t = run.t();
+            if length.is_reached(t, run.h(), self.steps) {
+                break Ending::REACHED;
+            }
+            if self.steps == most {
+                break Ending::TOO_SHORT;
+            }
+            if let Err(error) = length.advance(run) {
+                break Ending::of(error);
+            }
+            self.steps += 1;
+            if *is_watched {
+                self.watch(run);
+            }
+            if self.steps.is_multiple_of(*every) {
+                shown = self.steps;
+                show(run);
+            }
+            #[allow(clippy::float_cmp)] // exactly
+            if run.t() == t {
+                break Ending::TOO_SHORT;
+            }
+        };
+        if shown < self.steps {
+            show(run);
+        }
+        ending
+    }
+
+    /// Adds the last node to the ranges.
+    fn watch(&mut self, run: &dyn Simulation) {
+        // H of some nodes is not known: then its range is not known either. Some nodes have no interval, and no E.
+        let energies = [Some(run.energy().unwrap_or(f64::NAN)), run.discrete_energy()];
+        let values = run.q().iter().copied().map(Some).chain(energies);
+        for (range, value) in self.ranges.iter_mut().zip(values) {
+            if let Some(value) = value {
+                Range::push(range, value);
+            }
+        }
+    }
+
+    /// Takes the run once more, to its last node, for the crossings of a section.
+    ///
+    /// # Errors
+    /// Why they cannot be located.
+    pub(super) fn cross(&self, member: &Member, section: &Section, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
+        let Some(last) = &self.last else { return Ok(()) };
+        if let Section::Period { period, .. } = section
+            && *period < STEPS_OF_A_PERIOD * member.plan.h.abs()
+        {
+            let (input, allowed) = ("period of a section", "at least four steps");
+            return Err(StepError::InvalidInput { input, allowed, value: *period });
+        }
+        let evaluations = Cell::new(0);
+        member.system.begin(&member.plan, &evaluations)?.cross(section, last.t, take)
+    }
+
+    /// The entries of the last node, in so many columns.
+    pub(super) fn end(&self, columns: usize) -> Vec<f64> {
+        let entries = |row: &Row| row.entries().map(|entry| entry.unwrap_or(f64::NAN)).collect();
+        self.last.as_ref().map_or_else(|| vec![f64::NAN; columns], entries)
+    }
+
+    /// Smallest and largest value of each coordinate, then of H.
+    pub(super) fn extremes(&self) -> impl Iterator<Item = f64> + '_ {
+        let ranges = &self.ranges[..self.ranges.len() - 1];
+        ranges.iter().flat_map(|range| range.map_or([f64::NAN; 2], |range| [range.low, range.high]))
+    }
+
+    /// Largest distances of H and E from their first values.
+    pub(super) fn errors(&self) -> impl Iterator<Item = f64> + '_ {
+        let largest = |range: Range| extreme(range.high - range.first, range.first - range.low, f64::max);
+        self.ranges[self.ranges.len() - 2..].iter().map(move |range| range.map_or(f64::NAN, largest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_is_lost_is_not_left_out() {
+        let mut range = None;
+        let mut outcome = Outcome { ending: Ending::REACHED, steps: 0, last: None, ranges: vec![None; 3] };
+        assert!(outcome.errors().chain(outcome.extremes()).all(f64::is_nan));
+        for value in [2.0, 5.0, -1.5, 3.0] {
+            Range::push(&mut range, value);
+        }
+        outcome.ranges = vec![range; 3];
+        assert_eq!(outcome.errors().collect::<Vec<_>>(), [3.5, 3.5]);
+        assert_eq!(outcome.extremes().collect::<Vec<_>>(), [-1.5, 5.0, -1.5, 5.0]);
+        Range::push(&mut range, f64::NAN);
+        Range::push(&mut range, 1.0);
+        outcome.ranges = vec![range; 3];
+        assert!(outcome.errors().chain(outcome.extremes()).all(f64::is_nan));
+    }
+}
