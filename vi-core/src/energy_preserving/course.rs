@@ -42,7 +42,17 @@ pub struct Lengths<const N: usize, T = f64> {
     pub(crate) kind: StepKind<T>,
 }
 
-impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {}
+impl<const N: usize, T: Scalar> Memory for Lengths<N, T> {
+    fn stored(&self) -> Self {
+        let mut stored = *self;
+        // The change of v only extrapolates it: if it has overflowed, the guess does without.
+        if !stored.last.change.iter().all(|entry| entry.is_finite()) {
+            stored.last.change = SVector::zeros();
+        }
+        stored.last.measured = Measured::of(stored.last.measured.roundings());
+        stored
+    }
+}
 
 /// A run after a step.
 #[derive(Clone, Copy, Debug)]

@@ -56,7 +56,12 @@ impl<const N: usize, T: Scalar> Measured<N, T> {
     /// A residual that is known in roundings.
     pub(crate) fn of(roundings: f64) -> Self {
         let rows = SVector::zeros();
-        Self { rows, scales: SVector::repeat(T::one()), energy: T::real(roundings * T::EPSILON), energy_scale: T::one() }
+        Self {
+            rows,
+            scales: SVector::repeat(T::one()),
+            energy: T::real(roundings * T::EPSILON),
+            energy_scale: T::one(),
+        }
     }
 
     /// The largest residual in roundings.

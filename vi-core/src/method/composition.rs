@@ -194,6 +194,7 @@ where
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
         Substeps(substeps): &Substeps<N, T>,
+        (): &mut (),
     ) -> Result<Self::Step, StepError> {
         let Problem { system, prepared, node, .. } = at;
         let mut after = *node;

@@ -69,7 +69,7 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>) -> Result<Found<N, T>, ()> {
+    fn attempt(&self, at: Problem<'_, S, (), N, T>, memory: &Lengths<N, T>, (): &mut ()) -> Result<Found<N, T>, ()> {
         let Problem { system, node, .. } = at;
         if memory.is_common()
             && let Some(predicted) = memory.predicted(system, node, memory.prediction.guess_highest())

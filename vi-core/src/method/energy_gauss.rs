@@ -419,7 +419,7 @@ where
     type Memory = Lengths<N, STAGES>;
     type Cache = Cache<N, STAGES>;
     type Step = Found<N, STAGES>;
-    type Left = ();
+    type Left = StepError;
     type DenseOutput = Motion<N, STAGES>;
 
     const FINDS_LENGTH: bool = true;
@@ -449,9 +449,19 @@ where
         Ok(memory)
     }
 
-    /// Every step is a search: there is no hot path.
-    fn attempt(&self, _at: Problem<'_, S, Instructions, N>, _memory: &Self::Memory) -> Result<Self::Step, ()> {
-        Err(())
+    /// Every step is a search, compiled once.
+    #[inline(never)]
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        cache: &mut Self::Cache,
+    ) -> Result<Self::Step, StepError> {
+        let here = Here::of(at, memory);
+        match memory.course.phase {
+            Some(phase) => here.next_in_phase(phase, cache),
+            None => here.next(StepKind::EnergyPreserving, cache),
+        }
     }
 
     fn recover(
@@ -459,20 +469,17 @@ where
         at: Problem<'_, S, Instructions, N>,
         memory: &Self::Memory,
         cache: &mut Self::Cache,
-        (): (),
+        left: StepError,
     ) -> Result<Self::Step, StepError> {
-        let here = Here::of(at, memory);
         let course = &memory.course;
-        if let Some(phase) = course.phase {
-            return here.next_in_phase(phase, cache);
+        if course.phase.is_some() {
+            return Err(left);
         }
-        here.next(StepKind::EnergyPreserving, cache).or_else(|failure| {
-            let density = course.told_density::<STAGES>();
-            let phase = Phase::instead_of(failure, course.fallback, course.bounds.as_ref(), course.h(), density)?;
-            let mut found = here.fixed(phase, cache)?;
-            found.course.switches.count += 1;
-            Ok(found)
-        })
+        let density = course.told_density::<STAGES>();
+        let phase = Phase::instead_of(left, course.fallback, course.bounds.as_ref(), course.h(), density)?;
+        let mut found = Here::of(at, memory).fixed(phase, cache)?;
+        found.course.switches.count += 1;
+        Ok(found)
     }
 
     fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {

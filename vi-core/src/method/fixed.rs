@@ -98,7 +98,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, Self::Prepared, N, T>, memory: &Velocities<N, T>) -> Result<Found<N, T>, ()> {
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Self::Prepared, N, T>,
+        memory: &Velocities<N, T>,
+        (): &mut (),
+    ) -> Result<Found<N, T>, ()> {
         let Problem { system, prepared, node, h } = at;
         if memory.steps.is_common::<S>()
             && let Some(solved) = memory.steps.common(system, node, prepared)
@@ -193,7 +198,12 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         FixedStep.begin(system, node, h)
     }
 
-    fn attempt(&self, _at: Problem<'_, S, (), N, T>, _memory: &Velocities<N, T>) -> Result<Found<N, T>, ()> {
+    fn attempt(
+        &self,
+        _at: Problem<'_, S, (), N, T>,
+        _memory: &Velocities<N, T>,
+        (): &mut (),
+    ) -> Result<Found<N, T>, ()> {
         Err(())
     }
 

@@ -68,6 +68,12 @@ pub trait Memory: Clone + Debug {
     fn apart(&self) -> Self {
         self.clone()
     }
+
+    /// What a checkpoint stores: finite numbers alone, so that a text format without infinities can hold it.
+    #[must_use]
+    fn stored(&self) -> Self {
+        self.clone()
+    }
 }
 
 /// How well the last step was solved, and by how much work.
@@ -133,6 +139,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         &self,
         at: Problem<'_, S, Self::Prepared, N, T>,
         memory: &Self::Memory,
+        cache: &mut Self::Cache,
     ) -> Result<Self::Step, Self::Left>;
 
     /// The cold path to a step.
@@ -157,7 +164,7 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         memory: &Self::Memory,
         cache: &mut Self::Cache,
     ) -> Result<Self::Step, StepError> {
-        self.attempt(at, memory).or_else(|left| self.recover(at, memory, cache, left))
+        self.attempt(at, memory, cache).or_else(|left| self.recover(at, memory, cache, left))
     }
 
     /// [`Method::attempt`], and [`Method::take`] if it found a step.
@@ -171,11 +178,11 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         &self,
         system: &S,
         prepared: &Self::Prepared,
-        node: &mut Node<N, T>,
         h: T,
-        memory: &mut Self::Memory,
+        (node, memory): (&mut Node<N, T>, &mut Self::Memory),
+        cache: &mut Self::Cache,
     ) -> Result<(), Self::Left> {
-        let step = self.attempt(Problem { system, prepared, node, h }, memory)?;
+        let step = self.attempt(Problem { system, prepared, node, h }, memory, cache)?;
         self.take(h, node, memory, &step);
         Ok(())
     }

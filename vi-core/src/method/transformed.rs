@@ -78,7 +78,12 @@ where
     }
 
     #[inline(always)]
-    fn attempt(&self, at: Problem<'_, S, Instructions, N>, memory: &Self::Memory) -> Result<Self::Step, Self::Left> {
+    fn attempt(
+        &self,
+        at: Problem<'_, S, Instructions, N>,
+        memory: &Self::Memory,
+        _cache: &mut Self::Cache,
+    ) -> Result<Self::Step, Self::Left> {
         let Problem { system, prepared, node, h } = at;
         if !memory.pause.is_over() {
             return Err(None);

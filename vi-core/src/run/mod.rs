@@ -103,8 +103,8 @@ impl<M: Method<S, N, T>, S: Lagrangian<N, T> + Copy, const N: usize, T: Scalar> 
     /// Why there is no step. The run holds the last good state, and a further call returns the same error.
     #[inline(always)]
     pub fn step(&mut self) -> Result<State<N, T>, StepError> {
-        let Self { method, system, prepared, node, h, memory, .. } = self;
-        if let Err(left) = method.advance(system, prepared, node, *h, memory) {
+        let Self { method, system, prepared, node, h, memory, cache, .. } = self;
+        if let Err(left) = method.advance(system, prepared, *h, (node, memory), cache) {
             // Values, not references: the address of one field that leaves this function keeps the whole run in memory (double well: 29 ns a step instead of 23).
             let problem = (self.method.clone(), self.system, self.prepared.clone(), self.h);
             let before = (node.map(black_box), memory.apart(), core::mem::take(&mut self.cache), self.failure);
