@@ -20,8 +20,8 @@ use super::sample::Course;
 use super::subject::{EnergyChecked, Place, STEPS};
 use crate::energy_preserving::EnergyPreserving;
 use crate::error::StepError;
-use crate::lagrangian::Lagrangian;
 use crate::node::Node;
+use crate::stepping::EnergyStepping;
 use nalgebra::SVector;
 
 /// Slope of what falls with h².
