@@ -44,14 +44,17 @@ const _: () = {
     use ::core::convert::{identity as name, identity as index, identity as t};
     use ::core::convert::{identity as q, identity as v, identity as x_dot};
     use ::core::convert::{identity as x, identity as real, identity as time};
-    use ::core::convert::{identity as mass, identity as applied, identity as x_ddot};
-    use ::core::convert::{identity as p, identity as at_rest, identity as velocity};
-    use ::core::convert::{identity as force, identity as power, identity as values};
-    use ::core::convert::{identity as value, identity as text, identity as interval};
-    use ::core::convert::{identity as h, identity as x0, identity as x1};
-    use ::core::convert::{identity as x_mid, identity as node, identity as x0_low};
-    use ::core::convert::{identity as p0_x, identity as p0_x_low, identity as s1};
-    use ::core::convert::{identity as s2, identity as energy0, identity as energy0_low};
+    use ::core::convert::{identity as mass, identity as applied, identity as p};
+    use ::core::convert::{identity as at_rest, identity as velocity, identity as force};
+    use ::core::convert::{identity as power, identity as values, identity as value};
+    use ::core::convert::{identity as text, identity as interval, identity as h};
+    use ::core::convert::{identity as x0, identity as x1, identity as x_mid};
+    use ::core::convert::{identity as node, identity as x0_low, identity as p0_x};
+    use ::core::convert::{identity as p0_x_low, identity as s1, identity as s2};
+    use ::core::convert::{
+        identity as x_ddot, identity as energy0, identity as energy0_low,
+    };
+
     use ::core::convert::{identity as s3, identity as s4, identity as s5};
     use ::core::convert::{identity as s6, identity as s7, identity as s8};
     use ::core::convert::{identity as s9, identity as systems, identity as rows};
@@ -177,26 +180,6 @@ const _: () = {
                 -(self.c * x_dot + self.k * x),
             ]);
             ::vi_core::support::acceleration(time, &mass, &applied)
-        }
-
-        /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
-        ///
-        /// 7 operations.
-        #[inline]
-        fn step_density(
-            &self,
-            t: T,
-            q: &::vi_core::SVector<T, 1>,
-            v: &::vi_core::SVector<T, 1>,
-        ) -> ::core::result::Result<T, ::vi_core::StepError> {
-            let time = t;
-            let [x_ddot]: [T; 1] = self.acceleration(t, q, v)?.into();
-            let [x_dot]: [T; 1] = (*v).into();
-            let [x]: [T; 1] = (*q).into();
-            ::vi_core::support::step_density(
-                time,
-                self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
-            )
         }
 
         #[inline]
@@ -616,6 +599,27 @@ const _: () = {
 
     impl<T: ::vi_core::real::Real> ::vi_core::stepping::EnergyStepping<1, T>
     for DampedOscillator<T> {
+        /// `D = (-c*dot(x) - k*x)*dot(dot(x)) + k*dot(x)^2`
+        ///
+        /// 7 operations.
+        #[inline]
+        fn step_density(
+            &self,
+            t: T,
+            q: &::vi_core::SVector<T, 1>,
+            v: &::vi_core::SVector<T, 1>,
+        ) -> ::core::result::Result<T, ::vi_core::StepError> {
+            let time = t;
+            let [x_ddot]: [T; 1] = ::vi_core::Lagrangian::acceleration(self, t, q, v)?
+                .into();
+            let [x_dot]: [T; 1] = (*v).into();
+            let [x]: [T; 1] = (*q).into();
+            ::vi_core::support::step_density(
+                time,
+                self.k * (x_dot * x_dot) - (self.c * x_dot + self.k * x) * x_ddot,
+            )
+        }
+
         /// `energy_residual = h*v_x*L_x/2 - L - E0_low - E0 + v_x*p0_x_low + v_x*p0_x`
         ///
         /// 40 operations.

@@ -76,5 +76,5 @@ fn derive_by(system: &syntax::System, place: usize) -> syn::Result<Derived> {
 /// The items of a system.
 #[must_use]
 pub fn items(derivations: &Derivations) -> TokenStream {
-    emit::items(derivations, emit::LIMIT)
+    emit::items(derivations)
 }

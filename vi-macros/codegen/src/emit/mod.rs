@@ -63,11 +63,18 @@ impl<'a> Deref for Steps<'a> {
 }
 
 /// Operations that one function holds at most; a longer one is emitted in pieces.
-pub const LIMIT: usize = 800;
+const LIMIT: usize = 800;
 
-/// The items of a system, in fixed order, in functions of at most `limit` operations, which is [`LIMIT`] but in tests.
+/// The attribute `#[vi_limit(50)]` of the struct, which the tests of pieces write: another limit than [`LIMIT`].
+pub(crate) fn limit(attribute: &syn::Attribute) -> Option<usize> {
+    let written: syn::LitInt = attribute.path().is_ident("vi_limit").then(|| attribute.parse_args().ok())??;
+    written.base10_parse().ok()
+}
+
+/// The items of a system, in fixed order.
 #[must_use]
-pub fn items(derivations: &Derivations, limit: usize) -> TokenStream {
+pub fn items(derivations: &Derivations) -> TokenStream {
+    let limit = derivations.own.model.attributes.iter().find_map(limit).unwrap_or(LIMIT);
     let source = Source::of(&derivations.own, None, limit);
     let named = |derived: &Derived| derived.model.rule.as_ref().and_then(|rule| rule.named);
     let marked = derivations.further.iter().filter_map(|derived| Some((derived, named(derived)?)));

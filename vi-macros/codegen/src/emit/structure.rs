@@ -1,7 +1,7 @@
 //! The struct of a system: its parameters as public fields, their defaults, their names.
 
 use super::formula::number;
-use super::{Source, Steps, conditions};
+use super::{Source, Steps, conditions, limit};
 use crate::limits::PARAMETERS;
 use crate::model::Parameter;
 use crate::rules::{GAUSS, RULES};
@@ -15,7 +15,8 @@ use syn::Attribute;
 /// The struct, whose documentation says what was found of it by its own rule and by further ones.
 pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
     let model = source.model;
-    let (name, visibility, attributes) = (&model.name, &model.visibility, &model.attributes);
+    let (name, visibility) = (&model.name, &model.visibility);
+    let attributes = model.attributes.iter().filter(|attribute| limit(attribute).is_none());
     let fields = model.fields().filter_map(|field| {
         let Parameter { name, attributes, index, .. } = field.first()?;
         let pause = pause(attributes);
