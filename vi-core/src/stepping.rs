@@ -20,8 +20,8 @@ use nalgebra::{SMatrix, SVector};
 /// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
 /// the numbers of the common path stay in registers.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` takes no steps by the rule `{R}`",
-    note = "add `discretize midpoint;` to `{Self}`: its first rule is `Own`; further ones are listed, as `discretize midpoint, trapezoidal;`",
+    message = "`{Self}` takes no fixed steps by the rule `{R}`",
+    note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
     note = "`Gauss` and `EnergyPreservingGauss` need no rule"
 )]
 pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T> + Copy {
@@ -63,9 +63,9 @@ pub trait FixedStepping<const N: usize, T: Real = f64, R = Own>: Lagrangian<N, T
 /// Implemented for rules whose steps have a density D that keeps its sign: the length of a step follows from `h² D/8 = H − E`. That of
 /// the trapezoidal rule is `|V_q|² − 2 v·V_qq v`, which changes its sign in every swing of an oscillator.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` has no energy-preserving step of order 2",
+    message = "`{Self}` has no energy-preserving step of order 2 by the rule `{R}`",
     label = "no rule of this system gives a step its length",
-    note = "add `discretize midpoint;` to `{Self}`: the midpoint rule has a step density",
+    note = "add `discretize midpoint;` to `{Self}`, or `midpoint` to its `discretize`: the midpoint rule has a step density",
     note = "`EnergyPreservingGauss` needs no rule; `FixedStep` and `Composition` take any"
 )]
 pub trait EnergyStepping<const N: usize, T: Real = f64, R = Own>: FixedStepping<N, T, R> {
@@ -103,8 +103,8 @@ pub trait Convertible<const N: usize> {
 
 /// A system that takes steps by the rule R in every kind of number, as a generated one does by the rules of its `discretize`.
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` takes no steps by the rule `{R}`",
-    note = "add `discretize midpoint;` to `{Self}`: its first rule is `Own`; further ones are listed, as `discretize midpoint, trapezoidal;`",
+    message = "`{Self}` takes no fixed steps by the rule `{R}`",
+    note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
     note = "`Gauss` and `EnergyPreservingGauss` need no rule"
 )]
 pub trait Discretized<const N: usize, R = Own>:

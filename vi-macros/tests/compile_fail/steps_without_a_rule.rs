@@ -1,0 +1,16 @@
+use vi_core::{EnergyPreserving, FixedStep, Gauss, State, lagrangian};
+
+lagrangian! {
+    struct Kepler {
+        coord x, y;
+        L = (dot(x)^2 + dot(y)^2) / 2 + 1 / sqrt(x^2 + y^2);
+    }
+}
+
+fn main() {
+    let kepler = Kepler::default();
+    let start = State::at(&kepler, 0.0, [0.4, 0.0], [0.0, 2.0]);
+    let _ = Gauss::<_, 2, 8>::new(kepler, start, 0.1);
+    let _ = FixedStep::new(kepler, start, 0.01);
+    let _ = EnergyPreserving::from_midpoint(kepler, 0.0, [0.4, 0.0], [0.0, 2.0], 0.01);
+}
