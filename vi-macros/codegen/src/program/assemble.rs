@@ -8,7 +8,7 @@ use super::results::{FunctionId, Output, Results};
 use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
 use super::{Function, Program, vanishing};
-use crate::discrete::{ByRule, Continuous, DiscreteSystem, Equations, Fields, Slots, TimeScale};
+use crate::discrete::{ByRule, Continuous, DiscreteSystem, Fields, Slots, TimeScale};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
@@ -26,9 +26,10 @@ pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) 
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous(&mut Assembly::new(pool, system, &[]), system).map_err(too_large)?;
     let (mut of_slots, mut of_steps) = (Vec::new(), Vec::new());
-    if let Some(ByRule { slots, equations, .. }) = &system.by_rule {
+    if let Some(rule) = &system.by_rule {
+        let ByRule { slots, equations, .. } = rule;
         of_slots = self::slots(&mut Assembly::new(pool, system, &slots.points), slots).map_err(too_large)?;
-        of_steps = step(&mut Assembly::new(pool, system, &equations.points), equations).map_err(too_large)?;
+        of_steps = step(&mut Assembly::new(pool, system, &equations.points), rule).map_err(too_large)?;
     }
     let check = |(function, expressions): (Function, Expressions)| {
         verify::has_finite_constants(&function, &model.name)?;
@@ -217,7 +218,8 @@ fn slots(assembly: &mut Assembly, of: &Slots) -> Assembled {
         .collect()
 }
 
-fn step(assembly: &mut Assembly, of: &Equations) -> Assembled {
+fn step(assembly: &mut Assembly, rule: &ByRule) -> Assembled {
+    let of = &rule.equations;
     let residual = assembly.open_all(&of.residual);
     let energy_residual = assembly.open_all(&[of.energy_residual]);
     let momentum_increment = assembly.open_all(&of.momentum_increment);
@@ -269,13 +271,16 @@ fn step(assembly: &mut Assembly, of: &Equations) -> Assembled {
         momentum_increment,
         (Output::EnergyIncrement, vec![energy_increment]),
     ];
-    Ok(vec![
+    let mut functions = vec![
         assembly.function(FunctionId::MomentumEquation, equation)?,
         assembly.function(FunctionId::MomentumResidual, measured)?,
         assembly.function(FunctionId::MomentumDerivatives, momentum_derivatives)?,
         assembly.function(FunctionId::DiscreteEnergy, vector(&discrete_energy))?,
-        assembly.function(FunctionId::ExtendedSystem, extended)?,
-        assembly.function(FunctionId::ExtendedResidual, both_measured)?,
-        assembly.function(FunctionId::ExtendedDerivatives, extended_derivatives)?,
-    ])
+    ];
+    if rule.has_energy_steps() {
+        functions.push(assembly.function(FunctionId::ExtendedSystem, extended)?);
+        functions.push(assembly.function(FunctionId::ExtendedResidual, both_measured)?);
+        functions.push(assembly.function(FunctionId::ExtendedDerivatives, extended_derivatives)?);
+    }
+    Ok(functions)
 }
