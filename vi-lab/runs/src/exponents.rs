@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::simulation::vector;
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::Lyapunov;
-use vi_core::stepping::{Convertible, FixedStepping};
+use vi_core::stepping::Convertible;
 use vi_core::{Gauss, Integrator as _, State, StepError};
 
 /// Stages of the Gauss steps, which the command has anyway.
@@ -29,7 +29,7 @@ pub trait Exponents {
 
 impl<S, const N: usize> Exponents for Lyapunov<Gauss<S, N, STAGES>, N>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N>,
+    S: Collocation<N> + Convertible<N>,
 {
     fn advance(&mut self, steps: u64) -> Result<(), StepError> {
         self.advance(steps)
@@ -54,7 +54,7 @@ where
 /// What the integrator says of the initial state.
 pub fn begin<'a, S, const N: usize>(system: S, plan: &Plan, count: usize) -> Result<Box<dyn Exponents + 'a>, StepError>
 where
-    S: Collocation<N> + Convertible<N> + FixedStepping<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;

@@ -210,9 +210,11 @@ impl Request {
             q: arguments.q.clone().or(scene.q.clone()).unwrap_or(entry.q),
             v: arguments.v.clone().or(scene.v.clone()).unwrap_or(entry.v),
         };
-        let method = arguments.method.or(scene.method).unwrap_or(Method::Fixed);
+        let usual = if system.has_rule() { Method::Fixed } else { Method::Gauss };
+        let method = arguments.method.or(scene.method).unwrap_or(usual);
         let options = Options::of(arguments, &scene);
         options.check(method)?;
+        check_rule(system.as_ref(), method, &options)?;
         let stages = options.stages.map(|wanted| stages(method, wanted)).transpose()?;
         let usual = entry.h * usual_length(method, stages);
         let h = arguments.h.or(scene.h).unwrap_or(usual);
@@ -252,6 +254,23 @@ impl Request {
     pub(crate) fn columns(&self) -> Vec<String> {
         Row::columns(&self.system.coordinates(), self.plan.shift.is_some())
     }
+}
+
+/// Refuses steps by a rule for a system without one.
+fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
+    let needs_none = match method {
+        Method::Gauss => true,
+        Method::Energy => options.stages.is_some() || options.shift.is_some(),
+        _ => false,
+    };
+    if needs_none || system.has_rule() {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{} has no rule for --method {}: add `discretize midpoint;` to it, or take --method gauss, or --method energy with --stages 2",
+        system.name(),
+        method.name()
+    )))
 }
 
 /// What belongs to some methods only.
