@@ -3,7 +3,7 @@
 use vi_core::collocation::TimeScale;
 use vi_core::derivatives::{Tangent, Variation};
 use vi_core::stepping::Convertible;
-use vi_core::{EnergyPreservingGauss, Gauss, ScaledGauss, State, StepError, lagrangian};
+use vi_core::{EnergyPreservingGauss, Gauss, ScaledGauss, State, StepError};
 
 /// The same system without a rule and with one.
 macro_rules! systems {

@@ -53,6 +53,7 @@ where
 }
 
 #[cfg(test)]
+#[allow(clippy::needless_borrow, reason = "the calls are those of the macro")]
 mod tests {
     use super::{Declared, WithRule as _, WithoutRule as _};
     use core::cell::Cell;

@@ -99,6 +99,7 @@ macro_rules! main {
         sources: [$($source:literal),* $(,)?],
         systems: [$($system:ident { about: $about:expr, q: $q:expr, v: $v:expr, h: $h:expr $(,)? }),+ $(,)?] $(,)?
     ) => {
+        #[allow(clippy::needless_borrow, reason = "for a system with a rule both references are needed")]
         fn main() -> ::std::process::ExitCode {
             $crate::main_with($crate::Own {
                 sources: &[$(include_str!($source)),*],

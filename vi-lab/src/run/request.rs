@@ -606,4 +606,26 @@ mod tests {
         assert_eq!((request.plan.h, request.plan.method), (0.01, Method::Fixed));
         assert_eq!(request.length, Length::Steps(10));
     }
+
+    vi_core::lagrangian! {
+        struct Alone {
+            coord x;
+            L = dot(x)^2 / 2 - x^4 / 4;
+        }
+    }
+
+    #[test]
+    fn a_system_without_a_rule_is_told_which_methods_it_has() {
+        let system = vi_runs::ready::Entry::with_gauss_alone::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
+        let of = |method, stages| {
+            let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
+            check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))
+        };
+        assert!(of(Method::Gauss, None).is_ok() && of(Method::Energy, Some(2)).is_ok());
+        for method in [Method::Fixed, Method::Suzuki4, Method::Energy] {
+            let said = of(method, None).expect_err("no rule").to_string();
+            let wanted = format!("Alone has no rule for --method {}: add `discretize midpoint;` to it", method.name());
+            assert!(said.contains(&wanted), "{said}");
+        }
+    }
 }
