@@ -135,10 +135,6 @@ impl<const N: usize, S: Lagrangian<N>> Lagrangian<N> for Dense<S> {
     fn flow(&self, t: f64, q: &SVector<f64, N>, p: &SVector<f64, N>) -> Result<Flow<N>, StepError> {
         self.0.flow(t, q, p)
     }
-
-    fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {
-        self.0.step_density(t, q, v)
-    }
 }
 
 impl<const N: usize, S: DiscreteLagrangian<N>> DiscreteLagrangian<N> for Dense<S> {
@@ -226,6 +222,10 @@ impl<const N: usize, S: FixedStepping<N>> FixedStepping<N> for Dense<S> {
 }
 
 impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
+    fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {
+        self.0.step_density(t, q, v)
+    }
+
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N> {
         dense_in_both(self.0.extended_system(node, h, v))
     }

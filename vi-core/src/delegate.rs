@@ -57,11 +57,6 @@ macro_rules! lagrangian {
             }
 
             #[inline]
-            fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
-                S::step_density(self, t, q, v)
-            }
-
-            #[inline]
             fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
                 S::flow(self, t, q, p)
             }
@@ -215,6 +210,11 @@ macro_rules! stepping {
         impl<const N: usize, T: Real, S: EnergyStepping<N, T, $of_rule>$(, $generic: Rule)?> EnergyStepping<N, T, $rule>
             for $wrapper
         {
+            #[inline]
+            fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+                <S as EnergyStepping<N, T, $of_rule>>::step_density(self, t, q, v)
+            }
+
             #[$attribute]
             fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T, S::Jacobian> {
                 <S as EnergyStepping<N, T, $of_rule>>::extended_system(self, node, h, v)

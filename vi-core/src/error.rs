@@ -118,6 +118,11 @@ pub enum StepError {
         /// Name of the system.
         system: &'static str,
     },
+    /// Steps by a rule were asked of a system without one.
+    NoRule {
+        /// Name of the system.
+        system: &'static str,
+    },
     /// Two velocities have the same momenta: L is not defined at rest and has a branch on each side of it.
     Ambiguous {
         /// Time at which it was met.
@@ -235,6 +240,7 @@ impl fmt::Display for Reason<'_> {
                 write!(f, "the time scale is g = {g:.3e} at t = {t:.9}, where it must be positive and finite")
             }
             StepError::NoTimeScale { system } => write!(f, "`{system}` has no time scale"),
+            StepError::NoRule { system } => write!(f, "`{system}` takes no steps by a rule"),
             StepError::Ambiguous { t } => write!(f, "two velocities have the momenta at t = {t:.9}"),
             StepError::Singular { t, matrix } => write!(f, "the {matrix} is singular at t = {t:.9}"),
             StepError::NonFinite { t, quantity, expression: None } => {
@@ -302,6 +308,9 @@ impl fmt::Display for StepError {
             }
             Self::NoTimeScale { .. } => {
                 f.write_str("; write the clause `time_scale = …;` in its `lagrangian!`, or take `Gauss`")
+            }
+            Self::NoRule { .. } => {
+                f.write_str("; add `discretize midpoint;` to its `lagrangian!`, or take `Gauss`")
             }
             Self::Ambiguous { .. } => f.write_str("; L is not defined at rest and has a branch on each side of it: take one that is defined on one side alone"),
             Self::UnknownParameter { parameters, .. } if !parameters.is_empty() => {

@@ -81,7 +81,6 @@ pub use called::Called;
 pub use discrete::DiscreteLagrangian;
 pub use error::StepError;
 pub use lagrangian::Lagrangian;
-pub use method::composition::Scheme;
 pub use method::{
     Composition, Connected, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
     Method,

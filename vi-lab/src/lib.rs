@@ -16,6 +16,8 @@
 //! | `npy`, `place` | the head of an array file; which files can be read and written |
 //! | `vi_report` | what all of them show and say; the systems by name |
 
+#[doc(hidden)]
+pub mod declared;
 mod expand;
 mod explain;
 mod lyapunov;
@@ -89,7 +91,7 @@ enum Action {
 /// }
 /// ```
 ///
-/// A system needs `Default`, which every parameter with a value gives it, and a rule with a step density. `q`, `v` and `h` are where a run starts that
+/// A system needs `Default`, which every parameter with a value gives it. One without a rule has Gauss steps alone. `q`, `v` and `h` are where a run starts that
 /// is not told otherwise: coordinates, velocities, a step.
 #[macro_export]
 macro_rules! main {
@@ -97,10 +99,14 @@ macro_rules! main {
         sources: [$($source:literal),* $(,)?],
         systems: [$($system:ident { about: $about:expr, q: $q:expr, v: $v:expr, h: $h:expr $(,)? }),+ $(,)?] $(,)?
     ) => {
+        #[allow(clippy::needless_borrow, reason = "for a system with a rule both references are needed")]
         fn main() -> ::std::process::ExitCode {
             $crate::main_with($crate::Own {
                 sources: &[$(include_str!($source)),*],
-                entries: || vec![$($crate::Entry::new::<$system, _>($about, $q, $v, $h)),+],
+                entries: || {
+                    use $crate::declared::{Declared, WithRule as _, WithoutRule as _};
+                    vec![$((&&Declared::<$system>::new()).entry($about, $q, $v, $h)),+]
+                },
             })
         }
     };

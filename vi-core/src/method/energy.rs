@@ -92,8 +92,8 @@ impl<S: EnergyStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Ene
     }
 
     #[inline(always)]
-    fn take(&self, _h: T, node: &mut Node<N, T>, memory: &mut Lengths<N, T>, step: &Found<N, T>) {
-        match step {
+    fn take(&self, _h: T, (node, memory): (&mut Node<N, T>, &mut Lengths<N, T>), (): &mut (), step: Found<N, T>) {
+        match &step {
             Found::Predicted(predicted) => {
                 let step = &predicted.step;
                 *node = node.advanced::<S>(step.h, &step.v, &predicted.increment);

@@ -482,7 +482,13 @@ where
         Ok(found)
     }
 
-    fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {
+    fn take(
+        &self,
+        _h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
         memory.stages.take(node, &step.step);
         node.add_energy(step.gain);
         memory.course = step.course;

@@ -131,8 +131,8 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Fixe
     }
 
     #[inline(always)]
-    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
-        take(h, node, memory, step);
+    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+        take(h, node, memory, &step);
     }
 
     fn with_length(
@@ -217,8 +217,8 @@ impl<S: FixedStepping<N, T>, const N: usize, T: Scalar> Method<S, N, T> for Conn
         found(at, memory, None, Branch::Connected)
     }
 
-    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Velocities<N, T>, step: &Found<N, T>) {
-        take(h, node, memory, step);
+    fn take(&self, h: T, (node, memory): (&mut Node<N, T>, &mut Velocities<N, T>), (): &mut (), step: Found<N, T>) {
+        take(h, node, memory, &step);
     }
 
     fn with_length(

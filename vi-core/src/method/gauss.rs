@@ -230,8 +230,14 @@ where
         memory.start(at.node).with_care(at.system, *at.prepared, (left.as_ref(), last), cache)
     }
 
-    fn take(&self, _h: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Step<N, STAGES>) {
-        memory.take(node, step);
+    fn take(
+        &self,
+        _h: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
+        step: Step<N, STAGES>,
+    ) {
+        memory.take(node, &step);
     }
 
     fn with_length(

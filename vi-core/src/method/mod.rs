@@ -183,12 +183,12 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         cache: &mut Self::Cache,
     ) -> Result<(), Self::Left> {
         let step = self.attempt(Problem { system, prepared, node, h }, memory, cache)?;
-        self.take(h, node, memory, &step);
+        self.take(h, (node, memory), cache, step);
         Ok(())
     }
 
     /// Moves to the end of a step. Cannot fail: [`Method::solve`] has checked what can.
-    fn take(&self, h: T, node: &mut Node<N, T>, memory: &mut Self::Memory, step: &Self::Step);
+    fn take(&self, h: T, run: (&mut Node<N, T>, &mut Self::Memory), cache: &mut Self::Cache, step: Self::Step);
 
     /// The node and the memory after one step of the length h in time. Further steps have the length `next` of the run.
     ///
@@ -204,8 +204,9 @@ pub trait Method<S, const N: usize, T: Scalar = f64>: Clone + Debug {
         let (mut node, mut memory) = (*node, self.with_length(system, memory, node, h)?);
         let prepared = self.prepare(system, h);
         let at = Problem { system, prepared: &prepared, node: &node, h };
-        let step = self.solve(at, &memory, &mut Self::Cache::default())?;
-        self.take(h, &mut node, &mut memory, &step);
+        let cache = &mut Self::Cache::default();
+        let step = self.solve(at, &memory, cache)?;
+        self.take(h, (&mut node, &mut memory), cache, step);
         let memory = self.with_length(system, &memory, &node, next)?;
         Ok((node, memory))
     }

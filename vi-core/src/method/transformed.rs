@@ -103,7 +103,13 @@ where
     }
 
     #[inline(always)]
-    fn take(&self, _dtau: f64, node: &mut Node<N>, memory: &mut Self::Memory, step: &Self::Step) {
+    fn take(
+        &self,
+        _dtau: f64,
+        (node, memory): (&mut Node<N>, &mut Self::Memory),
+        _cache: &mut Self::Cache,
+        step: Self::Step,
+    ) {
         (*node, *memory) = (step.node, step.rates);
     }
 

@@ -259,7 +259,7 @@ fn cold_step<M: Method<S, N, T>, S, const N: usize, T: Scalar>(
     let at = Problem { system: &system, prepared: &prepared, node: &node, h };
     match method.recover(at, &memory, &mut cache, left) {
         Ok(step) => {
-            method.take(h, &mut node, &mut memory, &step);
+            method.take(h, (&mut node, &mut memory), &mut cache, step);
             (node, memory, cache, None)
         }
         Err(failure) => (node, memory, cache, Some(failure)),

@@ -55,6 +55,12 @@ pub(crate) enum Fault {
     Rounding,
     /// The last entry of the Jacobian is a part in a million too large.
     Jacobian,
+    /// The first momentum at a point is a part in a thousand too large.
+    PointMomentum,
+    /// A damping that nobody declared stands in the force at a point.
+    PointForce,
+    /// The power is too large.
+    Power,
     /// The last entry of how L_q + f changes with q is a part in a million too large.
     PointDerivatives,
     /// The last entry of how p1 − p0 changes with v is a part in a million too large.
@@ -149,11 +155,6 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
     fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
         self.system.flow(t, q, p)
     }
-    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
-        let right = self.system.step_density(t, q, v)?;
-        let right = self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]);
-        Ok(self.unless(Fault::Density, right, |density| density * T::real(1.001)))
-    }
 }
 
 impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoiled<S> {
@@ -163,7 +164,13 @@ impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoile
     const SEPARABLE: bool = S::SEPARABLE;
 
     fn point(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Point<N, T, S::Mass> {
-        self.system.point(t, q, v)
+        let Point { mut momentum, mut force, mass } = self.system.point(t, q, v);
+        match self.fault {
+            Fault::PointMomentum => momentum[0] *= T::real(1.001),
+            Fault::PointForce => force -= v * T::real(DAMPING),
+            _ => {}
+        }
+        Point { momentum, force, mass }
     }
     fn point_derivatives(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> PointDerivatives<SMatrix<T, N, N>> {
         let PointDerivatives { momentum_dq, mass, force_dq, force_dv } = self.system.point_derivatives(t, q, v);
@@ -174,7 +181,7 @@ impl<const N: usize, T: Real, S: Collocation<N, T>> Collocation<N, T> for Spoile
         PointDerivatives { momentum_dq, mass, force_dq, force_dv }
     }
     fn power(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        self.system.power(t, q, v)
+        self.unless(Fault::Power, self.system.power(t, q, v), |power| power + T::real(1e-6))
     }
 }
 
@@ -318,6 +325,12 @@ impl<const N: usize, T: Real, S: FixedStepping<N, T>> FixedStepping<N, T> for Sp
 }
 
 impl<const N: usize, T: Real, S: EnergyStepping<N, T>> EnergyStepping<N, T> for Spoiled<S> {
+    fn step_density(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<T, StepError> {
+        let right = self.system.step_density(t, q, v)?;
+        let right = self.unless(Fault::StepDensity, right, |density| density - q[0] * v[0] * v[0]);
+        Ok(self.unless(Fault::Density, right, |density| density * T::real(1.001)))
+    }
+
     fn extended_system(&self, node: &Node<N, T>, h: T, v: &SVector<T, N>) -> ExtendedSystem<N, T> {
         let right = self.system.extended_system(node, h, v);
         let mut found = ExtendedSystem {

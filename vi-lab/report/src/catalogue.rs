@@ -66,6 +66,20 @@ pub fn named(name: Option<&str>) -> Result<Entry, Failure> {
     name.map_or_else(first_own, find)
 }
 
+/// Refuses an entry without a rule for a page that compares steps by one.
+///
+/// # Errors
+/// [`Failure::Input`] if the system has no rule.
+pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
+    if entry.system.has_rule() {
+        return Ok(entry);
+    }
+    let name = entry.system.name();
+    Err(Failure::Input(format!(
+        "{page} compares steps by a rule, and {name} has none: add `discretize midpoint;` to it"
+    )))
+}
+
 /// The entry of this name.
 ///
 /// # Errors

@@ -63,10 +63,6 @@ impl<S: Lagrangian<N>, const N: usize> Lagrangian<N> for Counting<'_, S> {
         self.system.flow(t, q, p)
     }
 
-    fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {
-        self.system.step_density(t, q, v)
-    }
-
     fn non_finite(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Option<&'static str> {
         self.system.non_finite(t, q, v)
     }
@@ -144,6 +140,10 @@ impl<S: FixedStepping<N>, const N: usize> FixedStepping<N> for Counting<'_, S> {
 }
 
 impl<S: EnergyStepping<N>, const N: usize> EnergyStepping<N> for Counting<'_, S> {
+    fn step_density(&self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> Result<f64, StepError> {
+        self.system.step_density(t, q, v)
+    }
+
     fn extended_system(&self, node: &Node<N>, h: f64, v: &SVector<f64, N>) -> ExtendedSystem<N, f64, S::Jacobian> {
         self.counted().extended_system(node, h, v)
     }

@@ -16,6 +16,7 @@
 
 pub mod counting;
 pub mod exponents;
+pub mod kind;
 pub mod plan;
 pub mod ready;
 pub mod rival;

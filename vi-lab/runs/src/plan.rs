@@ -4,7 +4,7 @@
 
 use clap::ValueEnum;
 use serde::Deserialize;
-use vi_core::Scheme;
+use vi_core::Composition;
 
 /// Which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
@@ -41,11 +41,11 @@ pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 impl Method {
     /// The scheme of a composition.
     #[must_use]
-    pub fn scheme(self) -> Option<Scheme> {
+    pub fn scheme(self) -> Option<Composition> {
         match self {
-            Self::Suzuki4 => Some(Scheme::SUZUKI_4),
-            Self::KahanLi6 => Some(Scheme::KAHAN_LI_6),
-            Self::KahanLi8 => Some(Scheme::KAHAN_LI_8),
+            Self::Suzuki4 => Some(Composition::SUZUKI_4),
+            Self::KahanLi6 => Some(Composition::KAHAN_LI_6),
+            Self::KahanLi8 => Some(Composition::KAHAN_LI_8),
             Self::Fixed | Self::Gauss | Self::Energy => None,
         }
     }

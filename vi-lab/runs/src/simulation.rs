@@ -7,6 +7,7 @@
 //! off by rounding.
 
 use crate::counting::Counting;
+use crate::kind::Kind;
 use crate::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 use crate::start;
 use core::cell::Cell;
@@ -203,29 +204,21 @@ pub struct ShiftedEnergy {
 /// # Errors
 /// What the integrators say of the initial state; [`StepError::InvalidInput`] where the numbers of coordinates or
 /// velocities are not those of the system, and for stages that are not built in: 4 and 8 of Gauss steps, 1 to 3 of energy-preserving ones.
-pub fn begin<'a, S, const N: usize>(
+pub fn begin<'a, S, K: Kind<S, N>, const N: usize>(
     system: S,
     plan: &Plan,
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let t = plan.t;
     let q = vector(&plan.q, "number of coordinates")?;
     let v = vector(&plan.v, "number of velocities")?;
     let state = State::at(&system, t, q, v);
-    let counting = Counting::new(system, evaluations);
     match plan.method {
-        Method::Fixed => Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations)),
-        Method::Suzuki4 => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::SUZUKI_4, plan.h)?, evaluations))
-        }
-        Method::KahanLi6 => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_6, plan.h)?, evaluations))
-        }
-        Method::KahanLi8 => {
-            Ok(Simulated::boxed(counting.at_state(state).integrate(Composition::KAHAN_LI_8, plan.h)?, evaluations))
+        Method::Fixed | Method::Suzuki4 | Method::KahanLi6 | Method::KahanLi8 => {
+            K::begin(system, plan, (q, v), evaluations)
         }
         Method::Gauss => match (plan.stages.unwrap_or(USUAL_STAGES), plan.dtau) {
             (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
@@ -235,12 +228,36 @@ where
             (other, _) => Err(wrong_stages("4 or 8", other)),
         },
         Method::Energy => match plan.energy_stages() {
-            None => one_stage(system, plan, (q, v), evaluations),
+            None => K::begin(system, plan, (q, v), evaluations),
             Some(1) => energy::<S, N, 1>(system, state, plan, evaluations),
             Some(2) => energy::<S, N, 2>(system, state, plan, evaluations),
             Some(3) => energy::<S, N, 3>(system, state, plan, evaluations),
             Some(other) => Err(wrong_stages("1, 2 or 3", other)),
         },
+    }
+}
+
+/// Starts a run by the rule of a system.
+///
+/// # Errors
+/// What the integrators say of the initial state.
+pub(crate) fn by_rule<'a, S, const N: usize>(
+    system: S,
+    plan: &Plan,
+    (q, v): (SVector<f64, N>, SVector<f64, N>),
+    evaluations: &'a Cell<u64>,
+) -> Result<Box<dyn Simulation + 'a>, StepError>
+where
+    S: EnergyStepping<N> + 'a,
+{
+    let state = State::at(&system, plan.t, q, v);
+    let counting = Counting::new(system, evaluations);
+    match plan.method.scheme() {
+        Some(scheme) => Ok(Simulated::boxed(counting.at_state(state).integrate(scheme, plan.h)?, evaluations)),
+        None if plan.method == Method::Fixed => {
+            Ok(Simulated::boxed(counting.at_state(state).integrate(FixedStep, plan.h)?, evaluations))
+        }
+        None => one_stage(system, plan, (q, v), evaluations),
     }
 }
 
@@ -291,7 +308,7 @@ fn energy<'a, S, const N: usize, const STAGES: usize>(
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let integrator = Called(system).at_state(state).integrate(EnergyPreservingGauss::<STAGES>, plan.h)?;
     let integrator = match plan.shift {
@@ -317,7 +334,7 @@ fn scaled<'a, S, const N: usize, const STAGES: usize>(
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     // Else they would be built for every system.
     if !S::SCALES_TIME {
@@ -339,7 +356,7 @@ fn gauss<'a, S, const N: usize, const STAGES: usize>(
     evaluations: &'a Cell<u64>,
 ) -> Result<Box<dyn Simulation + 'a>, StepError>
 where
-    S: EnergyStepping<N> + Collocation<N> + Convertible<N> + 'a,
+    S: Collocation<N> + Convertible<N> + 'a,
 {
     let run = Simulated::new(system.at_state(state).integrate(Gauss::<STAGES>, h)?, evaluations);
     let count = |run: &Run<Gauss<STAGES>, S, N>| u64::from(run.iterations()) * STAGES as u64;

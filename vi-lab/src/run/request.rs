@@ -210,9 +210,11 @@ impl Request {
             q: arguments.q.clone().or(scene.q.clone()).unwrap_or(entry.q),
             v: arguments.v.clone().or(scene.v.clone()).unwrap_or(entry.v),
         };
-        let method = arguments.method.or(scene.method).unwrap_or(Method::Fixed);
+        let usual = if system.has_rule() { Method::Fixed } else { Method::Gauss };
+        let method = arguments.method.or(scene.method).unwrap_or(usual);
         let options = Options::of(arguments, &scene);
         options.check(method)?;
+        check_rule(system.as_ref(), method, &options)?;
         let stages = options.stages.map(|wanted| stages(method, wanted)).transpose()?;
         let usual = entry.h * usual_length(method, stages);
         let h = arguments.h.or(scene.h).unwrap_or(usual);
@@ -252,6 +254,23 @@ impl Request {
     pub(crate) fn columns(&self) -> Vec<String> {
         Row::columns(&self.system.coordinates(), self.plan.shift.is_some())
     }
+}
+
+/// Refuses steps by a rule for a system without one.
+fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
+    let needs_none = match method {
+        Method::Gauss => true,
+        Method::Energy => options.stages.is_some() || options.shift.is_some(),
+        _ => false,
+    };
+    if needs_none || system.has_rule() {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{} has no rule for --method {}: add `discretize midpoint;` to it, or take --method gauss, or --method energy with --stages 2",
+        system.name(),
+        method.name()
+    )))
 }
 
 /// What belongs to some methods only.
@@ -586,5 +605,27 @@ mod tests {
         assert_eq!((request.every, request.output), (1, Output::Standard));
         assert_eq!((request.plan.h, request.plan.method), (0.01, Method::Fixed));
         assert_eq!(request.length, Length::Steps(10));
+    }
+
+    vi_core::lagrangian! {
+        struct Alone {
+            coord x;
+            L = dot(x)^2 / 2 - x^4 / 4;
+        }
+    }
+
+    #[test]
+    fn a_system_without_a_rule_is_told_which_methods_it_has() {
+        let system = vi_runs::ready::Entry::with_gauss_alone::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
+        let of = |method, stages| {
+            let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
+            check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))
+        };
+        assert!(of(Method::Gauss, None).is_ok() && of(Method::Energy, Some(2)).is_ok());
+        for method in [Method::Fixed, Method::Suzuki4, Method::Energy] {
+            let said = of(method, None).expect_err("no rule").to_string();
+            let wanted = format!("Alone has no rule for --method {}: add `discretize midpoint;` to it", method.name());
+            assert!(said.contains(&wanted), "{said}");
+        }
     }
 }

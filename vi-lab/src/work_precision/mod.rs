@@ -66,7 +66,7 @@ pub(crate) struct Arguments {
 /// cannot be written.
 pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     let machine = Machine::here();
-    let entry = entry(arguments)?;
+    let entry = catalogue::with_rule(entry(arguments)?, "work-precision")?;
     let name = catalogue::kebab(entry.system.name());
     let told = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
     let page = Page::new(&format!("What an error costs: {name}"), entry.about);

@@ -152,7 +152,9 @@ impl Habit {
             }
             Self::FunctionInName { function, argument, .. } => format!("write `{function}({argument})`"),
             Self::ProductInName { product, .. } => format!("write `{product}` for a product"),
-            Self::RuleWithArguments => format!("write `discretize {};`; {GAUSS}", rules::RULES[0].name),
+            Self::RuleWithArguments => {
+                format!("write `discretize {};` or `discretize {};`; {GAUSS}", rules::GAUSS, rules::RULES[0].name)
+            }
             Self::RuleWithSign => format!("write `discretize {};`", rules::RULES[0].name),
             Self::MissingOperator { left, right, is_number: true } => suffix(right)
                 .unwrap_or_else(|| format!("write `{left} * {right}` for a product; units are not written")),
@@ -362,7 +364,7 @@ const NAMES: [(&[&str], &str); 9] = [
 
 /// Rules.
 const OF_RULES: [(&[&str], &str); 2] = [
-    (&["gauss", "Gauss", "gauss_legendre", "legendre", "collocation", "galerkin", "order", "stages"], GAUSS),
+    (&["Gauss", "gauss_legendre", "legendre", "collocation", "galerkin", "order", "stages"], GAUSS),
     (
         &["verlet", "Verlet", "leapfrog", "stoermer_verlet", "stormer_verlet", "velocity_verlet"],
         "write `trapezoidal`, which is Störmer–Verlet where `L` is `v·Mv/2 - V(t, q)`",

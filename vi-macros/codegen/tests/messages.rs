@@ -263,13 +263,17 @@ fn constants() {
 fn clauses() {
     case("coord x; discretize midpoint;", "the system has no Lagrangian");
     case("L = 1; discretize midpoint;", "the system has no coordinates");
-    case("coord x; L = dot(x)^2;", "the system is not discretized\nhelp: write `discretize midpoint;`");
     case("coord x; L = dot(x)^2; «L» = dot(x)^2; discretize midpoint;", "a second `L`");
     case(
         "coord x; L = dot(x)^2; discretize midpoint; discretize «midpoint»;",
         "a second `discretize`\nhelp: write `discretize` once; it",
     );
     case("coord x; L = dot(x)^2; discretize «midpont»;", "unknown rule `midpont`\nhelp: did you mean `midpoint`?");
+    case("coord x; L = dot(x)^2; discretize «gaus»;", "unknown rule `gaus`\nhelp: did you mean `gauss`?");
+    case(
+        "coord x; L = dot(x)^2; discretize gauss, midpoint, «gauss»;",
+        "the rule `gauss` is listed twice\nhelp: list each",
+    );
     case("coord x; L = dot(x)^2; discretize midpoint, «trapzoidal»;", "unknown rule `trapzoidal`\nhelp: did you mean");
     case(
         "coord x; L = dot(x)^2; discretize midpoint, «midpoint»;",
@@ -287,18 +291,18 @@ fn clauses() {
     case("coord x; L = dot(x)^2; discretize midpoint, «,»;", "expected a name");
     case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected `,` or `;`");
     let gauss = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of order 2 S";
-    for rule in ["gauss", "gauss_legendre", "collocation"] {
+    for rule in ["Gauss", "gauss_legendre", "collocation"] {
         case(&format!("coord x; L = dot(x)^2; discretize «{rule}»;"), &format!("unknown rule `{rule}`\nhelp: {gauss}"));
     }
     case(
         "coord x; L = dot(x)^2; discretize «simpson»;",
-        &format!("unknown rule `simpson`\nhelp: the rules are midpoint, trapezoidal; {gauss}"),
+        &format!("unknown rule `simpson`\nhelp: the rules are gauss, midpoint, trapezoidal; {gauss}"),
     );
     case("coord x; L = dot(x)^2; discretize «verlet»;", "unknown rule `verlet`\nhelp: write `trapezoidal`, which is");
     for arguments in ["gauss«(»4)", "order «=» 4", "gauss «4»", "Gauss«<»4>", "midpoint«(»h)"] {
         case(
             &format!("coord x; L = dot(x)^2; discretize {arguments};"),
-            &format!("a rule is a name alone\nhelp: write `discretize midpoint;`; {gauss}"),
+            &format!("a rule is a name alone\nhelp: write `discretize gauss;` or `discretize midpoint;`; {gauss}"),
         );
     }
     for sign in ["=", ":"] {
@@ -620,7 +624,7 @@ fn each_mistake_is_told_with_what_to_write() {
     ] {
         told(&format!("{written} {REST}"), wanted);
     }
-    for rule in ["gauss", "gauss(4)", "order = 4", "rk4"] {
+    for rule in ["Gauss", "gauss(4)", "order = 4", "rk4"] {
         told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`Gauss::<_, N, S>::new`");
     }
 }

@@ -76,6 +76,7 @@ pub fn write(arguments: &Arguments) -> Result<String, Failure> {
     }
     let report = match entry {
         Some(entry) => {
+            let entry = catalogue::with_rule(entry, "stability")?;
             let axes = system::axes(&entry, arguments.x.as_deref(), arguments.y.as_deref())?;
             let title = format!("Where runs of the system {} end", catalogue::kebab(entry.system.name()));
             let report = Report::new(&arguments.out, Page::new(&title, entry.about))?;
