@@ -21,6 +21,7 @@
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
 //! | `momentum` | steps of a given length: predicted, corrected, measured; else searched |
+//! | `solve` | solvers that do not depend on a method: a bracket of a root |
 //! | `predictor` | the guess of a step, by a polynomial through the last ones |
 //! | `called` | a system whose functions are calls, for rare code |
 //! | `compensated` | sums that keep what rounding takes from them |
@@ -56,6 +57,7 @@ pub mod node;
 mod predictor;
 pub mod real;
 pub mod rules;
+mod solve;
 pub mod state;
 pub mod stepping;
 #[doc(hidden)]

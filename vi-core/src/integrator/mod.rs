@@ -7,8 +7,9 @@
 //! |---|---|
 //! | `path` | the motion between the two nodes of a step, as polynomials |
 //! | `grid` | states at given times |
-//! | `events` | states at which functions of the motion vanish |
-//! | `sign_changes` | where a function changes its sign over a step |
+//! | `events` | states at which functions of the motion change their sign |
+//! | `search` | the search of one step for them |
+//! | `side` | the side of zero on which a function is at a node |
 //!
 //! A STATE AT A TIME t is reached by a last step that is exactly as long as is left: it is as accurate as a node, of the full order of the
 //! method. Steps to times of a grid and to events that are recorded are taken aside, so that the run itself goes on as if nothing had been asked:
@@ -17,9 +18,10 @@
 mod events;
 mod grid;
 mod path;
-mod sign_changes;
+mod search;
+mod side;
 
-pub use events::{Crossing, Direction, Event, Events, Function};
+pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
 pub use grid::Grid;
 pub use path::{Hermite, Path};
 
@@ -200,27 +202,52 @@ pub trait Integrator<const N: usize>: Clone {
         Grid::new(self, times)
     }
 
-    /// Goes on to the first event, or to the time `until` where there is none before. The run ends there: its state is the one returned. Of functions that
-    /// vanish together the first one is told; [`Integrator::events`] tells all.
+    /// Goes on to the first event, or to the time `until` if there is none before. The run ends there: its state is the one returned. All events of that
+    /// instant are in the crossing; see [`Crossing`].
     ///
     /// # Errors
-    /// As [`Integrator::propagate_until`].
-    fn next_event(&mut self, events: &[Event<'_, N>], until: f64) -> Result<Option<Crossing<N>>, StepError> {
-        let first = self.events(events, until).next().transpose()?;
-        if let Some(Crossing { length, .. }) = first {
-            if length.to_bits() == self.time_to(until).to_bits() {
-                self.end_at(until)?;
-            } else if length.is_normal() {
-                self.step_of(length)?;
-            }
-        }
-        Ok(first)
+    /// As [`Integrator::propagate_until`], [`StepError::NonFinite`] for a function that is not finite, and [`StepError::CannotLeave`] if the run begins at a
+    /// zero of an event of one direction and the motion leads through it again at that instant.
+    fn next_event(&mut self, events: impl Events<N>, until: f64) -> Result<Option<Crossing<N>>, StepError> {
+        Crossings::new(self, events, until).stop()
+    }
+
+    /// [`Integrator::next_event`] for one event.
+    ///
+    /// # Errors
+    /// As there.
+    fn until_event(&mut self, event: Event<N>, end: f64) -> Result<Option<Crossing<N>>, StepError> {
+        self.next_event(event, end)
+    }
+
+    /// Goes on to where `g` rises, or to the time `end`: [`Integrator::next_event`] for [`Event::rising`].
+    ///
+    /// # Errors
+    /// As there.
+    fn until_rising(
+        &mut self,
+        g: impl Fn(&Moment<N>) -> f64 + 'static,
+        end: f64,
+    ) -> Result<Option<Crossing<N>>, StepError> {
+        self.next_event(Event::rising(g), end)
+    }
+
+    /// Goes on to where `g` falls, or to the time `end`: [`Integrator::next_event`] for [`Event::falling`].
+    ///
+    /// # Errors
+    /// As there.
+    fn until_falling(
+        &mut self,
+        g: impl Fn(&Moment<N>) -> f64 + 'static,
+        end: f64,
+    ) -> Result<Option<Crossing<N>>, StepError> {
+        self.next_event(Event::falling(g), end)
     }
 
     /// The events up to the time `until`, in their order: an iterator, which takes steps as it needs them. The run keeps its own steps, but for the last, which ends
     /// at `until`.
-    fn events<'a>(&'a mut self, events: &'a [Event<'a, N>], until: f64) -> Events<'a, N> {
-        Events::new(self, events, until)
+    fn events<'a>(&'a mut self, events: impl Events<N> + 'a, until: f64) -> Crossings<'a, N> {
+        Crossings::new(self, events, until)
     }
 
     /// Whether the run can go on to the time `t`.
