@@ -147,8 +147,8 @@ pub enum StepError {
         event: usize,
         /// The function of the event there.
         value: f64,
-        /// The rounding of that value.
-        rounding: f64,
+        /// Length of time after which it has passed zero again.
+        within: f64,
     },
     /// A step has no derivative, or not the one that was asked for.
     NoDerivative {
@@ -254,9 +254,9 @@ impl fmt::Display for Reason<'_> {
             StepError::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
-            StepError::CannotLeave { t, event, value, rounding } => write!(
+            StepError::CannotLeave { t, event, value, within } => write!(
                 f,
-                "the motion cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} there, with a rounding of {rounding:.3e}, and passes zero again at that instant"
+                "the motion cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} there and has passed zero again within {within:.3e}"
             ),
             StepError::NoDerivative { t, because } => {
                 write!(f, "the step from t = {t:.9} cannot be differentiated: {because}")

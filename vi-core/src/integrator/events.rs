@@ -6,7 +6,7 @@
 //! sign       zero counts as positive: g RISES if it goes from below zero to zero or above, and FALLS if it goes from zero or above to below
 //! side       the sign that g has next (`side`): at the start of a search, at its end, and after each event
 //! event      the side after an instant is not the sign before it
-//! instant    times that differ by less than the resolution of time: f64::EPSILON |t|, at most a millionth of a step
+//! instant    the times that differ by at most the resolution of time: f64::EPSILON |t|, and no more than a millionth of a step
 //! ```
 //!
 //! A function that only touches zero has the same side as before, so that is no event. Two searches that meet at a node agree on the side there:
@@ -223,18 +223,16 @@ impl<'a, const N: usize> Crossings<'a, N> {
         }
         let t = Node::of(self.run.node())?.moment.t;
         let sides = self.start()?;
-        let cannot_leave = |event: usize| {
-            let Side { value, rounding, .. } = sides[event];
-            Err(StepError::CannotLeave { t, event, value, rounding })
-        };
+        let cannot_leave =
+            |event: usize, within: f64| Err(StepError::CannotLeave { t, event, value: sides[event].value, within });
         let is_held = |(side, event): (&Side, &Event<N>)| side.is_turned && event.admits_only(side.is_positive);
         if let Some(event) = sides.iter().zip(self.wanted.all()).position(is_held) {
-            return cannot_leave(event);
+            return cannot_leave(event, sides[event].after);
         }
         let Some(crossing) = self.advance(true)? else { return Ok(None) };
         let again = crossing.events.iter().find(|met| sides[met.event].is_zero);
         match again {
-            Some(met) if crossing.state.t.to_bits() == t.to_bits() => cannot_leave(met.event),
+            Some(met) if crossing.state.t.to_bits() == t.to_bits() => cannot_leave(met.event, crossing.length.abs()),
             _ => self.run.stop(crossing.length).map(|()| Some(crossing)),
         }
     }

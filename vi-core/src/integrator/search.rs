@@ -9,7 +9,7 @@
 //! ```
 
 use super::events::{Crossing, Event, Met, Moment};
-use super::side::{Node, Side};
+use super::side::{Node, Side, resolution};
 use super::{Integrator, Path};
 use crate::error::StepError;
 use crate::solve::bracket::{Point, narrowed};
@@ -208,7 +208,8 @@ impl<const N: usize> Step<N> {
                 return Ok(found);
             }
             is_over = first.is_none();
-            let sides = search.at(length, |node| wanted.iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>())?;
+            let sides =
+                search.at(length, |node| wanted.iter().map(|event| node.side(event)).collect::<Result<Vec<_>, _>>())?;
             // A function that changed its sign before, unseen by its samples, comes first.
             let mut is_unseen = false;
             for (index, side) in sides.iter().enumerate() {
@@ -228,7 +229,8 @@ impl<const N: usize> Step<N> {
             let mut events = Vec::new();
             for (event, side) in sides.iter().enumerate() {
                 let watched = &mut watched[event];
-                let is_met = side.is_positive != watched.is_positive && (side.is_zero || first == Some(event) || is_over);
+                let is_met =
+                    side.is_positive != watched.is_positive && (side.is_zero || first == Some(event) || is_over);
                 if is_met || first == Some(event) {
                     (watched.is_positive, watched.sure) = (side.is_positive, length + side.after);
                     changes[event] = search.change(&wanted[event], watched)?;
@@ -353,7 +355,7 @@ impl<const N: usize> Search<'_, N> {
         } else {
             None
         };
-        let resolution = f64::EPSILON * f64::EPSILON * self.length;
+        let resolution = resolution(self.run.node().step_length());
         let [from, to] = narrowed(|x| self.point(event, x).map(|point| point.y), [from, to], guess, resolution)?;
         if to.y == 0.0 {
             return Ok(to.x);

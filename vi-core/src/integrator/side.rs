@@ -1,11 +1,12 @@
 //! The side of zero on which a function of the motion is at a node.
 //!
 //! In: a node and a function g. Out: the sign that g has next along the motion, and from which length on. Steps from the node of the lengths
-//! δ, 2δ, 4δ, … give g after it, the first of them a few resolutions of time long:
+//! δ, 2δ, 4δ, … give g after it; δ is the resolution of time.
 //!
 //! ```text
-//! rounding    Σ |g(x (1 + ε)) − g(x)| over t, q, v, and |dg/dt| · (resolution of time)
-//! side        the sign of g if |g| > rounding, else that of the first g(δ) with |g(δ)| > rounding: of the first derivative that is not zero
+//! rounding    Σ |g(x (1 + ε)) − g(x)| over t, q, v
+//! zero        |g| ≤ rounding, or g has another sign at δ: it passes zero at this instant
+//! side        the sign of g if g is not zero, else that of the first g(2^k δ) beyond its rounding: of the first derivative that is not zero
 //! ```
 //!
 //! THE SIDE DEPENDS ON THE NODE ALONE: two searches that meet at a node agree on it.
@@ -15,10 +16,13 @@ use super::events::{Event, Moment};
 use super::search::Motion;
 use crate::error::StepError;
 
-/// Resolutions of time of the first step after a node.
-const FIRST: f64 = 4.0;
 /// Part of a step up to which a function is looked at after a node.
 const LAST: f64 = 0.125;
+
+/// Lengths of a step of length `h` that differ by less are one.
+pub(super) fn resolution(h: f64) -> f64 {
+    f64::EPSILON * f64::EPSILON * h.abs()
+}
 
 /// Where a function is at a node.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +37,6 @@ pub(super) struct Side {
     pub(super) is_turned: bool,
     /// The function at the node.
     pub(super) value: f64,
-    /// Its rounding there.
-    pub(super) rounding: f64,
 }
 
 /// A node, and the motion shortly after it.
@@ -43,11 +45,9 @@ pub(super) struct Node<'a, const N: usize> {
     pub(super) moment: Moment<N>,
     /// Length of a step of the run.
     h: f64,
-    /// The difference of two times that cannot be told apart.
-    resolution: f64,
-    /// Length of the first step.
-    first: f64,
-    /// Ends of the steps of the lengths `first · 2^k`; none where a step failed.
+    /// The difference of two times that are one instant.
+    instant: f64,
+    /// Ends of the steps of the lengths `instant · 2^k`; none where a step failed.
     ends: Vec<Option<Moment<N>>>,
 }
 
@@ -55,16 +55,15 @@ impl<'a, const N: usize> Node<'a, N> {
     pub(super) fn of(motion: &'a dyn Motion<N>) -> Result<Self, StepError> {
         let moment = motion.reached(0.0)?.moment();
         let h = motion.step_length();
-        let resolution = (f64::EPSILON * moment.t.abs()).min(LONGER * h.abs());
-        let first = (FIRST * resolution).max(f64::EPSILON * h.abs());
-        Ok(Self { motion, moment, h, resolution, first, ends: Vec::new() })
+        let instant = (f64::EPSILON * moment.t.abs()).min(LONGER * h.abs()).max(resolution(h));
+        Ok(Self { motion, moment, h, instant, ends: Vec::new() })
     }
 
     /// The length of a step after the node.
     fn length(&self, k: usize) -> f64 {
         #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)]
         let factor = 2.0_f64.powi(k as i32);
-        self.first * factor
+        self.instant * factor
     }
 
     /// The end of that step.
@@ -82,12 +81,10 @@ impl<'a, const N: usize> Node<'a, N> {
     /// [`StepError::NonFinite`] if it is not finite at the node.
     pub(super) fn side(&mut self, event: &Event<N>) -> Result<Side, StepError> {
         let value = event.value(&self.moment)?;
-        let first = self.end(0).map_or(value, |end| event.at(&end));
-        let by_time = (first - value).abs() * (self.resolution / self.length(0));
-        let by_time = if by_time.is_finite() { by_time } else { 0.0 };
-        let rounding = by_time + event.rounding(&self.moment, value);
-        let mut side = Side { is_positive: value >= 0.0, after: 0.0, is_zero: false, is_turned: false, value, rounding };
-        if value.abs() > rounding {
+        let mut side = Side { is_positive: value >= 0.0, after: 0.0, is_zero: false, is_turned: false, value };
+        let next = self.end(0).map_or(value, |end| event.at(&end));
+        let passes = next.is_finite() && (next >= 0.0) != side.is_positive;
+        if !passes && value.abs() > event.rounding(&self.moment, value) {
             return Ok(side);
         }
         side = Side { is_positive: true, is_zero: true, ..side };
@@ -99,7 +96,7 @@ impl<'a, const N: usize> Node<'a, N> {
             if !later.is_finite() {
                 break;
             }
-            if later.abs() > by_time + event.rounding(&end, later) {
+            if later.abs() > event.rounding(&end, later) {
                 side.is_positive = later > 0.0;
                 let before = event.at(&self.before(&end, side.after));
                 side.is_turned = before.is_finite() && before != 0.0 && (before > 0.0) == side.is_positive;
