@@ -174,6 +174,8 @@ struct Search<'a, const N: usize> {
     run: &'a dyn Searched<N>,
     /// Length up to which the step is searched.
     length: f64,
+    /// Where the motion is at both ends.
+    ends: [Moment<N>; 2],
 }
 
 impl<const N: usize> Step<N> {
@@ -185,7 +187,8 @@ impl<const N: usize> Step<N> {
         watched: &mut [Watched],
         is_first: bool,
     ) -> Result<Vec<Result<Crossing<N>, StepError>>, StepError> {
-        let search = Search { step: self, run, length: self.length.abs() };
+        let ends = [run.node().reached(0.0)?.moment(), run.end().reached(0.0)?.moment()];
+        let search = Search { step: self, run, length: self.length.abs(), ends };
         let mut found = Vec::new();
         let mut changes = Vec::new();
         for (event, watched) in wanted.iter().zip(&mut *watched) {
@@ -270,9 +273,20 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
+    /// Where the motion is after a length, by a step.
+    fn moment(&self, length: f64) -> Result<Moment<N>, StepError> {
+        if length.to_bits() == self.length.to_bits() {
+            Ok(self.ends[1])
+        } else if length == 0.0 {
+            Ok(self.ends[0])
+        } else {
+            self.reached(length).map(|reached| reached.moment())
+        }
+    }
+
     /// A function after a length, by a step.
     fn point(&self, event: &Event<N>, x: f64) -> Result<Point, StepError> {
-        Ok(Point { x, y: event.value(&self.reached(x)?.moment())? })
+        Ok(Point { x, y: event.value(&self.moment(x)?)? })
     }
 
     /// What is asked of the node after a length.
@@ -315,14 +329,14 @@ impl<const N: usize> Search<'_, N> {
             if sample.x <= watched.sure || sample.is_positive() == watched.is_positive {
                 continue;
             }
-            let reached = self.reached(sample.x)?.moment();
-            let to = Point { x: sample.x, y: event.value(&reached)? };
+            let moment = self.moment(sample.x)?;
+            let to = Point { x: sample.x, y: event.value(&moment)? };
             if to.is_positive() == watched.is_positive {
                 watched.sure = sample.x;
                 continue;
             }
             // Within its rounding the sign of a function says nothing.
-            if to.y.abs() <= event.rounding(&reached, to.y)
+            if to.y.abs() <= event.rounding(&moment, to.y)
                 && self.at(to.x, |node| node.side(event))?.is_positive == watched.is_positive
             {
                 continue;
@@ -355,7 +369,7 @@ impl<const N: usize> Search<'_, N> {
         } else {
             None
         };
-        let resolution = resolution(self.run.node().step_length());
+        let resolution = resolution(self.step.t, self.run.node().step_length());
         let [from, to] = narrowed(|x| self.point(event, x).map(|point| point.y), [from, to], guess, resolution)?;
         if to.y == 0.0 {
             return Ok(to.x);

@@ -19,9 +19,9 @@ use crate::error::StepError;
 /// Part of a step up to which a function is looked at after a node.
 const LAST: f64 = 0.125;
 
-/// Lengths of a step of length `h` that differ by less are one.
-pub(super) fn resolution(h: f64) -> f64 {
-    f64::EPSILON * f64::EPSILON * h.abs()
+/// Lengths of steps from a time that differ by less are one: a run carries its time with twice the digits of a number.
+pub(super) fn resolution(t: f64, h: f64) -> f64 {
+    f64::EPSILON * f64::EPSILON * t.abs().max(h.abs())
 }
 
 /// Where a function is at a node.
@@ -55,7 +55,7 @@ impl<'a, const N: usize> Node<'a, N> {
     pub(super) fn of(motion: &'a dyn Motion<N>) -> Result<Self, StepError> {
         let moment = motion.reached(0.0)?.moment();
         let h = motion.step_length();
-        let instant = (f64::EPSILON * moment.t.abs()).min(LONGER * h.abs()).max(resolution(h));
+        let instant = (f64::EPSILON * moment.t.abs()).min(LONGER * h.abs()).max(resolution(moment.t, h));
         Ok(Self { motion, moment, h, instant, ends: Vec::new() })
     }
 

@@ -39,7 +39,8 @@ pub(crate) fn narrowed<E>(
         if (to.x - from.x).abs() <= resolution || middle == from.x || middle == to.x {
             return Ok([from, to]);
         }
-        let is_between = (next - from.x) * (next - to.x) < 0.0;
+        let inside = (next - from.x).abs().min((next - to.x).abs());
+        let is_between = (next - from.x) * (next - to.x) < 0.0 && inside >= resolution;
         let x = if is_between { next } else { middle };
         let new = Point { x, y: y(x)? };
         let is_from = new.is_positive() == from.is_positive();
