@@ -11,7 +11,7 @@ use crate::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 use crate::start;
 use core::cell::Cell;
 use vi_core::collocation::Collocation;
-use vi_core::integrator::{Crossing, Direction, Event};
+use vi_core::integrator::{Crossing, Event, Moment};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Integrator, Lagrangian,
@@ -57,6 +57,17 @@ impl Row {
     }
 }
 
+/// In which direction a coordinate passes a value, in the direction of the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Either.
+    Both,
+}
+
 /// A surface that a motion crosses again and again: a Poincaré section.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
@@ -92,11 +103,14 @@ impl Section {
         }
     }
 
-    /// In which direction the function passes zero.
-    fn direction(&self) -> Direction {
+    /// The event that the function passes zero in the direction of the section.
+    fn event<const N: usize>(&self) -> Event<N> {
+        let section = self.clone();
+        let g = move |moment: &Moment<N>| section.value(moment.t, moment.q.as_slice());
         match self {
-            Self::Coordinate { direction, .. } => *direction,
-            Self::Period { .. } => Direction::Both,
+            Self::Coordinate { direction: Direction::Rising, .. } => Event::rising(g),
+            Self::Coordinate { direction: Direction::Falling, .. } => Event::falling(g),
+            Self::Coordinate { direction: Direction::Both, .. } | Self::Period { .. } => Event::crossing(g),
         }
     }
 }
@@ -454,9 +468,7 @@ impl<'a, I: Integrator<N> + 'a, const N: usize> Simulation for Run<'a, I, N> {
 
     fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
         let system = *self.integrator.system();
-        let value = |t: f64, q: &SVector<f64, N>, _: &SVector<f64, N>| section.value(t, q.as_slice());
-        let wanted = [Event::new(&value, section.direction())];
-        for crossing in self.integrator.events(&wanted, end) {
+        for crossing in self.integrator.events(section.event(), end) {
             let Crossing { state, length, .. } = crossing?;
             take(Row {
                 t: state.t,
