@@ -65,8 +65,8 @@ fn a_hundred_thousand_impacts() {
             worst_of_impacts(Gauss::<_, 1, 3>::new(ball, start, 1.7).expect("valid"), floor, 100_000),
             worst_of_impacts(Composition::new(ball, Scheme::SUZUKI_4, start, 1.7).expect("valid"), floor, 20_000),
         ];
-        // Measured 1.1e-12: each impact rounds the time and the speed.
-        assert!(worst.iter().all(|worst| *worst < 1e-10), "{floor}: {worst:?}");
+        // Measured 1.8e-12: each impact rounds the time and the speed.
+        assert!(worst.iter().all(|worst| *worst < 4e-12), "{floor}: {worst:?}");
     }
 }
 
@@ -169,6 +169,6 @@ fn random_functions_change_their_sign_where_events_say() {
         // Signs alternate.
         assert!(found.windows(2).all(|pair| pair[0].direction(0) != pair[1].direction(0)), "{found:?}");
     }
-    // Measured 5e-15, and every change was found.
-    assert!(worst < 2e-14 && seen > 3000 && missed == 0, "{worst:e}, {seen} found, {missed} missed");
+    // Measured 2.8e-15, and every change was found.
+    assert!(worst < 6e-15 && seen > 3000 && missed == 0, "{worst:e}, {seen} found, {missed} missed");
 }
