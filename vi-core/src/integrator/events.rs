@@ -10,8 +10,8 @@
 //! ```
 //!
 //! A function that only touches zero has the same side as before, so that is no event. Two searches that meet at a node agree on the side there:
-//! exactly one of them reports an event at their seam. AFTER AN EVENT g has not left its old side, and it does with the next longer length of the
-//! step: a ball is never below its floor. A function that jumps is on its new side. Rising and falling are meant in the direction of the run.
+//! exactly one of them reports an event at their seam. AFTER AN EVENT g has not left its old side, to a rounding of its arguments, and it does with the
+//! next longer length of the step: a ball is not below its floor, even if it is stopped there. Rising and falling are meant in the direction of the run.
 
 use super::Integrator;
 use super::search::{Ahead, Reached, Searched, Watched};
@@ -255,7 +255,7 @@ impl<'a, const N: usize> Crossings<'a, N> {
                 self.start()?;
             }
             let step = self.run.look_ahead(self.until)?;
-            self.found = step.crossings(&*self.run, self.wanted.all(), &mut self.watched, is_first)?;
+            self.found = step.crossings(&*self.run, self.wanted.all(), &mut self.watched, is_first);
             self.found.reverse();
         }
         self.found.pop().transpose()

@@ -179,17 +179,35 @@ struct Search<'a, const N: usize> {
 }
 
 impl<const N: usize> Step<N> {
-    /// The crossings of the step; if `is_first`, none after the first. An error stands where it is met.
+    /// The crossings of the step, and the error that ends them; if `is_first`, no crossing after the first.
     pub(super) fn crossings(
         &self,
         run: &dyn Searched<N>,
         wanted: &[Event<N>],
         watched: &mut [Watched],
         is_first: bool,
-    ) -> Result<Vec<Result<Crossing<N>, StepError>>, StepError> {
+    ) -> Vec<Result<Crossing<N>, StepError>> {
+        let mut found = Vec::new();
+        let mut take = |crossing| {
+            found.push(Ok(crossing));
+            is_first
+        };
+        if let Err(error) = self.search(run, wanted, watched, &mut take) {
+            found.push(Err(error));
+        }
+        found
+    }
+
+    /// Hands over the crossings of the step, until `take` says that this was the last one wanted.
+    fn search(
+        &self,
+        run: &dyn Searched<N>,
+        wanted: &[Event<N>],
+        watched: &mut [Watched],
+        take: &mut dyn FnMut(Crossing<N>) -> bool,
+    ) -> Result<(), StepError> {
         let ends = [run.node().reached(0.0)?.moment(), run.end().reached(0.0)?.moment()];
         let search = Search { step: self, run, length: self.length.abs(), ends };
-        let mut found = Vec::new();
         let mut changes = Vec::new();
         for (event, watched) in wanted.iter().zip(&mut *watched) {
             search.sample(event, watched)?;
@@ -204,11 +222,9 @@ impl<const N: usize> Step<N> {
                 None if self.is_last => search.length,
                 None => break,
             };
-            if let Some(lost) = watched.iter().position(|watched| watched.lost.is_some_and(|lost| lost <= length)) {
-                found.push(Err(search.point(&wanted[lost], watched[lost].lost.unwrap_or(length)).err().unwrap_or(
-                    StepError::NonFinite { t: self.t, quantity: "function of an event", expression: None },
-                )));
-                return Ok(found);
+            let lost = wanted.iter().zip(&*watched).filter_map(|(event, watched)| Some((event, watched.lost?)));
+            for (event, _) in lost.filter(|(_, lost)| *lost <= length) {
+                search.point(event, length)?;
             }
             is_over = first.is_none();
             let sides =
@@ -244,16 +260,15 @@ impl<const N: usize> Step<N> {
             }
             if !events.is_empty() {
                 let Reached { state, v } = search.reached(length)?;
-                found.push(Ok(Crossing { events, state, v, length: length.copysign(self.length) }));
-                if is_first {
-                    return Ok(found);
+                if take(Crossing { events, state, v, length: length.copysign(self.length) }) {
+                    return Ok(());
                 }
             }
         }
         for watched in watched {
             watched.sure = (watched.sure - search.length).max(0.0);
         }
-        Ok(found)
+        Ok(())
     }
 }
 

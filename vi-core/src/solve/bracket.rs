@@ -36,7 +36,7 @@ pub(crate) fn narrowed<E>(
     let mut waited = 0;
     loop {
         let middle = from.x + 0.5 * (to.x - from.x);
-        if (to.x - from.x).abs() <= resolution || middle == from.x || middle == to.x {
+        if (to.x - from.x).abs() <= resolution || middle - from.x == 0.0 || middle - to.x == 0.0 {
             return Ok([from, to]);
         }
         let inside = (next - from.x).abs().min((next - to.x).abs());
@@ -87,16 +87,19 @@ mod tests {
         (found, count.get())
     }
 
+    /// A function, its root, and how many evaluations it may take.
+    type Case = (fn(f64) -> f64, f64, u32);
+
     #[test]
     fn neighbours_enclose_the_root() {
-        let functions: [(&dyn Fn(f64) -> f64, f64, u32); 7] = [
-            (&|x| x - 0.3, 0.3, 5),
-            (&|x| x.exp() - 1.5, 1.5_f64.ln(), 10),
-            (&|x| (x - 0.3).powi(3), 0.3, 40),
-            (&|x| 1.0_f64.copysign(x - 0.7), 0.7, 60),
-            (&|x| -(x - 0.5).max(0.0), 0.5, 60),
-            (&|x| 1e-300 * (0.2 - x), 0.2, 5),
-            (&|x| (x - 0.9).abs().sqrt().copysign(x - 0.9), 0.9, 160),
+        let functions: [Case; 7] = [
+            (|x| x - 0.3, 0.3, 5),
+            (|x| x.exp() - 1.5, 1.5_f64.ln(), 10),
+            (|x| (x - 0.3).powi(3), 0.3, 40),
+            (|x| 1.0_f64.copysign(x - 0.7), 0.7, 60),
+            (|x| -(x - 0.5).max(0.0), 0.5, 60),
+            (|x| 1e-300 * (0.2 - x), 0.2, 5),
+            (|x| (x - 0.9).abs().sqrt().copysign(x - 0.9), 0.9, 160),
         ];
         for (index, (y, exact, most)) in functions.into_iter().enumerate() {
             for ends_of in [[0.0, 1.0], [1.0, 0.0]] {
