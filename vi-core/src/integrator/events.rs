@@ -6,7 +6,7 @@
 //! sign       zero counts as positive: g RISES if it goes from below zero to zero or above, and FALLS if it goes from zero or above to below
 //! side       the sign that g has next (`side`): at the start of a search, at its end, and after each event
 //! event      the side after an instant is not the sign before it
-//! instant    the times that differ by at most the resolution of time: f64::EPSILON |t|, and no more than a millionth of a step
+//! instant    the times that differ by at most the resolution of time, four roundings of t, and no more than a millionth of a step
 //! ```
 //!
 //! A function that only touches zero has the same side as before, so that is no event. Two searches that meet at a node agree on the side there:
@@ -15,7 +15,7 @@
 
 use super::Integrator;
 use super::search::{Ahead, Reached, Searched, Watched};
-use super::side::{Node, Side};
+use super::side::{Node, ROUNDING, Side};
 use crate::error::StepError;
 use crate::state::State;
 use core::fmt;
@@ -91,7 +91,7 @@ impl<const N: usize> Event<N> {
                 core::mem::replace(place, x.unwrap_or(*place))
             };
             let x = argument(&mut changed, None);
-            argument(&mut changed, Some(x + f64::EPSILON * x.abs()));
+            argument(&mut changed, Some(x + ROUNDING * x.abs()));
             let difference = (self.at(&changed) - value).abs();
             argument(&mut changed, Some(x));
             // Beyond the domain of the function a rounding does not lead.

@@ -16,6 +16,8 @@ use super::events::{Event, Moment};
 use super::search::Motion;
 use crate::error::StepError;
 
+/// Part of a number that rounding may have taken from it: the end of a step is known to a few roundings.
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Part of a step up to which a function is looked at after a node.
 const LAST: f64 = 0.125;
 
@@ -55,7 +57,7 @@ impl<'a, const N: usize> Node<'a, N> {
     pub(super) fn of(motion: &'a dyn Motion<N>) -> Result<Self, StepError> {
         let moment = motion.reached(0.0)?.moment();
         let h = motion.step_length();
-        let instant = (f64::EPSILON * moment.t.abs()).min(LONGER * h.abs()).max(resolution(moment.t, h));
+        let instant = (ROUNDING * moment.t.abs()).min(LONGER * h.abs()).max(resolution(moment.t, h));
         Ok(Self { motion, moment, h, instant, ends: Vec::new() })
     }
 
