@@ -144,6 +144,17 @@ pub enum StepError {
         /// The part of L or f that is not finite there, where the system says so.
         expression: Option<&'static str>,
     },
+    /// The search for an event of one direction begins at its zero, and the motion leads through it again at that instant: a ball that has come to rest.
+    CannotLeave {
+        /// Time at which the search begins.
+        t: f64,
+        /// The index of the event among those that were asked for.
+        event: usize,
+        /// The function of the event there.
+        value: f64,
+        /// Length of time after which it has passed zero again.
+        within: f64,
+    },
     /// A step has no derivative, or not the one that was asked for.
     NoDerivative {
         /// Time at which the step was to begin.
@@ -249,6 +260,10 @@ impl fmt::Display for Reason<'_> {
             StepError::NonFinite { t, quantity, expression: Some(expression) } => {
                 write!(f, "the {quantity} is not finite at t = {t:.9}, because `{expression}` is not")
             }
+            StepError::CannotLeave { t, event, value, within } => write!(
+                f,
+                "the motion cannot leave the zero of event {event} at t = {t:.9}: its function is {value:.3e} there and has passed zero again within {within:.3e}"
+            ),
             StepError::NoDerivative { t, because } => {
                 write!(f, "the step from t = {t:.9} cannot be differentiated: {because}")
             }
@@ -320,6 +335,10 @@ impl fmt::Display for StepError {
                 f.write_str("; restart the system that it was taken of, by its rule")
             }
             Self::OtherSystem { .. } => f.write_str("; restart with the parameters that it was taken with"),
+            Self::CannotLeave { event, .. } => write!(
+                f,
+                "; set the velocity toward it to zero and change the system so that it stays, or search without event {event}"
+            ),
             Self::Singular { .. }
             | Self::NonFinite { .. }
             | Self::NoDerivative { .. }

@@ -35,6 +35,7 @@
 //! | [`run`] | what all methods share: steps, states at times, events, changes, checkpoints |
 //! | `momentum`, [`energy_preserving`], [`gauss`] | the equations of a step, and their solution |
 //! | [`derivatives`] | sensitivities to initial conditions and parameters, gradients, Lyapunov exponents |
+//! | `solve` | solvers that do not depend on a method: a bracket of a root |
 //! | [`condition`] | condition numbers of the equations that a step solves |
 //! | [`error`] | every way in which a step can fail, with its numbers |
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
@@ -71,6 +72,7 @@ mod predictor;
 pub mod real;
 pub mod rules;
 pub mod run;
+mod solve;
 pub mod state;
 pub mod stepping;
 #[doc(hidden)]
@@ -95,7 +97,7 @@ pub use vi_macros::lagrangian;
 pub mod prelude {
     pub use crate::error::StepError;
     pub use crate::method::{Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, Method};
-    pub use crate::run::{Crossing, Event, Run, Solution, Start, Starts as _};
+    pub use crate::run::{Crossing, Event, Moment, Run, Solution, Start, Starts as _};
     pub use crate::state::State;
     pub use vi_macros::lagrangian;
 }

@@ -8,8 +8,9 @@
 //! | `dense_output` | the motion between the two nodes of a step, as polynomials |
 //! | `times` | states at given times |
 //! | `solution` | states with times and energies, as CSV |
-//! | `events` | states at which functions of the motion vanish |
-//! | `sign_changes` | where a function changes its sign over a step |
+//! | `events` | states at which functions of the motion change their sign |
+//! | `search` | the search of one step for them |
+//! | `side` | the side of zero on which a function is at a node |
 //! | `checkpoint` | everything that a run carries, to be stored and resumed bit for bit |
 //!
 //! A STATE AT A TIME t is reached by a last step that is exactly as long as is left. It is as accurate as a node, of the full order of the method. States at several
@@ -18,13 +19,14 @@
 mod checkpoint;
 mod dense_output;
 mod events;
-mod sign_changes;
+mod search;
+mod side;
 mod solution;
 mod times;
 
 pub use checkpoint::{Checkpoint, Stored};
 pub use dense_output::{DenseOutput, Hermite};
-pub use events::{Crossing, Direction, Event, Events, Function};
+pub use events::{Crossing, Crossings, Event, Events, Met, Moment};
 pub use solution::Solution;
 pub use times::Grid;
 

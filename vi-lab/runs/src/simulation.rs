@@ -12,7 +12,7 @@ use crate::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 use crate::start;
 use core::cell::Cell;
 use vi_core::collocation::Collocation;
-use vi_core::run::{Crossing, Direction, Event};
+use vi_core::run::{Crossing, Event, Moment};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
     Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
@@ -58,6 +58,17 @@ impl Row {
     }
 }
 
+/// In which direction a coordinate passes a value, in the direction of the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From below.
+    Rising,
+    /// From above.
+    Falling,
+    /// Either.
+    Both,
+}
+
 /// A surface that a motion crosses again and again: a Poincaré section.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
@@ -93,11 +104,14 @@ impl Section {
         }
     }
 
-    /// In which direction the function passes zero.
-    fn direction(&self) -> Direction {
+    /// The event that the function passes zero in the direction of the section.
+    fn event<const N: usize>(&self) -> Event<N> {
+        let section = self.clone();
+        let g = move |moment: &Moment<N>| section.value(moment.t, moment.q.as_slice());
         match self {
-            Self::Coordinate { direction, .. } => *direction,
-            Self::Period { .. } => Direction::Both,
+            Self::Coordinate { direction: Direction::Rising, .. } => Event::rising(g),
+            Self::Coordinate { direction: Direction::Falling, .. } => Event::falling(g),
+            Self::Coordinate { direction: Direction::Both, .. } | Self::Period { .. } => Event::crossing(g),
         }
     }
 }
@@ -482,9 +496,7 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
 
     fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
         let system = *self.run.system();
-        let value = |t: f64, q: &SVector<f64, N>, _: &SVector<f64, N>| section.value(t, q.as_slice());
-        let wanted = [Event::new(&value, section.direction())];
-        for crossing in self.run.events(&wanted, end) {
+        for crossing in self.run.events(section.event(), end) {
             let Crossing { state, length, .. } = crossing?;
             take(Row {
                 t: state.t,
