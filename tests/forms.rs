@@ -11,7 +11,7 @@ use vi_core::stepping::{
     MomentumEquation, MomentumResidual, Rounding,
 };
 use vi_core::{
-    DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, Run, SVector, Starts, State, StepError,
+    DiscreteLagrangian, EnergyPreserving, FixedStep, Interval, Lagrangian, SVector, Starts, State, StepError,
     lagrangian,
 };
 use vi_systems::FpuChain;

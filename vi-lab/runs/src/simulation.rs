@@ -15,8 +15,8 @@ use vi_core::collocation::Collocation;
 use vi_core::run::{Crossing, Event, Moment};
 use vi_core::stepping::{Convertible, EnergyStepping};
 use vi_core::{
-    Called, Composition, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime,
-    Lagrangian, Run, SVector, Starts, State, StepError,
+    Called, EnergyPreserving, EnergyPreservingGauss, Fallback, FixedStep, Gauss, InTransformedTime, Lagrangian, Run,
+    SVector, Starts, State, StepError,
 };
 
 /// A node, its energies, and the length of the step that led to it.

@@ -196,7 +196,7 @@ const FITTED: f64 = 2.9;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vi_core::{Gauss, Run, StepError};
+    use vi_core::StepError;
     use vi_report::catalogue;
 
     fn quick(name: &str, q: &[f64]) -> Findings {

@@ -7,7 +7,7 @@ use super::super::book::Book;
 use super::super::unexpected;
 use core::cell::Cell;
 use core::f64::consts::TAU;
-use vi_core::{Called, Gauss, Starts, State, StepError};
+use vi_core::{Called, Gauss, Starts, StepError};
 use vi_report::chart::{Axis, Chart, Look, Series};
 use vi_report::failure::Failure;
 use vi_report::table::Table;
