@@ -113,7 +113,7 @@ pub enum StepError {
         /// Its value there.
         g: f64,
     },
-    /// Steps in scaled time were asked of a system without a time scale.
+    /// Steps in transformed time were asked of a system without a time scale.
     NoTimeScale {
         /// Name of the system.
         system: &'static str,
@@ -307,14 +307,11 @@ impl fmt::Display for StepError {
                 "; allow {found:.3e} by `with_step_bounds`, or go on with steps of the bound by `with_fallback(Fallback::FixedSteps)`"
             ),
             Self::NotConverged { h, .. } if *h == 0.0 => {
-                f.write_str("; start from momenta of `State::at`, or take shorter steps")
+                f.write_str("; start from the momenta of a velocity, `system.at(t, q, v)`, or take shorter steps")
             }
-            Self::NotConverged { h, .. } => write!(
-                f,
-                "; take steps shorter than {:.3e}, or with `EnergyPreserving` go on by `with_fallback(Fallback::FixedSteps)`",
-                h.abs()
-            ),
-            Self::StagesUnsettled { h, .. } => write!(f, "; take steps shorter than {:.3e}", h.abs()),
+            Self::NotConverged { h, .. } | Self::StagesUnsettled { h, .. } => {
+                write!(f, "; take steps shorter than {:.3e}", h.abs())
+            }
             Self::TimeScale { g, .. } if *g > 0.0 && g.is_finite() => {
                 f.write_str("; take shorter steps, end the run before, or write a `time_scale` that does not nearly vanish there")
             }

@@ -96,7 +96,7 @@ pub struct Plan {
     pub shift: Option<Shift>,
     /// Whether fixed steps are taken where there is no energy-preserving one.
     pub fallback: bool,
-    /// The step of Gauss steps in scaled time.
+    /// The step of Gauss steps in transformed time.
     pub dtau: Option<f64>,
     /// The step, or the first one.
     pub h: f64,

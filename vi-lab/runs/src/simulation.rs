@@ -340,7 +340,7 @@ where
     Ok(Box::new(Simulated { uncounted: Some(count), shifted, ..run }))
 }
 
-/// Starts a run by Gauss steps of so many stages in scaled time.
+/// Starts a run by Gauss steps of so many stages in transformed time.
 fn scaled<'a, S, const N: usize, const STAGES: usize>(
     system: S,
     state: State<N>,

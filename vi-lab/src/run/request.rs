@@ -288,7 +288,7 @@ impl Options {
     fn of(arguments: &Arguments, scene: &Scene) -> Self {
         let other = Scene::default();
         let scene = if arguments.method.is_none() { scene } else { &other };
-        // A step in time on the command line replaces one in scaled time.
+        // A step in time on the command line replaces one in transformed time.
         let dtau = scene.dtau.filter(|_| arguments.h.is_none());
         Self {
             start: arguments.start.or(scene.start),
@@ -317,7 +317,7 @@ impl Options {
                     .to_owned()
             }
             () if dtau.is_some() && !is_gauss => {
-                "only Gauss steps have a step in scaled time, --dtau; add --method gauss, or leave it out".to_owned()
+                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or leave it out".to_owned()
             }
             () if start.is_some() && (stages.is_some() || shift.is_some()) => {
                 "steps with --stages or --shift start from the initial state; leave --start out".to_owned()
@@ -352,7 +352,7 @@ fn usual_length(method: Method, stages: Option<usize>) -> f64 {
     }
 }
 
-/// Makes the steps of a plan those of one length in scaled time, of which the first is as long as g says.
+/// Makes the steps of a plan those of one length in transformed time, of which the first is as long as g says.
 fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Failure> {
     let Plan { t, q, v, .. } = plan.clone();
     let Some(g) = system.time_scale(&PhasePoint { t, q, v }) else {
@@ -363,7 +363,7 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
     };
     if !dtau.is_finite() || dtau == 0.0 {
         return Err(Failure::Input(format!(
-            "the step in scaled time (--dtau) must be finite and not zero, not {dtau}"
+            "the step in transformed time (--dtau) must be finite and not zero, not {dtau}"
         )));
     }
     plan.dtau = Some(dtau);
@@ -543,7 +543,7 @@ mod tests {
             ),
             (
                 with(|a| a.dtau = Some(0.1)),
-                "only Gauss steps have a step in scaled time, --dtau; add --method gauss, or leave it out",
+                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or leave it out",
             ),
             (
                 with(|a| (a.method, a.dtau) = (Some(Method::Gauss), Some(0.1))),
@@ -584,7 +584,7 @@ mod tests {
         let plan = plan_of(&scaled(0.5));
         // g = r^(3/2) at r = 0.4.
         assert!((plan.h - 0.5 * 0.4_f64.powf(1.5)).abs() < 1e-15 && plan.dtau == Some(0.5), "{plan:?}");
-        assert_eq!(message(&scaled(0.0)), "the step in scaled time (--dtau) must be finite and not zero, not 0");
+        assert_eq!(message(&scaled(0.0)), "the step in transformed time (--dtau) must be finite and not zero, not 0");
     }
 
     #[test]

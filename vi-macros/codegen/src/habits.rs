@@ -372,11 +372,11 @@ const OF_RULES: [(&[&str], &str); 2] = [
 ];
 
 /// Where the order is chosen.
-pub(crate) const GAUSS: &str = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of \
-    order 2 S";
+pub(crate) const GAUSS: &str =
+    "every system has Gauss steps without a clause: `integrate(Gauss::<S>, h)` takes them with S stages, of order 2 S";
 
 /// Where a step and a start are given.
-pub(crate) const RUN: &str = "a step and a start belong to a run: `FixedStep::new(system, State::at(&system, t, q, v), h)`; those of checks stand in \
+pub(crate) const RUN: &str = "a step and an initial state belong to a run: `system.at(t, q, v).integrate(FixedStep, h)`; those of checks belong in \
     `check { x = 1; h = 0.01; }`";
 
 /// Greek letters by their words.

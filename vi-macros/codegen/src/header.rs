@@ -22,7 +22,7 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
         ],
     ),
     ("Gauss, EnergyPreservingGauss", &[FunctionId::Point, FunctionId::PointDerivatives, FunctionId::Power]),
-    ("ScaledGauss", &[FunctionId::ScaledPoint]),
+    ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
 ];
 
 /// The methods of a rule, and the functions that they call.

@@ -290,7 +290,7 @@ fn clauses() {
     );
     case("coord x; L = dot(x)^2; discretize midpoint, «,»;", "expected a name");
     case("coord x; L = dot(x)^2; discretize midpoint «trapezoidal»;", "expected `,` or `;`");
-    let gauss = "every system has Gauss steps without a clause: `Gauss::<_, N, S>::new` takes them with S stages for N coordinates, of order 2 S";
+    let gauss = "every system has Gauss steps without a clause: `integrate(Gauss::<S>, h)` takes them with S stages, of order 2 S";
     for rule in ["Gauss", "gauss_legendre", "collocation"] {
         case(&format!("coord x; L = dot(x)^2; discretize «{rule}»;"), &format!("unknown rule `{rule}`\nhelp: {gauss}"));
     }
@@ -318,7 +318,7 @@ fn clauses() {
         let word = clause.split(' ').next().unwrap_or_default();
         case(
             &format!("{REST} {};", clause.replacen(word, &format!("«{word}»"), 1)),
-            &format!("unknown clause `{word}`\nhelp: a step and a start belong to a run: `FixedStep::new(system, "),
+            &format!("unknown clause `{word}`\nhelp: a step and an initial state belong to a run: `system.at(t, q, v)"),
         );
     }
     case("coord x; L = dot(x)^2; force «y» = 1; discretize midpoint;", "a force on `y`, which is not a coordinate");
@@ -619,13 +619,13 @@ fn each_mistake_is_told_with_what_to_write() {
         ("constraint x^2 = 1;", "choose coordinates that satisfy them"),
         ("T = dot(x)^2 / 2;", "`let T = …;`"),
         ("let a = 1", "every clause ends with `;`"),
-        ("order = 4;", "`Gauss::<_, N, S>::new`"),
+        ("order = 4;", "`integrate(Gauss::<S>, h)`"),
         ("h = 0.01;", "`system.at(t, q, v).integrate(FixedStep, h)`"),
     ] {
         told(&format!("{written} {REST}"), wanted);
     }
     for rule in ["Gauss", "gauss(4)", "order = 4", "rk4"] {
-        told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`Gauss::<_, N, S>::new`");
+        told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`integrate(Gauss::<S>, h)`");
     }
 }
 
