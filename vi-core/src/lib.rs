@@ -23,6 +23,7 @@
 //! | `momentum` | steps of a given length: predicted, corrected, measured; else searched |
 //! | `predictor` | the guess of a step, by a polynomial through the last ones |
 //! | `called` | a system whose functions are calls, for rare code |
+//! | `forward` | the functions of a system, forwarded by a wrapper |
 //! | `compensated` | sums that keep what rounding takes from them |
 //!
 //! Nothing here panics, allocates in a step (but for the room that the first stiff Gauss step makes), or prints.
@@ -45,6 +46,7 @@ pub mod energy_preserving;
 pub mod error;
 mod explained;
 pub mod fixed_step;
+mod forward;
 pub mod gauss;
 pub mod integrator;
 pub mod lagrangian;
