@@ -6,7 +6,7 @@
 //! forward! { [N T S R] self => &self.system; [#[inline]] lagrangian energy momentum }
 //! ```
 //!
-//! writes these functions with these attributes. `lagrangian_constants`, `collocation_types` and `stepping_types` are what a trait says without a function.
+//! writes these functions with these attributes. `lagrangian_constants`, `collocation_types` and `stepping_types` are the types and constants of a trait.
 
 /// Writes functions that call those of another system; see the source of this module.
 #[doc(hidden)]

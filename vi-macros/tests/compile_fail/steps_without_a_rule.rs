@@ -13,4 +13,11 @@ fn main() {
     let _ = Gauss::<_, 2, 8>::new(kepler, start, 0.1);
     let _ = FixedStep::new(kepler, start, 0.01);
     let _ = EnergyPreserving::from_midpoint(kepler, 0.0, [0.4, 0.0], [0.0, 2.0], 0.01);
+    many(kepler);
+    slots(kepler);
 }
+
+/// As an ensemble asks.
+fn many<const N: usize>(_: impl vi_core::stepping::Batch<N>) {}
+
+fn slots<const N: usize>(_: impl vi_core::DiscreteLagrangian<N>) {}
