@@ -19,7 +19,7 @@ use nalgebra::SVector;
 
 /// The equations of motion in first order; see the [module](self).
 ///
-/// A system is small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
+/// Systems are small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
 pub trait Collocation<const N: usize, T: Real = f64>: Lagrangian<N, T> + Copy {
     /// The form of M, by its zero pattern.
     type Mass: Matrix<N, T>;

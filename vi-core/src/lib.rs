@@ -41,6 +41,7 @@
 //! | [`check`] | what has to hold for every right system, to call by hand or from `check { … }` |
 //! | `predictor` | the guess of a step, by a polynomial through the last ones |
 //! | `called` | a system whose functions are not inlined, for cold code |
+//! | `forward` | the functions of a system, forwarded by a wrapper |
 //! | `compensated` | sums that keep what rounding takes from them |
 //!
 //! Nothing here panics, allocates in a step (but for the room that the first stiff Gauss step makes), or prints.
@@ -60,6 +61,7 @@ pub mod discrete;
 pub mod energy_preserving;
 pub mod error;
 mod explained;
+mod forward;
 pub mod gauss;
 pub mod lagrangian;
 mod legendre;

@@ -17,8 +17,7 @@ use nalgebra::{SMatrix, SVector};
 
 /// The momentum equation of a step by the rule R, its length given.
 ///
-/// A system is a few numbers, or a reference to them, and copied: what is lent to the rare paths of a step is a copy, so that
-/// the numbers of the common path stay in registers.
+/// Systems are small and `Copy`. Cold paths get a copy, so that the hot loop stays in registers.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` takes no fixed steps by the rule `{R}`",
     note = "add `discretize midpoint;` to `{Self}`; `Own` is the first rule of that clause, and `discretize midpoint, trapezoidal;` adds another",
@@ -118,6 +117,10 @@ pub trait Discretized<const N: usize, R = Own>:
 }
 
 /// A system of which many can be integrated at once, each with its own parameters.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be integrated in an ensemble",
+    note = "add `discretize midpoint;` to `{Self}`: an ensemble takes fixed steps"
+)]
 pub trait Batch<const N: usize>: Discretized<N> + Send + Sync {
     /// The parameters of W systems, side by side.
     type Rows<const W: usize>: Clone + core::fmt::Debug + Send + Sync;

@@ -1,6 +1,6 @@
 //! A system in loops, or in pieces, computes what it computes whole, bit by bit.
 //!
-//! The attribute `vi_limit` of the struct says how many operations a function may hold.
+//! The attribute `vi_limit` of the struct limits the operations of a function.
 
 use vi_core::linear::Matrix;
 use vi_core::node::Node;

@@ -2,7 +2,7 @@
 //! part of the faults.
 
 use vi_core::collocation::{Collocation, Point, PointDerivatives};
-use vi_core::lagrangian::{Flow, Parameters};
+use vi_core::lagrangian::Parameters;
 use vi_core::linear::Matrix;
 use vi_core::nalgebra::SMatrix;
 use vi_core::node::Node;
@@ -11,7 +11,7 @@ use vi_core::stepping::{
     Convertible, Discretized, EnergyStepping, ExtendedDerivatives, ExtendedResidual, ExtendedSystem, FixedStepping,
     Increment, MomentumDerivatives, MomentumEquation, MomentumResidual, Rounding,
 };
-use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError};
+use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, forward};
 
 /// The damping of [`Fault::Damping`].
 const DAMPING: f64 = 0.01;
@@ -122,20 +122,8 @@ impl<const N: usize, S: Discretized<N>> Discretized<N> for Spoiled<S> {
 }
 
 impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<S> {
-    const NAME: &'static str = S::NAME;
-    const COORDINATES: [&'static str; N] = S::COORDINATES;
-    const AUTONOMOUS: bool = S::AUTONOMOUS;
-    const FORCED: bool = S::FORCED;
-    const CYCLIC: [bool; N] = S::CYCLIC;
-    const PARAMETERS: &'static [&'static str] = S::PARAMETERS;
+    forward! { [N T S] self => &self.system; [] lagrangian_constants lagrangian force flow }
 
-    fn parameter(&self, index: usize) -> T {
-        self.system.parameter(index)
-    }
-
-    fn lagrangian(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
-        self.system.lagrangian(t, q, v)
-    }
     fn energy(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> T {
         let lagrangian = self.lagrangian(t, q, v);
         self.unless(Fault::Energy, self.system.energy(t, q, v), |energy| energy + lagrangian + lagrangian)
@@ -145,15 +133,9 @@ impl<const N: usize, T: Real, S: Lagrangian<N, T>> Lagrangian<N, T> for Spoiled<
             SVector::from_fn(|i, _| if i == 0 { -p[i] } else { p[i] })
         })
     }
-    fn force(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> SVector<T, N> {
-        self.system.force(t, q, v)
-    }
     fn acceleration(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Result<SVector<T, N>, StepError> {
         let right = self.system.acceleration(t, q, v)?;
         Ok(self.unless(Fault::Acceleration, right, |a| a * T::real(1.001)))
-    }
-    fn flow(&self, t: T, q: &SVector<T, N>, p: &SVector<T, N>) -> Result<Flow<N, T>, StepError> {
-        self.system.flow(t, q, p)
     }
 }
 

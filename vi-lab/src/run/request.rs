@@ -615,7 +615,7 @@ mod tests {
     }
 
     #[test]
-    fn a_system_without_a_rule_is_told_which_methods_it_has() {
+    fn a_system_without_a_rule_gets_the_names_of_its_methods() {
         let system = vi_runs::ready::Entry::with_gauss_alone::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
         let of = |method, stages| {
             let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };

@@ -8,8 +8,16 @@ lagrangian! {
 }
 
 fn main() {
-    let start = Kepler::default().at(0.0, [0.4, 0.0], [0.0, 2.0]);
+    let kepler = Kepler::default();
+    let start = kepler.at(0.0, [0.4, 0.0], [0.0, 2.0]);
     let _ = start.integrate(Gauss::<8>, 0.1);
     let _ = start.integrate(FixedStep, 0.01);
     let _ = start.integrate(EnergyPreserving, 0.01);
+    many(kepler);
+    slots(kepler);
 }
+
+/// As an ensemble asks.
+fn many<const N: usize>(_: impl vi_core::stepping::Batch<N>) {}
+
+fn slots<const N: usize>(_: impl vi_core::DiscreteLagrangian<N>) {}
