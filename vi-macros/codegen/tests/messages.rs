@@ -393,8 +393,8 @@ fn other_definitions() {
     clause("«#» the mass", "`#` begins no comment\nhelp: write `// …`");
     clause("force x «+»= 1;", "a force is written once\nhelp: write `force x = …;`, all forces on `x` added up");
     clause("force dot«(»x) = 1;", "a force on no coordinate\nhelp: write the coordinate that it acts on");
-    clause("coord z; «z» = 1;", "unknown clause `z`\nhelp: a step and a start belong to a run");
-    clause("coord z; «z»(0) = 1;", "unknown clause `z`\nhelp: a step and a start belong to a run");
+    clause("coord z; «z» = 1;", "unknown clause `z`\nhelp: a step and an initial state belong to a run");
+    clause("coord z; «z»(0) = 1;", "unknown clause `z`\nhelp: a step and an initial state belong to a run");
     clause("«l» = 1;", "unknown clause `l`\nhelp: write `L = …;` for the Lagrangian, `let l = …;` to name a part");
 }
 

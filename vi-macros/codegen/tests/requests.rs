@@ -75,7 +75,7 @@ fn the_text_of_a_file_opens_with_what_each_method_costs() {
         sum
     };
     assert!(counted(&gauss, "Gauss, EnergyPreservingGauss") > 10);
-    assert!(counted(&gauss, "ScaledGauss") > 10);
+    assert!(counted(&gauss, "Gauss in transformed time") > 10);
     assert!(
         gauss.contains("//      0  FixedStep, Composition, Ensemble, EnergyPreserving: write `discretize midpoint;`")
     );
