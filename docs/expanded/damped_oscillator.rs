@@ -1,6 +1,6 @@
 // `DampedOscillator`: L = m*dot(x)^2/2 - k*x^2/2
 //
-// Operations of the functions for
+// Operation counts by method
 //     30  every method: lagrangian 7, energy 7, momentum 1, force 2, acceleration 4, non_finite 9
 //     10  Gauss, EnergyPreservingGauss: point 5, point_derivatives 2, power 3
 //     77  FixedStep, Composition, Ensemble by the rule `midpoint`: momentum_equation 19, momentum_residual 32, momentum_derivatives 11, discrete_energy 15
@@ -12,11 +12,11 @@
 /// With ω = √(k/m) and ζ = c/(2 √(k m)), the energy-preserving step grows as h ≈ h0 e^{ζ ω t} and ends after about
 /// 1/(ζ ω h0) steps. Source: Sharma, Patil, Woolsey, section 5.2.
 ///
-/// Discretized by the rule `midpoint`. What the generator found:
+/// Discretized by the rule `midpoint`. Properties found by the generator:
 ///
 /// * Autonomous; a force acts
 /// * `L = T(v) + U(t, q)` with a constant mass matrix
-/// * The step's equation in `v` is linear, and the whole step one constant matrix, computed once per run
+/// * The step's equation in `v` is linear: one constant matrix, computed once per run, gives the whole step
 #[derive(
     ::core::clone::Clone,
     ::core::marker::Copy,
@@ -207,7 +207,7 @@ const _: () = {
             })
         }
 
-        /// The first of what L and f are made of that is not finite here.
+        /// The first part of L and f that is not finite at this state.
         ///
         /// 9 operations.
         #[cold]
@@ -524,7 +524,7 @@ const _: () = {
             }
         }
 
-        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        /// Derivatives of the residual and of `p1 − p0` with respect to the coordinates of the node and v.
         ///
         /// 11 operations.
         #[inline(always)]
@@ -569,7 +569,7 @@ const _: () = {
                 - self.c * h * real(0.5) * s1
         }
 
-        /// What the rounding of the residual is measured in, by running error analysis.
+        /// Bounds the rounding error of the residual by running error analysis.
         #[cold]
         fn momentum_rounding(
             &self,
@@ -703,7 +703,7 @@ const _: () = {
             }
         }
 
-        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        /// Derivatives of both residuals, `p1 − p0` and `E1 − E0` with respect to the coordinates of the node, v and h.
         ///
         /// 37 operations.
         #[inline(always)]
@@ -754,7 +754,7 @@ const _: () = {
             }
         }
 
-        /// What the rounding of both residuals is measured in, by running error analysis.
+        /// Bounds the rounding errors of both residuals by running error analysis.
         #[cold]
         fn extended_rounding(
             &self,
@@ -799,7 +799,7 @@ const _: () = {
         }
     }
 
-    /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+    /// Declares a function for every name bound above: a binding may shadow it, but not a constant of the surrounding code.
     use ::core::primitive::{bool, f64, str, usize};
     use ::core::convert::{identity as name, identity as index, identity as t};
     use ::core::convert::{identity as q, identity as v, identity as x_dot};
@@ -820,7 +820,7 @@ const _: () = {
     use ::core::convert::{identity as s9, identity as systems, identity as rows};
 };
 
-/// Checks of [`DampedOscillator`](super::DampedOscillator) at the place that it names.
+/// Checks of [`DampedOscillator`](super::DampedOscillator) at the state of its `check` clause.
 #[cfg(test)]
 #[allow(clippy::all, clippy::pedantic, deprecated)]
 mod damped_oscillator_checks {

@@ -1,6 +1,6 @@
 // `DoublePendulum`: L = l1^2*(m1 + m2)*dot(θ1)^2/2 + m2*l2^2*dot(θ2)^2/2 + m2*l1*l2*dot(θ1)*dot(θ2)*cos(θ1 - θ2) + l1*g*(m1 + m2)*cos(θ1) + m2*l2*g*cos(θ2)
 //
-// Operations of the functions for
+// Operation counts by method
 //    146  every method: lagrangian 32, energy 32, momentum 17, force 0, acceleration 33, non_finite 32
 //     73  Gauss, EnergyPreservingGauss: point 37, point_derivatives 36, power 0
 //    286  FixedStep, Composition, Ensemble by the rule `midpoint`: momentum_equation 75, momentum_residual 81, momentum_derivatives 79, discrete_energy 51
@@ -12,7 +12,7 @@
 /// The mass matrix depends on the configuration. Released from (2, 2) rad, the energy-preserving step ends at
 /// t = 4.025. Source: Landau and Lifshitz, Mechanics, section 5.
 ///
-/// Discretized by the rule `midpoint`. What the generator found:
+/// Discretized by the rule `midpoint`. Properties found by the generator:
 ///
 /// * Autonomous and without a force: the energy is conserved
 /// * The mass matrix depends on the state
@@ -254,7 +254,7 @@ const _: () = {
             })
         }
 
-        /// The first of what L and f are made of that is not finite here.
+        /// The first part of L and f that is not finite at this state.
         ///
         /// 32 operations.
         #[cold]
@@ -722,7 +722,7 @@ const _: () = {
             }
         }
 
-        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        /// Derivatives of the residual and of `p1 − p0` with respect to the coordinates of the node and v.
         ///
         /// 79 operations.
         #[inline(always)]
@@ -816,7 +816,7 @@ const _: () = {
             s11 - self.m2 * self.l2 * self.g * cos6
         }
 
-        /// What the rounding of the residual is measured in, by running error analysis.
+        /// Bounds the rounding error of the residual by running error analysis.
         #[cold]
         fn momentum_rounding(
             &self,
@@ -1036,7 +1036,7 @@ const _: () = {
             }
         }
 
-        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        /// Derivatives of both residuals, `p1 − p0` and `E1 − E0` with respect to the coordinates of the node, v and h.
         ///
         /// 141 operations.
         #[inline(always)]
@@ -1134,7 +1134,7 @@ const _: () = {
             }
         }
 
-        /// What the rounding of both residuals is measured in, by running error analysis.
+        /// Bounds the rounding errors of both residuals by running error analysis.
         #[cold]
         fn extended_rounding(
             &self,
@@ -1183,7 +1183,7 @@ const _: () = {
         }
     }
 
-    /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+    /// Declares a function for every name bound above: a binding may shadow it, but not a constant of the surrounding code.
     use ::core::primitive::{bool, f64, str, usize};
     use ::core::convert::{identity as name, identity as index, identity as t};
     use ::core::convert::{identity as q, identity as v, identity as θ1_dot};
@@ -1227,7 +1227,7 @@ const _: () = {
     use ::core::convert::{identity as systems, identity as rows};
 };
 
-/// Checks of [`DoublePendulum`](super::DoublePendulum) at the place that it names.
+/// Checks of [`DoublePendulum`](super::DoublePendulum) at the state of its `check` clause.
 #[cfg(test)]
 #[allow(clippy::all, clippy::pedantic, deprecated)]
 mod double_pendulum_checks {

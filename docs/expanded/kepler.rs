@@ -1,6 +1,6 @@
 // `Kepler`: L = dot(x)^2/2 + dot(y)^2/2 + mu/sqrt(x^2 + y^2)
 //
-// Operations of the functions for
+// Operation counts by method
 //     52  every method: lagrangian 13, energy 13, momentum 0, force 0, acceleration 13, non_finite 13
 //     34  Gauss, EnergyPreservingGauss: point 13, point_derivatives 21, power 0
 //     29  Gauss in transformed time: scaled_point 29
@@ -14,7 +14,7 @@
 /// energy-preserving integrator runs for e ≤ 0.785 and cannot run for e ≥ √(5/8).
 /// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.
 ///
-/// Discretized by the rule `midpoint`. What the generator found:
+/// Discretized by the rule `midpoint`. Properties found by the generator:
 ///
 /// * Autonomous and without a force: the energy is conserved
 /// * `L = T(v) + U(t, q)` with a constant mass matrix
@@ -209,7 +209,7 @@ const _: () = {
             })
         }
 
-        /// The first of what L and f are made of that is not finite here.
+        /// The first part of L and f that is not finite at this state.
         ///
         /// 13 operations.
         #[cold]
@@ -649,7 +649,7 @@ const _: () = {
             }
         }
 
-        /// How the residual and `p1 − p0` change with the coordinates of the node and with v.
+        /// Derivatives of the residual and of `p1 − p0` with respect to the coordinates of the node and v.
         ///
         /// 58 operations.
         #[inline(always)]
@@ -723,7 +723,7 @@ const _: () = {
                 - self.mu * (s2.recip() * s2.sqrt())
         }
 
-        /// What the rounding of the residual is measured in, by running error analysis.
+        /// Bounds the rounding error of the residual by running error analysis.
         #[cold]
         fn momentum_rounding(
             &self,
@@ -906,7 +906,7 @@ const _: () = {
             }
         }
 
-        /// How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.
+        /// Derivatives of both residuals, `p1 − p0` and `E1 − E0` with respect to the coordinates of the node, v and h.
         ///
         /// 115 operations.
         #[inline(always)]
@@ -988,7 +988,7 @@ const _: () = {
             }
         }
 
-        /// What the rounding of both residuals is measured in, by running error analysis.
+        /// Bounds the rounding errors of both residuals by running error analysis.
         #[cold]
         fn extended_rounding(
             &self,
@@ -1027,7 +1027,7 @@ const _: () = {
         }
     }
 
-    /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+    /// Declares a function for every name bound above: a binding may shadow it, but not a constant of the surrounding code.
     use ::core::primitive::{bool, f64, str, usize};
     use ::core::convert::{identity as name, identity as index, identity as t};
     use ::core::convert::{identity as q, identity as v, identity as x_dot};
@@ -1060,7 +1060,7 @@ const _: () = {
     use ::core::convert::identity as rows;
 };
 
-/// Checks of [`Kepler`](super::Kepler) at the place that it names.
+/// Checks of [`Kepler`](super::Kepler) at the state of its `check` clause.
 #[cfg(test)]
 #[allow(clippy::all, clippy::pedantic, deprecated)]
 mod kepler_checks {

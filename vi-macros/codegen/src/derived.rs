@@ -1,31 +1,31 @@
-//! A system with all that was derived from it by each of its rules, which is what the items are printed from.
+//! A system with everything derived from it under each of its rules: the input of the emitter.
 //!
-//! Each rule has a pool of its own: the order in which a pool meets expressions decides the order of operands, so a rule gives the
-//! same operations, bit for bit, whatever other rules the system is declared with.
+//! Each rule has its own pool. The order in which a pool meets expressions decides the order of operands. So a rule
+//! gives the same operations, bit for bit, whatever other rules the system declares.
 
 use crate::discrete::DiscreteSystem;
-use crate::found::Findings;
+use crate::findings::Findings;
 use crate::model::Model;
 use crate::program::Program;
 use crate::symbol::Symbol;
 use vi_expr::Pool;
 
-/// A system by each rule that it is declared with.
+/// The derivation of a system under each declared rule.
 pub struct Derivations {
-    /// By its own rule: the first of the list, or the one that is written out.
+    /// With the default rule: the first of the list, or the written-out one.
     pub own: Derived,
-    /// By the further rules of the list, in order; the model and the continuous functions are those of `own` once more.
+    /// With the further rules of the list, in order. Model and continuous functions equal those of `own`.
     pub further: Vec<Derived>,
 }
 
 impl Derivations {
-    /// All of them, that by the system's own rule first.
+    /// All derivations, the default rule first.
     pub fn all(&self) -> impl Iterator<Item = &Derived> {
         [&self.own].into_iter().chain(&self.further)
     }
 }
 
-/// A system with all that was derived from it by one rule.
+/// A system with everything derived from it under one rule.
 pub struct Derived {
     /// All expressions.
     pub pool: Pool<Symbol>,
@@ -35,6 +35,6 @@ pub struct Derived {
     pub system: DiscreteSystem,
     /// The functions as operations.
     pub program: Program,
-    /// What is special about the system.
+    /// Properties found in the operations.
     pub findings: Findings,
 }

@@ -1,7 +1,7 @@
-//! The expansion as a file, where the variable `VI_EXPAND_DIR` asks for it.
+//! Writes the expansion to a file if the variable `VI_EXPAND_DIR` is set.
 //!
-//! In: the tokens of a `lagrangian!`. Out: its expansion, and a line that makes cargo build again when the variable
-//! changes. A system with mistakes is not written; a file that cannot be written is a compile error with the reason.
+//! In: the tokens of a `lagrangian!`. Out: its expansion, and a line that makes cargo rebuild when the variable
+//! changes. A system with mistakes is not written. A failed write is a compile error with its reason.
 
 use crate::{Derivations, pretty};
 use proc_macro2::TokenStream;
@@ -9,7 +9,7 @@ use quote::quote;
 use std::env;
 use std::path::Path;
 
-/// Expands a system, and writes the expansion where it is wanted.
+/// Expands a system, and writes the expansion if `VI_EXPAND_DIR` is set.
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
     let folder = env::var_os("VI_EXPAND_DIR").filter(|folder| !folder.is_empty());
@@ -17,7 +17,7 @@ pub fn expand(tokens: TokenStream) -> TokenStream {
 }
 
 fn expand_into(tokens: TokenStream, folder: Option<&Path>) -> TokenStream {
-    // A system with mistakes is its errors, and no file.
+    // A system with mistakes expands to its errors and writes no file.
     let (items, error) = match crate::compile(tokens) {
         Ok(derivations) => {
             let items = crate::items(&derivations);
@@ -64,14 +64,14 @@ mod tests {
         assert_eq!(expansion(SYSTEM, None), expansion(SYSTEM, Some(&inner)), "the expansion itself is the same");
         let written = fs::read_to_string(inner.join("free_particle.rs")).expect("the file");
         assert!(
-            written.starts_with("// `FreeParticle`: L = dot(x)^2/2\n//\n// Operations of the functions for\n"),
+            written.starts_with("// `FreeParticle`: L = dot(x)^2/2\n//\n// Operation counts by method\n"),
             "{written}"
         );
         assert!(written.contains("::vi_core::stepping::FixedStepping<1, T>"));
-        // A system with mistakes says so, and is not written.
+        // A system with mistakes reports them and writes no file.
         assert!(expansion("struct Wrong { coord x; }", Some(&inner)).contains("compile_error"));
         assert_eq!(fs::read_dir(&inner).expect("the folder").count(), 1);
-        // A file stands where the folder should be.
+        // A file has the name of the folder.
         let blocked = inner.join("free_particle.rs");
         let error = expansion(SYSTEM, Some(&blocked));
         assert!(error.contains("cannot write the expansion of `FreeParticle` into `"), "{error}");

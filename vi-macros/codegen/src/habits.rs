@@ -1,10 +1,10 @@
-//! What people write by habit, of Rust, of other languages and of paper, and what this language writes for it.
+//! Notation of Rust, of other languages and of mathematics that this language writes differently.
 //!
-//! In: how it was written. Out: a message, what is wrong and what to write; of a word alone the help, or nothing.
+//! In: the notation found. Out: a message with the error and its correction; for a single word, the help only.
 
 use crate::rules;
 
-/// Something that is written otherwise in this language. The fields of a variant are the words that its text names.
+/// Notation that this language writes differently. The fields of a variant are the words that its text names.
 #[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Habit {
@@ -38,7 +38,7 @@ pub enum Habit {
     Path,
     /// `x: f64`.
     Type,
-    /// A number with letters behind it.
+    /// A number followed by letters.
     NumberSuffix { digits: String, suffix: String },
     /// `1.0f64`.
     TypeOfNumber { digits: String, name: String },
@@ -91,61 +91,63 @@ impl Habit {
     #[must_use]
     pub fn what(&self) -> String {
         match self {
-            Self::DoubleStar => "`**` is no operator".to_owned(),
+            Self::DoubleStar => "`**` is not an operator".to_owned(),
             Self::PowerOverNumber { exponent } => format!("`a^{exponent}/b` is `(a^{exponent}) / b`"),
-            Self::Bars => "bars are no absolute value".to_owned(),
-            Self::Prime => "a prime is no derivative".to_owned(),
+            Self::Bars => "bars do not denote the absolute value".to_owned(),
+            Self::Prime => "a prime does not denote a derivative".to_owned(),
             Self::Velocity { .. } => "unknown name `v`".to_owned(),
             Self::VelocityByName { name, .. }
             | Self::FunctionInName { name, .. }
             | Self::ProductInName { name, .. } => format!("unknown name `{name}`"),
-            Self::RuleWithArguments => "a rule is a name alone".to_owned(),
-            Self::RuleWithSign => "`discretize` is followed by the names of rules".to_owned(),
+            Self::RuleWithArguments => "a rule takes no arguments".to_owned(),
+            Self::RuleWithSign => "`discretize` takes names of rules, without `=`".to_owned(),
             Self::MissingOperator { left, right, .. } => {
                 format!("an operator is missing between `{left}` and `{right}`")
             }
             Self::FunctionWithoutParentheses { name, .. } => format!("`{name}` is a function"),
             Self::Method { name } => format!("`.{name}(…)`: numbers have no methods"),
-            Self::Path => "names have no paths".to_owned(),
-            Self::Type => "types are not written".to_owned(),
-            Self::NumberSuffix { digits, suffix } => format!("the number `{digits}` runs into `{suffix}`"),
+            Self::Path => "a name cannot have a path".to_owned(),
+            Self::Type => "a declaration has no type".to_owned(),
+            Self::NumberSuffix { digits, suffix } => {
+                format!("the number `{digits}` is followed directly by `{suffix}`")
+            }
             Self::TypeOfNumber { digits, name } => format!("the number `{digits}` has the type `{name}`"),
             Self::Conversion => "numbers need no conversion".to_owned(),
             Self::PointWithoutDigits { .. } => {
-                "a number has a digit before its point, and one before its exponent".to_owned()
+                "a number needs a digit before its point and before its exponent".to_owned()
             }
-            Self::Condition => "an expression has no conditions".to_owned(),
-            Self::NoOperator { sign } => format!("`{sign}` is no operator"),
-            Self::OtherBrackets => "a part of an expression stands in parentheses".to_owned(),
+            Self::Condition => "an expression cannot contain a condition".to_owned(),
+            Self::NoOperator { sign } => format!("`{sign}` is not an operator"),
+            Self::OtherBrackets => "only parentheses group an expression".to_owned(),
             Self::Field { name } => format!("`.{name}`: names have no fields"),
-            Self::Comment => "`#` begins no comment".to_owned(),
-            Self::DecimalComma => "a decimal fraction has a point".to_owned(),
-            Self::FunctionDefinition { name } => format!("`{name}(…)`: functions are not declared"),
-            Self::Mutable => "`let` names an expression, which does not change".to_owned(),
-            Self::ColonEquals => "a definition has `=`".to_owned(),
-            Self::AddedForce => "a force is written once".to_owned(),
-            Self::InclusiveRange => "a range stops before its end".to_owned(),
-            Self::IndexBehind => "an index stands behind a name only".to_owned(),
-            Self::UnitInBrackets => "a number has no unit".to_owned(),
-            Self::RangeOf { function } => format!("`{function}` has no range"),
+            Self::Comment => "`#` does not start a comment".to_owned(),
+            Self::DecimalComma => "a decimal fraction uses a point, not a comma".to_owned(),
+            Self::FunctionDefinition { name } => format!("`{name}(…)`: functions cannot be declared"),
+            Self::Mutable => "`let` names an expression and cannot be mutable".to_owned(),
+            Self::ColonEquals => "a definition uses `=`".to_owned(),
+            Self::AddedForce => "the force on a coordinate is written once".to_owned(),
+            Self::InclusiveRange => "a range excludes its end".to_owned(),
+            Self::IndexBehind => "only a name can have an index".to_owned(),
+            Self::UnitInBrackets => "a number cannot have a unit".to_owned(),
+            Self::RangeOf { function } => format!("`{function}` does not take a range"),
             Self::CoordinateWithArguments { name } => format!("`{name}` is a coordinate, not a function"),
-            Self::MissingSemicolon { after } => format!("`;` is missing behind `{after}`"),
+            Self::MissingSemicolon { after } => format!("`;` is missing after `{after}`"),
             Self::MissingValue { name, .. } => format!("`{name}` has no value"),
             Self::ValueOfCoordinate => "a coordinate is declared without a value".to_owned(),
-            Self::ForceWithoutCoordinate => "a force on no coordinate".to_owned(),
+            Self::ForceWithoutCoordinate => "this force names no coordinate".to_owned(),
         }
     }
 
-    /// What to write.
+    /// What to write instead.
     #[must_use]
     pub fn help(&self) -> String {
         match self {
             Self::DoubleStar => "write `x^2` for a power".to_owned(),
             Self::PowerOverNumber { exponent } => {
-                format!("write `a^({exponent}/b)` for a root; a quotient has its own parentheses, `(a^{exponent})/b`")
+                format!("write `a^({exponent}/b)` for a root; write a quotient as `(a^{exponent})/b`")
             }
             Self::Bars => "write `abs(x)`".to_owned(),
-            Self::Prime => "write `dot(x)` for the velocity of `x`; another name is `x_1`, say".to_owned(),
+            Self::Prime => "write `dot(x)` for the velocity of `x`; name another quantity `x_1`, for example".to_owned(),
             Self::VelocityByName { coordinate, .. } => format!("write `dot({coordinate})`, the velocity of `{coordinate}`"),
             Self::Velocity { coordinate } => {
                 format!("write `dot({coordinate})` for the velocity of `{coordinate}`, or name it: `let v = dot({coordinate});`")
@@ -157,48 +159,48 @@ impl Habit {
             }
             Self::RuleWithSign => format!("write `discretize {};`", rules::RULES[0].name),
             Self::MissingOperator { left, right, is_number: true } => suffix(right)
-                .unwrap_or_else(|| format!("write `{left} * {right}` for a product; units are not written")),
+                .unwrap_or_else(|| format!("write `{left} * {right}` for a product; units are not supported")),
             Self::MissingOperator { left, right, .. } => format!("write `{left} * {right}` for a product"),
             Self::FunctionWithoutParentheses { name, argument } => {
                 format!("write its argument in parentheses: `{name}({argument})`")
             }
             Self::Method { name } => function(name)
                 .unwrap_or_else(|| format!("write it as a function, `{name}(…)`, with all its arguments")),
-            Self::Path => "write names alone, as `pi` and `sin(x)`; a constant of the code around is a `param`".to_owned(),
+            Self::Path => "write plain names such as `pi` and `sin(x)`; pass a constant of the surrounding code as a `param`".to_owned(),
             Self::Type => {
-                "write `param m = 1.0;`, `coord x;`, `let a = …;`: every number is of one type, that of the run".to_owned()
+                "write `param m = 1.0;`, `coord x;`, `let a = …;`: all numbers have the numeric type of the run".to_owned()
             }
             Self::NumberSuffix { digits, suffix: word } => suffix(word)
-                .unwrap_or_else(|| format!("write `{digits} * {word}` for a product; units are not written")),
+                .unwrap_or_else(|| format!("write `{digits} * {word}` for a product; units are not supported")),
             Self::TypeOfNumber { digits, .. } => format!("write `{digits}`: numbers are exact and have no type"),
-            Self::Conversion => "leave `as` out; an index is a number, as in `i / 2`".to_owned(),
+            Self::Conversion => "remove `as`; an index is a number, as in `i / 2`".to_owned(),
             Self::PointWithoutDigits { number } => format!("write `{number}`"),
             Self::Condition => CONDITION.to_owned(),
             Self::NoOperator { sign: '%' } => {
                 "the operators are `+ - * / ^`; angles need no remainder, since `sin` and `cos` are periodic".to_owned()
             }
             Self::NoOperator { .. } => "the operators are `+ - * / ^`".to_owned(),
-            Self::OtherBrackets => "write `(a + b)`; brackets hold an index, and braces the lines of a rule or of a check".to_owned(),
+            Self::OtherBrackets => "write `(a + b)`; brackets enclose an index, braces the lines of a rule or a check".to_owned(),
             Self::Field { name } if name == "dot" => "write `dot(x)` for the velocity of `x`".to_owned(),
-            Self::Field { .. } => "write names alone: a parameter `m` is `m`, and the entries of an array are `q[0]`, `q[1]`".to_owned(),
+            Self::Field { .. } => "write plain names: `m` for a parameter, `q[0]`, `q[1]` for entries of an array".to_owned(),
             Self::Comment => "write `// …`".to_owned(),
-            Self::DecimalComma => "write `1.5`; a comma begins the next definition".to_owned(),
+            Self::DecimalComma => "write `1.5`; a comma separates definitions".to_owned(),
             Self::FunctionDefinition { name } => {
                 format!("write `let {name} = …;`, an expression of coordinates, velocities and parameters")
             }
-            Self::Mutable => "leave `mut` out".to_owned(),
-            Self::ColonEquals => "write `=` alone".to_owned(),
-            Self::AddedForce => "write `force x = …;`, all forces on `x` added up in one line".to_owned(),
+            Self::Mutable => "remove `mut`".to_owned(),
+            Self::ColonEquals => "write `=`".to_owned(),
+            Self::AddedForce => "write `force x = …;`, with the sum of all forces on `x`".to_owned(),
             Self::InclusiveRange => "write `0..N + 1` for the indices 0 to N".to_owned(),
-            Self::UnitInBrackets => "leave the brackets out: units are not written; choose one system of units for all numbers".to_owned(),
+            Self::UnitInBrackets => "remove the brackets; use one system of units for all numbers".to_owned(),
             Self::RangeOf { function } if PRODUCTS.contains(&function.as_str()) => {
-                "`sum` alone has a range: write the factors one by one, `q[0] * q[1] * q[2]`; of positive ones the product is \
+                "only `sum` takes a range: write the factors one by one, `q[0] * q[1] * q[2]`; of positive ones the product is \
                  `exp(sum(i in 0..8, ln(q[i])))`"
                     .to_owned()
             }
-            Self::RangeOf { .. } => "`sum` alone has a range, as in `sum(i in 0..8, q[i])`".to_owned(),
+            Self::RangeOf { .. } => "only `sum` takes a range, as in `sum(i in 0..8, q[i])`".to_owned(),
             Self::CoordinateWithArguments { name } => format!(
-                "write `{name}` for its value at the time `t`, `{name} * (…)` for a product; delays, its values at other times, are not \
+                "write `{name}` for its value at the time `t`, `{name} * (…)` for a product; delays (values at other times) are not \
                  supported"
             ),
             Self::IndexBehind => "write `dot(q[0])` for the velocity of `q[0]`, and name other arrays with `let`".to_owned(),
@@ -210,10 +212,10 @@ impl Habit {
             }
             Self::MissingValue { name, is_parameter: false } => format!("write `{name} = …`"),
             Self::MissingValue { name, .. } => {
-                format!("write `{name} = 1.0`: a `param` has a default, which its field may replace")
+                format!("write `{name} = 1.0`: a `param` needs a default; its field can override it")
             }
             Self::ValueOfCoordinate => {
-                "write `coord x;`: where a run starts, its `State` says, and where checks start, `check { x = 1; h = 0.01; }`; what stays constant is a `param`"
+                "write `coord x;`: set the initial value in the `State` of a run, or for checks in `check { x = 1; h = 0.01; }`; declare a constant as a `param`"
                     .to_owned()
             }
             Self::ForceWithoutCoordinate => {
@@ -222,7 +224,7 @@ impl Habit {
         }
     }
 
-    /// A number with letters behind it, which may be a type of Rust.
+    /// A number followed by letters, which may be a numeric type of Rust.
     pub(crate) fn of_suffix(digits: &str, suffix: &str) -> Self {
         let (digits, name) = (digits.to_owned(), suffix.trim_start_matches('_').to_owned());
         if TYPES.contains(&name.as_str()) {
@@ -232,7 +234,7 @@ impl Habit {
     }
 }
 
-/// Types of numbers of Rust.
+/// Numeric types of Rust.
 const TYPES: [&str; 14] =
     ["f32", "f64", "i8", "i16", "i32", "i64", "i128", "isize", "u8", "u16", "u32", "u64", "u128", "usize"];
 
@@ -282,7 +284,10 @@ const FUNCTIONS: [(&[&str], &str); 30] = [
     (&["csch"], "write `1 / sinh(a)`"),
     (&["coth"], "write `1 / tanh(a)`"),
     (&["sinc"], "write `sin(a) / a`, which has no value at a = 0"),
-    (&["floor", "ceil", "round", "mod", "fmod"], "a formula is smooth: `sin` and `cos` are periodic without it"),
+    (
+        &["floor", "ceil", "round", "mod", "fmod"],
+        "rounding and remainders are not supported; `sin` and `cos` are periodic without them",
+    ),
     (&["asinh", "arsinh", "arcsinh"], "write `ln(a + sqrt(a^2 + 1))`"),
     (&["cbrt"], "write `a^(1/3)`"),
     (&["square", "sqr", "sq"], "write `a^2`"),
@@ -323,23 +328,23 @@ const FUNCTIONS: [(&[&str], &str); 30] = [
             "lambertw",
             "factorial",
         ],
-        "special functions are not supported: write a formula that is close to it where the system moves, as a polynomial",
+        "special functions are not supported: write an approximation that is accurate in the range of the motion, such as a polynomial",
     ),
     (&["complex", "Complex", "re", "Re", "im", "Im", "real", "imag", "conj", "arg"], COMPLEX),
     (
         &["delay", "delayed", "lag", "history"],
-        "delays are not supported: an expression depends on the time and the state at one time",
+        "delays are not supported: an expression depends on the state at one time only",
     ),
 ];
 
-/// Derivatives by time, which are one function here, and by coordinates.
+/// Derivatives with respect to time, which are one function here, and with respect to coordinates.
 const DERIVATIVES: [&str; 12] =
     ["diff", "der", "ddt", "d", "D", "derivative", "prime", "grad", "gradient", "partial", "pdiff", "Diff"];
 
-/// What to do about numbers with an imaginary part.
-const COMPLEX: &str = "complex numbers are not supported: write real and imaginary part as two coordinates, and `exp(i x)` by `cos(x)` and `sin(x)`";
+/// Help for complex numbers.
+const COMPLEX: &str = "complex numbers are not supported: write the real and the imaginary part as two coordinates, and `exp(i x)` with `cos(x)` and `sin(x)`";
 
-/// What to do about an angle in degrees.
+/// Help for angles in degrees.
 pub(crate) const DEGREES: &str = "angles are in radians: write `30 * pi / 180` for 30 degrees";
 
 /// Names.
@@ -349,16 +354,16 @@ const NAMES: [(&[&str], &str); 9] = [
     (&["time"], "write `t`"),
     (
         &["i", "j", "k"],
-        "an index has its range, as in `sum(i in 0..3, q[i])`; else declare it with `param`, `const` or `coord`; complex numbers are not \
+        "an index needs a range, as in `sum(i in 0..3, q[i])`; otherwise declare it with `param`, `const` or `coord`; complex numbers are not \
          supported",
     ),
     (&["im", "I"], COMPLEX),
     (&["deg", "degree", "degrees"], DEGREES),
     (
         &["p", "momentum"],
-        "declare it with `param`, `const` or `coord`; a momentum is written by the velocity, as `m * dot(x)`",
+        "declare it with `param`, `const` or `coord`; write a momentum in terms of the velocity, as `m * dot(x)`",
     ),
-    (&["dt", "ddt"], "write `dot(x)` for the derivative of `x` by time"),
+    (&["dt", "ddt"], "write `dot(x)` for the derivative of `x` with respect to time"),
     (&["lambda", "λ", "multiplier"], CONSTRAINT),
 ];
 
@@ -367,19 +372,18 @@ const OF_RULES: [(&[&str], &str); 2] = [
     (&["Gauss", "gauss_legendre", "legendre", "collocation", "galerkin", "order", "stages"], GAUSS),
     (
         &["verlet", "Verlet", "leapfrog", "stoermer_verlet", "stormer_verlet", "velocity_verlet"],
-        "write `trapezoidal`, which is Störmer–Verlet where `L` is `v·Mv/2 - V(t, q)`",
+        "write `trapezoidal`, which is Störmer–Verlet when `L` is `v·Mv/2 - V(t, q)`",
     ),
 ];
 
-/// Where the order is chosen.
-pub(crate) const GAUSS: &str =
-    "every system has Gauss steps without a clause: `integrate(Gauss::<S>, h)` takes them with S stages, of order 2 S";
+/// Help on the order of the method.
+pub(crate) const GAUSS: &str = "Gauss methods need no clause: `integrate(Gauss::<S>, h)` uses S stages, order 2 S";
 
-/// Where a step and a start are given.
-pub(crate) const RUN: &str = "a step and an initial state belong to a run: `system.at(t, q, v).integrate(FixedStep, h)`; those of checks belong in \
+/// Help on the step and the initial state.
+pub(crate) const RUN: &str = "set the step and the initial state of a run: `system.at(t, q, v).integrate(FixedStep, h)`; set those of checks in \
     `check { x = 1; h = 0.01; }`";
 
-/// Greek letters by their words.
+/// Greek letters and their names.
 const GREEK: [(&str, &str); 24] = [
     ("alpha", "α"),
     ("beta", "β"),
@@ -407,13 +411,13 @@ const GREEK: [(&str, &str); 24] = [
     ("varphi", "ϕ"),
 ];
 
-/// Letters with one and with two dots above that are letters of their own.
+/// Precomposed letters with one and with two dots above.
 const DOTTED: [(&str, &str); 2] = [("ȧċėġẋẏżṙṡṗṁṅȯ", "acegxyzrspmno"), ("äëïöüẍÿ", "aeiouxy")];
 
-/// The marks that put one and two dots above the letter before.
+/// Combining marks that put one and two dots above the letter before them.
 const DOTS: [char; 2] = ['\u{307}', '\u{308}'];
 
-/// The name without its so many dots above the last letter; nothing where it has others.
+/// The name without this number of dots above its last letter; `None` for other numbers.
 pub(crate) fn without_dots(name: &str, dots: usize) -> Option<String> {
     let (mark, (dotted, plain)) = DOTS.into_iter().zip(DOTTED).nth(dots.checked_sub(1)?)?;
     if let Some(stem) = name.strip_suffix(mark) {
@@ -424,35 +428,35 @@ pub(crate) fn without_dots(name: &str, dots: usize) -> Option<String> {
     Some(name.chars().rev().skip(1).collect::<Vec<_>>().into_iter().rev().chain([letter]).collect())
 }
 
-/// A Greek letter for its word, or the word for the letter, with what stands behind it.
+/// A Greek letter for its name, or the name for the letter, with the rest of the word.
 pub(crate) fn other_alphabet(name: &str) -> Option<String> {
     let pairs = GREEK.into_iter().flat_map(|(word, letter)| [(word, letter), (letter, word)]);
     pairs.into_iter().find_map(|(one, other)| name.strip_prefix(one).map(|rest| format!("{other}{rest}")))
 }
 
-/// What to do about a constraint.
-pub(crate) const CONSTRAINT: &str = "the language has no constraints: choose coordinates that satisfy them, as the angle of a rod, or hold \
-    them with a stiff spring, `- k * (…)^2 / 2` in `L`";
+/// Help for a constraint.
+pub(crate) const CONSTRAINT: &str = "constraints are not supported: choose coordinates that satisfy them, such as the angle of a rod, or \
+    approximate them with a stiff spring, `- k * (…)^2 / 2` in `L`";
 
-/// What to do about a distinction of cases.
-const CONDITION: &str = "a formula holds everywhere: write `abs(a)` and `sign(a)`, as in `(1 + sign(a)) / 2`, which is 1 where a is positive and 0 where it is negative";
+/// Help for a condition.
+const CONDITION: &str = "write one formula for all states with `abs(a)` and `sign(a)`, as in `(1 + sign(a)) / 2`, which is 1 for positive and 0 for negative a";
 
-/// What a clause by another name is called.
+/// Help for an unknown clause.
 pub(crate) fn clause(word: &str) -> Option<String> {
     find(&CLAUSES, word)
 }
 
-/// What a function by another name is called.
+/// Help for an unknown function.
 pub(crate) fn function(name: &str) -> Option<String> {
     if DERIVATIVES.contains(&name) {
-        let help = "write `dot(a)` for a derivative by time; derivatives of `L` by coordinates are taken for you, so that a potential \
-            `V` acts by `- V` in `L`";
+        let help = "write `dot(a)` for a derivative with respect to time; the macro differentiates `L` with respect to coordinates, so that a potential \
+            `V` enters `L` as `- V`";
         return Some(help.to_owned());
     }
     find(&FUNCTIONS, name)
 }
 
-/// What letters behind a number are, if they are neither a product nor a unit to leave out.
+/// Help for letters after a number that are neither a product nor a unit.
 fn suffix(letters: &str) -> Option<String> {
     match letters {
         "i" | "j" | "im" => Some(COMPLEX.to_owned()),
@@ -461,12 +465,12 @@ fn suffix(letters: &str) -> Option<String> {
     }
 }
 
-/// What a rule by another name is called, or where its order is chosen.
+/// Help for an unknown rule.
 pub(crate) fn rule(name: &str) -> Option<String> {
     find(&OF_RULES, name)
 }
 
-/// What something by another name is called.
+/// Help for an unknown name.
 pub(crate) fn name(name: &str) -> Option<String> {
     find(&NAMES, name)
 }

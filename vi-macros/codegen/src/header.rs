@@ -1,6 +1,6 @@
-//! The opening of an expansion as a file: L, and the functions with their operations, method by method.
+//! The header of an expansion file: L, and the operation counts of the functions, method by method.
 //!
-//! In: a system by each of its rules. Out: lines of comments. What the generator found follows in the documentation of the struct.
+//! In: a system under each of its rules. Out: comment lines. The documentation of the struct lists the findings.
 
 use crate::program::{Function, FunctionId};
 use crate::{Derivations, Derived};
@@ -8,7 +8,7 @@ use crate::{Derivations, Derived};
 /// Characters of L that are shown.
 const CHARACTERS: usize = 400;
 
-/// The methods of all systems, and the functions that they call.
+/// The methods of all systems with the functions that they call.
 const OF_MOTION: [(&str, &[FunctionId]); 3] = [
     (
         "every method",
@@ -25,7 +25,7 @@ const OF_MOTION: [(&str, &[FunctionId]); 3] = [
     ("Gauss in transformed time", &[FunctionId::ScaledPoint]),
 ];
 
-/// The methods of a rule, and the functions that they call.
+/// The methods of a rule with the functions that they call.
 const OF_RULE: [(&str, &[FunctionId]); 3] = [
     (
         "FixedStep, Composition, Ensemble",
@@ -61,16 +61,13 @@ const OF_RULE: [(&str, &[FunctionId]); 3] = [
     ),
 ];
 
-/// The opening of the expansion of a system.
+/// The header of the expansion of a system.
 pub(crate) fn header(derivations: &Derivations) -> String {
     let own = &derivations.own;
     let lagrangian =
         own.pool.render_within(CHARACTERS, own.system.continuous.lagrangian, &|symbol| own.model.spell(symbol));
-    let mut lines = vec![
-        format!("`{}`: L = {lagrangian}", own.model.name),
-        String::new(),
-        "Operations of the functions for".to_owned(),
-    ];
+    let mut lines =
+        vec![format!("`{}`: L = {lagrangian}", own.model.name), String::new(), "Operation counts by method".to_owned()];
     lines.extend(OF_MOTION.iter().filter_map(|of| counted(own, "", *of)));
     for derived in derivations.all() {
         let Some(rule) = &derived.model.rule else { continue };
@@ -87,7 +84,7 @@ pub(crate) fn header(derivations: &Derivations) -> String {
     lines.into_iter().map(comment).chain(["\n".to_owned()]).collect()
 }
 
-/// The operations of these functions, all together and one by one; none if the system has none of them.
+/// Operation counts of these functions, in total and one by one; empty if the system has none of them.
 fn counted(derived: &Derived, by: &str, (methods, ids): (&str, &[FunctionId])) -> Option<String> {
     let functions: Vec<&Function> = ids.iter().filter_map(|id| derived.program.function(*id)).collect();
     let all: usize = functions.iter().map(|function| function.operation_count()).sum();

@@ -1,4 +1,4 @@
-//! The compiler behind `lagrangian!`, an ordinary library: tests, benches and the command call it too.
+//! The compiler behind `lagrangian!`, as an ordinary library: tests, benches and the command use it too.
 //!
 //! ```text
 //! tokens ──parse──▶ syntax::System ──check──▶ model::Model ──discretize──▶ discrete::DiscreteSystem
@@ -7,14 +7,14 @@
 //!                                                 (shared operations)       (Rust)
 //! ```
 //!
-//! One stage, one folder, one product. A stage reports all its errors before the next one starts. The stages behind parse run once
-//! for each rule that the system is declared with.
+//! One stage, one folder, one product. A stage reports all its errors before the next one starts. The stages after
+//! parsing run once for each declared rule.
 
 mod derived;
 pub mod discrete;
 pub mod emit;
 pub mod file;
-pub mod found;
+pub mod findings;
 mod habits;
 mod header;
 #[cfg(feature = "inspect")]
@@ -36,13 +36,13 @@ use proc_macro2::TokenStream;
 use syntax::parse;
 use vi_expr::Pool;
 
-/// What a `lagrangian!` becomes: the items of the system, or its errors with a stub of the struct.
+/// Expands a `lagrangian!` to the items of the system, or to its errors with a stub of the struct.
 #[must_use]
 pub fn expand(tokens: TokenStream) -> TokenStream {
     compile(tokens).map_or_else(|errors| errors, |derivations| items(&derivations))
 }
 
-/// A system from its tokens.
+/// Derives a system from its tokens.
 ///
 /// # Errors
 /// The errors as items, with a stub of the struct.
@@ -54,30 +54,30 @@ pub fn compile(tokens: TokenStream) -> Result<Derivations, TokenStream> {
     derive(&system).map_err(|error| Broken::of(&system).with(&error))
 }
 
-/// The stages from a system as written up to its programs, one by each of its rules.
+/// Runs the stages from the parsed system to its programs, one per rule.
 ///
 /// # Errors
-/// Everything that the first stage which fails finds wrong.
+/// All errors of the first stage that fails.
 pub fn derive(system: &syntax::System) -> syn::Result<Derivations> {
     let own = derive_by(system, 0)?;
     let further = (1..system.rules()).map(|place| derive_by(system, place)).collect::<syn::Result<_>>()?;
     Ok(Derivations { own, further })
 }
 
-/// The stages by the rule of this place in the list of the system.
+/// Runs the stages for the rule at this position of the list.
 fn derive_by(system: &syntax::System, place: usize) -> syn::Result<Derived> {
     let mut pool = Pool::bounded(limits::WORK);
     let model = check::model(&mut pool, system, place).map_err(messages::bounded)?;
     let system = discrete::system::system(&mut pool, &model)?;
     let program = program::program(&mut pool, &model, &system)?;
-    let findings = found::findings(&model, &system, &program);
+    let findings = findings::findings(&model, &system, &program);
     Ok(Derived { pool, model, system, program, findings })
 }
 
 /// The expansion of a system as the text of a file.
 ///
 /// # Errors
-/// Tokens that are no items of Rust: a mistake of this compiler.
+/// Tokens that are not Rust items: a bug of this compiler.
 pub fn text(derivations: &Derivations) -> syn::Result<String> {
     Ok(header::header(derivations) + &pretty::text(items(derivations))?)
 }

@@ -1,24 +1,24 @@
-//! How large a system may become.
+//! Limits on the size of a system.
 //!
-//! In: the pool of a system, which counts its terms and the work that was done on it. Out: whether both are within bounds, asked by
-//! every stage, so that a refusal comes within seconds and is the same everywhere.
+//! In: the pool of a system, which counts its terms and the work spent on it. Out: whether both are within bounds.
+//! Every stage checks this, so that a rejection comes within seconds and does not depend on the machine.
 
 use crate::symbol::Symbol;
 use vi_expr::{Pool, TooLarge};
 
-/// Coordinates that a system may have.
+/// Maximum number of coordinates of a system.
 pub(crate) const COORDINATES: usize = 256;
 
-/// Entries that an array of parameters may have.
+/// Maximum number of entries of an array of parameters.
 pub(crate) const PARAMETERS: usize = 256;
 
-/// Distinct terms that the expressions of one system may have together, those of all stages.
+/// Maximum number of distinct terms in the expressions of all stages of a system.
 const TERMS: usize = 85_000;
 
-/// Steps of algebra that one system may take, those of all stages: half a second, and 3 to 8 s in a build without optimisation.
+/// Maximum work in all stages of a system: half a second, or 3 to 8 s in an unoptimized build.
 pub(crate) const WORK: usize = 56_000_000;
 
-/// Whether a system is still within its size.
+/// Whether a system is within its limits.
 pub(crate) fn bounded(pool: &Pool<Symbol>) -> Result<(), TooLarge> {
     pool.within_work()?;
     if pool.len() > TERMS { Err(TooLarge::Terms { limit: TERMS }) } else { Ok(()) }

@@ -1,7 +1,7 @@
-//! Every message that a user of `lagrangian!` can meet, in one catalogue.
+//! Every message of `lagrangian!` to its users, in one catalogue.
 //!
-//! In: what a stage found wrong. Out: the text, what is wrong first, then what to do; lower case, no full stop.
-//! A stage collects its errors in [`Errors`] and reports them all before the next stage starts.
+//! In: an error found by a stage. Out: its text: the error, then the correction; lower case, no full stop. A stage
+//! collects its errors in [`Errors`] and reports them all before the next stage starts.
 
 use crate::habits::{self, Habit};
 use crate::rules;
@@ -9,31 +9,33 @@ use proc_macro2::Span;
 use std::collections::BTreeSet;
 use vi_expr::TooLarge;
 
-/// Messages that are shown of one system; a last one counts those after them.
+/// Messages shown for one system; a last message counts the others.
 const SHOWN: usize = 30;
 
-/// Where attributes stand.
-const ATTRIBUTES: &str = "before a clause stand doc comments, before a `param` attributes of its field; a `#[cfg]` stands before the `struct`";
+/// Where attributes are allowed.
+const ATTRIBUTES: &str =
+    "write doc comments before a clause, attributes of the field before a `param`, and `#[cfg]` before the `struct`";
 
-/// What Rayleigh functions of friction are.
+/// Rayleigh functions of friction.
 const FRICTION: &str = "write `c * dot(x)^2 / 2` for viscous friction, `c * abs(dot(x))` for dry friction; a driving force belongs in `force x = …;`";
 
-/// What to do about a Rayleigh function that adds energy.
-const OTHER_SIGN: &str = "write it with the other sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`";
+/// Correction of a Rayleigh function that adds energy.
+const OTHER_SIGN: &str =
+    "reverse its sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`";
 
-/// What to do about an expression without a derivative.
-const OTHERWISE: &str = "its derivative divides by zero, or holds the logarithm of zero or of a negative number, for every state; write it otherwise";
+/// Correction of an expression without a derivative.
+const OTHERWISE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";
 
-/// Why an expression does not see a name that the system declares.
+/// Why an expression cannot use a declared name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Absence {
-    /// It stands further below, or is being declared.
+    /// Its declaration comes later, or is this one.
     Below,
-    /// It is a parameter, and the expression a constant.
+    /// It is a parameter; the expression is a constant.
     Parameter,
-    /// It is a coordinate, and the expression a constant.
+    /// It is a coordinate; the expression is a constant.
     Coordinate,
-    /// It is a `let`, and the expression a constant.
+    /// It is a `let`; the expression is a constant.
     Let,
 }
 
@@ -41,17 +43,17 @@ impl Absence {
     fn what(self, name: &str) -> String {
         match self {
             Self::Below => format!("`{name}` is not declared before this line"),
-            Self::Parameter => format!("`{name}` is a parameter, which has no value until the system runs"),
-            Self::Coordinate => format!("`{name}` is a coordinate, which has no value until the system runs"),
-            Self::Let => format!("`{name}` is a `let`, which constants do not see"),
+            Self::Parameter => format!("`{name}` is a parameter: it has no value at compile time"),
+            Self::Coordinate => format!("`{name}` is a coordinate: it has no value at compile time"),
+            Self::Let => format!("`{name}` is a `let`, which a constant cannot use"),
         }
     }
 
     fn help(self) -> String {
         match self {
-            Self::Below => "move its declaration up: a `let` sees those above it, and a `const` too",
+            Self::Below => "move its declaration up: a `let` or `const` uses earlier declarations only",
             Self::Parameter | Self::Coordinate | Self::Let => {
-                "defaults, `const`s and lengths are made of numbers and `const`s; what depends on parameters or coordinates is named by \
+                "write defaults, `const`s and lengths with numbers and `const`s; name an expression of parameters or coordinates with \
                  `let`, as in `let w = sqrt(k / m);`"
             }
         }
@@ -59,10 +61,10 @@ impl Absence {
     }
 }
 
-/// Why a mass matrix is singular for every state.
+/// Why a mass matrix is singular in every state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Singular {
-    /// This coordinate adds nothing to it.
+    /// This coordinate contributes nothing to it.
     Massless(String, Massless),
     /// L is linear in all velocities: the equations are of first order.
     FirstOrder,
@@ -72,12 +74,12 @@ pub enum Singular {
     Dependent,
 }
 
-/// How a coordinate stands in L that adds nothing to the mass matrix.
+/// How L depends on a coordinate that contributes nothing to the mass matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Massless {
-    /// Its velocity is not there.
+    /// L does not contain its velocity.
     Absent,
-    /// Its velocity is there, in the first power alone.
+    /// L contains its velocity to the first power only.
     Linear,
     /// It multiplies a function of others.
     Multiplier,
@@ -89,17 +91,17 @@ pub enum Massless {
 pub enum Message {
     /// Two declarations of one name.
     Duplicate { name: String },
-    /// A name that the language keeps for itself.
+    /// A name reserved by the language.
     Reserved { name: String },
-    /// A name of the struct that the emitted code uses for something else.
+    /// A name of the struct that the emitted code uses for another type.
     ReservedType { name: String },
-    /// A trait that every system has.
+    /// A trait that every system implements.
     SecondDerive { name: String },
-    /// An attribute that does nothing where it stands.
+    /// An attribute without effect at this position.
     AttributeOfClause,
-    /// A name that is not declared (or not yet).
+    /// An undeclared name.
     Unknown { name: String, near: Option<String> },
-    /// A name that is declared, but not for this expression.
+    /// A declared name that this expression cannot use.
     Absent { name: String, absence: Absence },
     /// A function that the language does not have.
     UnknownFunction { name: String, near: Option<String> },
@@ -111,37 +113,37 @@ pub enum Message {
     DotOfConstant { name: String },
     /// The velocity in a check of something that is not a coordinate.
     DotOfOther { name: String },
-    /// `dot(dot(x))`, or a name that reads as an acceleration.
+    /// `dot(dot(x))`, or a name that denotes an acceleration.
     Acceleration { name: String },
-    /// A constant or default that is not made of numbers and constants.
+    /// A constant or default that contains more than numbers and constants.
     NotConstant { name: String },
     /// A constant or default that is infinite or not a number.
     NotFinite { name: String },
     /// A division by the exact number zero.
     DivisionByZero,
-    /// An expression that has a value nowhere, as `ln(-1)`.
+    /// An expression without a value in any state, such as `ln(-1)`.
     NoValue,
-    /// A constant whose digits cancel further than it is computed.
+    /// A constant whose digits cancel beyond the working precision.
     Undecided,
-    /// A number that has to be an integer.
+    /// A number that must be an integer.
     NotInteger,
     /// A length of an array out of bounds.
     Length { given: i64, limit: usize },
     /// A length of an array of parameters out of bounds.
     ParametersLength { given: i64, limit: usize },
-    /// A list of values that is not as long as its array.
+    /// A list of values whose length differs from its array.
     ParameterValues { name: String, length: usize, values: usize },
-    /// A list of values for a parameter that is no array.
+    /// A list of values for a scalar parameter.
     ParameterWithoutLength { name: String, values: usize },
     /// An index out of the range of its array.
     IndexRange { name: String, index: i64, first: i64, end: i64 },
     /// A range that ends before it begins.
     BackwardRange { from: i64, to: i64 },
-    /// An index on something that is no array.
+    /// An index on a name that is not an array.
     NotArray { name: String },
     /// An array without an index.
     ArrayWithoutIndex { name: String },
-    /// A parameter that nothing depends on.
+    /// An unused parameter.
     UnusedParameter { name: String },
     /// A second line `dissipation = …;`.
     SecondDissipation,
@@ -149,15 +151,15 @@ pub enum Message {
     NoDissipation,
     /// A term of a Rayleigh function that is linear in the velocities.
     ConstantDissipation,
-    /// A Rayleigh function by which the motion gains energy.
+    /// A Rayleigh function that adds energy.
     FeedingDissipation,
     /// A second line `time_scale = …;`.
     SecondTimeScale,
-    /// A time scale that depends on velocities, by this name.
+    /// A time scale that depends on velocities through this name.
     VelocityInTimeScale { name: String },
-    /// A time scale that is a number, and not a positive one.
+    /// A constant time scale that is not positive.
     TimeScaleNotPositive,
-    /// A slot that L_d does not depend on.
+    /// A slot that does not appear in L_d.
     UnusedSlot { name: &'static str },
     /// No line `L = …;`.
     MissingLagrangian,
@@ -171,67 +173,67 @@ pub enum Message {
     MissingStep,
     /// A check with a step that is zero or negative.
     StepNotPositive,
-    /// A line of a check for a name that is neither a coordinate nor a parameter.
+    /// A line of a check that names neither a coordinate nor a parameter.
     CheckOfOther { name: String, near: Option<String> },
-    /// A second line of a check for one coordinate, velocity or parameter.
+    /// A second line of a check for the same coordinate, velocity or parameter.
     SecondEntry { name: String },
     /// No line `coord …;`.
     MissingCoordinates,
-    /// A force on a name that is no coordinate.
+    /// A force on a name that is not a coordinate.
     ForceOnOther { name: String, near: Option<String> },
     /// A second force on one coordinate.
     SecondForce { name: String },
     /// L does not depend on any velocity.
     NoVelocity,
-    /// The mass matrix has no inverse anywhere.
+    /// The mass matrix is singular in every state.
     SingularMass { why: Singular },
-    /// A rule by a name that does not exist.
+    /// An unknown rule.
     UnknownRule { name: String, near: Option<String> },
     /// A rule that a list names twice.
     RepeatedRule { name: String },
     /// A rule written out in a list of rules.
     WrittenInList,
-    /// A line of a rule that is no slot of it.
+    /// A line of a rule with an unknown name.
     UnknownSlot { name: String },
-    /// A line of a rule that is missing.
+    /// A missing line of a rule.
     MissingSlot { name: &'static str },
     /// A slot of a rule written twice.
     SecondSlot { name: String },
-    /// A name in a rule that changes with the state.
+    /// A name that depends on the state, in a rule.
     NotInRule { name: String },
     /// L or f in the arguments of L or f.
     FieldInArgument,
     /// A vector where a rule needs a number, or the reverse.
     Shape { needs: &'static str },
-    /// A clause that does not exist.
+    /// An unknown clause.
     UnknownClause { found: String, near: Option<String>, is_defined: bool, is_coordinate: bool },
-    /// Anything that the grammar does not allow at this token.
+    /// A token that the grammar does not allow.
     Expected { what: &'static str },
-    /// What is written otherwise in this language.
+    /// Notation that this language writes differently.
     Habit(Habit),
-    /// A number that is no decimal integer or decimal fraction.
+    /// A number that is not a decimal integer or fraction.
     NotDecimal,
-    /// A number out of the range of `f64`.
+    /// A number outside the range of `f64`.
     NumberRange,
-    /// A part of L or of a force without a derivative that the equations need.
+    /// A part of L or of a force that has no derivative, which the equations need.
     NoDerivative { expression: String, by: String },
-    /// A coefficient of the equations that no `f64` holds.
+    /// A coefficient of the equations outside the range of `f64`.
     CoefficientRange,
     /// Parentheses nested too deep.
     TooDeep { limit: usize },
-    /// A system of too many tokens.
+    /// A system with too many tokens.
     TooLong { limit: usize },
-    /// A name of too many letters.
+    /// A name with too many letters.
     LongName { limit: usize },
     /// More coordinates than a system may have.
     TooManyCoordinates { limit: usize },
-    /// A system that grew over a limit.
+    /// A system that exceeds a limit.
     TooLarge(TooLarge),
     /// Text after the system.
     AfterSystem,
-    /// So many more messages, which are not shown.
+    /// The number of messages that are not shown.
     More { count: usize },
-    /// A mistake of this compiler, found by checking its own output.
+    /// A bug of this compiler, found by checking its own output.
     Internal { what: &'static str },
 }
 
@@ -239,37 +241,37 @@ fn did_you_mean(near: Option<&String>, otherwise: &str) -> String {
     near.map_or_else(|| otherwise.to_owned(), |name| format!("did you mean `{name}`?"))
 }
 
-/// What to do about a name that is reserved.
+/// Help for a reserved name.
 fn another_name(name: &str) -> String {
     match name {
         "t" => "`t` is the time; choose another name".to_owned(),
-        "L" | "f" => format!("`{name}` stands for the Lagrangian or the force; choose another name"),
+        "L" | "f" => format!("`{name}` denotes the Lagrangian or the force; choose another name"),
         _ => "choose another name".to_owned(),
     }
 }
 
-/// What to do about a word that opens no clause; behind one that is defined stands `=`.
+/// Help for an unknown clause; `is_defined` if `=` follows it.
 fn clause_for(found: &str, near: Option<&String>, is_defined: bool) -> String {
     let clauses = "the clauses are const, param, coord, let, L, force, dissipation, time_scale, discretize, check";
     let part = || if is_defined { format!("write `let {found} = …;` to name a part") } else { clauses.to_owned() };
     habits::clause(found).unwrap_or_else(|| did_you_mean(near, &part()))
 }
 
-/// What to write in place of a name that is not declared.
+/// Help for an undeclared name.
 fn name_for(name: &str, near: Option<&String>) -> String {
-    let declare = "declare it with `param`, `const` or `coord`, or above with `let`";
-    // A lone letter is an index or a name of its own before it is `pi`.
+    let declare = "declare it with `param`, `const`, `coord`, or an earlier `let`";
+    // A lone letter is rarely a misspelt `pi`.
     let near = near.filter(|near| *near != "pi" || name.chars().count() > 1);
     did_you_mean(near, &habits::name(name).unwrap_or_else(|| declare.to_owned()))
 }
 
-/// What to write in place of a rule that does not exist.
+/// Help for an unknown rule.
 fn rule_for(name: &str, near: Option<&String>) -> String {
     let rules = || format!("the rules are {}; {}", rules::list(), habits::GAUSS);
     habits::rule(name).unwrap_or_else(|| did_you_mean(near, &rules()))
 }
 
-/// A call with so many arguments.
+/// A call with `takes` arguments.
 fn with_arguments(name: &str, takes: usize) -> String {
     match takes {
         1 => format!("write `{name}(a)`"),
@@ -278,8 +280,8 @@ fn with_arguments(name: &str, takes: usize) -> String {
     }
 }
 
-/// What to do about a direction without kinetic energy.
-fn move_with_energy(why: &Singular) -> String {
+/// Help for a coordinate without kinetic energy.
+fn kinetic_energy_help(why: &Singular) -> String {
     match why {
         Singular::Massless(name, Massless::Multiplier) => {
             format!("`{name}` multiplies a constraint; {}", habits::CONSTRAINT)
@@ -289,7 +291,7 @@ fn move_with_energy(why: &Singular) -> String {
              `{name}` a `param`"
         ),
         Singular::Massless(name, Massless::Linear) => format!(
-            "`dot({name})` stands in `L` in the first power alone, which is no kinetic energy: add a term with `dot({name})^2`"
+            "`dot({name})` appears in `L` only to the first power, which is not kinetic energy: add a term with `dot({name})^2`"
         ),
         Singular::FirstOrder => {
             "`L` is linear in the velocities; systems of first order, dq/dt = f(q), are not supported: every coordinate needs a kinetic \
@@ -297,7 +299,7 @@ fn move_with_energy(why: &Singular) -> String {
                 .to_owned()
         }
         Singular::Homogeneous => {
-            "`L` is homogeneous of degree 1 in the velocities, so that its motion has no speed: let the time `t` take the place of one \
+            "`L` is homogeneous of degree 1 in the velocities, so the equations do not determine the speed: use the time `t` in place of one \
              coordinate, as in `-m * c^2 * sqrt(1 - dot(x)^2 / c^2)`"
                 .to_owned()
         }
@@ -308,7 +310,7 @@ fn move_with_energy(why: &Singular) -> String {
 }
 
 impl Message {
-    /// What is wrong.
+    /// The error.
     #[must_use]
     pub fn what(&self) -> String {
         match self {
@@ -329,18 +331,18 @@ impl Message {
             Self::DivisionByZero => "division by zero".to_owned(),
             Self::NoValue => "this expression has no value".to_owned(),
             Self::Undecided => "more than 4096 bits are needed to round this constant".to_owned(),
-            Self::NotInteger => "this has to be a constant integer".to_owned(),
-            Self::Length { given, .. } => format!("an array of {given} coordinates"),
-            Self::ParametersLength { given, .. } => format!("an array of {given} parameters"),
+            Self::NotInteger => "this must be a constant integer".to_owned(),
+            Self::Length { given, .. } => format!("an array cannot have {given} coordinates"),
+            Self::ParametersLength { given, .. } => format!("an array cannot have {given} parameters"),
             Self::ParameterValues { name, length, values } => {
-                format!("`{name}` has the length {length}, and a list of {values} values")
+                format!("`{name}` has length {length} but a list of {values} values")
             }
-            Self::ParameterWithoutLength { name, .. } => format!("`{name}` is no array, and has a list of values"),
+            Self::ParameterWithoutLength { name, .. } => format!("`{name}` is not an array but has a list of values"),
             Self::IndexRange { name, index, first, end } => format!("`{name}[{index}]` is out of range {first}..{end}"),
             Self::BackwardRange { from, to } => format!("the range {from}..{to} ends before it begins"),
             Self::NotArray { name } => format!("`{name}` is not an array"),
             Self::ArrayWithoutIndex { name } => format!("`{name}` is an array"),
-            Self::UnusedParameter { name } => format!("the parameter `{name}` acts on nothing"),
+            Self::UnusedParameter { name } => format!("the parameter `{name}` is never used"),
             Self::SecondDissipation => "a second `dissipation`".to_owned(),
             Self::NoDissipation => "`dissipation` does not depend on any velocity".to_owned(),
             Self::ConstantDissipation => {
@@ -360,13 +362,13 @@ impl Message {
             Self::CheckOfOther { name, .. } => format!("`{name}` is neither a coordinate nor a parameter"),
             Self::SecondEntry { name } => format!("`{name}` is given twice"),
             Self::MissingCoordinates => "the system has no coordinates".to_owned(),
-            Self::ForceOnOther { name, .. } => format!("a force on `{name}`, which is not a coordinate"),
+            Self::ForceOnOther { name, .. } => format!("`{name}` has a force but is not a coordinate"),
             Self::SecondForce { name } => format!("a second force on `{name}`"),
             Self::NoVelocity => "`L` does not depend on any velocity".to_owned(),
             Self::SingularMass { .. } => "the mass matrix ∂²L/∂v² is singular for every state".to_owned(),
             Self::UnknownRule { name, .. } => format!("unknown rule `{name}`"),
             Self::RepeatedRule { name } => format!("the rule `{name}` is listed twice"),
-            Self::WrittenInList => "a rule that is written out stands in no list".to_owned(),
+            Self::WrittenInList => "a written-out rule cannot appear in a list of names".to_owned(),
             Self::UnknownSlot { name } => format!("a rule has no line `{name}`"),
             Self::MissingSlot { name } => format!("the rule has no line `{name}`"),
             Self::SecondSlot { name } => format!("a second `{name}` in the rule"),
@@ -386,7 +388,7 @@ impl Message {
             Self::TooLong { limit } => format!("the system is longer than {limit} tokens"),
             Self::LongName { limit } => format!("this name is longer than {limit} letters"),
             Self::TooManyCoordinates { limit } => format!("the system has more than {limit} coordinates"),
-            Self::TooLarge(TooLarge::Terms { limit }) => format!("the system grows over {limit} terms"),
+            Self::TooLarge(TooLarge::Terms { limit }) => format!("the expanded system has more than {limit} terms"),
             Self::TooLarge(TooLarge::Work { limit }) => format!("the system takes more than {limit} steps of algebra"),
             Self::AfterSystem => "unexpected text after the system".to_owned(),
             Self::More { count } => format!("{count} more mistakes are not shown"),
@@ -394,7 +396,7 @@ impl Message {
         }
     }
 
-    /// What is allowed, and what to do.
+    /// The correction.
     #[must_use]
     pub fn help(&self) -> String {
         match self {
@@ -411,12 +413,12 @@ impl Message {
             )),
             Self::Arity { name, takes, .. } => with_arguments(name, *takes),
             Self::FunctionWithoutArguments { name } => {
-                format!("write its argument: `{name}(…)`; a power stands behind it, `{name}(…)^2`")
+                format!("write its argument: `{name}(…)`; a power follows it, `{name}(…)^2`")
             }
             Self::DotOfConstant { .. } => {
-                "`dot` takes what depends on the time or on a coordinate; its result is the derivative by time".to_owned()
+                "`dot` is the derivative with respect to time: its argument must depend on time or a coordinate".to_owned()
             }
-            Self::DotOfOther { .. } => "a check gives the velocities of coordinates".to_owned(),
+            Self::DotOfOther { .. } => "in a check, `dot(…)` takes a coordinate".to_owned(),
             Self::Acceleration { .. } => {
                 "use positions, velocities, time and parameters; an inertial term belongs in `L`".to_owned()
             }
@@ -429,7 +431,7 @@ impl Message {
             Self::NotInteger => "use integers, `const`s and indices, as in `q[N - 1]`".to_owned(),
             Self::Length { limit, .. } => format!("a system has 1 to {limit} coordinates"),
             Self::ParametersLength { limit, .. } => format!("an array of parameters has 1 to {limit} entries"),
-            Self::ParameterValues { length, .. } => format!("write {length} of them, or one for all: `= 1.0`"),
+            Self::ParameterValues { length, .. } => format!("write {length} values, or one for all entries: `= 1.0`"),
             Self::ParameterWithoutLength { name, values } => format!("write its length: `param {name}[{values}] = […];`"),
             Self::IndexRange { first, end, .. } if end <= first => "this array has no entries".to_owned(),
             Self::IndexRange { first, end, .. } => format!("the indices are {first} to {}", end - 1),
@@ -438,40 +440,40 @@ impl Message {
             Self::ArrayWithoutIndex { name } => format!("write one entry, `{name}[0]`, or a sum over it"),
             Self::UnusedParameter { .. } => "use it in `L` or in a force, or remove it".to_owned(),
             Self::NoDissipation => {
-                "Rayleigh's function is half the power that is lost, as in `c * dot(x)^2 / 2`".to_owned()
+                "Rayleigh's function is half the dissipated power, as in `c * dot(x)^2 / 2`".to_owned()
             }
             Self::ConstantDissipation => FRICTION.to_owned(),
             Self::FeedingDissipation => OTHER_SIGN.to_owned(),
             Self::SecondTimeScale => "write `time_scale` once".to_owned(),
             Self::VelocityInTimeScale { .. } => "use positions, time, constants and parameters".to_owned(),
-            Self::TimeScaleNotPositive => "dt = g dτ: g is positive wherever the system moves".to_owned(),
+            Self::TimeScaleNotPositive => "dt = g dτ: write a g that is positive in every state of the motion".to_owned(),
             Self::UnusedSlot { .. } => "a discrete Lagrangian depends on both ends of its interval".to_owned(),
             Self::MissingLagrangian => "write `L = …;`, kinetic minus potential energy".to_owned(),
             Self::SecondLagrangian => "write `L` once; name parts of it with `let`".to_owned(),
             Self::SecondRule => "write `discretize` once; it may list several rules by their names".to_owned(),
             Self::SecondCheck => "write `check` once".to_owned(),
             Self::MissingStep => "end it with the step, as in `h = 0.01;`".to_owned(),
-            Self::StepNotPositive => "give a step with which the system moves well, as in `h = 0.01;`".to_owned(),
+            Self::StepNotPositive => "write a positive step that resolves the motion, as in `h = 0.01;`".to_owned(),
             Self::CheckOfOther { near, .. } => did_you_mean(
                 near.as_ref(),
-                "a check gives coordinates, `dot(…)` of them, parameters, the time `t` and the step `h`",
+                "a check sets coordinates, their `dot(…)`, parameters, the time `t` and the step `h`",
             ),
-            Self::SecondEntry { .. } => "give each coordinate, velocity and parameter once".to_owned(),
+            Self::SecondEntry { .. } => "set each coordinate, velocity and parameter once".to_owned(),
             Self::MissingCoordinates => "declare them: `coord x, y;`".to_owned(),
             Self::ForceOnOther { near, .. } => {
                 did_you_mean(near.as_ref(), "a force acts on a coordinate: `force x = …;`")
             }
             Self::SecondForce { .. } | Self::SecondDissipation => "add them up in one line".to_owned(),
             Self::NoVelocity => "write the kinetic energy with `dot(…)`, as in `m * dot(x)^2 / 2`".to_owned(),
-            Self::SingularMass { why } => move_with_energy(why),
+            Self::SingularMass { why } => kinetic_energy_help(why),
             Self::UnknownRule { name, near } => rule_for(name, near.as_ref()),
-            Self::RepeatedRule { .. } => "list each rule once; the first is the system's own".to_owned(),
-            Self::WrittenInList => "write it alone, `discretize { … }`; a list holds names".to_owned(),
+            Self::RepeatedRule { .. } => "list each rule once; the first is the default".to_owned(),
+            Self::WrittenInList => "write it alone: `discretize { … }`".to_owned(),
             Self::UnknownSlot { .. } => "the lines are Ld, fd_minus, fd_plus, gd_minus, gd_plus".to_owned(),
             Self::MissingSlot { name } if *name == "Ld" => "write `Ld = …;`".to_owned(),
-            Self::MissingSlot { .. } => "the system has a force: write all lines, or `Ld` alone, made of `L`".to_owned(),
-            Self::NotInRule { .. } => "a rule knows t0, t1, h, q0, q1, L, f, constants and parameters".to_owned(),
-            Self::FieldInArgument => "evaluate both at times, coordinates and velocities".to_owned(),
+            Self::MissingSlot { .. } => "the system has a force: write all lines, or only `Ld`, in terms of `L`".to_owned(),
+            Self::NotInRule { .. } => "a rule can use t0, t1, h, q0, q1, L, f, constants and parameters".to_owned(),
+            Self::FieldInArgument => "write times, coordinates and velocities as their arguments".to_owned(),
             Self::SecondSlot { .. } => "write each line of a rule once".to_owned(),
             Self::Shape { .. } => {
                 "t0, t1, h and L are numbers; q0, q1 and f are vectors; `*` of two vectors is their dot product"
@@ -479,14 +481,14 @@ impl Message {
             }
             Self::UnknownClause { is_coordinate: true, .. } => habits::RUN.to_owned(),
             Self::UnknownClause { found, near, is_defined, .. } => clause_for(found, near.as_ref(), *is_defined),
-            Self::Expected { .. } => "a clause reads `name = expression;`, and a sum `a + 2 * b`".to_owned(),
+            Self::Expected { .. } => "write a clause as `name = expression;` and a sum as `a + 2 * b`".to_owned(),
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
             Self::NoDerivative { .. } => OTHERWISE.to_owned(),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
-            Self::TooLong { .. } => "write what repeats with arrays and `sum`".to_owned(),
+            Self::TooLong { .. } => "write repeated terms with arrays and `sum`".to_owned(),
             Self::LongName { .. } => "choose a shorter one".to_owned(),
             Self::TooLarge(_) | Self::TooManyCoordinates { .. } => {
                 "use fewer coordinates or a simpler Lagrangian".to_owned()
@@ -498,11 +500,11 @@ impl Message {
     }
 }
 
-/// The errors of one stage or of a part of it, in the order in which they were found.
+/// The errors of a stage or of a part of it, in the order found.
 #[derive(Debug, Default)]
 pub struct Errors {
     combined: Option<syn::Error>,
-    /// What was said.
+    /// Texts reported so far.
     texts: BTreeSet<String>,
 }
 
@@ -512,7 +514,7 @@ impl Errors {
         self.add(error(span, message));
     }
 
-    /// Adds an error made elsewhere.
+    /// Adds an existing error.
     pub fn add(&mut self, error: syn::Error) {
         self.texts.insert(error.to_string());
         match &mut self.combined {
@@ -521,7 +523,7 @@ impl Errors {
         }
     }
 
-    /// A part of an expression, or nothing and its errors. What was said of another part is not said again.
+    /// The part, or `None` after adding its errors. Skips texts that were reported before.
     pub fn keep<P>(&mut self, part: syn::Result<P>) -> Option<P> {
         let error = match part {
             Ok(part) => return Some(part),
@@ -535,16 +537,16 @@ impl Errors {
         None
     }
 
-    /// Whether nothing was found.
+    /// Whether there are no errors.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.combined.is_none()
     }
 
-    /// The product, if nothing was found wrong.
+    /// The product, if there are no errors.
     ///
     /// # Errors
-    /// All that was found.
+    /// All collected errors.
     pub fn finish<P>(self, product: P) -> syn::Result<P> {
         match self.combined {
             Some(error) => Err(error),
@@ -553,7 +555,8 @@ impl Errors {
     }
 }
 
-/// The first [`SHOWN`] messages of a system, and how many more there are: each is printed with its line of text, which may be long.
+/// The first [`SHOWN`] messages of a system and the number of further ones: each prints its source line, which may be
+/// long.
 #[must_use]
 pub(crate) fn bounded(errors: syn::Error) -> syn::Error {
     let count = errors.clone().into_iter().count();
@@ -577,7 +580,7 @@ pub fn error(span: Span, message: &Message) -> syn::Error {
     syn::Error::new(span, format!("{}\nhelp: {}", message.what(), message.help()))
 }
 
-/// The candidate nearest to a misspelt name, if one is near: at most a third of its letters differ.
+/// The candidate nearest to a misspelt name, if at most a third of its letters differ.
 #[must_use]
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     candidates
@@ -585,7 +588,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|candidate| (distance(name, candidate), candidate))
         .filter(|(distance, candidate)| *distance <= candidate.chars().count().max(name.chars().count()).div_ceil(3))
         .filter(|(distance, candidate)| *distance < candidate.chars().count())
-        // Of equally near ones that with the longer common beginning: people err at the end of a word.
+        // Ties go to the longer common prefix: typing errors are more frequent at the end of a word.
         .min_by_key(|(distance, candidate)| {
             let beginning = name.chars().zip(candidate.chars()).take_while(|(a, b)| a == b).count();
             (*distance, core::cmp::Reverse(beginning), *candidate)
@@ -593,7 +596,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, candidate)| candidate.to_owned())
 }
 
-/// Levenshtein's distance: insertions, deletions and replacements that turn one name into the other.
+/// Levenshtein distance: insertions, deletions and replacements that turn one name into the other.
 fn distance(left: &str, right: &str) -> usize {
     let right: Vec<char> = right.chars().collect();
     let mut row: Vec<usize> = (0..=right.len()).collect();

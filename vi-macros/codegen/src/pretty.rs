@@ -1,7 +1,7 @@
-//! Expansions as files, for whoever wants to read them.
+//! Expansions as readable files.
 //!
-//! In: the items of a system. Out: the text that a formatter makes of them, and, where a folder is given, a file in it
-//! that is named after the system. Nothing is written unasked.
+//! In: the items of a system. Out: formatted text and, given a folder, a file in it named after the system. Nothing is
+//! written unless requested.
 
 use proc_macro2::TokenStream;
 use std::path::{Path, PathBuf};
@@ -10,12 +10,12 @@ use std::{fs, io};
 /// Items as formatted text.
 ///
 /// # Errors
-/// Tokens that are no items of Rust: a mistake of this compiler.
+/// Tokens that are not Rust items: a bug of this compiler.
 pub fn text(items: TokenStream) -> syn::Result<String> {
     Ok(spaced(&prettyplease::unparse(&syn::parse2(items)?)))
 }
 
-/// The text with an empty line after each item, of the file, of the scope of the implementations and of an `impl`, but for the last.
+/// Adds an empty line after each item of the file, of the scope and of an `impl`, except the last.
 fn spaced(text: &str) -> String {
     let mut spaced = String::new();
     let mut last = "";
@@ -34,7 +34,7 @@ fn spaced(text: &str) -> String {
     spaced
 }
 
-/// Writes the expansion of a system into a folder, which is made if it is not there: `Double2Well` as `double2_well.rs`.
+/// Writes the expansion of a system into a folder, which it creates if necessary: `Double2Well` as `double2_well.rs`.
 /// Returns the path of the file.
 ///
 /// # Errors
@@ -46,7 +46,7 @@ pub fn write(folder: &Path, system: &str, text: &str) -> io::Result<PathBuf> {
     Ok(path)
 }
 
-/// The name of a type as that of a file or a module: `DoubleWell` as `double_well`, `FPUTChain` as `fput_chain`.
+/// The name of a type as a file or module name: `DoubleWell` as `double_well`, `FPUTChain` as `fput_chain`.
 #[must_use]
 pub fn snake_case(name: &str) -> String {
     let letters: Vec<char> = name.trim_start_matches("r#").chars().collect();

@@ -1,10 +1,10 @@
-//! The rules that have a name: how L becomes L_d where the system does not write it out.
+//! The built-in rules: named maps from L to L_d.
 //!
-//! A rule is one line in the language itself, and what is known of it. Its slot derivatives, its discrete forces and its equations are
-//! derived from that line as from one that a user writes. The messages, the generated checks and the emitted implementations read this
-//! table and no name: adding a rule is adding an entry.
+//! A rule is one line in the language itself with its known properties. Its slot derivatives, discrete forces and
+//! equations are derived as for a user's rule. Messages, generated checks and emitted implementations read this table:
+//! a new rule is a new entry.
 
-/// A rule of the table.
+/// A built-in rule.
 #[derive(Debug, PartialEq, Eq)]
 pub struct NamedRule {
     /// Its name in the language: `discretize midpoint;`.
@@ -15,21 +15,22 @@ pub struct NamedRule {
     pub text: &'static str,
     /// The order of its fixed steps in h.
     pub order: u32,
-    /// It is its own adjoint: a step back undoes a step.
+    /// Self-adjoint: a step back undoes a step.
     pub symmetric: bool,
-    /// The step density of the continuous system is that of its steps, which gives energy-preserving steps their length. That of the
-    /// trapezoidal rule is `|V_q|² − 2 v·V_qq v`, which changes its sign in every swing of an oscillator.
+    /// The step density of the continuous system is that of its steps and determines the length of energy-preserving
+    /// steps. The step density of the trapezoidal rule is `|V_q|² − 2 v·V_qq v`, which changes sign in every
+    /// oscillation.
     pub step_density: bool,
 }
 
-/// All rules; the first is the one that messages recommend.
+/// All built-in rules; messages recommend the first one.
 ///
 /// ```text
 /// midpoint       L_d = h L(t̄, q̄, v)                           with t̄ = (t0+t1)/2, q̄ = (q0+q1)/2, v = (q1−q0)/h
 /// trapezoidal    L_d = (h/2) (L(t0, q0, v) + L(t1, q1, v))
 /// ```
 ///
-/// The trapezoidal rule is explicit where L = v·Mv/2 − V(t, q) with constant M and f is free of v: Störmer–Verlet.
+/// The trapezoidal rule is explicit if L = v·Mv/2 − V(t, q) with constant M and f is free of v: Störmer–Verlet.
 pub const RULES: [NamedRule; 2] = [
     NamedRule {
         name: "midpoint",
@@ -49,13 +50,13 @@ pub const RULES: [NamedRule; 2] = [
     },
 ];
 
-/// The name in a list for the functions of Gauss steps, which every system has: it adds no rule.
+/// The list name for Gauss steps, which every system has: it adds no rule.
 pub const GAUSS: &str = "gauss";
 
-/// The order that a rule is expected to have which is none of the table, and is not said to be symmetric.
+/// The order assumed for a rule outside the table, which is not assumed symmetric.
 pub const LEAST_ORDER: u32 = 1;
 
-/// The rule of this name.
+/// The rule with this name.
 #[must_use]
 pub fn named(name: &str) -> Option<&'static NamedRule> {
     RULES.iter().find(|rule| rule.name == name)

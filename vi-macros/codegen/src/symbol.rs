@@ -1,10 +1,10 @@
-//! The symbols that expressions of the compiler are made of.
+//! The symbols in the compiler's expressions.
 //!
-//! One type for all stages, so that an expression says by its symbols which stage it belongs to:
-//! a [`Model`](crate::model::Model) knows time, coordinates, velocities and parameters; a rule adds the slots and the
-//! fields; a program knows the points at which fields are evaluated, and no field any more.
+//! One type serves all stages; the symbols show the stage of an expression. A [`Model`](crate::model::Model) contains
+//! time, coordinates, velocities and parameters. A rule adds slots and fields. A program contains the evaluation points
+//! of fields and no field.
 
-/// A variable of L(t, q, v) and f(t, q, v), by which they are differentiated.
+/// A variable of L(t, q, v) and f(t, q, v).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Variable {
     /// Time t.
@@ -15,7 +15,7 @@ pub enum Variable {
     Velocity(usize),
 }
 
-/// What a rule evaluates without looking inside: the Lagrangian, or one component of the force.
+/// A quantity that a rule evaluates as a whole: the Lagrangian, or one component of the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// L.
@@ -29,16 +29,16 @@ pub enum Quantity {
 pub struct Field {
     /// L or f_i.
     pub quantity: Quantity,
-    /// By what it is differentiated, in ascending order; empty: the quantity itself.
+    /// The variables of differentiation, in ascending order; empty for the quantity itself.
     pub derivatives: Vec<Variable>,
-    /// Where it is evaluated: index into the points of the rule.
+    /// The evaluation point: index into the points of the rule.
     pub point: usize,
 }
 
 /// A symbol of the compiler.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Symbol {
-    /// Runtime parameter, by index, and the index of the first one of its array, if it is in one.
+    /// Runtime parameter: its index, and the index of the first entry of its array, if any.
     Parameter {
         /// Among all parameters.
         index: usize,
@@ -59,13 +59,13 @@ pub enum Symbol {
     Q1(usize),
     /// Step h = t1 − t0.
     Step,
-    /// Velocity of the step, v = (q1 − q0)/h, component i: with h the unknown of a step.
+    /// Velocity of the step, v = (q1 − q0)/h, component i; with h the unknowns of a step.
     StepVelocity(usize),
     /// Momentum p0 at the start, component i.
     P0(usize),
     /// Discrete energy E0 at the start.
     E0,
-    /// What rounding took from a carried quantity: one of `T0`, `Q0`, `P0`, `E0`.
+    /// The rounding error of a carried quantity: of `T0`, `Q0`, `P0` or `E0`.
     Low(Box<Symbol>),
     /// A field of the rule.
     Field(Field),
@@ -74,7 +74,7 @@ pub enum Symbol {
 }
 
 impl Symbol {
-    /// The component 0 of the vector that it is a component of, and which it is.
+    /// Component 0 of the vector of this component, and the index of this component.
     #[must_use]
     pub fn component(&self) -> Option<(Self, usize)> {
         let of_variable = |variable: &Variable| match variable {

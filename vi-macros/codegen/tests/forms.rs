@@ -1,7 +1,7 @@
 //! The form of the Jacobian A and of the mass matrix M: what is found about a system, and the types that are emitted.
 
 use crate::families;
-use vi_codegen::found::Pattern::{self, Banded, Blocks, Dense, Diagonal, Scalar, Tridiagonal};
+use vi_codegen::findings::Pattern::{self, Banded, Blocks, Dense, Diagonal, Scalar, Tridiagonal};
 use vi_codegen::{derive, items, syntax::parse};
 
 /// What is found about A, and the forms that are emitted.

@@ -1,7 +1,7 @@
 //! Stages as text, findings, LaTeX, declarations in files, and mistakes at their places.
 
 use proc_macro2::TokenStream;
-use vi_codegen::found::{Dependence, Findings, Pattern};
+use vi_codegen::findings::{Dependence, Findings, Pattern};
 use vi_codegen::inspect::{Stage, explain, explain_gauss, latex, report, source, stage};
 use vi_codegen::{derive, syntax::parse};
 use vi_expr::{Expr, Function, Pool, Rational};
@@ -238,7 +238,7 @@ fn every_rule_of_a_list_is_shown_and_gives_the_operations_that_it_gives_alone() 
     assert!(further.starts_with("ld: ") && by("trapezoidal", Stage::Program).ends_with(further), "{further}");
     let discrete = by("trapezoidal, midpoint", Stage::Discrete);
     let (own, further) =
-        discrete.split_once("\nThe same system by a further rule\n    rule midpoint\n").expect("both rules");
+        discrete.split_once("\nThe same system with another rule\n    rule midpoint\n").expect("both rules");
     assert_eq!(own, by("trapezoidal", Stage::Discrete));
     assert!(by("midpoint", Stage::Discrete).ends_with(further), "{further}");
     assert!(by("midpoint, trapezoidal", Stage::Syntax).contains("discretize midpoint, trapezoidal;"));
@@ -295,7 +295,7 @@ fn mistakes_are_shown_at_their_places() {
   | \t                                                   ^^^
   = help: did you mean `mass`?
 
-error: a force on `y`, which is not a coordinate
+error: `y` has a force but is not a coordinate
  --> a.rs:5:8
   |
 5 | \tforce y = 1;

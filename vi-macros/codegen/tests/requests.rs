@@ -65,7 +65,7 @@ fn the_text_of_a_file_opens_with_what_each_method_costs() {
     let gauss = text(&derived("")).expect("Rust");
     let lines: Vec<&str> = gauss.lines().collect();
     assert!(lines[0].starts_with("// `System`: L = "), "{}", lines[0]);
-    assert_eq!(lines[2], "// Operations of the functions for");
+    assert_eq!(lines[2], "// Operation counts by method");
     let counted = |text: &str, of: &str| -> usize {
         let line = text.lines().find(|line| line.contains(of)).unwrap_or_else(|| panic!("{of}: {text}"));
         let (all, each) = line.split_once(':').expect("methods and functions");

@@ -1,14 +1,15 @@
 //! Ball arithmetic: numbers of any precision with rigorous error bounds.
 //!
-//! In: balls and the precision of the result. Out: a ball that contains every result of the operation on members of its operands.
-//! Middle and radius share one exponent. A middle has as many bits as the precision says, a radius at most [`RADIUS_BITS`].
+//! In: balls and the precision of the result. Out: a ball that contains the result of the operation for all members of
+//! its operands. Middle and radius share one exponent. A middle has the bits of the precision, a radius at most
+//! [`RADIUS_BITS`].
 
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use crate::Rational;
 
-/// Bits that a radius keeps.
+/// Bits of a radius.
 const RADIUS_BITS: u64 = 32;
 
 /// The numbers within `radius·2^exponent` of `middle·2^exponent`.
@@ -33,7 +34,7 @@ impl Ball {
         Self { middle, radius: BigInt::one(), exponent: -signed(shift) }.rounded(bits)
     }
 
-    /// Whether the ball is the number 0 alone.
+    /// Whether the ball contains only the number 0.
     pub(crate) fn is_zero(&self) -> bool {
         self.middle.is_zero() && self.radius.is_zero()
     }
@@ -42,12 +43,12 @@ impl Ball {
         self.middle.magnitude() <= self.radius.magnitude()
     }
 
-    /// The least `e` with `|x| < 2^e` for all members `x`; of the ball 0 a number below all others.
+    /// The least `e` with `|x| < 2^e` for all members `x`; for the ball 0 a number below all others.
     pub(crate) fn magnitude(&self) -> i64 {
         if self.is_zero() { i64::MIN / 4 } else { signed((self.middle.abs() + &self.radius).bits()) + self.exponent }
     }
 
-    /// The same of the radius.
+    /// The magnitude of the radius.
     pub(crate) fn radius_magnitude(&self) -> i64 {
         if self.radius.is_zero() { i64::MIN / 4 } else { signed(self.radius.bits()) + self.exponent }
     }
@@ -65,7 +66,7 @@ impl Ball {
         Self { exponent: self.exponent + power, ..self.clone() }
     }
 
-    /// The ball, wider by `2^magnitude`.
+    /// The ball, widened by `2^magnitude`.
     pub(crate) fn widened(&self, magnitude: i64, bits: u64) -> Self {
         let error = Self { middle: BigInt::zero(), radius: BigInt::one(), exponent: magnitude };
         self.plus(&error, bits)
@@ -77,7 +78,7 @@ impl Ball {
         if self.exponent >= unit {
             (&self.middle << shift, &self.radius << shift)
         } else {
-            // Both are rounded down, by less than one unit each.
+            // Both are rounded down by less than one unit.
             (&self.middle >> shift, (&self.radius >> shift) + 2)
         }
     }
@@ -149,8 +150,8 @@ impl Ball {
         power
     }
 
-    /// The `f64` that is nearest to all members, if there is one; infinite beyond the range. Of two that are nearest to a member the even one,
-    /// where the ball is so small, as `exact` says, that the member between them is meant.
+    /// The `f64` nearest to all members, if there is one; infinite beyond the range. A tie goes to the even one if
+    /// `exact`: then the ball is so small that it represents the midpoint itself.
     pub(crate) fn nearest(&self, exact: bool) -> Option<f64> {
         if self.magnitude() > 1100 || self.magnitude() < -1200 {
             let limit = if self.magnitude() > 0 { f64::INFINITY } else { 0.0 };
@@ -168,7 +169,7 @@ impl Ball {
     }
 }
 
-/// A count of bits as an exponent.
+/// A number of bits as an exponent.
 pub(crate) fn signed(bits: u64) -> i64 {
     i64::try_from(bits).unwrap_or(i64::MAX / 4)
 }

@@ -1,7 +1,7 @@
 //! Canonical function calls.
 //!
-//! In: a function and its arguments. Out: the exact value where there is one (`sin(0) = 0`, `abs(-2) = 2`), else the call
-//! with an argument of canonical sign, so that `sin(a - b)` and `sin(b - a)` share.
+//! In: a function and its arguments. Out: the exact value if there is one (`sin(0) = 0`, `abs(-2) = 2`), otherwise the
+//! call with an argument of canonical sign, so that `sin(a - b)` and `sin(b - a)` share a node.
 //! AFTER THIS an even or odd function never has an argument whose first coefficient is negative.
 
 use core::cmp::Ordering;
@@ -14,9 +14,8 @@ use crate::function::Parity;
 use crate::{Expr, Function, Node, Pool, Rational};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// `function(arguments)`. The number of arguments is the caller's duty ([`Function::arity`]).
-    /// `pow` with an exact exponent becomes [`Pool::power`].
-    /// Undefined are `ln(x)` for numbers `x ≤ 0`, and `asin(x)`, `acos(x)` for numbers beyond ±1.
+    /// `function(arguments)`. The caller provides [`Function::arity`] arguments. `pow` with an exact exponent becomes
+    /// [`Pool::power`]. `ln(x)` is undefined for numbers `x ≤ 0`, `asin(x)` and `acos(x)` for numbers beyond ±1.
     pub fn call(&mut self, function: Function, arguments: &[Expr]) -> Expr {
         if arguments.iter().any(|argument| self.is_undefined(*argument)) {
             return Expr::UNDEFINED;
@@ -55,7 +54,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let (negative, argument) =
             if parity == Parity::None { (false, argument) } else { self.canonical_sign(argument) };
         let sign = if negative && parity == Parity::Odd { -Rational::one() } else { Rational::one() };
-        // abs(k x) = k abs(x) and sign(k x) = sign(x), where k > 0 by now.
+        // abs(k x) = k abs(x) and sign(k x) = sign(x), with k > 0 here.
         let multiple = match self.node(argument) {
             Node::Sum(sum) => sum.as_multiple().map(|(factor, term)| (factor.clone(), term)),
             _ => None,
@@ -71,7 +70,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.scale(value, &(sign * factor))
     }
 
-    /// The value at an exact number, if it is an exact number too, or undefined.
+    /// The value at an exact number, if that is exact or undefined.
     fn exact_value(&mut self, function: Function, argument: Expr) -> Option<Expr> {
         let x = self.as_number(argument)?.clone();
         let beyond_one = x.abs() > Rational::one();
@@ -91,7 +90,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// `abs(c x) = ±c abs(x)` and `sign(c x) = ±sign(x)` for constants c that are no exact numbers.
+    /// `abs(c x) = ±c abs(x)` and `sign(c x) = ±sign(x)` for constants c that are not exact numbers.
     fn without_constant(&mut self, function: Function, argument: Expr) -> Option<Expr> {
         if !matches!(function, Function::Abs | Function::Sign) {
             return None;
@@ -137,9 +136,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// Of an expression and its negative, the one with the canonical sign, and whether it is the negative.
+    /// The expression or its negative, whichever has the canonical sign, and whether it is the negative.
     ///
-    /// A sum is signed by its first coefficient, a product by its factors `sum^odd`.
+    /// The first coefficient gives the sign of a sum, the factors `sum^odd` that of a product.
     fn canonical_sign(&mut self, expr: Expr) -> (bool, Expr) {
         match &*self.shared_node(expr) {
             Node::Number(value) if value.is_negative() => (true, self.neg(expr)),

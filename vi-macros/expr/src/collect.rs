@@ -1,7 +1,8 @@
-//! Terms that differ by constants, as one.
+//! Merges terms that differ by constant factors.
 //!
-//! In: expressions. Out: equal ones, in whose sums no two terms differ by constant factors alone, so that each coefficient is rounded once:
-//! `x - cos(1e-8)*x` as `(1 - cos(1e-8))*x`, and `x + sqrt(2) - 1` as `x` and one number, the nearest `f64`.
+//! In: expressions. Out: equal ones whose sums have no two terms that differ by constant factors only, so that each
+//! coefficient is rounded once: `x - cos(1e-8)*x` becomes `(1 - cos(1e-8))*x`, and `x + sqrt(2) - 1` becomes `x` plus
+//! the nearest `f64`.
 
 use std::hash::Hash;
 
@@ -10,7 +11,7 @@ use num_traits::{One, Zero};
 
 use crate::{Expr, Node, Pool, Product, Rational, Sum, Table};
 
-/// What a sum has of one symbolic factor: the terms as they are, and their constant factors with coefficients.
+/// The terms of a sum with one symbolic factor: unchanged, and as constant factors with coefficients.
 struct Group {
     factor: Expr,
     terms: Vec<(Expr, Rational)>,
@@ -18,9 +19,9 @@ struct Group {
 }
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// The expressions, with terms that differ by constants alone as one. They are undefined where a constant has no normal `f64`.
+    /// The expressions with merged terms; undefined if a constant has no normal `f64`.
     pub fn collect_constants(&mut self, exprs: &[Expr]) -> Vec<Expr> {
-        // Only nodes that change.
+        // Changed nodes only.
         let mut changed: Table<Expr, Expr> = Table::default();
         let nodes = if self.has_irrational { self.reachable(exprs) } else { Vec::new() };
         for node in nodes.into_iter().filter(|node| !self.is_constant(*node)).collect::<Vec<_>>() {
@@ -40,7 +41,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         exprs.iter().map(|expr| changed.get(*expr).copied().unwrap_or(*expr)).collect()
     }
 
-    /// Whether a term is, or has as a factor, a constant that is no exact number.
+    /// Whether a term contains a constant that is not an exact number.
     fn has_constant(&self, term: Expr) -> bool {
         match self.node(term) {
             Node::Product(product) => product.factors.iter().any(|(base, _)| self.is_constant(*base)),
@@ -65,7 +66,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let mut parts = Vec::new();
         for Group { factor, terms, constants } in groups {
             let is_rounded = match constants.as_slice() {
-                // Rounded with the coefficient where it is out of the range of numbers alone.
+                // Rounds it with the coefficient if it is out of range by itself.
                 [(constant, _)] if self.constant(*constant).is_ok() => {
                     parts.extend(terms);
                     continue;
@@ -80,7 +81,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.combination(parts)
     }
 
-    /// A product without its constant factors; 1 for a constant that is no exact number.
+    /// A product without its constant factors; 1 for a constant that is not an exact number.
     pub fn without_constants(&mut self, expr: Expr) -> Expr {
         if self.has_irrational && self.has_constant(expr) { self.split(expr, &|child| child).1 } else { expr }
     }
@@ -108,7 +109,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// A constant as it is, 0 if its terms cancel.
+    /// The constant, or 0 if its terms cancel.
     fn signed(&mut self, constant: Expr) -> Expr {
         match self.constant_sign(constant) {
             Ok(Ordering::Equal) => Expr::ZERO,

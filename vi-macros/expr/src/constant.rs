@@ -1,8 +1,8 @@
-//! Constant expressions: their values, rounded once.
+//! Values of constant expressions, rounded once.
 //!
-//! In: an expression without symbols. Out: the nearest `f64`, its sign, or why it has none ([`NoConstant`]). Ziv's strategy: the expression
-//! is computed in ball arithmetic, with twice the bits as long as the ball leaves a sign or the rounding open. What is below
-//! 2^-2000 of the terms that cancel in it is zero, as `sqrt(2)*sqrt(3) - sqrt(6)`.
+//! In: an expression without symbols. Out: the nearest `f64`, its sign, or why it has none ([`NoConstant`]). Ziv's
+//! strategy: ball arithmetic doubles its bits until the ball determines the sign or the rounding. A value below 2^-2000
+//! of its cancelling terms is zero, as for `sqrt(2)*sqrt(3) - sqrt(6)`.
 
 use core::cmp::Ordering;
 use std::hash::Hash;
@@ -63,7 +63,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// A ball around a constant, with a known sign. It is kept for expressions that contain this one.
+    /// A ball around a constant, with a known sign; cached for expressions that contain it.
     fn ball(&self, expr: Expr, bits: u64) -> Result<Ball, NoConstant> {
         let mut open = if self.known_ball(expr, bits).is_some() { Vec::new() } else { vec![expr] };
         while let Some(last) = open.last().copied() {
@@ -84,7 +84,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         balls.get(expr).filter(|(known, _)| *known >= bits).map(|(_, ball)| ball.clone())
     }
 
-    /// The ball of an expression whose operands have theirs.
+    /// The ball of an expression whose operands have balls.
     fn computed(&self, expr: Expr, bits: u64) -> Result<Ball, NoConstant> {
         let node = self.node(expr);
         self.spend_on_balls(bits, 1 + node.operands());
@@ -119,7 +119,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
             }
             Node::Call(function, arguments) => {
                 let arguments = arguments.iter().map(|argument| of(*argument)).collect::<Result<Vec<_>, _>>()?;
-                // An angle is reduced with as many bits more as stand before its point.
+                // The reduction of an angle needs as many extra bits as precede its binary point.
                 let more = match (function, arguments.as_slice()) {
                     (Function::Sin | Function::Cos | Function::Tan, [angle]) => {
                         angle.magnitude().clamp(0, LARGEST_ANGLE)

@@ -6,8 +6,8 @@
 //! - `(Π b^e)' = Σ e b' b^(e-1) Π others`
 //! - `f(u, w)' = f_u u' + f_w w'`, and `sign' = 0`
 //!
-//! One pass over the shared nodes: an expression that occurs many times is differentiated once. Products are flat, so that
-//! a chain of n nested calls has a derivative of n factors, and the way there takes n² steps.
+//! One pass over the shared nodes differentiates each expression once. Products are flat, so that the derivative of n
+//! nested calls has n factors, at a cost of n² steps.
 
 use std::hash::Hash;
 
@@ -18,13 +18,13 @@ use crate::effort::MADE;
 use crate::{Expr, Function, Node, Pool, Rational, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Derivative of `expr`, where the closure gives that of each symbol (asked once per symbol): 1 for the variable and 0 for
-    /// the others gives a partial derivative, the rates of all symbols give a total one.
+    /// Derivative of `expr`. The closure gives the derivative of each symbol, once per symbol: 1 for one variable and 0
+    /// for the others gives a partial derivative, the rates of all symbols give the total one.
     pub fn derivative(&mut self, expr: Expr, symbol_derivative: &mut dyn FnMut(&mut Self, &S) -> Expr) -> Expr {
         if self.is_undefined(expr) || self.is_exhausted() {
             return Expr::UNDEFINED;
         }
-        // Only derivatives other than 0.
+        // Nonzero derivatives only.
         let mut derivatives = Table::default();
         for node in self.reachable(&[expr]) {
             let shared = self.shared_node(node);

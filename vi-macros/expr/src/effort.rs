@@ -1,39 +1,41 @@
-//! Work, counted.
+//! Work limits.
 //!
-//! In: what a pool does, in operands: each one that a pass looks at, that an expression is made of, or that is kept. Out: whether it
-//! may do more. No clock is asked, so that the same input always ends in the same way. One unit takes about 20 ns, and 140 ns in a
-//! build without optimisation; an operand that is kept takes about 100 bytes.
-//! AFTER THIS a pool that has done its work makes nothing but the undefined expression, and its passes see nothing: what it says
-//! then means nothing, and whoever uses it asks [`Pool::is_exhausted`] before.
+//! In: the operations of a pool, in operands that a pass visits, an expression uses, or the pool stores. Out: whether
+//! more work is allowed. No clock is involved, so that equal input gives equal results. One unit takes about 20 ns, or
+//! 140 ns in an unoptimized build. A stored operand takes about 100 bytes.
+//!
+//! AFTER the limit a pool creates only the undefined expression, and its passes see nothing. Its results are
+//! meaningless; callers check [`Pool::is_exhausted`] first.
 
 use std::fmt;
 use std::hash::Hash;
 
 use crate::{Pool, Rational, number};
 
-/// Of an operand that is evaluated.
+/// Cost of evaluating an operand.
 pub(crate) const EVALUATED: usize = 3;
-/// Of an operand that an expression is made of: it is copied, sorted and hashed.
+/// Cost of an operand of an expression: it is copied, sorted and hashed.
 pub(crate) const MADE: usize = 4;
-/// Of an operand of an expression that is new.
+/// Cost of an operand of a new expression.
 pub(crate) const KEPT: usize = 12;
 
-/// Of an operand of ball arithmetic, beside what its bits take.
+/// Cost of an operand in ball arithmetic, besides its bits.
 const PRECISE: usize = 100;
-/// Of a function in ball arithmetic, beside what its bits take.
+/// Cost of a function in ball arithmetic, besides its bits.
 const FUNCTION: usize = 1000;
 
-/// More than an expression, or a pool, may take.
+/// A limit that an expression or a pool exceeds.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub enum TooLarge {
-    /// Terms: those that one call of [`Pool::expand`] writes, intermediate ones included; long coefficients count as several.
+    /// Terms written by one call of [`Pool::expand`], including intermediate ones; a long coefficient counts as
+    /// several.
     Terms {
-        /// So many are allowed.
+        /// The limit.
         limit: usize,
     },
     /// Work of a pool, in operands.
     Work {
-        /// So much is allowed.
+        /// The limit.
         limit: usize,
     },
 }
@@ -50,7 +52,7 @@ impl fmt::Display for TooLarge {
 impl std::error::Error for TooLarge {}
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Pool that does so much work, and no more.
+    /// A pool with a work limit.
     #[must_use]
     pub fn bounded(limit: usize) -> Self {
         let mut pool = Self::new();
@@ -59,18 +61,18 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         pool
     }
 
-    /// Counts work that is done elsewhere on this pool's expressions.
+    /// Counts work done elsewhere on expressions of this pool.
     pub fn spend(&self, work: usize) {
         self.left.set(self.left.get().saturating_sub(work));
     }
 
-    /// The work done so far.
+    /// The work so far.
     #[must_use]
     pub fn work(&self) -> usize {
         self.limit - self.left.get()
     }
 
-    /// What is found out about this pool's expressions without counting work, as a check of what was made may be.
+    /// Runs a computation on this pool without counting its work, such as a check of a result.
     pub fn uncounted<R>(&self, find: impl FnOnce(&Self) -> R) -> R {
         let left = self.left.replace(usize::MAX);
         let balls = self.balls.borrow().clone();
@@ -80,13 +82,13 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         found
     }
 
-    /// Whether the pool has done all the work that it may do.
+    /// Whether the pool has reached its limit.
     #[must_use]
     pub fn is_exhausted(&self) -> bool {
         self.left.get() == 0
     }
 
-    /// Nothing, or that the pool is exhausted.
+    /// Reports an exhausted pool.
     ///
     /// # Errors
     /// [`TooLarge::Work`].
@@ -94,19 +96,19 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         if self.is_exhausted() { Err(TooLarge::Work { limit: self.limit }) } else { Ok(()) }
     }
 
-    /// Counts sums and products of so many balls.
+    /// Counts sums and products of balls.
     pub(crate) fn spend_on_balls(&self, bits: u64, operands: usize) {
         let words = usize::try_from(bits / 64).unwrap_or(usize::MAX);
         self.spend(operands.saturating_mul(PRECISE + words.saturating_mul(words)));
     }
 
-    /// Counts elementary functions of balls: as many terms as the bits say, each of which takes a time of their square.
+    /// Counts elementary functions of balls: a series has as many terms as bits, each with quadratic cost.
     pub(crate) fn spend_on_functions(&self, bits: u64, functions: usize) {
         let words = usize::try_from(bits / 64).unwrap_or(usize::MAX);
         self.spend(functions * (FUNCTION + 2 * words.saturating_pow(3)));
     }
 
-    /// Counts an operation whose result is this number: common divisors take a time of the square of its bits.
+    /// Counts an operation with this result: a common divisor has a cost quadratic in the bits.
     pub(crate) fn spend_on(&self, number: &Rational) {
         let bits = number::bits(number);
         if bits > 64 {

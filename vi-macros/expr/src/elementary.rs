@@ -1,7 +1,7 @@
 //! Elementary functions of balls.
 //!
-//! In: balls and a precision. Out: balls that contain every value, or why there is none yet. Arguments are reduced until a power series
-//! converges by a few bits a term; the series is summed in fixed point.
+//! In: balls and a precision. Out: balls that contain every value, or why there is none. Arguments are reduced until a
+//! power series converges by a few bits per term. The series is summed in fixed point.
 //!
 //! ```text
 //! e^x = 2^k e^r, r = x − k ln 2          sin x = ±sin r or ±cos r, r = x − k π/2
@@ -17,15 +17,15 @@ use crate::Function;
 use crate::Rational;
 use crate::ball::{Ball, signed};
 
-/// A number below `2^-NEGLIGIBLE` of the terms that it is the sum of is zero.
+/// A sum below `2^-NEGLIGIBLE` of its terms is zero.
 pub(crate) const NEGLIGIBLE: i64 = 2000;
-/// Powers of two that numbers may have, in absolute value.
+/// Maximum absolute binary exponent of a number.
 const LARGEST: i64 = 1 << 40;
-/// Bits that a sine or cosine may have before its point.
+/// Maximum bits before the binary point of an angle.
 pub(crate) const LARGEST_ANGLE: i64 = 4096;
-/// Bits of an integer power that is taken by squaring.
+/// Maximum integer exponent that is computed by squaring.
 const LARGEST_POWER: u32 = 1 << 16;
-/// Bits beyond the precision for the roundings of a series.
+/// Extra bits for the roundings of a series.
 const GUARD: u64 = 16;
 
 /// Why a constant expression has no `f64`.
@@ -37,19 +37,20 @@ pub enum NoConstant {
     TooLarge,
     /// It is smaller than every normal `f64`, and not zero.
     TooSmall,
-    /// More digits of it would be needed than are computed.
+    /// It needs more digits than are computed.
     Undecided,
 }
 
 type Computed = Result<Ball, NoConstant>;
 
-/// Functions with results of so many bits.
+/// Functions with results of this precision.
 #[derive(Clone, Copy)]
 pub(crate) struct Elementary {
     pub(crate) bits: u64,
 }
 
-/// The ball with a known sign: zero if its members are negligible beside `2^scale`, the size of the terms that cancelled.
+/// The ball with a known sign: zero if its members are negligible relative to `2^scale`, the size of its cancelling
+/// terms.
 pub(crate) fn decided(ball: Ball, scale: i64) -> Computed {
     match ball.magnitude() {
         _ if ball.contains_zero() && ball.radius_magnitude() < scale.saturating_sub(NEGLIGIBLE) => Ok(Ball::integer(0)),
@@ -60,14 +61,15 @@ pub(crate) fn decided(ball: Ball, scale: i64) -> Computed {
     }
 }
 
-/// The ball with a known sign, of an operation in which nothing cancels.
+/// The ball with a known sign, for an operation without cancellation.
 pub(crate) fn nonzero(ball: Ball) -> Computed {
     let magnitude = ball.magnitude();
     if ball.is_zero() { Ok(ball) } else { decided(ball, magnitude) }
 }
 
-/// Σ ±p_k/e_k with p_(k+1) = p_k·by/d_k, `(d_k, e_k) = divisors(k)`, in units of `2^-fraction`, and a bound of its error. `first` is exact and
-/// not negative, `by` below 0.7 and known to one unit: then p_k is known to 7 units, each summand to 8, and the rest is below 26.
+/// Σ ±p_k/e_k with p_(k+1) = p_k·by/d_k, `(d_k, e_k) = divisors(k)`, in units of `2^-fraction`, and a bound of its
+/// error. `first` is exact and not negative; `by` is below 0.7 and known to one unit. Then p_k is known to 7 units,
+/// each summand to 8, and the remainder is below 26.
 fn series(
     first: BigInt,
     by: &BigInt,
@@ -169,7 +171,7 @@ impl Elementary {
         nonzero(power)
     }
 
-    /// `base^exponent = e^(exponent ln base)`; of a negative base only where the exponent is an integer.
+    /// `base^exponent = e^(exponent ln base)`; for a negative base only with an integer exponent.
     fn pow(self, base: &Ball, exponent: &Ball) -> Computed {
         if !base.middle.is_negative() && !base.is_zero() {
             return self.exp(&self.ln(base)?.times(exponent, self.bits));
@@ -189,7 +191,7 @@ impl Elementary {
         Err(NoConstant::Undefined)
     }
 
-    /// A series in odd powers of z, of a slope up to 2: `z (1 ± z²/3 …)`, to the precision relative to z.
+    /// A series in odd powers of z, with a slope up to 2: `z (1 ± z²/3 …)`, to the precision relative to z.
     fn odd_series(self, z: &Ball, alternates: bool, divisors: fn(u64) -> (u64, u64)) -> Ball {
         if z.is_zero() {
             return z.clone();
@@ -272,7 +274,7 @@ impl Elementary {
         Ok(large.plus(&small, wide.bits))
     }
 
-    /// Sine and cosine, not decided.
+    /// Sine and cosine, with an undecided sign.
     fn sin_cos(self, x: &Ball) -> Result<(Ball, Ball), NoConstant> {
         let magnitude = x.magnitude().max(0);
         if magnitude > LARGEST_ANGLE || x.radius_magnitude() > -4 {
@@ -367,7 +369,7 @@ impl Elementary {
         Ok(self.atan(&above.over(&below, self.bits).root(self.bits))?.scaled(1))
     }
 
-    /// `x (1 ± x²/3)` where that says all, else what is made of `e^|x|` with as many bits more as cancel.
+    /// `x (1 ± x²/3)` if that is accurate enough, otherwise from `e^|x|` with extra bits for the cancellation.
     fn by_exp(self, x: &Ball, make: impl Fn(Self, &Ball) -> Computed) -> Computed {
         let below_one = -x.magnitude();
         if x.is_zero() {
@@ -387,7 +389,7 @@ impl Elementary {
         })
     }
 
-    /// `(1 - E)/(1 + E)`, `E = e^(-2x)`, which is below the precision from some argument on.
+    /// `(1 - E)/(1 + E)`, `E = e^(-2x)`; E falls below the precision for large arguments.
     fn tanh(self, x: &Ball) -> Computed {
         self.by_exp(x, |wide, x| {
             let one = Ball::integer(1);
@@ -415,7 +417,7 @@ mod tests {
         let (mut compared, mut tight) = (0, 0);
         for (place, function) in (0..).zip(Function::ALL) {
             for case in 1_i64..=40 {
-                // Of both signs and many sizes, none of which is a whole number of bits.
+                // Both signs and many sizes that are not whole numbers of bits.
                 let size = Rational::new(BigInt::from(10).pow(u32::try_from(case % 7).unwrap_or(0)), 1000.into());
                 let [first, second] =
                     [7 * case + place, 11 * case - 97].map(|n: i64| Rational::new(n.into(), 97.into()) * &size);
@@ -427,7 +429,7 @@ mod tests {
                     let (Ok(coarse), Ok(fine)) = (at(bits), at(1024)) else { continue };
                     assert!(contains(&coarse, &fine), "{function:?} {first} {second} {bits}: {coarse:?} {fine:?}");
                     compared += 1;
-                    // An exponent or an angle of 10^5 takes 17 bits of the argument.
+                    // An exponent or an angle of 10^5 loses 17 bits of the argument.
                     tight += i32::from(coarse.radius_magnitude() < coarse.magnitude() - signed(bits) + 32);
                 }
             }

@@ -1,7 +1,7 @@
 //! Values in floating point.
 //!
-//! In: expressions and the value of each symbol. Out: their values in `f64`, each shared node computed once.
-//! Meant for checks, not for speed. Constants are rounded once; one without a value, or above all numbers, is NaN.
+//! In: expressions and the value of each symbol. Out: their values in `f64`; each shared node is computed once.
+//! Intended for checks, not for speed. Constants are rounded once; a constant without a value, or too large, is NaN.
 
 use std::hash::Hash;
 
@@ -18,7 +18,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.evaluate_all(&[expr], values).into_iter().next().unwrap_or(f64::NAN)
     }
 
-    /// Values of several expressions, in their order; the closure is asked once per symbol.
+    /// Values of several expressions in order; the closure is called once per symbol.
     #[must_use]
     pub fn evaluate_all(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<f64> {
         let mut known = Table::default();
@@ -31,7 +31,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         exprs.iter().map(|expr| self.value_of(&known, *expr)).collect()
     }
 
-    /// Value of an expression with symbols whose operands have known values.
+    /// Value of an expression with symbols, from the values of its operands.
     pub fn node_value(&self, expr: Expr, known: &Table<Expr, f64>, values: &mut dyn FnMut(&S) -> f64) -> f64 {
         let of = |expr: Expr| self.value_of(known, expr);
         match self.node(expr) {
@@ -51,7 +51,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// A value that is known, or that of a constant.
+    /// A known value, or the value of a constant.
     fn value_of(&self, known: &Table<Expr, f64>, expr: Expr) -> f64 {
         if !self.is_constant(expr) {
             return known.get(expr).copied().unwrap_or(f64::NAN);

@@ -1,8 +1,8 @@
-//! Multiplying out.
+//! Expansion of products and powers.
 //!
-//! In: an expression. Out: an equal one in which no product has a sum as a factor, nor a positive integer power of a sum, so
-//! that polynomials in symbols, functions and roots cancel exactly. Sums in denominators and arguments are expanded in
-//! themselves and stay factors. The work is bounded: an expansion over the limit is an error, never a hang.
+//! In: an expression. Out: an equal one without sums as factors of products and without positive integer powers of
+//! sums, so that polynomials in symbols, functions and roots cancel exactly. Sums in denominators and arguments are
+//! expanded internally and remain factors. The work is bounded: an expansion over the limit is an error.
 
 use std::hash::Hash;
 
@@ -10,16 +10,16 @@ use num_traits::{One, Signed, ToPrimitive};
 
 use crate::{Expr, Node, Pool, Rational, Table, TooLarge, number};
 
-/// Most terms that one expansion may write.
+/// Maximum number of terms in one expansion.
 const LIMIT: usize = 50_000;
 
-/// Powers of constant sums that are multiplied out, so that they cancel exactly.
+/// Largest power of a constant sum that is expanded, so that it cancels exactly.
 const HIGH: u32 = 20;
 
-/// So many bits of a coefficient count as one more term.
+/// Bits of a coefficient that count as one more term.
 const BITS_OF_A_TERM: usize = 16;
 
-/// Terms that may still be written.
+/// Remaining number of terms.
 struct Budget(usize);
 
 impl Budget {
@@ -30,14 +30,15 @@ impl Budget {
 }
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// `expr` multiplied out.
+    /// The expanded expression.
     ///
     /// # Errors
-    /// [`TooLarge::Terms`] if more than 50 000 terms would have to be written on the way, [`TooLarge::Work`] if the pool is exhausted.
+    /// [`TooLarge::Terms`] if the expansion would write more than 50 000 terms, including intermediate ones.
+    /// [`TooLarge::Work`] if the pool is exhausted.
     pub fn expand(&mut self, expr: Expr) -> Result<Expr, TooLarge> {
         let mut budget = Budget(LIMIT);
         let mut current = expr;
-        // Roots that meet in a product of terms can free a new sum: (1 + c*(a + b)^(1/2))^2. Then once more.
+        // A product of terms with roots can expose a new sum: (1 + c*(a + b)^(1/2))^2. Then repeat.
         loop {
             let next = self.expand_once(current, &mut budget)?;
             self.within_work()?;
@@ -49,7 +50,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     }
 
     fn expand_once(&mut self, expr: Expr, budget: &mut Budget) -> Result<Expr, TooLarge> {
-        // Only nodes that change.
+        // Changed nodes only.
         let mut expanded: Table<Expr, Expr> = Table::default();
         for node in self.reachable(&[expr]) {
             let new = |child: &Expr| expanded.get(*child).copied().unwrap_or(*child);
@@ -88,7 +89,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         let (sums, others): (Vec<_>, Vec<_>) = factors.into_iter().partition(|factor| self.is_open(factor));
         let mut result = self.powers(others);
         for (base, exponent) in sums {
-            // Too large for a machine integer is too large for the budget.
+            // An exponent beyond a machine integer exceeds the budget.
             let exponent = exponent.to_usize().unwrap_or(usize::MAX);
             for _ in 0..exponent {
                 result = self.multiply_out(result, base, budget)?;
@@ -97,7 +98,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         Ok(result)
     }
 
-    /// A power that is to be multiplied out. High powers of constants are not: they are rounded as they stand.
+    /// A power that is expanded. High powers of constants are not: they are rounded as a whole.
     fn is_open(&self, (base, exponent): &(Expr, Rational)) -> bool {
         let is_high = || self.is_constant(*base) && *exponent > Rational::from_integer(HIGH.into());
         exponent.is_integer() && exponent.is_positive() && self.term_count(*base) > 1 && !is_high()
@@ -118,7 +119,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         Ok(self.combination(products))
     }
 
-    /// The parts of a sum, the constant as a multiple of 1; anything else is its own single part.
+    /// The parts of a sum, with the constant as a multiple of 1; any other expression is its only part.
     fn terms(&self, expr: Expr) -> Vec<(Expr, Rational)> {
         match self.node(expr) {
             Node::Sum(sum) => {

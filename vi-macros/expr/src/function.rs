@@ -1,9 +1,9 @@
 //! The elementary functions.
 //!
-//! In: a name. Out: a [`Function`] with its arity, its parity and its value in floating point.
-//! The square root is none of them: it is the power 1/2. Derivatives are built where expressions are differentiated.
+//! In: a name. Out: a [`Function`] with its arity, parity and value in floating point. The square root is the power
+//! 1/2.
 
-/// Elementary function of one or two real arguments, named as in the language of systems.
+/// Elementary function of one or two real arguments, with its name in the language of systems.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Function {
     /// `e^x`.
@@ -36,11 +36,11 @@ pub enum Function {
     Sign,
     /// `hypot(x, y) = (x^2 + y^2)^(1/2)`.
     Hypot,
-    /// `pow(a, b) = a^b` with an exponent that is no exact number.
+    /// `pow(a, b) = a^b` with an exponent that is not an exact number.
     Pow,
 }
 
-/// What a function of one argument does with a change of sign.
+/// Symmetry of a function of one argument under a change of sign.
 #[derive(Copy, Clone, PartialEq, Eq, Debug)]
 pub(crate) enum Parity {
     /// `f(-x) = f(x)`.
@@ -104,7 +104,7 @@ impl Function {
         }
     }
 
-    /// The function of that name.
+    /// The function with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|function| function.name() == name)
@@ -118,7 +118,7 @@ impl Function {
         }
     }
 
-    /// Value in floating point; `second` is read only by functions of two arguments.
+    /// Value in floating point; only functions of two arguments read `second`.
     #[must_use]
     pub fn value(self, first: f64, second: f64) -> f64 {
         match self {
@@ -135,7 +135,7 @@ impl Function {
             Self::Cosh => first.cosh(),
             Self::Tanh => first.tanh(),
             Self::Abs => first.abs(),
-            // Unlike `f64::signum`, 0 at 0.
+            // `f64::signum` is 1 at 0.
             Self::Sign if first == 0.0 => 0.0,
             Self::Sign => first.signum(),
             Self::Hypot => first.hypot(second),

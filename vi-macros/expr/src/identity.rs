@@ -1,7 +1,7 @@
-//! When two nodes are the same.
+//! Equality of nodes.
 //!
-//! In: two nodes. Out: whether they are equal, and a hash of each. Rationals are in lowest terms, so that they are equal where
-//! their parts are; to order them or to hash them by value takes a chain of divisions.
+//! In: two nodes. Out: whether they are equal, and a hash of each. Rationals are in lowest terms, so comparing their
+//! parts suffices; ordering them or hashing their value would need a chain of divisions.
 
 use std::hash::{Hash, Hasher};
 
@@ -13,8 +13,8 @@ fn same(left: &Rational, right: &Rational) -> bool {
     left.numer() == right.numer() && left.denom() == right.denom()
 }
 
-/// All handles before the first number: numbers are seldom looked at. Plain loops, because this is the innermost of a build
-/// without optimisation.
+/// Compares all handles before the first number, because numbers rarely decide. Plain loops: this is the innermost loop
+/// of an unoptimized build.
 fn same_parts(left: &[(Expr, Rational)], right: &[(Expr, Rational)]) -> bool {
     if left.len() != right.len() {
         return false;
@@ -52,7 +52,7 @@ impl<S: Eq> PartialEq for Node<S> {
 
 impl<S: Eq> Eq for Node<S> {}
 
-/// Of long numbers their last digits.
+/// For long numbers, their last digits.
 fn hash_number(number: &Rational, state: &mut impl Hasher) {
     for part in [number.numer(), number.denom()] {
         let short = part.to_i64().map(i64::cast_unsigned);

@@ -1,7 +1,7 @@
-//! Symbolic algebra: exact and shared. It knows no mechanics, no tokens and no spans.
+//! Symbolic algebra: exact and shared, without mechanics, tokens or spans.
 //!
-//! In: symbols of any ordered type. Out: expressions in a canonical form, which are simplified where they are built, so that
-//! there is no simplifier; equal forms are one node of a [`Pool`]. Coefficients and exponents are exact rationals.
+//! In: symbols of any ordered type. Out: expressions in canonical form. Construction simplifies, so there is no
+//! separate simplifier. Equal forms are one node of a [`Pool`]. Coefficients and exponents are exact rationals.
 //!
 //! ```
 //! use vi_expr::{Pool, Rational};
@@ -28,17 +28,17 @@
 //!
 //! | file | product |
 //! |---|---|
-//! | `node`, `identity`, `function`, `pool` | what an expression is, and where it lives |
+//! | `node`, `identity`, `function`, `pool` | expressions and their storage |
 //! | `table` | values by index |
-//! | `effort` | work, counted and bounded |
+//! | `effort` | work limits |
 //! | `number` | exact powers of numbers, bounded |
 //! | `sum`, `product`, `call` | the canonical forms, each with its rules |
 //! | `derivative`, `substitute`, `expand`, `ramp` | new expressions from old |
 //! | `ball`, `elementary`, `constant` | numbers and functions of any precision; constants, rounded once |
-//! | `collect` | terms that differ by constants as one |
+//! | `collect` | merges terms that differ by constants |
 //! | `evaluate`, `rounding`, `render` | values, values with their errors, text |
 //!
-//! No pass recurses: children are older than parents, so each is a loop in the order of creation.
+//! No pass recurses: children are older than parents, so each pass is a loop in the order of creation.
 
 mod ball;
 mod call;
@@ -62,8 +62,8 @@ mod substitute;
 mod sum;
 mod table;
 
-/// Values, each once, numbered as they came and found by hash: a search among ordered values compares with a dozen of them, here it
-/// is one or two, which shows in a macro, built without optimisation. The hasher has no seed.
+/// Values, each once, numbered in order of insertion and found by hash. A search tree compares about a dozen values, a
+/// hash one or two, which matters in an unoptimized macro. The hasher has no seed.
 pub type Distinct<T> = indexmap::IndexSet<T, core::hash::BuildHasherDefault<rustc_hash::FxHasher>>;
 pub use effort::TooLarge;
 pub use elementary::NoConstant;

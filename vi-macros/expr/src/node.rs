@@ -1,7 +1,7 @@
 //! The nodes of an expression.
 //!
-//! In: nothing. Out: [`Expr`], the handle of a shared expression, and [`Node`], what stands behind it.
-//! Nodes name their children by handle, and a child is always older than its parent: ascending handles are a topological order.
+//! In: nothing. Out: [`Expr`], the handle of a shared expression, and [`Node`], its operation. Nodes refer to children
+//! by handle. A child is older than its parent: ascending handles are a topological order.
 
 use num_rational::BigRational;
 
@@ -10,8 +10,8 @@ use crate::{Function, Index};
 /// Exact number of any size, always in lowest terms.
 pub type Rational = BigRational;
 
-/// Handle of an expression in its [`Pool`](crate::Pool). Two expressions of one pool are the same canonical form exactly if
-/// their handles are equal. A handle means nothing in another pool.
+/// Handle of an expression in its [`Pool`](crate::Pool). Two expressions of one pool have the same canonical form if
+/// and only if their handles are equal. A handle is meaningless in another pool.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Expr(pub(crate) usize);
 
@@ -20,7 +20,7 @@ impl Expr {
     pub(crate) const ZERO: Self = Self(0);
     /// The number 1, second in every pool.
     pub(crate) const ONE: Self = Self(1);
-    /// `0^-1`, third in every pool: the value of every operation that has none.
+    /// `0^-1`, third in every pool: the value of every undefined operation.
     pub(crate) const UNDEFINED: Self = Self(2);
 }
 
@@ -37,13 +37,13 @@ pub enum Node<S> {
     Number(Rational),
     /// The circle constant.
     Pi,
-    /// Symbol of the user of the algebra: a variable or an opaque field.
+    /// Symbol of the user: a variable or an opaque field.
     Symbol(S),
     /// Linear combination.
     Sum(Sum),
     /// Product of powers.
     Product(Product),
-    /// Function of its arguments, as many as [`Function::arity`] says.
+    /// Function of [`Function::arity`] arguments.
     Call(Function, Vec<Expr>),
 }
 
@@ -60,7 +60,7 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// Coefficient and term, if this sum is nothing but one multiple.
+    /// Coefficient and term, if this sum is a single multiple.
     #[must_use]
     pub fn as_multiple(&self) -> Option<(&Rational, Expr)> {
         match self.terms.as_slice() {
@@ -82,7 +82,7 @@ pub struct Product {
 }
 
 impl<S> Node<S> {
-    /// Shows the operands, in the order of the node.
+    /// Calls `see` with each operand, in the order of the node.
     pub fn each_child(&self, mut see: impl FnMut(Expr)) {
         match self {
             Self::Number(_) | Self::Pi | Self::Symbol(_) => {}
@@ -99,7 +99,7 @@ impl<S> Node<S> {
         }
     }
 
-    /// How many operands there are.
+    /// Number of operands.
     pub(crate) fn operands(&self) -> usize {
         match self {
             Self::Number(_) | Self::Pi | Self::Symbol(_) => 0,
@@ -108,7 +108,7 @@ impl<S> Node<S> {
         }
     }
 
-    /// Whether one of the operands is so.
+    /// Whether one of the operands satisfies `is`.
     pub(crate) fn any_child(&self, is: impl Fn(Expr) -> bool) -> bool {
         let mut any = false;
         self.each_child(|child| any = any || is(child));

@@ -1,8 +1,8 @@
 //! Exact powers of numbers, bounded in size.
 //!
 //! In: a rational base and a rational exponent. Out: [`Power`], a coefficient times roots that are not exact,
-//! `(a/b)^e = c · a^r · b^s` with `0 < r, s < 1`. Over the reals: a fractional power of a negative number is undefined,
-//! as in `f64::powf`.
+//! `(a/b)^e = c · a^r · b^s` with `0 < r, s < 1`. A fractional power of a negative number is undefined, as in
+//! `f64::powf`.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -10,7 +10,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use crate::Rational;
 
-/// Numbers are multiplied together up to this many bits (numerator and denominator); larger ones stay products.
+/// Maximum bits of a folded number, numerator plus denominator; larger products stay unevaluated.
 pub(crate) const MAX_BITS: u64 = 4096;
 
 /// Base and exponent.
@@ -31,13 +31,12 @@ pub(crate) fn nearest(number: &Rational) -> f64 {
     number.to_f64().unwrap_or(f64::NAN)
 }
 
-/// Bits of numerator and denominator together; an integer has none in its denominator.
+/// Bits of numerator and denominator together; the denominator of an integer has none.
 pub(crate) fn bits(number: &Rational) -> u64 {
     number.numer().bits() + number.denom().bits() - 1
 }
 
-/// `left + right`. Integers, which most numbers are, are spared the search for a common divisor, which takes a time of the
-/// square of their bits.
+/// `left + right`. Integers, the frequent case, skip the common divisor, whose cost is quadratic in the bits.
 pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     if left.is_integer() && right.is_integer() {
         Rational::from_integer(left.numer() + right.numer())
@@ -46,7 +45,7 @@ pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     }
 }
 
-/// `left·right`, integers likewise, and a factor 1.
+/// `left·right`. Integers and a factor 1 skip the common divisor.
 pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
     if left.is_one() {
         right.clone()
@@ -107,13 +106,13 @@ fn integer_power(base: &Rational, exponent: &BigInt) -> Option<Rational> {
     fits.then(|| base.pow(exponent))
 }
 
-/// A positive integer to a fractional exponent, as an exact part and perhaps a root; nothing if it is too large.
+/// A positive integer to a fractional exponent, as an exact part and possibly a root; `None` if it is too large.
 fn integer_root(integer: &BigInt, exponent: Rational) -> Option<(Rational, Option<Root>)> {
     let base = Rational::from_integer(integer.clone());
     if base.is_one() {
         return Some((base, None));
     }
-    // A root of higher degree than the number has bits lies strictly between 1 and 2.
+    // A root whose degree exceeds the bits of the number lies strictly between 1 and 2.
     let bits = integer.bits();
     if let Some(degree) = exponent.denom().to_u32().filter(|degree| bits <= MAX_BITS && u64::from(*degree) <= bits) {
         let root = integer.nth_root(degree);

@@ -1,8 +1,9 @@
-//! The pool: every expression once.
+//! The pool, which stores every expression once.
 //!
 //! In: canonical nodes from the constructors of this crate. Out: handles; equal nodes have equal handles.
-//! AFTER THIS a node never changes, and its children have smaller handles than itself, so that every pass is a loop over
-//! [`Pool::reachable`] in ascending order and no depth of nesting exhausts the stack.
+//!
+//! AFTER THIS a node never changes, and its children have smaller handles. So every pass is a loop over
+//! [`Pool::reachable`] in ascending order, and deep nesting does not exhaust the stack.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
@@ -20,13 +21,13 @@ use crate::{Distinct, Expr, Node, Product, Rational, Table};
 #[derive(Clone, Debug)]
 pub struct Pool<S> {
     nodes: Distinct<Arc<Node<S>>>,
-    /// Of each node, whether it has no symbols.
+    /// Whether each node has no symbols.
     pub(crate) constant: Vec<bool>,
-    /// Some node is constant, and not an exact number.
+    /// Some node is constant but not an exact number.
     pub(crate) has_irrational: bool,
-    /// Values of constant nodes, with the bits that were asked for.
+    /// Values of constant nodes, with their precision in bits.
     pub(crate) balls: RefCell<Table<Expr, (u64, Ball)>>,
-    /// Work that may be done, and what is left of it.
+    /// Work limit, and the remaining work.
     pub(crate) limit: usize,
     pub(crate) left: Cell<usize>,
 }
@@ -38,7 +39,7 @@ impl<S: Clone + Eq + Hash> Default for Pool<S> {
 }
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Pool with the three expressions that every pool has: 0, 1 and the undefined one. Its work is not bounded.
+    /// A pool with the three common expressions: 0, 1 and the undefined one. Its work is unlimited.
     #[must_use]
     pub fn new() -> Self {
         let mut pool = Self {
@@ -68,9 +69,9 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         Expr::ONE
     }
 
-    /// The expression without a value, written `1/0`: what division by the exact number 0, `ln(0)`, the square root of a
-    /// negative number and the like give. It absorbs: every sum, product (with 0 too), power, function and derivative of it
-    /// is this expression again, so that a mistake cannot vanish. It evaluates to NaN.
+    /// The expression without a value, written `1/0`: the result of division by the exact number 0, `ln(0)`, the square
+    /// root of a negative number. It is absorbing: every sum, product (even with 0), power, function and derivative of
+    /// it is again this expression, so that a mistake cannot disappear. It evaluates to NaN.
     #[must_use]
     pub fn undefined(&self) -> Expr {
         Expr::UNDEFINED
@@ -96,7 +97,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.intern(Node::Symbol(symbol))
     }
 
-    /// What stands behind a handle.
+    /// The node of a handle.
     ///
     /// # Panics
     /// If the handle is of another, larger pool.
@@ -133,13 +134,13 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.nodes.len()
     }
 
-    /// All nodes at and below the given expressions, each once, children before parents.
+    /// All nodes of the given expressions, each once, children before parents.
     #[must_use]
     pub fn reachable(&self, exprs: &[Expr]) -> Vec<Expr> {
         self.visited(exprs, 1)
     }
 
-    /// The same for a pass that takes so much work for each operand.
+    /// The same, for a pass that spends `work` on each operand.
     pub(crate) fn visited(&self, exprs: &[Expr], work: usize) -> Vec<Expr> {
         if self.is_exhausted() {
             return Vec::new();
@@ -175,13 +176,13 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.reachable(exprs).into_iter().filter_map(|expr| self.as_symbol(expr)).cloned().collect()
     }
 
-    /// Whether a symbol of the kind is in the expression.
+    /// Whether the expression contains a symbol that satisfies `kind`.
     #[must_use]
     pub fn depends_on(&self, expr: Expr, kind: &dyn Fn(&S) -> bool) -> bool {
         self.reachable(&[expr]).into_iter().filter_map(|expr| self.as_symbol(expr)).any(kind)
     }
 
-    /// The symbol that an expression is.
+    /// The symbol, if the expression is one.
     #[must_use]
     pub fn as_symbol(&self, expr: Expr) -> Option<&S> {
         match self.node(expr) {
@@ -190,7 +191,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// The node itself, to be read while the pool grows.
+    /// The node, readable while the pool grows.
     pub(crate) fn shared_node(&self, expr: Expr) -> Arc<Node<S>> {
         Arc::clone(&self.nodes[expr.0])
     }
@@ -213,13 +214,13 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     }
 }
 
-/// Expressions that are still to be visited, the newest first: one bit for each, and one for each word of these, so that neither a
-/// search nor a sort is needed, and a few expressions of a large pool are found as fast as those of a small one.
+/// Expressions still to be visited, newest first. A bitmap with one summary bit per word needs no search and no sort,
+/// and finds few expressions as fast in a large pool as in a small one.
 struct Open {
     words: Vec<u64>,
-    /// Which words have a bit.
+    /// Summary: which words have a bit.
     filled: Vec<u64>,
-    /// No bit is set in what is filled from here on.
+    /// No summary word from here on has a bit.
     end: usize,
 }
 
@@ -234,7 +235,7 @@ impl Open {
         open
     }
 
-    /// Adds an expression that is not newer than the first ones.
+    /// Adds an expression that is not newer than the initial ones.
     fn insert(&mut self, expr: Expr) {
         let word = expr.0 / 64;
         self.words[word] |= 1 << (expr.0 % 64);

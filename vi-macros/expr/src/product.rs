@@ -7,8 +7,9 @@
 //! - `(b c)^n = b^n c^n` for integers `n`
 //! - `(k b)^e = k^e b^e` for numbers `k` with `e` an integer or `k^e` exact: `(4x)^(1/2) = 2 x^(1/2)`
 //!
-//! Exponents are added without a look at the domain: `x·x^-1 = 1`.
-//! AFTER THIS the coefficient is outside (see [`crate::Sum`]) and the factors obey [`Product`].
+//! Exponents add regardless of the domain: `x·x^-1 = 1`.
+//!
+//! AFTER THIS the coefficient is outside (see [`crate::Sum`]) and the factors satisfy [`Product`].
 
 use std::hash::Hash;
 
@@ -18,7 +19,7 @@ use crate::effort::MADE;
 use crate::number::{self, Power};
 use crate::{Expr, Node, Pool, Product, Rational};
 
-/// What a single power is.
+/// A reduced power.
 enum Reduction {
     /// Canonical as it is.
     Canonical,
@@ -28,7 +29,7 @@ enum Reduction {
 }
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// `left·right`. A product of many factors is built by [`Pool::product`], like a sum by [`Pool::sum`].
+    /// `left·right`. Use [`Pool::product`] for many factors, as [`Pool::sum`] for sums.
     pub fn mul(&mut self, left: Expr, right: Expr) -> Expr {
         self.product(&[left, right])
     }
@@ -47,8 +48,8 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// `base^exponent`; `x^0 = 1` for every `x` but the undefined one, and the square root is the power 1/2.
-    /// Undefined are negative powers of the number 0 and fractional powers of negative numbers.
+    /// `base^exponent`; `x^0 = 1` for every `x` except the undefined one, and the square root is the power 1/2.
+    /// Negative powers of 0 and fractional powers of negative numbers are undefined.
     pub fn power(&mut self, base: Expr, exponent: &Rational) -> Expr {
         if exponent.is_one() {
             return base;
@@ -94,7 +95,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.scale(body, &coefficient)
     }
 
-    /// One power apart, numbers folded as long as they fit beside `coefficient`.
+    /// Splits one power; numbers fold as long as they fit beside `coefficient`.
     fn reduce(&mut self, base: Expr, exponent: &Rational, coefficient: &Rational) -> Reduction {
         match &*self.shared_node(base) {
             Node::Number(value) => self.reduce_number(value, exponent, coefficient),
@@ -144,7 +145,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
     }
 }
 
-/// Equal bases as one, in ascending order, without those to the power 0.
+/// Merges equal bases, in ascending order, and drops those with exponent 0.
 fn gathered(mut factors: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
     factors.sort_by_key(|(base, _)| *base);
     let mut gathered: Vec<(Expr, Rational)> = Vec::with_capacity(factors.len());
@@ -158,7 +159,7 @@ fn gathered(mut factors: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
     gathered
 }
 
-/// Whether two numbers may be multiplied; a zero or a one always may.
+/// Whether the product of two numbers is small enough; zero and one always are.
 fn fits(left: &Rational, right: &Rational) -> bool {
     left.is_one() && number::bits(right) <= number::MAX_BITS
         || right.is_one()

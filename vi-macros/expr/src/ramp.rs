@@ -1,7 +1,8 @@
-//! Ramps: what is zero on one side of a point and starts there.
+//! Ramps: functions that are zero on one side of a point.
 //!
-//! In: `c |u| ± c u`, and products of such. Out: `c u (sign(u) ± 1)`, the same number wherever it is evaluated, but exactly 0 on
-//! one side however u is rounded, and with a derivative whose factor `sign(u) ± 1` is 0 there too. Of a symbol u both hold as it is.
+//! In: `c |u| ± c u`, and products of these. Out: `c u (sign(u) ± 1)`, which has the same value but is exactly 0 on one
+//! side for any rounding of u. Its derivative has the factor `sign(u) ± 1`, which is 0 there too. If u is a symbol,
+//! both hold unchanged.
 
 use std::hash::Hash;
 
@@ -10,7 +11,7 @@ use num_traits::One;
 use crate::{Expr, Function, Node, Pool, Rational};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// The expression with its ramps as products: itself, or factors of it, are ramps or stay.
+    /// The expression with its ramps as products: the expression or its factors are ramps, or stay unchanged.
     pub fn with_ramps(&mut self, expr: Expr) -> Expr {
         match &*self.shared_node(expr) {
             Node::Product(product) => {

@@ -1,8 +1,8 @@
 //! Plain text.
 //!
-//! In: an expression and a name for each symbol. Out: text as a person writes it, `m*v^2/2 - k*x^2/2`, with no parentheses
-//! that are not needed, subtraction and division as such, and `sqrt`; `1e150` for a number of many digits. At most [`MAX_CHARACTERS`], or fewer, then `…`: the text of a
-//! shared expression can be exponentially longer than the expression.
+//! In: an expression and a name for each symbol. Out: text as in a textbook, `m*v^2/2 - k*x^2/2`, with necessary
+//! parentheses only, subtraction, division and `sqrt`; `1e150` for a number with many digits. The text ends with `…`
+//! after [`MAX_CHARACTERS`] or a smaller limit: the text of a shared expression can be exponentially long.
 
 use std::hash::Hash;
 
@@ -11,13 +11,13 @@ use num_traits::{One, Signed, Zero};
 
 use crate::{Expr, Node, Pool, Rational};
 
-/// Longest text, in characters.
+/// Maximum number of characters.
 pub const MAX_CHARACTERS: usize = 100_000;
 
-/// Digits of the longest number that is written out in any case.
+/// Digits of the longest number that is always written out.
 const DIGITS: u32 = 17;
 
-/// How strongly an expression holds together.
+/// Binding strength of an expression.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -26,11 +26,11 @@ enum Binding {
     Atom,
 }
 
-/// What is still to be written.
+/// Pending output.
 enum Piece {
     Text(&'static str),
     Owned(String),
-    /// An expression, in parentheses if it binds less strongly.
+    /// An expression, in parentheses if it binds less tightly.
     Inside(Expr, Binding),
 }
 
@@ -41,7 +41,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.render_within(MAX_CHARACTERS, expr, name)
     }
 
-    /// The expression as text of at most so many characters, then `…`.
+    /// The expression as text of at most `limit` characters, then `…`.
     #[must_use]
     pub fn render_within(&self, limit: usize, expr: Expr, name: &dyn Fn(&S) -> String) -> String {
         let mut text = String::new();
@@ -105,7 +105,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// The terms in their order, save that the first positive one leads: `q1 - q0`.
+    /// The terms in order, but the first positive one comes first: `q1 - q0`.
     fn sum_pieces(&self, sum: &crate::Sum) -> (Binding, Vec<Piece>) {
         let mut terms: Vec<(Rational, Vec<(Expr, Rational)>)> =
             sum.terms.iter().map(|(term, coefficient)| (coefficient.clone(), self.factors(*term))).collect();
@@ -170,13 +170,13 @@ fn write_multiple(coefficient: &Rational, factors: &[(Expr, Rational)], pieces: 
     Binding::Product
 }
 
-/// `1.5e150` of a number with more than [`DIGITS`] digits above or below, where that is exact and has no more.
+/// `1.5e150` for a number with more than [`DIGITS`] digits above or below, if exact and not longer.
 fn scientific(number: &Rational) -> Option<String> {
     let long = BigInt::from(10).pow(DIGITS);
     if number.numer().abs() < long && *number.denom() < long {
         return None;
     }
-    // number = mantissa/10^places, which needs a denominator of twos and fives.
+    // number = mantissa/10^places requires a denominator of twos and fives.
     let twos = u32::try_from(number.denom().trailing_zeros()?).ok()?;
     let mut rest = number.denom() >> twos;
     let mut fives = 0;
@@ -199,7 +199,7 @@ fn scientific(number: &Rational) -> Option<String> {
     Some(format!("{first}{point}{others}e{exponent}"))
 }
 
-/// Number and powers with positive exponents, joined by `*`; 1 where there are none.
+/// Number and powers with positive exponents, joined by `*`; 1 if there are none.
 fn write_factors(
     number: Option<String>,
     factors: impl IntoIterator<Item = (Expr, Rational)>,

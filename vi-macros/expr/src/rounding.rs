@@ -1,9 +1,9 @@
-//! Values in floating point, with what rounding does to them.
+//! Values in floating point with error estimates.
 //!
-//! In: expressions and the value of each symbol, taken as exact. Out: their values, each with an estimate of its error from above:
-//! of a sum `Σ |c| error(u)`, of a product what its factors make of their errors, of a function how far it moves when its argument
-//! does; and of each of them one rounding of the result. So a value that is zero but for rounding is told from one that is small.
-//! A value that no `f64` holds with all its digits is [`Rounded::LOST`]: nothing is known of it.
+//! In: expressions and the exact values of the symbols. Out: their values, each with an upper estimate of its error.
+//! The error of a sum is `Σ |c| error(u)`; products and functions propagate the errors of their operands; each
+//! operation adds one rounding. So a value that is zero up to rounding differs from a small one. A value that no `f64`
+//! represents with all its digits is [`Rounded::LOST`].
 
 use std::hash::Hash;
 
@@ -19,15 +19,15 @@ use crate::{Expr, Function, Node, Pool, Rational, Table};
 pub struct Rounded {
     /// The value in floating point.
     pub value: f64,
-    /// How far it may be from the exact one.
+    /// Estimated distance from the exact value.
     pub error: f64,
 }
 
 impl Rounded {
-    /// A value of which nothing is known: undefined here, or out of the range of `f64`.
+    /// An unknown value: undefined, or out of the range of `f64`.
     pub const LOST: Self = Self { value: f64::NAN, error: f64::NAN };
 
-    /// The result of an operation with the errors of its operands, rounded.
+    /// The rounded result of an operation, given the propagated error.
     fn new(value: f64, error: f64) -> Self {
         let error = error + f64::EPSILON * value.abs();
         if value.is_subnormal() || !error.is_finite() { Self::LOST } else { Self { value, error } }
@@ -38,7 +38,7 @@ impl Rounded {
         if value == 0.0 && !number.is_zero() { Self::LOST } else { Self::new(value, 0.0) }
     }
 
-    /// A function that rises or falls on both sides of 0, and is not zero where `nonzero` says so.
+    /// Applies a function that is monotone on both sides of 0; `nonzero` if it has no zero.
     fn map(self, nonzero: bool, function: impl Fn(f64) -> f64) -> Self {
         let value = function(self.value);
         let moved = |end: f64| (function(end) - value).abs();
@@ -83,7 +83,7 @@ impl Rounded {
 }
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// Values of several expressions with their errors, in their order; the closure is asked once per symbol.
+    /// Values of several expressions with their errors, in order; the closure is called once per symbol.
     #[must_use]
     pub fn evaluate_rounded(&self, exprs: &[Expr], values: &mut dyn FnMut(&S) -> f64) -> Vec<Rounded> {
         let mut known = Table::default();
@@ -96,7 +96,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         exprs.iter().map(|expr| self.rounded_of(&known, *expr)).collect()
     }
 
-    /// A value that is known, or that of a constant.
+    /// A known value, or the value of a constant.
     fn rounded_of(&self, known: &Table<Expr, Rounded>, expr: Expr) -> Rounded {
         if self.is_constant(expr) {
             self.constant(expr).map_or(Rounded::LOST, |value| Rounded::new(value, 0.0))

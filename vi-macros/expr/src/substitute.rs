@@ -1,20 +1,20 @@
 //! Substitution of symbols.
 //!
-//! In: an expression and a replacement for some symbols. Out: the expression with all of them replaced at once, in canonical
-//! form again, so that `(q1 - q0)/h` with `q1 = q0 + h*v` is `v`.
+//! In: an expression and replacements for some symbols. Out: the expression with all of them replaced simultaneously,
+//! in canonical form: `(q1 - q0)/h` with `q1 = q0 + h*v` is `v`.
 
 use std::hash::Hash;
 
 use crate::{Expr, Node, Pool, Table};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// `expr` with each symbol replaced by what the closure gives (asked once per symbol); nothing keeps the symbol.
-    /// Replacements are not substituted into again.
+    /// `expr` with each symbol replaced by the result of the closure, called once per symbol; `None` keeps the symbol.
+    /// Replacements are not substituted again.
     pub fn substitute(&mut self, expr: Expr, map: &mut dyn FnMut(&mut Self, &S) -> Option<Expr>) -> Expr {
         if self.is_exhausted() {
             return Expr::UNDEFINED;
         }
-        // Only nodes that change.
+        // Changed nodes only.
         let mut changed: Table<Expr, Expr> = Table::default();
         for node in self.reachable(&[expr]) {
             let shared = self.shared_node(node);
@@ -32,7 +32,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         changed.get(expr).copied().unwrap_or(expr)
     }
 
-    /// The same operation on other operands.
+    /// The same operation with other operands.
     pub(crate) fn rebuild(&mut self, node: &Node<S>, new: &dyn Fn(Expr) -> Expr) -> Expr {
         match node {
             Node::Number(value) => self.number(value.clone()),

@@ -1,8 +1,9 @@
 //! Canonical sums.
 //!
-//! In: a linear combination of any expressions. Out: the expression `constant + Σ coefficient·term` with nested sums
-//! flattened, equal terms collected and numbers folded.
-//! AFTER THIS no term is a number or a sum, and a numeric coefficient stands nowhere but in a [`Sum`].
+//! In: a linear combination of expressions. Out: `constant + Σ coefficient·term`, with nested sums flattened, equal
+//! terms collected and numbers folded.
+//!
+//! AFTER THIS no term is a number or a sum, and numeric coefficients exist only in a [`Sum`].
 
 use std::hash::Hash;
 
@@ -12,7 +13,7 @@ use crate::effort::MADE;
 use crate::{Expr, Node, Pool, Rational, Sum, number};
 
 impl<S: Clone + Eq + Hash> Pool<S> {
-    /// `left + right`. A sum of many terms is built by [`Pool::sum`]: one by one, each addition copies what is there.
+    /// `left + right`. Use [`Pool::sum`] for many terms: repeated addition copies the terms each time.
     pub fn add(&mut self, left: Expr, right: Expr) -> Expr {
         self.sum(&[left, right])
     }
@@ -43,7 +44,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         self.combination([(expr, factor.clone())])
     }
 
-    /// `Σ coefficient·term`, undefined if a term is, whatever its coefficient.
+    /// `Σ coefficient·term`; undefined if a term is, for any coefficient.
     pub fn combination(&mut self, parts: impl IntoIterator<Item = (Expr, Rational)>) -> Expr {
         let mut constant = Rational::zero();
         let mut terms = Vec::new();
@@ -87,7 +88,7 @@ impl<S: Clone + Eq + Hash> Pool<S> {
         }
     }
 
-    /// Equal terms as one, in ascending order.
+    /// Merges equal terms, in ascending order.
     fn collected(&self, mut terms: Vec<(Expr, Rational)>) -> Vec<(Expr, Rational)> {
         terms.sort_by_key(|(term, _)| *term);
         let mut collected: Vec<(Expr, Rational)> = Vec::with_capacity(terms.len());

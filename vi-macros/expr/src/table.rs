@@ -1,24 +1,24 @@
-//! Values by index.
+//! Maps from small indices to values.
 //!
-//! In: indices that count from 0, as handles of expressions do. Out: a [`Table`], in which a value is found at its index and
-//! not by comparisons: a macro is built without optimisation, and there a search tree takes most of the time. A table that is
-//! almost empty costs almost nothing, however large its indices are: most passes over expressions see a few of many.
+//! In: indices that count from 0, such as handles of expressions. Out: a [`Table`] with direct access. A macro is built
+//! without optimization, where a search tree would dominate the run time. A sparse table costs little for any size of
+//! its indices: most passes visit a few of many expressions.
 
 use std::marker::PhantomData;
 
-/// A place in a list.
+/// A position in a list.
 pub trait Index: Copy {
-    /// The place, from 0.
+    /// The position, from 0.
     fn index(self) -> usize;
 }
 
-/// Indices of one page.
+/// Number of indices in one page.
 const PAGE: usize = 256;
 
 /// A map from indices to values.
 #[derive(Clone, Debug)]
 pub struct Table<K, V> {
-    /// One more than where a value stands, 0 for none; a page without values is empty.
+    /// One plus the position of the value, 0 for none; a page without values is empty.
     pages: Vec<Vec<usize>>,
     values: Vec<V>,
     keys: PhantomData<K>,
@@ -44,7 +44,7 @@ impl<K: Index, V> Table<K, V> {
         self.get(key).is_some()
     }
 
-    /// Puts a value at an index, in place of one that is there.
+    /// Sets the value at an index.
     pub fn insert(&mut self, key: K, value: V) {
         let next = self.values.len() + 1;
         let place = self.place(key);
@@ -56,7 +56,7 @@ impl<K: Index, V> Table<K, V> {
         }
     }
 
-    /// The value at an index, the default where there was none.
+    /// The value at an index; inserts the default if there is none.
     pub fn entry(&mut self, key: K) -> &mut V
     where
         V: Default,

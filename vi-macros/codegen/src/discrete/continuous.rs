@@ -1,6 +1,6 @@
 //! The continuous functions of the system.
 //!
-//! In: L and f. Out, with `a` the acceleration and derivatives along the motion:
+//! In: L and f. Out, with the acceleration `a` and derivatives along the motion:
 //!
 //! ```text
 //! momentum p = L_v          energy = v·L_v − L          mass M = L_vv
@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Node, Pool, Rational, TooLarge};
 
-/// Expressions in time, coordinates, velocities and parameters; the density in accelerations too.
+/// Expressions in time, coordinates and velocities; the step density also contains accelerations.
 pub struct Continuous {
     /// L.
     pub lagrangian: Expr,
@@ -28,7 +28,7 @@ pub struct Continuous {
     pub force: Vec<Expr>,
     /// M, row by row.
     pub mass: Vec<Vec<Expr>>,
-    /// Whether L_v is M v and nothing else.
+    /// Whether L_v = M v exactly.
     pub momentum_is_mass_times_velocity: bool,
     /// M a.
     pub mass_times_acceleration: Vec<Expr>,
@@ -36,22 +36,22 @@ pub struct Continuous {
     pub applied_force: Vec<Expr>,
     /// dE/dt = −L_t + f·v.
     pub power: Expr,
-    /// L is quadratic in the velocities, p = M v + p(v = 0).
+    /// L is quadratic in the velocities: p = M v + p(v = 0).
     pub quadratic: bool,
     /// D.
     pub step_density: Expr,
-    /// g and its derivatives, where the system has a time scale.
+    /// g and its derivatives, if the system has a time scale.
     pub time_scale: Option<TimeScale>,
-    /// What can lose its value first: variables and parameters, calls, roots and quotients, then L and f; parts before
-    /// wholes.
+    /// Expressions checked for finite values, parts before wholes: variables, parameters, calls, roots, quotients, L,
+    /// f.
     pub watched: Vec<Expr>,
     /// Neither L nor f depends on the time.
     pub autonomous: bool,
-    /// Per coordinate: it does not appear in L and has no force.
+    /// Whether the coordinate is absent from L and has no force, per coordinate.
     pub cyclic: Vec<bool>,
 }
 
-/// How L_v and L_q + f change with q and v, row by row; how L_v changes with v is M.
+/// Derivatives of L_v and L_q + f with respect to q and v, row by row. ∂L_v/∂v is M.
 pub struct PointDerivatives {
     /// ∂L_v/∂q.
     pub momentum_dq: Vec<Vec<Expr>>,
@@ -86,7 +86,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     let mut power = vec![pool.neg(lt)];
     for i in 0..dimension {
         bounded(pool)?;
-        // Most second derivatives of a long chain are zero, and not looked for.
+        // Skips the second derivatives that are known to be zero: most of them in a long chain.
         let by_velocity = fields.variables(pool, velocity(i));
         let mut row = vec![zero; dimension];
         for j in (0..dimension).filter(|j| by_velocity.contains(&velocity(*j))) {
@@ -153,7 +153,7 @@ pub(super) fn continuous(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &M
     })
 }
 
-/// Derives how L_v and L_q + f change.
+/// Derives ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.
 pub(super) fn point_derivatives(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
@@ -196,13 +196,13 @@ fn time_scale(pool: &mut Pool<Symbol>, g: Expr, dimension: usize) -> TimeScale {
 fn watched(pool: &mut Pool<Symbol>, model: &Model) -> Vec<Expr> {
     let wholes: Vec<Expr> = [model.lagrangian].iter().chain(&model.forces).copied().collect();
     let one = Rational::from_integer(1.into());
-    // Parts of constants may be out of the range of numbers.
+    // Constant subexpressions may exceed the range of numbers.
     let is_part = |expr: &Expr| !pool.is_constant(*expr) || pool.as_number(*expr).is_some();
     let (parts, others): (Vec<Expr>, Vec<Expr>) =
         pool.reachable(&wholes).into_iter().filter(is_part).partition(|expr| {
             match pool.node(*expr) {
                 Node::Symbol(_) | Node::Call(..) => true,
-                // A product of positive powers is finite where its factors are, short of overflow.
+                // A product of positive powers is finite if its factors are, short of overflow.
                 Node::Product(product) => product.factors.iter().any(|(_, exponent)| *exponent < one),
                 Node::Number(_) | Node::Pi | Node::Sum(_) => false,
             }
@@ -232,7 +232,7 @@ fn is_product(pool: &mut Pool<Symbol>, vector: &[Expr], matrix: &[Vec<Expr>]) ->
     Ok(true)
 }
 
-/// v·L_v − L, term by term: a term without velocities only changes its sign, and keeps the form that its writer gave it.
+/// v·L_v − L, term by term. A term without velocities only changes its sign and keeps the form in which it was written.
 fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
     let moves = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     let terms = match pool.node(lagrangian).clone() {
@@ -254,12 +254,12 @@ fn energy(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Expr {
         gains.push(pool.mul(v, momentum));
     }
     let closed = pool.sum(&gains);
-    // Multiplied out, `m v² − m v²/2` becomes `m v²/2`; where that is too long, the closed form is as right.
+    // Expansion turns `m v² − m v²/2` into `m v²/2`. If it grows too long, the closed form is equally correct.
     let gains = pool.expand(closed).unwrap_or(closed);
     pool.sub(gains, still)
 }
 
-/// Whether f, and whether L, depend on the time: (f does, L does not).
+/// Whether f depends on time, and whether L does.
 fn dependence(pool: &Pool<Symbol>, model: &Model) -> (bool, bool) {
     let time = |symbol: &Symbol| *symbol == Symbol::Continuous(Variable::Time);
     let forced = model.forces.iter().any(|force| pool.depends_on(*force, &time));

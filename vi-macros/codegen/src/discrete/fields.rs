@@ -1,32 +1,32 @@
 //! Fields: partial derivatives of L and f at the points of a rule, and the chain rule through them.
 //!
-//! In: L and f. Out: their partial derivatives as far as they are asked for, and total derivatives of expressions
-//! that contain fields:
+//! In: L and f. Out: the requested partial derivatives, and total derivatives of expressions that contain fields:
 //!
 //! ```text
 //! d/dx F(t_k, q_k, v_k) = F_t dt_k/dx + Σ_i F_{q_i} dq_{k,i}/dx + Σ_i F_{v_i} dv_{k,i}/dx
 //! ```
 //!
-//! A partial derivative that depends on parameters only is put in place, so that zeros and constants act at once. Of each
-//! partial derivative it is known on what it depends: most of those of a long chain are zero, and never derived.
+//! A partial derivative that depends on parameters only is inlined, so that zeros and constants simplify at once.
+//! The variables of each partial derivative are recorded: most derivatives in a long chain are zero and are never
+//! computed.
 
 use crate::model::{Model, Point};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::{Distinct, Expr, Pool};
 
-/// Work of looking up a partial derivative.
+/// Cost of looking up a partial derivative.
 const LOOKED_UP: usize = 8;
 
 /// Partial derivatives of L and f in `(t, q, v)`.
 pub struct Fields {
-    /// What is defined: the quantity, and by what it is differentiated, in ascending order.
+    /// Keys: the quantity and the variables of differentiation, in ascending order.
     known: Distinct<(Quantity, Vec<Variable>)>,
     definitions: Vec<Definition>,
     zero: Definition,
 }
 
-/// A partial derivative, and what it depends on but parameters.
+/// A partial derivative with the variables that it depends on.
 struct Definition {
     expr: Expr,
     variables: Variables,
@@ -44,12 +44,12 @@ impl Definition {
     }
 }
 
-/// A set of variables, one bit for each: a dense system has as many sets as pairs of coordinates.
+/// A set of variables, one bit each. A dense system has as many sets as pairs of coordinates.
 #[derive(Clone, Default)]
 pub(super) struct Variables(Vec<u64>);
 
 impl Variables {
-    /// The word and the bit of a variable.
+    /// Word and bit of a variable.
     fn place(variable: &Variable) -> (usize, u64) {
         let number = match variable {
             Variable::Time => 0,
@@ -85,7 +85,7 @@ impl Variables {
     }
 }
 
-/// How the arguments of the points change with one variable: per point, the nonzero ones.
+/// Derivatives of the arguments of each point with respect to one variable; only nonzero ones.
 pub(super) type Changes = Vec<Vec<(Variable, Expr)>>;
 
 impl Fields {
@@ -101,7 +101,7 @@ impl Fields {
         fields
     }
 
-    /// A partial derivative of L in `(t, q, v)`, by these variables in any order.
+    /// A partial derivative of L in `(t, q, v)` with respect to these variables, in any order.
     pub(super) fn lagrangian(&mut self, pool: &mut Pool<Symbol>, by: &[Variable]) -> Expr {
         let mut derivatives = by.to_vec();
         derivatives.sort_unstable();
@@ -113,19 +113,19 @@ impl Fields {
         self.defined(pool, Quantity::Force(coordinate), &[by]).expr
     }
 
-    /// On what a first partial derivative of L depends, but parameters.
+    /// The variables of a first partial derivative of L.
     pub(super) fn variables(&mut self, pool: &mut Pool<Symbol>, by: Variable) -> Variables {
         self.defined(pool, Quantity::Lagrangian, &[by]).variables.clone()
     }
 
-    /// A partial derivative, kept from the first time on unless it is trivially zero: `derivatives` ascend.
+    /// A partial derivative, cached unless it is zero; `derivatives` are ascending.
     fn defined(&mut self, pool: &mut Pool<Symbol>, quantity: Quantity, derivatives: &[Variable]) -> &Definition {
         pool.spend(LOOKED_UP);
         let key = (quantity, derivatives.to_vec());
         if let Some(place) = self.known.get_index_of(&key) {
             return &self.definitions[place];
         }
-        // By the last variable first: `derivatives` without it is the more basic one, and is kept too.
+        // Differentiates by the last variable first, since the lower derivative is cached too.
         let Some((last, basic)) = derivatives.split_last() else { return &self.zero };
         let basic = self.defined(pool, quantity, basic);
         if !basic.variables.contains(last) {
@@ -139,7 +139,8 @@ impl Fields {
         &self.definitions[place]
     }
 
-    /// The first partial derivative of L or of a force that has no value for any state: of what, the expression, and the last variable.
+    /// The first partial derivative of L or of a force that has no value in any state: quantity, expression, last
+    /// variable.
     pub(super) fn undefined(&self, pool: &Pool<Symbol>) -> Option<(Quantity, Expr, Variable)> {
         let place = self.definitions.iter().position(|definition| pool.is_undefined(definition.expr))?;
         let (quantity, derivatives) = self.known.get_index(place)?;
@@ -159,13 +160,13 @@ impl Fields {
         self.known(field).map(|definition| definition.expr)
     }
 
-    /// A partial derivative at a point: a field, or its value in place where that depends on parameters only.
+    /// A partial derivative at a point: a field, or its value if that depends on parameters only.
     fn at_point(&mut self, pool: &mut Pool<Symbol>, field: Field) -> Expr {
         let value = self.defined(pool, field.quantity, &field.derivatives);
         if value.variables.is_empty() { value.expr } else { pool.symbol(Symbol::Field(field)) }
     }
 
-    /// On what the fields among some symbols depend at each point.
+    /// The variables of the fields among these symbols, per point.
     pub(super) fn read(&self, symbols: &BTreeSet<Symbol>, points: usize) -> Vec<Variables> {
         let mut read = vec![Variables::default(); points];
         for symbol in symbols {
@@ -178,15 +179,15 @@ impl Fields {
         read
     }
 
-    /// The fields of an expression that depend on parameters only, put in place.
-    pub(super) fn settle(&mut self, pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
+    /// Inlines the fields of an expression that depend on parameters only.
+    pub(super) fn inline_constants(&mut self, pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
         pool.substitute(expr, &mut |pool, symbol| match symbol {
             Symbol::Field(field) => Some(self.at_point(pool, field.clone())),
             _ => None,
         })
     }
 
-    /// The total derivative of an expression by a variable that changes symbols by `direct` and points by `changes`.
+    /// The total derivative of an expression. The variable changes symbols by `direct` and points by `changes`.
     pub(super) fn derivative(
         &mut self,
         pool: &mut Pool<Symbol>,
@@ -215,11 +216,11 @@ impl Fields {
     }
 }
 
-/// The arguments of a point with the symbols in them: most of them know no coordinate but one.
+/// The arguments of a point with their symbols. Most contain one coordinate only.
 pub(super) struct Arguments(Vec<(Variable, Expr, BTreeSet<Symbol>)>);
 
 impl Arguments {
-    /// Those of each point.
+    /// The arguments of each point.
     pub(super) fn of(pool: &Pool<Symbol>, points: &[Point]) -> Vec<Self> {
         let of_point = |point: &Point| {
             let arguments = point.arguments();
@@ -229,7 +230,7 @@ impl Arguments {
     }
 }
 
-/// How the arguments of the points change with one variable, which changes symbols by `direct`.
+/// Derivatives of the arguments of the points with respect to one variable, which changes symbols by `direct`.
 pub(super) fn changes(
     pool: &mut Pool<Symbol>,
     arguments: &[Arguments],

@@ -1,7 +1,8 @@
 //! Discrete forces and powers: the virtual work of f over an interval.
 //!
-//! In: a [`Rule`]. Out: f_d^± and g_d^±, as they are written or, where they are not, derived. L_d takes L at its points with the weights
-//! w_k = ∂L_d/∂L_k, and the work of f is that of f at the same points: with Q_k, V_k, τ_k the coordinates, velocities and time of point k,
+//! In: a [`Rule`]. Out: f_d^± and g_d^±, as written or derived. L_d evaluates L at its points with the weights
+//! w_k = ∂L_d/∂L_k. The work of f uses the same points and weights. With coordinates Q_k, velocities V_k and time τ_k
+//! of point k,
 //!
 //! ```text
 //! W = Σ_k w_k f_k·(δQ_k − V_k δτ_k)
@@ -15,7 +16,7 @@ use crate::model::{DiscreteForces, Model, Rule};
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use vi_expr::{Expr, Pool, TooLarge};
 
-/// The discrete forces of a rule for a system; zero where no force acts.
+/// The discrete forces of a rule; zero for a system without forces.
 pub(super) fn discrete_forces(pool: &mut Pool<Symbol>, model: &Model, rule: &Rule) -> Result<DiscreteForces, TooLarge> {
     let dimension = model.dimension();
     if let Some(written) = &rule.forces {
@@ -37,9 +38,9 @@ pub(super) fn discrete_forces(pool: &mut Pool<Symbol>, model: &Model, rule: &Rul
 /// The virtual work W, point by point.
 struct Work {
     arguments: Vec<Arguments>,
-    /// Per point, w_k f_k by coordinates.
+    /// w_k f_k per point and coordinate.
     forces: Vec<Vec<Expr>>,
-    /// Per point, −w_k f_k·V_k.
+    /// −w_k f_k·V_k per point.
     powers: Vec<Expr>,
 }
 
@@ -67,7 +68,7 @@ impl Work {
         Self { arguments: Arguments::of(pool, &rule.points), forces, powers }
     }
 
-    /// ∂W/∂δ of a slot.
+    /// ∂W/∂δ for one slot.
     fn by(&self, pool: &mut Pool<Symbol>, slot: &Symbol) -> Result<Expr, TooLarge> {
         bounded(pool)?;
         let changes = changes(pool, &self.arguments, &|pool, symbol| by_slot(pool, symbol, slot));

@@ -1,12 +1,12 @@
 //! The slots of an interval: t0, q0, t1, q1.
 //!
-//! In: expressions in the slots and the step h = t1 − t0. Out: how their symbols change with a slot, and the same expressions in the step
-//! and its velocity, where `q1 = q0 + h v` and `t1 = t0 + h`.
+//! In: expressions in the slots and the step h = t1 − t0. Out: their derivatives with respect to a slot, and the same
+//! expressions in the step and its velocity, with `q1 = q0 + h v` and `t1 = t0 + h`.
 
 use crate::symbol::Symbol;
 use vi_expr::{Expr, Pool, TooLarge};
 
-/// How a symbol changes with a slot: itself by 1, and h = t1 − t0 with its ends.
+/// Derivative of a symbol with respect to a slot, including h = t1 − t0.
 pub(super) fn by_slot(pool: &mut Pool<Symbol>, symbol: &Symbol, slot: &Symbol) -> Expr {
     match (symbol, slot) {
         _ if symbol == slot => pool.one(),
@@ -16,7 +16,7 @@ pub(super) fn by_slot(pool: &mut Pool<Symbol>, symbol: &Symbol, slot: &Symbol) -
     }
 }
 
-/// The same in h and v, multiplied out so that equal terms meet.
+/// Substitutes h and v and expands, so that equal terms combine.
 pub(super) fn in_step(pool: &mut Pool<Symbol>, expr: Expr) -> Result<Expr, TooLarge> {
     let expr = pool.substitute(expr, &mut |pool, symbol| match symbol {
         Symbol::T1 => {

@@ -1,9 +1,9 @@
-//! The forced discrete system, from a checked model.
+//! The forced discrete system of a checked model.
 //!
-//! In: a [`Model`] with its rule. Out: a [`DiscreteSystem`]. The rule is differentiated with L and f closed:
-//! their partial derivatives at the points of the rule are symbols, [`Field`]s. So the leading
-//! terms of the equations cancel exactly, whatever L is, and L itself is differentiated once, in `(t, q, v)`.
-//! AFTER THIS every expression is one in fields, slots, the unknowns `(v, h)` and parameters.
+//! In: a [`Model`] with its rule. Out: a [`DiscreteSystem`]. Differentiating the rule treats L and f as opaque: their
+//! partial derivatives at the points of the rule are symbols, [`Field`]s. So the leading terms of the equations cancel
+//! exactly for every L, and L is differentiated once, in `(t, q, v)`.
+//! AFTER THIS every expression contains only fields, slots, the unknowns `(v, h)` and parameters.
 
 mod continuous;
 mod fields;
@@ -22,21 +22,21 @@ use crate::model::Model;
 use crate::rules::NamedRule;
 use crate::symbol::{Field, Symbol, Variable};
 
-/// A system as far as its functions need it: the motion, and the steps if it has a rule.
+/// The motion of a system, and its steps if it has a rule.
 pub struct DiscreteSystem {
     /// The continuous functions: momentum, mass matrix, …
     pub continuous: Continuous,
-    /// How the continuous equations change with coordinates and velocities.
+    /// Derivatives of the continuous equations with respect to coordinates and velocities.
     pub point_derivatives: PointDerivatives,
-    /// Partial derivatives of L and f, as far as they were asked for.
+    /// Partial derivatives of L and f computed so far.
     pub fields: Fields,
-    /// What the rule of the system gives; `None` for a system that has Gauss steps alone.
+    /// The discretization by the rule; `None` for a system with Gauss steps only.
     pub by_rule: Option<ByRule>,
 }
 
 /// A system discretized by a rule.
 pub struct ByRule {
-    /// The rule of the table that the system's rule is, written out or not.
+    /// The built-in rule that equals the system's rule, whether named or written out.
     pub rule: Option<&'static NamedRule>,
     /// L_d, its slot derivatives, discrete forces and powers.
     pub slots: Slots,
@@ -45,7 +45,7 @@ pub struct ByRule {
 }
 
 impl ByRule {
-    /// Whether energy-preserving steps exist: the rule has a step density, or nothing is known of it.
+    /// Whether energy-preserving steps exist: the rule has a step density, or is not built in.
     #[must_use]
     pub fn has_energy_steps(&self) -> bool {
         self.rule.is_none_or(|rule| rule.step_density)
@@ -65,8 +65,7 @@ impl DiscreteSystem {
         self.by_rule.as_ref().is_some_and(ByRule::has_energy_steps)
     }
 
-    /// A symbol as the user wrote it, and where it is evaluated: `L_v_x`, `x_mid`; `L_v_x_at2` where the rule has
-    /// several points.
+    /// A symbol in the user's names with its point: `L_v_x`, `x_mid`; `L_v_x_at2` for a rule with several points.
     #[must_use]
     pub fn spell(&self, model: &Model, symbol: &Symbol) -> String {
         let at = |point: usize| if self.points() == 1 { String::new() } else { format!("_at{}", point + 1) };

@@ -30,11 +30,11 @@ pub struct Slots {
     pub d3_ld: Expr,
     /// ∂L_d/∂q1.
     pub d4_ld: Vec<Expr>,
-    /// f_d^± and g_d^±; zeros without a force.
+    /// f_d^± and g_d^±; zero without a force.
     pub forces: DiscreteForces,
 }
 
-/// Differentiates L_d by its slots.
+/// Differentiates L_d with respect to its slots.
 pub(super) fn slots(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
@@ -55,15 +55,15 @@ pub(super) fn slots(
     let d2_ld = (0..dimension).map(|i| derivative(pool, Symbol::Q0(i))).collect::<Result<_, _>>()?;
     let d4_ld = (0..dimension).map(|i| derivative(pool, Symbol::Q1(i))).collect::<Result<_, _>>()?;
     let DiscreteForces { fd_minus, fd_plus, gd_minus, gd_plus } = discrete_forces(pool, model, rule)?;
-    let mut settle = |pool: &mut Pool<Symbol>, expr: Expr| {
-        let settled = fields.settle(pool, expr);
-        in_step(pool, settled)
+    let mut inline = |pool: &mut Pool<Symbol>, expr: Expr| {
+        let inlined = fields.inline_constants(pool, expr);
+        in_step(pool, inlined)
     };
-    let fd_minus = fd_minus.into_iter().map(|entry| settle(pool, entry)).collect::<Result<_, _>>()?;
-    let fd_plus = fd_plus.into_iter().map(|entry| settle(pool, entry)).collect::<Result<_, _>>()?;
-    let ld = settle(pool, rule.ld)?;
-    let gd_minus = settle(pool, gd_minus)?;
-    let gd_plus = settle(pool, gd_plus)?;
+    let fd_minus = fd_minus.into_iter().map(|entry| inline(pool, entry)).collect::<Result<_, _>>()?;
+    let fd_plus = fd_plus.into_iter().map(|entry| inline(pool, entry)).collect::<Result<_, _>>()?;
+    let ld = inline(pool, rule.ld)?;
+    let gd_minus = inline(pool, gd_minus)?;
+    let gd_plus = inline(pool, gd_plus)?;
     let forces = DiscreteForces { fd_minus, fd_plus, gd_minus, gd_plus };
     Ok(Slots { points: rule.points.clone(), ld, d1_ld, d2_ld, d3_ld, d4_ld, forces })
 }

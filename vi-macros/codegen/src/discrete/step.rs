@@ -1,6 +1,6 @@
 //! The equations of one step, in the unknowns (v, h).
 //!
-//! In: the slot derivatives. Out, with `q1 = q0 + h v`, `t1 = t0 + h` and the low parts of what is carried:
+//! In: the slot derivatives. Out, with `q1 = q0 + h v`, `t1 = t0 + h` and the low parts of the carried numbers:
 //!
 //! ```text
 //! r = −D2 L_d − f_d⁻ − p0            momentum row
@@ -10,7 +10,8 @@
 //! p1 − p0 = D2 L_d + D4 L_d + f_d⁻ + f_d⁺      E1 − E0 = −D1 L_d − D3 L_d − g_d⁻ − g_d⁺      E1 = −D3 L_d − g_d⁺
 //! ```
 //!
-//! and for the derivatives of a motion `∂r/∂q0`, `∂e/∂q0 − v·∂r/∂q0`, and how p1 − p0 and E1 − E0 change with q0, v and h.
+//! and, for sensitivities, `∂r/∂q0`, `∂e/∂q0 − v·∂r/∂q0`, and the derivatives of p1 − p0 and E1 − E0 with respect to
+//! q0, v and h.
 
 use super::fields::{Arguments, Changes, Fields, Variables, changes};
 use super::slots::Slots;
@@ -132,12 +133,12 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     })
 }
 
-/// The rows of momentum of a matrix, from its columns.
+/// Transposes the momentum part of the columns of a matrix.
 fn in_rows(columns: &[Column]) -> Vec<Vec<Expr>> {
     (0..columns.len()).map(|row| columns.iter().map(|column| column.momentum[row]).collect()).collect()
 }
 
-/// A carried quantity: the number and its low part.
+/// A carried quantity: the number plus its low part.
 fn carried(pool: &mut Pool<Symbol>, symbol: Symbol) -> Expr {
     let low = pool.symbol(Symbol::Low(Box::new(symbol.clone())));
     let high = pool.symbol(symbol);
@@ -174,12 +175,12 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
     let time = place(point.time);
     let coordinates = point.coordinates.iter().map(|e| place(*e)).collect();
     let velocities: Vec<Expr> = point.velocities.iter().map(|e| place(*e)).collect();
-    // (q0 + h v − q0)/h is v once multiplied out.
+    // Expansion reduces (q0 + h v − q0)/h to v.
     let velocities = velocities.into_iter().map(|e| pool.expand(e).unwrap_or(e)).collect();
     Point { time, coordinates, velocities }
 }
 
-/// p1 − p0, multiplied out.
+/// p1 − p0, expanded.
 fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr>, TooLarge> {
     let gain = |i: usize| [slots.d2_ld[i], slots.d4_ld[i], slots.forces.fd_minus[i], slots.forces.fd_plus[i]];
     (0..slots.d2_ld.len())
@@ -190,17 +191,17 @@ fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr
         .collect()
 }
 
-/// The derivatives of rows of momentum, and of one of energy, by one of the unknowns or of the coordinates.
+/// Derivatives of the momentum rows and of one energy row with respect to one variable.
 struct Column {
     momentum: Vec<Expr>,
     energy: Expr,
 }
 
-/// An equation, and what it knows: most of those of a long chain do not know most unknowns.
+/// An equation with the variables that it contains. In a long chain most equations contain few unknowns.
 struct Row {
     expr: Expr,
     symbols: BTreeSet<Symbol>,
-    /// Of the arguments of each point.
+    /// Variables of the fields at each point.
     read: Vec<Variables>,
 }
 
@@ -211,7 +212,7 @@ impl Row {
         Self { expr, symbols, read }
     }
 
-    /// Whether it changes with an unknown, by which the arguments change so.
+    /// Whether the equation depends on an unknown that changes the arguments by `changes`.
     fn varies(&self, unknown: &Symbol, changes: &Changes) -> bool {
         let reads = |(changes, read): (&Vec<(Variable, Expr)>, &Variables)| {
             changes.iter().any(|(variable, _)| read.contains(variable))
@@ -220,7 +221,7 @@ impl Row {
     }
 }
 
-/// The derivatives of the rows, those of momentum and then that of energy.
+/// The derivatives of the momentum rows and then of the energy row.
 fn by_unknown(
     pool: &mut Pool<Symbol>,
     fields: &mut Fields,
@@ -243,7 +244,7 @@ fn by_unknown(
     Ok(Column { momentum, energy })
 }
 
-/// `row − v·column`, multiplied out.
+/// `row − v·column`, expanded.
 fn combined(pool: &mut Pool<Symbol>, row: Expr, velocities: &[Expr], column: &[Expr]) -> Result<Expr, TooLarge> {
     let mut terms = vec![row];
     let zero = pool.zero();
@@ -255,7 +256,7 @@ fn combined(pool: &mut Pool<Symbol>, row: Expr, velocities: &[Expr], column: &[E
     pool.expand(sum)
 }
 
-/// `(row − v·column)/h`, multiplied out.
+/// `(row − v·column)/h`, expanded.
 fn over_step(pool: &mut Pool<Symbol>, row: Expr, velocities: &[Expr], column: &[Expr]) -> Result<Expr, TooLarge> {
     let row = combined(pool, row, velocities, column)?;
     let step = pool.symbol(Symbol::Step);

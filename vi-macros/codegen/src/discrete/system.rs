@@ -1,6 +1,6 @@
 //! From a model to its discrete system.
 //!
-//! In: a [`Model`]. Out: a [`DiscreteSystem`], or the message that a rule is written wrongly or the system too large.
+//! In: a [`Model`]. Out: a [`DiscreteSystem`], or a message that the rule is invalid or the system too large.
 
 use super::continuous::{Continuous, TimeScale};
 use super::fields::Fields;
@@ -16,46 +16,43 @@ use crate::symbol::{Quantity, Symbol, Variable};
 use syn::Result;
 use vi_expr::{Expr, Pool, TooLarge};
 
-/// Characters of an expression that a message shows.
+/// Characters of an expression shown in a message.
 const CHARACTERS: usize = 100;
 
-/// Derives the motion of a model, and its steps by its rule.
+/// Derives the motion of a model and, if it has a rule, its steps.
 ///
 /// # Errors
-/// A rule whose L_d leaves an end of the interval out, at that line; a system that grows too large, at its name.
+/// A rule whose L_d does not depend on one end of the interval: at that line. A system that grows too large: at its
+/// name.
 pub fn system(pool: &mut Pool<Symbol>, model: &Model) -> Result<DiscreteSystem> {
     let mut fields = Fields::new(pool, model);
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous::continuous(pool, &mut fields, model).map_err(too_large)?;
-    every_derivative_exists(pool, &fields, &continuous, model)?;
+    check_derivatives(pool, &fields, &continuous, model)?;
     let by_rule = match &model.rule {
         Some(rule) => Some(by_rule(pool, &mut fields, model, rule)?),
         None => None,
     };
     let point_derivatives = continuous::point_derivatives(pool, &mut fields, model.dimension()).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
-    every_derivative_exists(pool, &fields, &continuous, model)?;
+    check_derivatives(pool, &fields, &continuous, model)?;
     Ok(DiscreteSystem { continuous, point_derivatives, fields, by_rule })
 }
 
-/// Discretizes a model by a rule.
+/// Discretizes a model with a rule.
 fn by_rule(pool: &mut Pool<Symbol>, fields: &mut Fields, model: &Model, rule: &Rule) -> Result<ByRule> {
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let known = known_rule(pool, model, rule)?;
     let slots = slots::slots(pool, fields, model, rule).map_err(too_large)?;
     bounded(pool).map_err(too_large)?;
-    every_slot_acts(pool, rule, &slots)?;
+    check_slots_used(pool, rule, &slots)?;
     let equations = step::equations(pool, fields, &slots).map_err(too_large)?;
     Ok(ByRule { rule: known, slots, equations })
 }
 
-/// A derivative that has no value for any state, as that of `0^x`, is told with the smallest expression that has none.
-fn every_derivative_exists(
-    pool: &mut Pool<Symbol>,
-    fields: &Fields,
-    continuous: &Continuous,
-    model: &Model,
-) -> Result<()> {
+/// Reports a derivative without a value in any state, such as that of `0^x`, with the smallest expression that has
+/// none.
+fn check_derivatives(pool: &mut Pool<Symbol>, fields: &Fields, continuous: &Continuous, model: &Model) -> Result<()> {
     let (span, whole, by) = match (fields.undefined(pool), undefined_time_scale(pool, continuous)) {
         (Some((Quantity::Lagrangian, whole, by)), _) => (model.lagrangian_span, whole, by),
         (Some((Quantity::Force(coordinate), whole, by)), _) => (model.coordinates[coordinate].name.span(), whole, by),
@@ -72,7 +69,7 @@ fn every_derivative_exists(
     Err(error(span, &Message::NoDerivative { expression, by: model.spell(&by) }))
 }
 
-/// The time scale, and the variable by which its derivative has no value for any state.
+/// The time scale, and the variable for which its derivative has no value in any state.
 fn undefined_time_scale(pool: &Pool<Symbol>, continuous: &Continuous) -> Option<(Expr, Variable)> {
     let TimeScale { g, g_dq, g_dt } = continuous.time_scale.as_ref()?;
     let by_coordinate = g_dq.iter().enumerate().map(|(index, slope)| (Variable::Coordinate(index), *slope));
@@ -80,22 +77,22 @@ fn undefined_time_scale(pool: &Pool<Symbol>, continuous: &Continuous) -> Option<
     slopes.find(|(_, slope)| pool.is_undefined(*slope)).map(|(by, _)| (*g, by))
 }
 
-/// The rule of the table that a rule of the system is: by its name, or written out.
+/// The built-in rule that equals a rule of the system.
 fn known_rule(pool: &mut Pool<Symbol>, model: &Model, ours: &Rule) -> Result<Option<&'static NamedRule>> {
     if ours.named.is_some() {
         return Ok(ours.named);
     }
     for known in &RULES {
         let resolved = rule::named(pool, known, model.dimension(), model.forced)?;
-        if says_the_same(pool, model, [&resolved, ours]).unwrap_or(false) {
+        if is_same_rule(pool, model, [&resolved, ours]).unwrap_or(false) {
             return Ok(Some(known));
         }
     }
     Ok(None)
 }
 
-/// Whether two rules are the same: their L_d, and their forces once they are multiplied out.
-fn says_the_same(
+/// Whether two rules are equal: the same L_d, and the same forces after expansion.
+fn is_same_rule(
     pool: &mut Pool<Symbol>,
     model: &Model,
     [theirs, ours]: [&Rule; 2],
@@ -113,8 +110,8 @@ fn says_the_same(
     Ok(true)
 }
 
-/// A discrete Lagrangian that leaves an end of its interval out has no equations of a step.
-fn every_slot_acts(pool: &Pool<Symbol>, rule: &Rule, slots: &Slots) -> Result<()> {
+/// Reports an L_d that does not depend on one end of its interval: it defines no equations of a step.
+fn check_slots_used(pool: &Pool<Symbol>, rule: &Rule, slots: &Slots) -> Result<()> {
     let none = |derivatives: &[Expr]| derivatives.iter().all(|derivative| pool.is_zero(*derivative));
     let each: [(&'static str, &[Expr]); 4] =
         [("t0", &[slots.d1_ld]), ("q0", &slots.d2_ld), ("t1", &[slots.d3_ld]), ("q1", &slots.d4_ld)];

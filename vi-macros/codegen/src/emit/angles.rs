@@ -1,26 +1,26 @@
-//! Angles whose sines and cosines are computed at once.
+//! Groups of angles whose sines and cosines are computed together.
 //!
-//! In: the operations of a function. Out: groups of its angles that no sine or cosine has to wait for, and an order of the
-//! operations in which these angles are there before the first of them is needed. What is computed at once becomes vector
-//! instructions: two angles take as long as one.
+//! In: the operations of a function. Out: groups of angles that do not depend on each other's sines, and an order of
+//! the operations that computes these angles before the first sine is needed. LLVM vectorizes a group: two angles take
+//! as long as one.
 
 use crate::program::{Function, Operation, OperationId};
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
 
-/// Angles of one group: as many as the widest registers of a common processor hold, and no more in one place.
+/// Maximum number of angles in a group: the `f64` lanes of a 256-bit register, the widest of common processors.
 const TOGETHER: usize = 4;
 
-/// The groups of a function.
+/// The groups of angles of a function.
 #[derive(Default)]
 pub(super) struct Angles {
     groups: Vec<Vec<OperationId>>,
-    /// The group of each angle that is in one.
+    /// The group of each grouped angle.
     of: BTreeMap<OperationId, usize>,
 }
 
 impl Angles {
-    /// Of a function that needs these operations, operands before results.
+    /// The groups of a function that needs these operations, operands before results.
     pub(super) fn of(function: &Function, needed: &[OperationId]) -> Self {
         let (mut late, mut known, mut angles) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
         for id in needed {
@@ -41,12 +41,12 @@ impl Angles {
         Self { of: of.collect(), groups }
     }
 
-    /// The group of an angle; the angle alone where it is in none.
+    /// The group of an angle, or the angle alone.
     pub(super) fn with(&self, angle: OperationId) -> Vec<OperationId> {
         self.of.get(&angle).map_or_else(|| vec![angle], |group| self.groups[*group].clone())
     }
 
-    /// The operations in an order in which all that a group is computed from comes before it.
+    /// Reorders the operations so that all inputs of a group come before it.
     pub(super) fn first(&self, function: &Function, needed: Vec<OperationId>) -> Vec<OperationId> {
         let mut open: Vec<OperationId> = self.groups.iter().flatten().copied().collect();
         let mut early = BTreeSet::new();

@@ -1,9 +1,8 @@
-//! The body of a function: inputs named, shared terms bound once, results as formulas.
+//! The body of a function: named inputs, shared terms bound once, results as formulas.
 //!
-//! In: a [`Function`]. Out: statements, and one formula per result. A term that is used more than once, is an argument
-//! of the rule, or makes a line too long, gets a name; everything else is written where it is used. What is
-//! too long for one body is written in loops over the coordinates ([`Loops`]); where that does not make it short enough, all
-//! results have names, and [`pieces`] compute them.
+//! In: a [`Function`]. Out: statements, and one formula per result. A term gets a name if it is used more than once, is
+//! an argument of the rule, or makes a line too long. Every other term is written at its use. A long body becomes loops
+//! over the coordinates ([`Loops`]). If it is still too long, all results get names and [`pieces`] compute them.
 
 use super::angles::Angles;
 use super::entries::Entry;
@@ -26,18 +25,18 @@ pub(super) struct Body {
     pub(super) statements: TokenStream,
     /// The results.
     pub(super) results: Results<Entry>,
-    /// What is read of the inputs, with its names.
+    /// Names of the input components that the body reads.
     pub(super) inputs: BTreeMap<Symbol, Ident>,
-    /// Vectors that are read as a whole, by their components 0, with their names.
+    /// Names of the vectors that the body reads as a whole, keyed by component 0.
     pub(super) vectors: BTreeMap<Symbol, Ident>,
 }
 
-/// Where a function reads the velocity of the step.
+/// How a function obtains the velocity of the step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum VelocityFrom {
-    /// From an argument.
+    /// As an argument.
     Argument,
-    /// From the ends and the length of an interval, which are inputs then.
+    /// From the ends and the length of an interval, which are then inputs.
     Interval,
 }
 
@@ -54,14 +53,14 @@ struct Printer<'a> {
     statements: Vec<Statement>,
     in_pieces: bool,
     angles: Angles,
-    /// What loops compute.
+    /// Operations computed in loops.
     members: BTreeMap<OperationId, Member>,
-    /// Sums over that.
+    /// Sums over members of loops.
     folds: BTreeMap<OperationId, (OperationId, FoldText)>,
 }
 
-/// Prints a function of a system whose rule has so many points: in loops or, where these do not help, in pieces if it has
-/// more operations than `limit`.
+/// Prints a function of a system whose rule has `points` points: in loops or, if these do not shorten it, in pieces if
+/// it has more than `limit` operations.
 pub(super) fn body(model: &Model, function: &Function, points: usize, velocity: VelocityFrom, limit: usize) -> Body {
     let long = function.operation_count() > limit;
     let (names, needed) = (Names::new(model, points), function.needed());
@@ -108,7 +107,7 @@ impl<'a> Printer<'a> {
         Body { statements, results, inputs: self.inputs, vectors: self.vectors }
     }
 
-    /// The body in loops, and what is in none of them before and after.
+    /// The body in loops, with the remaining operations before and after them.
     fn in_loops(mut self, loops: &Loops, needed: &[OperationId], velocity: VelocityFrom) -> Body {
         let vector = |id: &OperationId| match self.function.operations.get(*id) {
             Operation::Input(symbol) => symbol.component().map(|(vector, _)| vector),
@@ -147,7 +146,7 @@ impl<'a> Printer<'a> {
 }
 
 impl Printer<'_> {
-    /// Inputs take their names before shared terms do, in the order of the symbols.
+    /// Names the inputs before shared terms, in the order of the symbols.
     fn name_inputs(&mut self, needed: &[OperationId], velocity: VelocityFrom) {
         let mut symbols = BTreeSet::new();
         for id in needed {
@@ -167,14 +166,14 @@ impl Printer<'_> {
         }
     }
 
-    /// A component of a vector that is read as a whole.
+    /// A component of a vector that the body reads as a whole.
     fn component(&self, symbol: &Symbol) -> Option<Formula> {
         let (vector, index) = symbol.component()?;
         let (name, index) = (self.vectors.get(&vector)?, Literal::usize_unsuffixed(index));
         Some(Formula::atom(quote!(#name[#index]), 0))
     }
 
-    /// The formula of an operation whose operands are written.
+    /// The formula of an operation whose operands are printed.
     fn formula(&mut self, id: OperationId, operation: &Operation) -> Formula {
         if let Some((start, text)) = self.folds.get(&id) {
             return text.from(&self.operand(*start));
@@ -205,7 +204,7 @@ impl Printer<'_> {
         }
         let uses = self.uses.get(id).copied().unwrap_or(0);
         let shared = uses > 1 && formula.operations > 0;
-        // A long formula gets a line of its own. A result stands by itself already, but must come out of its piece.
+        // A long formula gets its own line. In pieces a result needs a name, because it leaves its piece.
         let line = match (self.results.contains(id), self.in_pieces) {
             (true, true) => 0,
             (true, false) => usize::MAX,
@@ -228,7 +227,7 @@ impl Printer<'_> {
         self.written.insert(id, formula);
     }
 
-    /// Sine and cosine of one angle are computed together, and those of angles that do not wait for each other.
+    /// Computes sine and cosine of one angle together, and those of independent angles in one group.
     fn sine(&mut self, id: OperationId, function: Elementary, angle: OperationId) -> Option<Formula> {
         if let Some(written) = self.written.get(id) {
             return Some(written.clone());
@@ -268,7 +267,7 @@ impl Printer<'_> {
         self.written.get(id).cloned()
     }
 
-    /// A statement that binds operations, computed from these operands.
+    /// A statement that binds operations to a value computed from these operands.
     fn state(
         &mut self,
         binds: &[(OperationId, Ident)],
@@ -291,7 +290,7 @@ impl Printer<'_> {
         self.statements.push(Statement { binds: binds.iter().map(|(id, _)| *id).collect(), reads, operations, tokens });
     }
 
-    /// The statements, in pieces where there are too many operations.
+    /// The statements, in pieces if there are too many operations.
     fn statements(&mut self, prelude: Option<&TokenStream>, limit: usize) -> TokenStream {
         if !self.in_pieces {
             return self.statements.iter().map(|statement| &statement.tokens).cloned().collect();
@@ -309,7 +308,7 @@ impl Printer<'_> {
 
     fn operand(&self, id: OperationId) -> Formula {
         self.written.get(id).cloned().unwrap_or_else(|| {
-            // Operands come before results, so this is a constant or never reached.
+            // Operands precede results, so this branch is a constant or unreachable.
             Formula::of(self.function.operations.get(id), &mut |inner| self.operand(inner))
         })
     }
@@ -320,7 +319,8 @@ impl Printer<'_> {
     }
 }
 
-/// The parts of vector inputs: `let [x, y]: [T; 2] = (*q).into();`, `_` for what is not read; or a vector as a whole.
+/// Binds the components of vector inputs: `let [x, y]: [T; 2] = (*q).into();`, `_` for unread ones; or the whole
+/// vector.
 pub(super) fn parts(body: &Body, model: &Model, symbol: impl Fn(usize) -> Symbol, vector: &TokenStream) -> TokenStream {
     if let Some(name) = body.vectors.get(&symbol(0)) {
         return quote!(let #name = &#vector.data.0[0];);
@@ -334,12 +334,12 @@ pub(super) fn parts(body: &Body, model: &Model, symbol: impl Fn(usize) -> Symbol
     quote!(let [#(#names),*]: [T; #dimension] = #vector.into();)
 }
 
-/// A number among the inputs: `let t0 = node.t;`.
+/// Binds a scalar input: `let t0 = node.t;`.
 pub(super) fn part(body: &Body, symbol: &Symbol, value: &TokenStream) -> TokenStream {
     body.inputs.get(symbol).map(|name| quote!(let #name = #value;)).unwrap_or_default()
 }
 
-/// The parts of `q` and `v`, and of the accelerations where they are read.
+/// Binds components of `q`, of `v` and, if read, of the accelerations.
 pub(super) fn state_parts(body: &Body, model: &Model) -> TokenStream {
     let velocity = |index| Symbol::Continuous(Variable::Velocity(index));
     let coordinate = |index| Symbol::Continuous(Variable::Coordinate(index));

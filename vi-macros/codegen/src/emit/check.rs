@@ -1,8 +1,8 @@
-//! The checks of a system: one test for each that applies.
+//! The checks of a system: one test for each check that applies.
 //!
-//! Which apply is known here: whether there is a force, which coordinates are cyclic, and what the table says of the rule. A rule that
-//! is not in it is expected to be of order 1, and nothing else. A system with several rules has the tests once for each of them; one
-//! without a rule has those of its motion and of its Gauss steps.
+//! The table of rules, the forces and the cyclic coordinates decide which checks apply. A rule outside the table is
+//! expected to have order 1 and no other property. A system with several rules has the tests once per rule. A system
+//! without a rule has the tests of its motion and of its Gauss steps.
 
 use super::formula::number;
 use super::{Source, Steps};
@@ -12,7 +12,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::Attribute;
 
-/// The tests of the clause `check`, in a module of their own:
+/// The tests of the clause `check`, in their own module:
 ///
 /// ```text
 /// #[cfg(test)] mod kepler_checks { fn place() -> Place<2> {…} #[test] fn derivatives() {…} … mod trapezoidal { … } }
@@ -26,7 +26,7 @@ pub(super) fn tests(
     let state = source.model.check_state.as_ref()?;
     let (name, dimension) = (&source.model.name, source.dimension());
     let module = format_ident!("{}_checks", snake_case(&name.to_string()));
-    let documentation = format!(" Checks of [`{name}`](super::{name}) at the place that it names.");
+    let documentation = format!(" Checks of [`{name}`](super::{name}) at the state of its `check` clause.");
     let (t, h) = (number(state.t), number(state.h));
     let (q, v) = (state.q.iter().map(|entry| number(*entry)), state.v.iter().map(|entry| number(*entry)));
     let parameters: Vec<_> = state.parameters.iter().map(|(index, value)| set(source, *index, *value)).collect();
@@ -66,13 +66,13 @@ pub(super) fn tests(
     })
 }
 
-/// Gives a parameter of `system` a value.
+/// Sets a parameter of `system`.
 fn set(source: &Source, index: usize, value: f64) -> Option<TokenStream> {
     let (place, value) = (source.model.parameters.get(index)?.place(), number(value));
     Some(quote!(system.#place = #value;))
 }
 
-/// A check by its name, with the further argument that the order takes.
+/// The name of a check and its further argument.
 type Check = (&'static str, TokenStream);
 
 /// One test for each check.

@@ -1,4 +1,4 @@
-//! `impl Collocation`: the equations of motion in first order, at one point.
+//! `impl Collocation`: the first-order equations of motion at one point.
 
 use super::Source;
 use super::body::{Body, VelocityFrom, state_parts};
@@ -44,7 +44,7 @@ pub(super) fn item(source: &Source) -> TokenStream {
     }
 }
 
-/// The form of the mass matrix, and the function of L_v, L_q + f and M.
+/// The form of the mass matrix, and the function that computes L_v, L_q + f and M.
 fn point(source: &Source) -> (TokenStream, TokenStream) {
     let dimension = source.dimension();
     let of = &source.system.continuous;
@@ -71,7 +71,7 @@ fn point(source: &Source) -> (TokenStream, TokenStream) {
     (form, function)
 }
 
-/// The form of the matrices, and the function of M and of how L_v and L_q + f change.
+/// The form of the matrices, and the function that computes M and the derivatives of L_v and L_q + f.
 fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
     let dimension = source.dimension();
     let formula = "M = ∂L_v/∂v, ∂L_v/∂q, ∂(L_q + f)/∂q and ∂(L_q + f)/∂v.";
@@ -103,7 +103,7 @@ fn point_derivatives(source: &Source) -> (TokenStream, TokenStream) {
     (form, function)
 }
 
-/// The form of the mass matrix, and the point that a body computes.
+/// The form of the mass matrix, and the point computed by a body.
 fn point_of(source: &Source, body: &Body) -> (TokenStream, TokenStream) {
     let (form, mass) = matrix(&source.findings.mass, true, body.results.matrix(Output::Mass));
     let momentum = vector_of(body.results.vector(Output::Momentum));
@@ -111,7 +111,7 @@ fn point_of(source: &Source, body: &Body) -> (TokenStream, TokenStream) {
     (form, quote!(::vi_core::collocation::Point { momentum: #momentum, force: #force, mass: #mass }))
 }
 
-/// The function of all that a step in transformed time takes at a point.
+/// The function of everything that a step in transformed time evaluates at a point.
 fn scaled_point(source: &Source, scale: &TimeScale) -> TokenStream {
     let dimension = source.dimension();
     let formula = format!("The point, its energy, its power, and\n\n{}", source.formula("g", scale.g));

@@ -9,7 +9,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use vi_expr::Expr;
 
-/// The implementation of `DiscreteLagrangian` by the rule.
+/// The implementation of `DiscreteLagrangian` for the rule.
 pub(super) fn item(source: &Steps) -> TokenStream {
     let (name, dimension, of) = (&source.model.name, source.dimension(), &source.discrete.slots);
     let rule = source.rule_argument();
@@ -31,7 +31,7 @@ pub(super) fn item(source: &Steps) -> TokenStream {
     }
 }
 
-/// The ends of the interval, its length, and its velocity.
+/// Binds the ends of the interval, its length and its velocity.
 fn interval_parts(source: &Source, body: &Body) -> TokenStream {
     let (model, input) = (source.model, |symbol: Symbol| body.inputs.get(&symbol));
     let quotients = (0..model.dimension()).filter_map(|index| {
@@ -52,7 +52,7 @@ fn interval_parts(source: &Source, body: &Body) -> TokenStream {
     quote!(#t0 #t1 #step #q0 #q1 #(#quotients)* #velocity)
 }
 
-/// A number in the slots.
+/// A scalar function of the slots.
 fn number(source: &Source, id: FunctionId, expr: Expr) -> TokenStream {
     let formula = source.formula(id.name(), expr);
     let Some((body, documentation)) = source.documented(id, &formula, VelocityFrom::Interval) else {
@@ -70,7 +70,7 @@ fn number(source: &Source, id: FunctionId, expr: Expr) -> TokenStream {
     }
 }
 
-/// A vector in the slots.
+/// A vector function of the slots.
 fn vector(source: &Source, id: FunctionId, exprs: &[Expr]) -> TokenStream {
     let formula = source.formulas(id.name(), exprs);
     let Some((body, documentation)) = source.documented(id, &formula, VelocityFrom::Interval) else {

@@ -1,7 +1,7 @@
-//! Results side by side: the entries of vectors and matrices.
+//! Entries of vectors and matrices, printed as arrays.
 //!
-//! In: rows of results, each joined into one expression by a form. Out: `[a, b, c]`; or, where rows follow each other in the
-//! arrays of a long body,
+//! In: rows of results, each formatted as one expression. Out: `[a, b, c]`, or a loop if rows are consecutive entries
+//! of the arrays of a long body:
 //!
 //! ```text
 //! {
@@ -20,37 +20,37 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{ToTokens, quote};
 use std::ops::Range;
 
-/// Rows from which on there is a loop.
+/// Minimum number of rows in a loop.
 const LEAST: usize = 8;
 
 /// One result.
 pub(super) struct Entry {
     pub(super) id: OperationId,
     pub(super) formula: Formula,
-    /// Where it is in an array of a loop.
+    /// Its position in the array of a loop.
     pub(super) member: Option<Member>,
-    /// It is zero for every input.
+    /// The entry is identically zero.
     pub(super) zero: bool,
 }
 
 impl Entry {
-    /// The counter of loops over the arrays that such results are in.
+    /// The loop counter for the arrays that contain such results.
     pub(super) fn counter(&self) -> Option<&Ident> {
         self.member.as_ref().map(|member| &member.counter)
     }
 
-    /// Whether it is the same result.
+    /// Whether both are the same result.
     pub(super) fn is(&self, other: &Self) -> bool {
         self.id == other.id
     }
 
-    /// Whether it is the entry of an array one place on.
-    pub(super) fn moves_on_from(&self, before: &Self) -> bool {
+    /// Whether this is the next entry of the same array.
+    pub(super) fn follows(&self, before: &Self) -> bool {
         let members = self.member.as_ref().zip(before.member.as_ref());
         members.is_some_and(|(this, before)| this.array == before.array && this.place == before.place + 1)
     }
 
-    /// Its formula; with a counter, that of the entry so many places on in its array.
+    /// Its formula; with a counter, the formula of the entry at the counter plus its position.
     pub(super) fn formula(&self, counter: Option<&Ident>) -> Formula {
         let moved = self.member.as_ref().filter(|_| counter.is_some());
         moved.map_or_else(|| self.formula.clone(), |member| member.array.entry(counter, member.place))
@@ -63,7 +63,7 @@ impl ToTokens for Entry {
     }
 }
 
-/// What a row is made of: a result, or zero.
+/// A part of a row: a result, or zero.
 #[derive(Clone, Copy)]
 pub(super) struct Part<'a>(Option<&'a Entry>);
 
@@ -74,16 +74,16 @@ impl<'a> From<Option<&'a Entry>> for Part<'a> {
 }
 
 impl Part<'_> {
-    /// Whether it stands one place on from the same part of the row above, or is that again; `None` where it is something else.
-    fn moves_on_from(self, above: Self) -> Option<bool> {
+    /// Whether it is the next entry after the same part of the previous row, or the same entry; `None` if neither.
+    fn follows(self, above: Self) -> Option<bool> {
         match (self.0, above.0) {
-            (Some(this), Some(above)) if this.moves_on_from(above) => Some(true),
+            (Some(this), Some(above)) if this.follows(above) => Some(true),
             (Some(this), Some(above)) => this.is(above).then_some(false),
             (this, above) => (this.is_none() && above.is_none()).then_some(false),
         }
     }
 
-    /// Its text; in a loop with this counter that of the first row, which moves on there or does not.
+    /// Its tokens; in a loop, those of the first row, indexed by the counter if `moves`.
     fn tokens(self, counter: Option<&Ident>, moves: bool) -> TokenStream {
         self.0.map_or_else(zero, |entry| entry.formula(counter.filter(|_| moves)).tokens().clone())
     }
@@ -95,13 +95,13 @@ impl ToTokens for Part<'_> {
     }
 }
 
-/// The array of such numbers.
+/// The array of these numbers.
 pub(super) fn of<'a>(parts: impl Iterator<Item = Part<'a>>) -> TokenStream {
     let rows: Vec<Vec<Part>> = parts.map(|part| vec![part]).collect();
     array(&rows, &zero(), |parts| quote!(#(#parts)*))
 }
 
-/// The array of rows, each joined from its parts by a form; `zero` is a row of nothing.
+/// The array of rows, each formatted from its parts; `zero` is an empty row.
 pub(super) fn array(
     rows: &[Vec<Part>],
     zero: &TokenStream,
@@ -132,10 +132,10 @@ fn texts(row: &[Part]) -> Vec<TokenStream> {
     row.iter().map(Part::to_token_stream).collect()
 }
 
-/// Rows that follow each other.
+/// Consecutive rows.
 struct Run {
     rows: Range<usize>,
-    /// Which of their parts move on from row to row.
+    /// Whether each part advances from row to row.
     moves: Vec<bool>,
 }
 
@@ -145,13 +145,12 @@ impl Run {
     }
 }
 
-/// Rows, in runs: in each the same parts move on.
+/// Splits rows into runs whose parts advance alike.
 fn runs(rows: &[Vec<Part>]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (place, row) in rows.iter().enumerate() {
         let above = place.checked_sub(1).map(|above| &rows[above]).filter(|above| above.len() == row.len());
-        let moves =
-            above.and_then(|above| row.iter().zip(above).map(|(part, above)| part.moves_on_from(*above)).collect());
+        let moves = above.and_then(|above| row.iter().zip(above).map(|(part, above)| part.follows(*above)).collect());
         match (runs.last_mut(), moves) {
             (Some(run), Some(moves)) if run.rows.len() == 1 || run.moves == moves => {
                 (run.rows.end, run.moves) = (place + 1, moves);

@@ -1,6 +1,6 @@
-//! Sums over the coordinates: kinetic energy, in a long body.
+//! Sums over the coordinates in a long body, such as the kinetic energy.
 //!
-//! In: operations in no family. Out: those that add, or subtract, one member of a family after the other, as one,
+//! In: operations outside families. Out: chains that add or subtract successive members of a family, each as one fold:
 //!
 //! ```text
 //! (1..64).fold(s7, |sum, i| sum + s4[i])
@@ -13,28 +13,28 @@ use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// Members from which on a sum is one.
+/// Minimum number of members in a fold.
 const LEAST: usize = 4;
 
 /// A sum over members of a family.
 pub(super) struct Fold {
-    /// What the first of them is added to.
+    /// The initial value, to which the first member is added.
     pub(super) start: OperationId,
     pub(super) family: usize,
     places: Range<usize>,
     subtracts: bool,
-    /// The sums before the last.
+    /// The partial sums.
     inner: Vec<OperationId>,
 }
 
-/// The text of a sum but for what it starts from.
+/// The text of a fold without its initial value.
 pub(super) struct FoldText {
     places: TokenStream,
     step: TokenStream,
 }
 
 impl Fold {
-    /// Its text, with what its members are written as.
+    /// The text of the fold, given the text of a member.
     pub(super) fn text(&self, counter: &Ident, term: &Formula) -> FoldText {
         let [first, behind] = [self.places.start, self.places.end].map(Literal::usize_unsuffixed);
         let (term, sign) = (term.tokens(), if self.subtracts { quote!(-) } else { quote!(+) });
@@ -43,14 +43,14 @@ impl Fold {
 }
 
 impl FoldText {
-    /// The sum that starts from this.
+    /// The fold with this initial value.
     pub(super) fn from(&self, start: &Formula) -> Formula {
         let (Self { places, step }, start) = (self, start.tokens());
         Formula::atom(quote!(#places.fold(#start, #step)), 1)
     }
 }
 
-/// The sums among operations in no family, by their last ones, and the operations that are in none.
+/// The folds among operations outside families, keyed by their last operation, and the remaining operations.
 pub(super) fn folds(
     function: &Function,
     families: &Families,

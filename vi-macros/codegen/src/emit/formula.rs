@@ -1,16 +1,16 @@
 //! Operations as formulas.
 //!
-//! In: an operation and what its operands are written as. Out: tokens, with the parentheses that precedence needs.
+//! In: an operation and its printed operands. Out: tokens with the parentheses that precedence requires.
 
 use crate::model::Parameter;
 use crate::program::{Operation, OperationId};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// Operations that one line may hold.
+/// Maximum number of operations in one line.
 pub(super) const LINE: usize = 10;
 
-/// How tightly a formula binds.
+/// Binding strength of a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -19,7 +19,7 @@ enum Binding {
     Atom,
 }
 
-/// A formula as it stands in an expression.
+/// A printed formula.
 #[derive(Clone, Debug)]
 pub(super) struct Formula {
     tokens: TokenStream,
@@ -40,7 +40,7 @@ impl Formula {
         Self::atom(quote!(#system.#place), 0)
     }
 
-    /// What binds as tightly as a name.
+    /// A formula that binds as tightly as a name.
     pub(super) fn atom(tokens: TokenStream, operations: usize) -> Self {
         Self { tokens, binding: Binding::Atom, operations }
     }
@@ -50,7 +50,7 @@ impl Formula {
         Self::atom(quote!(real(#value)), 0)
     }
 
-    /// The formula as a statement's right side.
+    /// The formula as the right side of a statement.
     pub(super) fn tokens(&self) -> &TokenStream {
         &self.tokens
     }
@@ -60,7 +60,7 @@ impl Formula {
         self.within(Binding::Atom)
     }
 
-    /// The formula as an operand that must bind at least so tightly.
+    /// The formula as an operand, in parentheses if it binds less tightly.
     fn within(&self, binding: Binding) -> TokenStream {
         let tokens = &self.tokens;
         if self.binding >= binding { quote!(#tokens) } else { quote!((#tokens)) }
@@ -88,7 +88,7 @@ impl Formula {
             }
             Operation::SquareRoot(a) => Self::method(&operand(*a), "sqrt", &[]),
             Operation::Reciprocal(a) => Self::method(&operand(*a), "recip", &[]),
-            // The methods of `Real` are named as the functions of the language are.
+            // The methods of `Real` have the names of the functions of the language.
             Operation::Call(function, a) => Self::method(&operand(*a), function.name(), &[]),
             Operation::Call2(function, a, b) => {
                 let (a, b) = (operand(*a), operand(*b));
@@ -99,7 +99,7 @@ impl Formula {
                 let (a, b) = (operand(*a), operand(*b));
                 Self::method(&a, "zero_where", &[b, Self::atom(quote!(#derivatives), 0)])
             }
-            // Inputs are named by the caller.
+            // The caller names inputs.
             Operation::Input(_) => Self::constant(f64::NAN),
         }
     }
@@ -113,7 +113,7 @@ impl Formula {
 }
 
 impl Parameter {
-    /// Where it is in the struct: `k`, or `m[3]`.
+    /// Its field in the struct: `k`, or `m[3]`.
     pub(super) fn place(&self) -> TokenStream {
         let name = &self.name;
         let index = self.index.map(Literal::usize_unsuffixed).into_iter();
@@ -121,7 +121,7 @@ impl Parameter {
     }
 }
 
-/// A literal that reads back as the same number.
+/// A literal that parses to the same number.
 pub(super) fn number(value: f64) -> TokenStream {
     let magnitude = Literal::f64_unsuffixed(value.abs());
     match (value.is_nan(), value.is_infinite(), value.is_sign_negative()) {

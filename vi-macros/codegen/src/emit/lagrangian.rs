@@ -11,7 +11,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use vi_expr::Expr;
 
-/// Characters of a formula that documentation shows.
+/// Characters of a formula shown in documentation.
 const CHARACTERS: usize = 400;
 
 /// The implementation of `Lagrangian`.
@@ -50,12 +50,12 @@ pub(super) fn item(source: &Source) -> TokenStream {
 }
 
 impl Source<'_> {
-    /// `name = formula`, as the user's names spell it.
+    /// `name = formula` in the user's names.
     pub(super) fn formula(&self, name: &str, expr: Expr) -> String {
         format!("`{name} = {}`", self.spelt(expr))
     }
 
-    /// An expression in the user's names; of a long one the first words.
+    /// An expression in the user's names, truncated if it is long.
     fn spelt(&self, expr: Expr) -> String {
         let name = |symbol: &Symbol| self.system.spell(self.model, symbol);
         let text = self.pool.render_within(CHARACTERS, expr, &name);
@@ -65,12 +65,12 @@ impl Source<'_> {
         }
     }
 
-    /// One formula per coordinate, which is the index of its name.
+    /// One formula per coordinate, with the coordinate as an index.
     pub(super) fn formulas(&self, name: &str, exprs: &[Expr]) -> String {
         self.named_formulas(exprs, |coordinate| format!("{name}_{coordinate}"))
     }
 
-    /// One formula per coordinate, by the name that it has for it.
+    /// One formula per coordinate; `name` gives the left side.
     pub(super) fn named_formulas(&self, exprs: &[Expr], name: impl Fn(&str) -> String) -> String {
         let named = exprs.iter().zip(&self.model.coordinates);
         let formulas = named.map(|(expr, coordinate)| self.formula(&name(&coordinate.text()), *expr));
@@ -94,13 +94,13 @@ impl Source<'_> {
     }
 }
 
-/// The vector of one group of results, its type known from where it stands.
+/// The vector of one group of results; inference supplies its type.
 pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
     let entries = entries::of(entries.iter().map(|entry| Some(entry).into()));
     quote!(::vi_core::SVector::from(#entries))
 }
 
-/// A function of (t, q, v) whose value is a number.
+/// A scalar function of (t, q, v).
 pub(super) fn number(source: &Source, id: FunctionId, formula: &str) -> TokenStream {
     let Some((body, documentation)) = source.documented(id, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
@@ -197,8 +197,8 @@ pub(super) fn step_density(source: &Source) -> TokenStream {
     }
 }
 
-/// The velocity of a momentum, by the mass matrix where L is quadratic in the velocities, else by iteration; then the rates of change
-/// there.
+/// The velocity of a momentum, and the rates of change there. Uses the mass matrix if L is quadratic in the velocities,
+/// otherwise Newton iteration.
 fn flow(source: &Source) -> TokenStream {
     let dimension = source.dimension();
     let point = quote!(::vi_core::collocation::Collocation::point);
@@ -232,7 +232,7 @@ fn flow(source: &Source) -> TokenStream {
 
 fn non_finite(source: &Source) -> TokenStream {
     let dimension = source.dimension();
-    let formula = "The first of what L and f are made of that is not finite here.";
+    let formula = "The first part of L and f that is not finite at this state.";
     let Some((body, documentation)) = source.documented(FunctionId::NonFinite, formula, VelocityFrom::Argument) else {
         return TokenStream::new();
     };

@@ -9,9 +9,9 @@
 //! for i in 0..63 { s5[i] = (s1 + s2 * s4[i]) * s4[i]; }
 //! ```
 //!
-//! or stands in the formula of the one that reads it. First what all have in common, then the arrays, then what is no family:
-//! the ends of a chain, and sums over it. The operations stay the same, and their results, bit by bit; but a short one is done
-//! again rather than kept.
+//! or is written inside the formula of the family that reads it. The order is: common operations, arrays, then the
+//! remaining ones (ends of a chain, sums over it). Operations and results stay the same, bit by bit, except that a
+//! short operation is recomputed instead of stored.
 
 use super::folds::{Fold, FoldText, folds};
 use super::formula::{Formula, LINE, index};
@@ -23,42 +23,42 @@ use quote::quote;
 use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::{Function as Elementary, Table};
 
-/// Operations that are done again rather than kept.
+/// Operations that are recomputed instead of stored.
 const AGAIN: usize = 1;
 
-/// Which families of a function are arrays.
+/// The families of a function that become arrays.
 pub(super) struct Loops<'a> {
     function: &'a Function,
     families: Families,
-    /// Operations that are in no family, operands before results.
+    /// Operations outside families, operands before results.
     singles: Vec<OperationId>,
-    /// Families that something reads which is in none.
+    /// Families read by an operation outside families.
     outside: BTreeSet<usize>,
-    /// How often families read a family.
+    /// How many families read each family.
     uses: Vec<usize>,
-    /// Sums over members of families, by their last operations.
+    /// Folds over members of families, keyed by their last operation.
     folds: BTreeMap<OperationId, Fold>,
 }
 
-/// What the loops are written with.
+/// Context for printing loops.
 pub(super) struct Writing<'a, 'n> {
-    /// The names of the vectors among the inputs, by their components 0.
+    /// Names of the input vectors, keyed by component 0.
     pub(super) vectors: &'a BTreeMap<Symbol, Ident>,
-    /// The formulas of operations in no family.
+    /// Formulas of operations outside families.
     pub(super) singles: &'a Table<OperationId, Formula>,
     pub(super) names: &'a mut Names<'n>,
 }
 
-/// What the loops leave: their statements, and where members are that are read outside.
+/// The printed loops: their statements, and the positions of members read elsewhere.
 pub(super) struct Written {
     pub(super) statements: TokenStream,
     pub(super) members: BTreeMap<OperationId, Member>,
-    /// Sums over members, by their last operations: what they start from, and what makes a formula of that.
+    /// Folds over members, keyed by their last operation: the initial value, and the text without it.
     pub(super) folds: BTreeMap<OperationId, (OperationId, FoldText)>,
 }
 
 impl<'a> Loops<'a> {
-    /// The loops of a function that needs these operations; `None` where they leave more than `limit` to be written.
+    /// The loops of a function that needs these operations; `None` if more than `limit` operations remain outside.
     pub(super) fn of(function: &'a Function, needed: &[OperationId], limit: usize) -> Option<Self> {
         let families = function.families();
         let singles = needed.iter().copied().filter(|id| families.of(*id).is_none()).collect();
@@ -79,7 +79,7 @@ impl<'a> Loops<'a> {
         Some(Self { function, families, singles, outside, uses, folds })
     }
 
-    /// Operations in no family: those that no family leads to, and the others.
+    /// Operations outside families: those independent of all families, and the others.
     pub(super) fn singles(&self) -> (Vec<OperationId>, Vec<OperationId>) {
         let mut late = BTreeSet::new();
         for id in &self.singles {
@@ -91,7 +91,7 @@ impl<'a> Loops<'a> {
         self.singles.iter().copied().partition(|id| !late.contains(id))
     }
 
-    /// How often lines read an operation that is in no family: a loop counts twice, so that it has a name there.
+    /// How many lines read each operation outside families. A loop counts twice, so that its operands get names.
     pub(super) fn uses(&self) -> Table<OperationId, usize> {
         let mut uses = Table::default();
         let operands = |id: &OperationId| self.function.operations.get(*id).operands();
@@ -105,7 +105,7 @@ impl<'a> Loops<'a> {
         uses
     }
 
-    /// The loops, written.
+    /// Prints the loops.
     pub(super) fn write(&self, writing: Writing) -> Written {
         let counter = writing.names.counter();
         let mut lines = Lines { loops: self, writing, counter, arrays: BTreeMap::new() };
@@ -124,7 +124,7 @@ impl<'a> Loops<'a> {
         Written { statements, members: arrays.iter().flat_map(member).collect(), folds }
     }
 
-    /// The family of the sines or cosines of the angles of which this one is the cosines or sines.
+    /// The family of the cosines for a family of sines, and vice versa.
     fn partner(&self, operation: &Operation) -> Option<usize> {
         let other = match operation {
             Operation::Call(Elementary::Sin, angle) => Operation::Call(Elementary::Cos, *angle),
@@ -136,16 +136,16 @@ impl<'a> Loops<'a> {
     }
 }
 
-/// Where an operation of a family is.
+/// The position of a member of a family.
 #[derive(Clone)]
 pub(super) struct Member {
     pub(super) array: Array,
     pub(super) place: usize,
-    /// The counter of loops over the array.
+    /// The counter of the loop over the array.
     pub(super) counter: Ident,
 }
 
-/// An array, or one part of an array of pairs.
+/// An array, or one component of an array of pairs.
 #[derive(Clone, PartialEq, Eq)]
 pub(super) struct Array {
     name: Ident,
@@ -153,7 +153,7 @@ pub(super) struct Array {
 }
 
 impl Array {
-    /// Its entry so far behind the counter, or, without one, behind the first.
+    /// The entry at counter + place; without a counter, at place.
     pub(super) fn entry(&self, counter: Option<&Ident>, place: usize) -> Formula {
         let (name, index) = (&self.name, index(counter, place));
         let part = self.part.map(Literal::usize_unsuffixed).into_iter();
@@ -161,7 +161,7 @@ impl Array {
     }
 }
 
-/// Lines of loops, as they are written.
+/// The lines of the loops.
 struct Lines<'a, 'n> {
     loops: &'a Loops<'a>,
     writing: Writing<'a, 'n>,
@@ -170,7 +170,7 @@ struct Lines<'a, 'n> {
 }
 
 impl Lines<'_, '_> {
-    /// The line of a family; empty where it has been written, or its formula stands in others.
+    /// The line of a family; empty if it was printed before or is inlined.
     fn line(&mut self, family: usize) -> TokenStream {
         let loops = self.loops;
         let (members, counter) = (&loops.families.members[family], self.counter.clone());
@@ -181,7 +181,7 @@ impl Lines<'_, '_> {
         if let (Some(partner), Operation::Call(function, angle)) = (loops.partner(operation), operation) {
             let (name, receiver) = (self.writing.names.next_shared(), self.operand(*angle, 0).receiver());
             let (own, other) = if *function == Elementary::Sin { (0, 1) } else { (1, 0) };
-            // Of some angles one of both may not be needed.
+            // Sine and cosine families of the same angles may have different lengths.
             let length = Literal::usize_unsuffixed(members.len().max(loops.families.members[partner].len()));
             for (family, part) in [(family, own), (partner, other)] {
                 self.arrays.insert(family, Array { name: name.clone(), part: Some(part) });
@@ -199,7 +199,7 @@ impl Lines<'_, '_> {
         let names = &mut *self.writing.names;
         let name = if let Some((vector, _)) = symbol { names.vector(&vector) } else { names.next_shared() };
         let (tokens, length) = (formula.tokens(), Literal::usize_unsuffixed(members.len()));
-        // Not `from_fn`, which calls a long closure for each entry.
+        // `from_fn` would call a long closure for each entry.
         let line = quote! {
             let mut #name = [real(0.0); #length];
             for #counter in 0..#length { #name[#counter] = #tokens; }
@@ -208,19 +208,19 @@ impl Lines<'_, '_> {
         line
     }
 
-    /// Whether a family with such a formula is written where it is read.
+    /// Whether a family with such a formula is inlined at its uses.
     fn is_inside(&self, family: usize, operations: usize) -> bool {
         let alone = self.loops.uses[family] == 1 && operations <= LINE;
         !self.loops.outside.contains(&family) && (alone || operations <= AGAIN)
     }
 
-    /// The formula of a family, so many places on.
+    /// The formula of a family at the counter plus `place`.
     fn formula(&self, family: usize, place: usize) -> Formula {
         let operation = self.loops.function.operations.get(self.loops.families.members[family][0]);
         Formula::of(operation, &mut |operand| self.operand(operand, place))
     }
 
-    /// An operand of the first member of a family, as it is written so many places on.
+    /// An operand of the first member of a family, advanced by `on` places.
     fn operand(&self, id: OperationId, on: usize) -> Formula {
         let counter = Some(&self.counter);
         if let Operation::Input(symbol) = self.loops.function.operations.get(id)
@@ -233,7 +233,7 @@ impl Lines<'_, '_> {
             let inside = || self.formula(family, place + on);
             return self.arrays.get(&family).map_or_else(inside, |array| array.entry(counter, place + on));
         }
-        // What is in no family and is read here was written before; it would be the same written out.
+        // Printed before if it is outside families; the fallback prints the same formula.
         let operation = self.loops.function.operations.get(id);
         let again = || Formula::of(operation, &mut |operand| self.operand(operand, on));
         self.writing.singles.get(id).cloned().unwrap_or_else(again)

@@ -1,12 +1,12 @@
-//! Matrices in the form that their zero pattern allows, as `vi_core::linear` solves them.
+//! Matrices in the form of their zero pattern, as `vi_core::linear` solves them.
 
 use super::entries::{self, Entry, Part, array};
 use super::formula::zero;
-use crate::found::{CLOSED, Pattern};
+use crate::findings::{CLOSED, Pattern};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-/// The type and the value of the matrix whose rows are these groups of results.
+/// Type and value of the matrix with these rows of results.
 pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
     let size = Literal::usize_unsuffixed(rows.len());
     match pattern {
@@ -23,7 +23,7 @@ pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) ->
     }
 }
 
-/// The entry at this row and column; outside the matrix, zero.
+/// The entry at this row and column; zero outside the matrix.
 fn entry(rows: &[Vec<Entry>], row: usize, column: Option<usize>) -> Part<'_> {
     column.and_then(|column| rows.get(row)?.get(column)).into()
 }
@@ -68,7 +68,7 @@ fn in_blocks(rows: &[Vec<Entry>], blocks: &[Vec<usize>]) -> (TokenStream, TokenS
     )
 }
 
-/// What is zero for every input is left out.
+/// Omits entries that are identically zero.
 fn dense(rows: &[Vec<Entry>], symmetric: bool) -> (TokenStream, TokenStream) {
     let size = Literal::usize_unsuffixed(rows.len());
     let assignments = rows.iter().zip(0_usize..).flat_map(|(row, i)| {

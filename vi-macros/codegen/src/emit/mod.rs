@@ -1,8 +1,8 @@
-//! Rust, printed from a program.
+//! Rust code printed from a program.
 //!
-//! In: a [`Derived`] system. Out: tokens that name only `::vi_core`, `::core` and what the user declared.
-//! One file per kind of item: the struct, the continuous system, the discrete one, the stepper, the
-//! checks. All implementations stand in a scope of their own, in which no name of the surrounding code can get in their way.
+//! In: a [`Derived`] system. Out: tokens that refer only to `::vi_core`, `::core` and the user's declarations. One file
+//! per kind of item: the struct, the continuous system, the discrete system, the stepper, the checks. A scope of its
+//! own keeps the implementations free of names of the surrounding code.
 
 mod angles;
 mod body;
@@ -23,7 +23,7 @@ mod structure;
 
 use crate::derived::{Derivations, Derived};
 use crate::discrete::{ByRule, DiscreteSystem};
-use crate::found::{Findings, StepFindings};
+use crate::findings::{Findings, StepFindings};
 use crate::model::{Model, Rule};
 use crate::program::{Function, FunctionId, Program};
 use crate::symbol::Symbol;
@@ -34,19 +34,19 @@ use vi_expr::Pool;
 
 pub use structure::Broken;
 
-/// Everything that the items are printed from.
+/// Input of the items of a system.
 struct Source<'a> {
     pool: &'a Pool<Symbol>,
     model: &'a Model,
     system: &'a DiscreteSystem,
     program: &'a Program,
     findings: &'a Findings,
-    /// The marker of the rule in `vi_core::rules`, where it is not the system's own.
+    /// The marker of the rule in `vi_core::rules`, if it is not the default rule.
     marker: Option<Ident>,
     limit: usize,
 }
 
-/// A system by its rule: everything that its steps are printed from.
+/// Input of the steps of a system under its rule.
 struct Steps<'a> {
     source: &'a Source<'a>,
     rule: &'a Rule,
@@ -62,10 +62,10 @@ impl<'a> Deref for Steps<'a> {
     }
 }
 
-/// Operations that one function holds at most; a longer one is emitted in pieces.
+/// Maximum number of operations in one function; a longer one is emitted in pieces.
 const LIMIT: usize = 800;
 
-/// The attribute `#[vi_limit(50)]` of the struct, which the tests of pieces write: another limit than [`LIMIT`].
+/// The attribute `#[vi_limit(50)]` of the struct replaces [`LIMIT`]; only the tests of pieces use it.
 pub(crate) fn limit(attribute: &syn::Attribute) -> Option<usize> {
     let written: syn::LitInt = attribute.path().is_ident("vi_limit").then(|| attribute.parse_args().ok())??;
     written.base10_parse().ok()
@@ -97,7 +97,7 @@ pub fn items(derivations: &Derivations) -> TokenStream {
     quote! { #structure #scope #tests }
 }
 
-/// What is implemented once for each rule.
+/// The implementations for one rule.
 fn by_rule(steps: &Steps) -> TokenStream {
     let discrete = discrete::item(steps);
     let stepping = stepping::item(steps);
@@ -105,7 +105,7 @@ fn by_rule(steps: &Steps) -> TokenStream {
     quote!(#discrete #stepping #discretized)
 }
 
-/// The conditions under which a struct is there, and all that belongs to it.
+/// The `cfg` attributes of a struct, which apply to all its items.
 pub(crate) fn conditions(attributes: &[syn::Attribute]) -> impl Iterator<Item = &syn::Attribute> {
     attributes.iter().filter(|attribute| attribute.path().is_ident("cfg"))
 }
@@ -116,18 +116,18 @@ impl<'a> Source<'a> {
         Self { pool, model, system, program, findings, marker, limit }
     }
 
-    /// The steps by the rule, if there is one.
+    /// The steps with the rule, if there is one.
     fn steps(&self) -> Option<Steps<'_>> {
         let (rule, discrete) = (self.model.rule.as_ref()?, self.system.by_rule.as_ref()?);
         Some(Steps { source: self, rule, discrete, findings: self.findings.steps.as_ref()? })
     }
 
-    /// The rule as the last argument of a trait, whose default is the system's own: `, ::vi_core::rules::Trapezoidal`.
+    /// The rule as the last argument of a trait, whose default is the default rule: `, ::vi_core::rules::Trapezoidal`.
     fn rule_argument(&self) -> Option<TokenStream> {
         self.marker.as_ref().map(|marker| quote!(, ::vi_core::rules::#marker))
     }
 
-    /// A value of the system that takes steps by the rule: `By::new(system, Trapezoidal)`, or the system.
+    /// A value that steps with the rule: `By::new(system, Trapezoidal)`, or the system.
     fn by_rule(&self, system: TokenStream) -> TokenStream {
         match &self.marker {
             Some(marker) => quote!(::vi_core::rules::By::new(#system, ::vi_core::rules::#marker)),
@@ -135,12 +135,12 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Number of coordinates, as it stands in types.
+    /// Number of coordinates as a literal.
     fn dimension(&self) -> Literal {
         Literal::usize_unsuffixed(self.model.dimension())
     }
 
-    /// The function of this identity; the program holds all of them.
+    /// The function with this identity; the program contains all of them.
     fn function(&self, id: FunctionId) -> Option<&Function> {
         self.program.function(id)
     }

@@ -1,7 +1,7 @@
-//! What the inputs of a function are called.
+//! Identifiers for the inputs of a function.
 //!
-//! In: the symbols that a function reads. Out: identifiers made of the user's names: `x`, `x_dot`, `x0`, `x1`,
-//! `p0_x`, `x_mid`. A name that is taken already gets an underscore, so no name of the user can clash with another.
+//! In: the symbols that a function reads. Out: identifiers made of the user's names: `x`, `x_dot`, `x0`, `x1`, `p0_x`,
+//! `x_mid`. A trailing underscore resolves a clash, so user names cannot collide.
 
 use crate::model::Model;
 use crate::symbol::{Symbol, Variable};
@@ -18,12 +18,12 @@ pub(super) struct Names<'a> {
     shared: usize,
 }
 
-/// Names that the printed code itself uses.
+/// Names used by the printed code itself.
 const TAKEN: [&str; 11] =
     ["real", "self", "system", "inputs", "values", "node", "interval", "mass", "applied", "entries", "T"];
 
 impl<'a> Names<'a> {
-    /// Names for a function of a system whose rule has so many points.
+    /// Names for a function of a system whose rule has `points` points.
     pub(super) fn new(model: &'a Model, points: usize) -> Self {
         let taken = TAKEN.iter().map(|&name| name.to_owned()).collect();
         Self { model, points, given: BTreeMap::new(), taken, shared: 0 }
@@ -59,12 +59,12 @@ impl<'a> Names<'a> {
             }
             Symbol::Continuous(Variable::Coordinate(_)) => "q".to_owned(),
             Symbol::Parameter { index, .. } => self.model.parameters[*index].name.to_string(),
-            // Of velocities, and of nothing else that has components.
+            // Only velocities remain.
             _ => "v".to_owned(),
         }
     }
 
-    /// `x_mid`; of a rule with several points `x_at2`.
+    /// `x_mid`; `x_at2` for a rule with several points.
     fn at_point(&self, variable: &str, point: usize) -> String {
         if self.points == 1 { format!("{variable}_mid") } else { format!("{variable}_at{}", point + 1) }
     }

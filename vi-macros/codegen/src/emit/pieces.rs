@@ -1,7 +1,7 @@
 //! A long body in pieces.
 //!
-//! In: the statements of a body, each with what it binds and reads, and the results. Out: statements that do the same
-//! through functions of bounded length. What a later one or a result reads, a piece puts into an array:
+//! In: the statements of a body, with the values that each binds and reads, and the results. Out: equivalent statements
+//! in functions of bounded length. A piece stores values that later pieces or the results read in an array:
 //!
 //! ```text
 //! fn momentum_equation_part_2<T: ::vi_core::real::Real>(system: &Chain<T>, inputs: &[T; 9], values: &mut [T; 4]) {
@@ -12,8 +12,8 @@
 //! }
 //! ```
 //!
-//! The time that rustc takes grows faster than the length of a function: values that travel by name, or pieces that are
-//! inlined again, bring that back. The operations stay the same, and their results, bit by bit.
+//! The compile time of rustc grows faster than the length of a function. Passing values by name, or inlining the
+//! pieces, would restore the long function. Operations and results stay the same, bit by bit.
 
 use super::formula::zero;
 use super::names::Names;
@@ -26,40 +26,40 @@ use vi_expr::Table;
 
 /// A statement: `let x = a + b;`.
 pub(super) struct Statement {
-    /// What it gives a name.
+    /// The operations that it binds.
     pub(super) binds: Vec<OperationId>,
-    /// What it takes by name.
+    /// The operations that it reads by name.
     pub(super) reads: Vec<OperationId>,
-    /// Operations written in it.
+    /// Number of operations in it.
     pub(super) operations: usize,
-    /// As it is written.
+    /// Its tokens.
     pub(super) tokens: TokenStream,
 }
 
-/// What the pieces are written with.
+/// Context for printing pieces.
 pub(super) struct Writing<'a> {
-    /// The inputs, vector by vector, and the results, row by row: so they are copied to and from arrays fast.
+    /// The inputs, vector by vector, and the results, row by row: copies to and from arrays are then fast.
     pub(super) inputs: Vec<OperationId>,
     pub(super) results: Vec<OperationId>,
     /// The system.
     pub(super) system: &'a Ident,
-    /// The function that is cut.
+    /// Name of the function that is split.
     pub(super) function: &'a str,
-    /// The statement that each piece starts with.
+    /// A statement at the start of each piece.
     pub(super) prelude: Option<&'a TokenStream>,
-    /// What the operations are called.
+    /// Names of the operations.
     pub(super) named: &'a Table<OperationId, Ident>,
 }
 
 /// A body in pieces.
 pub(super) struct Pieces {
-    /// The functions and their calls.
+    /// The functions and the calls to them.
     pub(super) statements: TokenStream,
-    /// Where the named results are: `values[3]`.
+    /// Expressions for the named results: `values[3]`.
     pub(super) results: BTreeMap<OperationId, TokenStream>,
 }
 
-/// The places of values in an array.
+/// Positions of values in an array.
 struct Places {
     array: TokenStream,
     of: BTreeMap<OperationId, usize>,
@@ -87,7 +87,7 @@ impl Places {
     }
 }
 
-/// The statements through functions of at most `limit` operations, under names that are free.
+/// Splits the statements into functions of at most `limit` operations with unused names.
 pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, names: &mut Names) -> Pieces {
     let cuts = cuts(statements, limit);
     let (inputs, values) = places(statements, writing, &cuts);
@@ -138,7 +138,7 @@ pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, 
     Pieces { statements, results: writing.results.iter().filter_map(|id| Some((*id, values.place(*id)?))).collect() }
 }
 
-/// Where the inputs are, and the values that leave the piece they are computed in, the results first.
+/// Positions of the inputs, and of the values that leave their piece, results first.
 fn places(statements: &[Statement], writing: &Writing, cuts: &[Range<usize>]) -> (Places, Places) {
     let mut piece_of = BTreeMap::new();
     for (cut, piece) in cuts.iter().zip(0_usize..) {
@@ -154,10 +154,10 @@ fn places(statements: &[Statement], writing: &Writing, cuts: &[Range<usize>]) ->
     (Places::new(quote!(inputs), &writing.inputs), Places::new(quote!(values), results))
 }
 
-/// Ranges of at most `limit` operations. Each but the last holds at least half as many, and ends where the fewest values
-/// are held.
+/// Ranges of at most `limit` operations. Each except the last has at least half as many, and ends where the fewest
+/// values are live.
 fn cuts(statements: &[Statement], limit: usize) -> Vec<Range<usize>> {
-    let held = held(statements);
+    let live = live(statements);
     let mut cuts = Vec::new();
     let mut left: usize = statements.iter().map(|statement| statement.operations).sum();
     let mut start = 0;
@@ -168,8 +168,8 @@ fn cuts(statements: &[Statement], limit: usize) -> Vec<Range<usize>> {
             if operations > limit {
                 break;
             }
-            // A short piece is taken only where there is no longer one.
-            if 2 * best.1 < limit || held[end] <= held[best.0] {
+            // A short piece is chosen only if there is no longer one.
+            if 2 * best.1 < limit || live[end] <= live[best.0] {
                 best = (end, operations);
             }
         }
@@ -181,8 +181,8 @@ fn cuts(statements: &[Statement], limit: usize) -> Vec<Range<usize>> {
     cuts
 }
 
-/// How many values are bound before each place and read behind it.
-fn held(statements: &[Statement]) -> Vec<usize> {
+/// Number of live values before each statement.
+fn live(statements: &[Statement]) -> Vec<usize> {
     let (mut bound, mut last) = (BTreeMap::new(), BTreeMap::new());
     for (statement, place) in statements.iter().zip(0_usize..) {
         bound.extend(statement.binds.iter().map(|id| (*id, place)));

@@ -1,15 +1,15 @@
-//! A scope of their own for the implementations, in which names mean what the emitted code means by them.
+//! A scope for the implementations, in which names have the meaning that the emitted code intends.
 //!
-//! In: the implementations. Out: they, in a block of items. Where the struct is declared there may be a `const x`, a `static x`
-//! or a `struct x;`, and in their scope `let x = …` is a pattern that compares and no binding. So each name that is bound is
-//! first one of a function, which a binding may shadow; and types that have no path are taken from `::core::primitive`. The list
-//! is the end of the block, so that a reader meets the functions first.
+//! In: the implementations. Out: the same inside a block of items. The surrounding code may declare `const x`, `static
+//! x` or `struct x;`: there `let x = …` is a pattern that compares, not a binding. So the scope first declares a
+//! function for each bound name, which a binding may shadow, and takes unqualified types from `::core::primitive`. The
+//! list is at the end of the block: readers see the implementations first.
 
 use proc_macro2::{Delimiter, Ident, Spacing, TokenStream, TokenTree};
 use quote::quote;
 use vi_expr::Distinct;
 
-/// Names on one line.
+/// Names per line.
 const TOGETHER: usize = 3;
 
 /// The implementations in their scope.
@@ -24,14 +24,14 @@ pub(super) fn scope(attributes: &[&syn::Attribute], implementations: &TokenStrea
         const _: () = {
             #implementations
 
-            /// Every name that is bound above is one of a function first: a binding may shadow that, and no constant from around.
+            /// Declares a function for every name bound above: a binding may shadow it, but not a constant of the surrounding code.
             use ::core::primitive::{bool, f64, str, usize};
             #(#lines)*
         };
     }
 }
 
-/// Collects the names that tokens bind: in patterns after `let` and `for`, and as parameters of functions and closures.
+/// Collects the names that tokens bind: patterns after `let` and `for`, parameters of functions and closures.
 fn bound(tokens: TokenStream, names: &mut Distinct<Ident>) {
     let mut tokens = tokens.into_iter().peekable();
     let mut in_signature = false;

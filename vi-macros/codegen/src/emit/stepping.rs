@@ -11,10 +11,10 @@ use crate::symbol::Symbol;
 use proc_macro2::TokenStream;
 use quote::{ToTokens, format_ident, quote};
 
-/// Operations up to which the functions of a momentum step are short: `FixedStepping::INLINED`.
+/// Maximum number of operations of functions that count as short: `FixedStepping::INLINED`.
 const INLINED: usize = 250;
 
-/// The implementations of `FixedStepping` and `EnergyStepping` by the rule.
+/// The implementations of `FixedStepping` and `EnergyStepping` for the rule.
 pub(super) fn item(source: &Steps) -> TokenStream {
     let fixed = fixed(source);
     let energy = source.discrete.has_energy_steps().then(|| energy(source));
@@ -50,7 +50,7 @@ fn fixed(source: &Steps) -> TokenStream {
             #inlined
             #(#functions)*
 
-            /// What the rounding of the residual is measured in, by running error analysis.
+            /// Bounds the rounding error of the residual by running error analysis.
             #[cold]
             fn momentum_rounding(
                 &self,
@@ -64,7 +64,7 @@ fn fixed(source: &Steps) -> TokenStream {
     }
 }
 
-/// The system by the rule, in numbers that carry a bound of their rounding.
+/// The system with its rule, in numbers that carry a rounding-error bound.
 fn rounded(source: &Steps) -> TokenStream {
     source.by_rule(quote!(self.convert::<::vi_core::real::Rounded>()))
 }
@@ -81,7 +81,7 @@ fn energy(source: &Steps) -> TokenStream {
             #density
             #(#functions)*
 
-            /// What the rounding of both residuals is measured in, by running error analysis.
+            /// Bounds the rounding errors of both residuals by running error analysis.
             #[cold]
             fn extended_rounding(
                 &self,
@@ -95,7 +95,7 @@ fn energy(source: &Steps) -> TokenStream {
     }
 }
 
-/// The node, its low parts, and the unknowns.
+/// Binds the node, its low parts and the unknowns.
 fn node_parts(body: &Body, model: &Model) -> TokenStream {
     let low = |symbol: Symbol| Symbol::Low(Box::new(symbol));
     let (node, numbers) = (
@@ -116,7 +116,7 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
     quote!(#(#numbers)* #(#node)*)
 }
 
-/// The momentum row as `MomentumEquation` holds it, and the form of A.
+/// The fields of `MomentumEquation`, and the form of A.
 fn momentum_fields(source: &Steps, results: &Results<Entry>) -> (TokenStream, TokenStream) {
     let residual = vector_of(results.vector(Output::Residual));
     let rows = results.matrix(Output::Jacobian);
@@ -124,18 +124,18 @@ fn momentum_fields(source: &Steps, results: &Results<Entry>) -> (TokenStream, To
     (form, quote!(::vi_core::stepping::MomentumEquation { residual: #residual, jacobian: #jacobian }))
 }
 
-/// How many operations a function has.
+/// Number of operations of a function.
 fn operations(source: &Steps, id: FunctionId) -> usize {
     source.function(id).map_or(0, Function::operation_count)
 }
 
-/// A call that is not inlined spills the run's state out of registers, and keeps a loop over trajectories from becoming vector
-/// instructions: functions are inlined whatever the compiler thinks of it, but for those that are in pieces.
+/// The inlining attribute. A call that is not inlined spills the state of a run and prevents vectorization over
+/// trajectories. So all functions except those in pieces are inlined, against LLVM's own estimate.
 fn attribute(source: &Steps, id: FunctionId) -> TokenStream {
     if operations(source, id) <= source.limit { quote!(#[inline(always)]) } else { quote!(#[inline(never)]) }
 }
 
-/// A function of a step: of the node, the step and the velocity.
+/// A function of the node, the step and the velocity.
 fn method(
     source: &Steps,
     id: FunctionId,
@@ -191,7 +191,7 @@ fn momentum_residual(source: &Steps) -> Option<TokenStream> {
     })
 }
 
-/// The derivatives of the momentum row and of p1 − p0 as `MomentumDerivatives` holds them, and the form of all but A.
+/// The fields of `MomentumDerivatives`, and the form of all matrices except A.
 fn momentum_derivatives_of(source: &Steps, results: &Results<Entry>) -> (TokenStream, TokenStream) {
     let (_, residual_dv) =
         matrix(&source.findings.pattern, source.findings.symmetric, results.matrix(Output::Jacobian));
@@ -210,7 +210,7 @@ fn momentum_derivatives_of(source: &Steps, results: &Results<Entry>) -> (TokenSt
 }
 
 fn momentum_derivatives(source: &Steps) -> (TokenStream, Option<TokenStream>) {
-    let formula = "How the residual and `p1 − p0` change with the coordinates of the node and with v.";
+    let formula = "Derivatives of the residual and of `p1 − p0` with respect to the coordinates of the node and v.";
     let output = quote!(::vi_core::stepping::MomentumDerivatives<Self::Jacobian, Self::StepMatrix>);
     let mut form = TokenStream::new();
     let function = method(source, FunctionId::MomentumDerivatives, formula, &output, |results| {
@@ -223,7 +223,8 @@ fn momentum_derivatives(source: &Steps) -> (TokenStream, Option<TokenStream>) {
 
 fn extended_derivatives(source: &Steps) -> Option<TokenStream> {
     let dimension = source.dimension();
-    let formula = "How both residuals, `p1 − p0` and `E1 − E0` change with the coordinates of the node, v and h.";
+    let formula =
+        "Derivatives of both residuals, `p1 − p0` and `E1 − E0` with respect to the coordinates of the node, v and h.";
     let output = quote!(::vi_core::stepping::ExtendedDerivatives<#dimension, T, Self::Jacobian, Self::StepMatrix>);
     method(source, FunctionId::ExtendedDerivatives, formula, &output, |results| {
         let (_, momentum) = momentum_derivatives_of(source, results);

@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 use std::collections::BTreeMap;
 use syn::Attribute;
 
-/// The struct, whose documentation says what was found of it by its own rule and by further ones.
+/// The struct, with the properties under each rule in its documentation.
 pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
     let model = source.model;
     let (name, visibility) = (&model.name, &model.visibility);
@@ -25,13 +25,13 @@ pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
         let of = if index.is_some() { quote!([T; #length]) } else { quote!(T) };
         Some(quote!(#(#attributes)* #pause #[doc = #default] pub #name: #of))
     });
-    let found = found(source);
-    let found_further = further.iter().filter_map(found_further);
+    let findings = findings_documentation(source);
+    let further = further.iter().filter_map(further_findings);
     let (derived, (marker, _)) = (derived(), marker(model.parameters.is_empty()));
     quote! {
         #(#attributes)*
-        #found
-        #(#found_further)*
+        #findings
+        #(#further)*
         #derived
         #[allow(non_snake_case)]
         #visibility struct #name<T = ::core::primitive::f64> {
@@ -41,7 +41,7 @@ pub(super) fn structure(source: &Source, further: &[Steps]) -> TokenStream {
     }
 }
 
-/// What the documentation says of the default of a field.
+/// Documentation of the default of a field.
 fn default_words(field: &[Parameter]) -> String {
     let defaults: Vec<String> = field.iter().map(Parameter::default_text).collect();
     let (Some(first), Some(last)) = (field.first(), field.last()) else { return String::new() };
@@ -53,7 +53,7 @@ fn default_words(field: &[Parameter]) -> String {
     format!(" Parameters `{}` to `{}`, {values} by default.", first.text(), last.text())
 }
 
-/// The value of a field, by what one parameter is that stands at a place of the struct: that, or an array of such.
+/// The value of a field: `one` of its parameter, or an array of these.
 fn field_value(field: &[Parameter], one: impl Fn(TokenStream) -> TokenStream) -> Option<TokenStream> {
     let Parameter { name, index, .. } = field.first()?;
     if index.is_none() {
@@ -70,12 +70,12 @@ fn default_value(field: &[Parameter]) -> TokenStream {
     if is_array { quote!([#(#values),*]) } else { quote!(#(#values)*) }
 }
 
-/// What every system derives.
+/// The derived traits of every system.
 fn derived() -> TokenStream {
     quote!(#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)])
 }
 
-/// `Default`, `Parameters`, and the conversion to another kind of number.
+/// `Default`, `Parameters`, and the conversion to another numeric type.
 pub(super) fn parameters(source: &Source) -> TokenStream {
     let model = source.model;
     let name = &model.name;
@@ -113,7 +113,7 @@ pub(super) fn parameters(source: &Source) -> TokenStream {
     }
 }
 
-/// The implementation of `Convertible`: the system in other numbers.
+/// The implementation of `Convertible`: the system in another numeric type.
 pub(super) fn convertible(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     quote! {
@@ -128,7 +128,7 @@ pub(super) fn convertible(source: &Source) -> TokenStream {
     }
 }
 
-/// The implementation of `Discretized` by the rule: its steps in other numbers.
+/// The implementation of `Discretized` for the rule: its steps in another numeric type.
 pub(super) fn discretized(source: &Source) -> TokenStream {
     let (name, dimension, rule) = (&source.model.name, source.dimension(), source.rule_argument());
     quote! {
@@ -143,7 +143,7 @@ pub(super) fn discretized(source: &Source) -> TokenStream {
     }
 }
 
-/// The implementation of `Batch`: parameters side by side.
+/// The implementation of `Batch`: parameters of several systems in lanes.
 pub(super) fn batch(source: &Source) -> TokenStream {
     let (name, dimension) = (&source.model.name, source.dimension());
     let model = source.model;
@@ -169,12 +169,12 @@ pub(super) fn batch(source: &Source) -> TokenStream {
     }
 }
 
-/// What the generator found out, as the end of the struct's documentation.
-fn found(source: &Source) -> TokenStream {
+/// The properties found by the generator, at the end of the documentation of the struct.
+fn findings_documentation(source: &Source) -> TokenStream {
     let model = source.model;
     let rule = match &model.rule {
-        Some(rule) => format!(" Discretized by the rule `{}`. What the generator found:", rule.title()),
-        None => " Takes Gauss steps. What the generator found:".to_owned(),
+        Some(rule) => format!(" Discretized by the rule `{}`. Properties found by the generator:", rule.title()),
+        None => " Integrated by Gauss methods only. Properties found by the generator:".to_owned(),
     };
     let findings = source.findings.lines(&|index| format!("`{}`", model.coordinates[index].text()));
     let findings = findings.into_iter().map(|line| format!(" * {line}"));
@@ -182,8 +182,8 @@ fn found(source: &Source) -> TokenStream {
     quote!(#pause #[doc = #rule] #[doc = ""] #(#[doc = #findings])*)
 }
 
-/// What was found of the steps by a further rule.
-fn found_further(source: &Steps) -> Option<TokenStream> {
+/// The properties of the steps with a further rule.
+fn further_findings(source: &Steps) -> Option<TokenStream> {
     let marker = source.marker.as_ref()?;
     let rule = format!(" By the rule `{}`, as `By::new(system, {marker})`:", source.rule.title());
     let findings = source.source.findings.of_steps(&|index| format!("`{}`", source.model.coordinates[index].text()));
@@ -191,26 +191,26 @@ fn found_further(source: &Steps) -> Option<TokenStream> {
     Some(quote!(#[doc = ""] #[doc = #rule] #[doc = ""] #(#[doc = #findings])*))
 }
 
-/// An empty line of documentation after the user's own words, so that ours are a paragraph of their own.
+/// An empty line of documentation that separates the user's paragraph from ours.
 fn pause(attributes: &[syn::Attribute]) -> Option<TokenStream> {
     attributes.iter().any(|attribute| attribute.path().is_ident("doc")).then(|| quote!(#[doc = ""]))
 }
 
-/// What a broken system becomes.
+/// A system with errors.
 pub struct Broken {
     conditions: Vec<Attribute>,
     stub: TokenStream,
 }
 
 impl Broken {
-    /// What is left of a system: so that the code that uses it still type-checks, its struct, and the traits without a body; where
-    /// the number of coordinates cannot be told, for every number.
+    /// The stub of a system with errors: its struct and the traits without bodies, so that the code that uses it still
+    /// type-checks. If the number of coordinates is unknown, the stub is generic over it.
     #[must_use]
     pub fn of(system: &System) -> Self {
         Self { conditions: conditions(&system.attributes).cloned().collect(), stub: stub(system) }
     }
 
-    /// The errors and what is left, where the system is there at all.
+    /// The errors, with the stub if there is one.
     #[must_use]
     pub fn with(&self, error: &syn::Error) -> TokenStream {
         let Self { conditions, stub } = self;
@@ -228,7 +228,7 @@ impl Broken {
 
 fn stub(system: &System) -> TokenStream {
     let (name, visibility) = (&system.name, &system.visibility);
-    // A parameter that is declared twice is one of the errors, and one field.
+    // A parameter that is declared twice is an error, but one field.
     let parameters: BTreeMap<String, &syntax::Parameter> =
         system.parameters.iter().map(|parameter| (parameter.name.to_string(), parameter)).collect();
     let names: Vec<&Ident> = parameters.values().map(|parameter| &parameter.name).collect();
@@ -263,7 +263,7 @@ fn stub(system: &System) -> TokenStream {
     }
 }
 
-/// The number of coordinates, where every length is a plain number or a constant that is one.
+/// The number of coordinates, if every length is a literal or a constant defined by one.
 fn dimension(system: &System) -> Option<Literal> {
     let lengths = system.coordinates.iter().map(|coordinate| match &coordinate.length {
         None => Some(1),
@@ -272,7 +272,7 @@ fn dimension(system: &System) -> Option<Literal> {
     lengths.sum::<Option<usize>>().filter(|dimension| *dimension > 0).map(Literal::usize_unsuffixed)
 }
 
-/// The length of the field of an array of parameters, where it can be told: 1 elsewhere.
+/// The length of the field of an array of parameters; 1 if it is unknown.
 fn field_length(system: &System, parameter: &syntax::Parameter) -> Option<usize> {
     let told = plain_length(system, parameter.length.as_ref()?).filter(|length| (1..=PARAMETERS).contains(length));
     let values = match &parameter.default {
@@ -282,7 +282,7 @@ fn field_length(system: &System, parameter: &syntax::Parameter) -> Option<usize>
     Some(told.unwrap_or(values))
 }
 
-/// A length that is a plain number, or the name of a constant that is one.
+/// A length that is a literal, or a constant defined by one.
 fn plain_length(system: &System, length: &Expression) -> Option<usize> {
     let number = match &length.kind {
         Kind::Name(name) => &system.constants.iter().find(|constant| constant.name == *name)?.value.kind,
@@ -291,8 +291,8 @@ fn plain_length(system: &System, length: &Expression) -> Option<usize> {
     if let Kind::Number(number) = number { number.to_usize() } else { None }
 }
 
-/// The rules of a system, each as the last argument of a trait: first its own, by default, then the further ones of its list; all that
-/// there are if the list cannot be read, or has other names.
+/// The rules of a system as last arguments of a trait, the default rule first. If the list has errors, all existing
+/// rules.
 fn rules(system: &System) -> Vec<Option<TokenStream>> {
     let names: Vec<&Ident> = match system.discretizations.first() {
         Some(Discretization::Written(_)) => return vec![None],
@@ -309,9 +309,9 @@ fn rules(system: &System) -> Vec<Option<TokenStream>> {
     [None].into_iter().chain(argument).collect()
 }
 
-/// The number of coordinates of a stub, as it stands in types.
+/// The number of coordinates of a stub, as written in types.
 struct Size {
-    /// What declares it, where it cannot be told.
+    /// The generic parameter that declares it, if it is unknown.
     generic: Option<TokenStream>,
     n: TokenStream,
 }
@@ -325,7 +325,8 @@ impl Size {
     }
 }
 
-/// The stub of what does not depend on L: parameters, other numbers, and a time scale, since its clause may be the one that is wrong.
+/// The stub of everything independent of L: parameters, conversions, and a time scale, since its clause may have the
+/// error.
 fn stub_parameters(name: &Ident, Size { generic, n }: &Size) -> TokenStream {
     let none = quote!({ loop {} });
     quote! {
@@ -424,7 +425,7 @@ fn stub_steps(name: &Ident, Size { generic, n }: &Size, rule: Option<&TokenStrea
     }
 }
 
-/// The field that a system without parameters knows its kind of number by, and its value; nothing for others.
+/// The field that carries the numeric type of a system without parameters, and its value.
 fn marker(needed: bool) -> (TokenStream, TokenStream) {
     if needed {
         (

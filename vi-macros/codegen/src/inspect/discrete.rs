@@ -28,7 +28,7 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
             title: "Energy row, combined with the residual, and its derivatives over h",
             lines: energy(derived, &of.equations),
         },
-        Section { title: "What a step adds to momentum and energy", lines: increments(derived, &of.equations) },
+        Section { title: "Increments of momentum and energy", lines: increments(derived, &of.equations) },
     ]
 }
 

@@ -1,7 +1,7 @@
 //! The mathematics of a system as a text of sections.
 //!
-//! In: sections of equations and words, each formula in both notations. Out: plain text, or a LaTeX document that
-//! compiles by itself.
+//! In: sections of equations and words, each formula in both notations. Out: plain text, or a standalone LaTeX
+//! document.
 
 use super::{latex, name};
 use crate::Derived;
@@ -11,7 +11,7 @@ use vi_expr::Expr;
 pub struct Explanation {
     /// Name of the system.
     pub title: String,
-    /// What is told of it, in order.
+    /// The sections, in order.
     pub sections: Vec<Section>,
 }
 
@@ -19,7 +19,7 @@ pub struct Explanation {
 pub struct Section {
     /// The heading, plain words.
     pub title: &'static str,
-    /// What stands under it.
+    /// Its equations and words.
     pub lines: Vec<Line>,
 }
 
@@ -38,7 +38,7 @@ pub enum Line {
     },
     /// Words, formulas between backticks.
     Words {
-        /// With names as the user writes them.
+        /// With the user's names.
         text: String,
         /// With names in LaTeX.
         latex: String,
@@ -69,7 +69,7 @@ impl Line {
             .collect()
     }
 
-    /// The entries of a matrix that are other than zero, and how many there are.
+    /// The nonzero entries of a matrix, and how many there are.
     pub(super) fn matrix(derived: &Derived, left: (&str, &str), rows: &[Vec<Expr>]) -> Vec<Self> {
         let coordinates = &derived.model.coordinates;
         let mut lines = Vec::new();
@@ -160,7 +160,7 @@ fn list(lines: &[Line]) -> String {
     format!("\\begin{{itemize}}\n{}\\end{{itemize}}\n", rows.collect::<String>())
 }
 
-/// Words whose formulas stand between backticks.
+/// Words with formulas between backticks.
 fn words(text: &str) -> String {
     let parts = text.split('`').enumerate();
     parts.map(|(place, part)| if place % 2 == 1 { format!("${part}$") } else { latex::plain(part) }).collect()

@@ -1,11 +1,11 @@
-//! What the generator found out, and what each function costs.
+//! Findings of the generator, and the cost of each function.
 //!
 //! In: a derived system. Out: sections of an explanation.
 
 use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
-use crate::found::Findings;
+use crate::findings::Findings;
 use crate::program::Function;
 
 /// Findings and operation counts.
@@ -13,12 +13,12 @@ pub(super) fn sections(derived: &Derived) -> Vec<Section> {
     vec![found(derived, Findings::lines), operations(derived.program.functions())]
 }
 
-/// Findings of the steps, and operation counts of the functions that depend on the rule.
+/// Findings about the steps, and operation counts of the functions that depend on the rule.
 pub(super) fn of_steps(derived: &Derived) -> Vec<Section> {
     vec![found(derived, Findings::of_steps), operations(derived.program.by_rule())]
 }
 
-/// Findings in words, the coordinates by their names.
+/// Findings in words with the names of the coordinates.
 fn found(derived: &Derived, lines: impl Fn(&Findings, &dyn Fn(usize) -> String) -> Vec<String>) -> Section {
     let Derived { model, findings, .. } = derived;
     let coordinate = |index: usize| model.coordinates.get(index);
@@ -27,7 +27,7 @@ fn found(derived: &Derived, lines: impl Fn(&Findings, &dyn Fn(usize) -> String) 
         coordinate(index).map_or_else(String::new, |of| format!("`{}`", name::coordinate(of).text()))
     });
     let lines = text.into_iter().zip(latex).map(|(text, latex)| Line::Words { text, latex }).collect();
-    Section { title: "What the generator found", lines }
+    Section { title: "Properties found by the generator", lines }
 }
 
 /// The operation count of each function.

@@ -1,8 +1,8 @@
 //! The equations of a Gauss step of a system: tableau, stages, update, energy, slots.
 //!
-//! In: a derived system, the number of stages S, and the coefficients of collocation at the S Gauss points. Out: sections of an explanation.
-//! A stage is written once, with the index i of any of them: `x_i` and `x_dot_i` are coordinate and velocity there. Coefficients are exact up
-//! to three stages, and decimals beyond.
+//! In: a derived system, the number of stages S, and the collocation coefficients at the S Gauss points. Out: sections
+//! of an explanation. A stage is written once, with its index i: `x_i` and `x_dot_i` are coordinate and velocity there.
+//! Coefficients are exact up to three stages and decimal beyond.
 
 use super::explanation::{Line, Section};
 use super::{latex, name};
@@ -10,17 +10,17 @@ use crate::Derived;
 use crate::symbol::{Symbol, Variable};
 use vi_expr::{Expr, Pool, Rational};
 
-/// Tableau, stages, update and slots of the step of so many stages.
+/// Tableau, stages, update and slots of a step with `stages` stages.
 pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
     let tableau = tableau(derived, stages);
     let [places, equations] = equations(derived, stages);
     let update = update(derived, stages);
-    let title = "Equations of the stages, which their positions and velocities solve: the momenta agree";
+    let title = "Equations of the stages for positions and velocities: both expressions of the momentum agree";
     let mut sections = vec![
         Section { title: "Gauss points c, weights b, coefficients a", lines: tableau },
         Section { title: "Stage i: time, position, momentum p and force F = L_q + f", lines: places },
         Section { title, lines: equations },
-        Section { title: "What a step adds to position and momentum", lines: update },
+        Section { title: "Update of position and momentum", lines: update },
         Section {
             title: "Discrete Lagrangian, its slot derivatives, forces, powers and energies",
             lines: slots(derived),
@@ -30,11 +30,12 @@ pub(super) fn sections(derived: &mut Derived, stages: usize) -> Vec<Section> {
     sections
 }
 
-/// What determines the length of an energy-preserving step (`docs/theory.md`); none where rounding hides it, beyond three stages.
+/// The equation for the length of an energy-preserving step (`docs/theory.md`); `None` beyond three stages, where
+/// rounding hides it.
 fn length(stages: usize) -> Option<Section> {
     let share = ["1/8", "1/864", "1/288000"].get(stages.checked_sub(1)?)?;
     let order = 2 * stages;
-    let excess = said(
+    let excess = equation(
         "H(t0, q0, p0) - E0",
         &format!("h^{order}*D_{stages}*{share} + O(h^{})", order + 1),
         "H(t_0, q_0, p_0) - E_0",
@@ -43,7 +44,7 @@ fn length(stages: usize) -> Option<Section> {
             order + 1
         ),
     );
-    let density = said(
+    let density = equation(
         &format!("D_{stages}"),
         &format!(
             "(d/dtau)^{order} H(t0 + tau, q(tau), p(tau)), tau = 0, with Taylor's polynomials of degree {stages} of the motion"
@@ -53,12 +54,12 @@ fn length(stages: usize) -> Option<Section> {
             "\\left. \\frac{{d^{{{order}}}}}{{d\\tau^{{{order}}}}} H(t_0 + \\tau, \\pi_q(\\tau), \\pi_p(\\tau)) \\right|_{{\\tau = 0}}, \\quad \\pi \\text{{ of degree }} {stages}"
         ),
     );
-    let title = "Length of an energy-preserving step: a root exists where the step density D keeps its sign";
+    let title = "Length of an energy-preserving step: a root exists if the step density D keeps its sign";
     Some(Section { title, lines: vec![excess, density] })
 }
 
-/// `left = right`, the same in LaTeX.
-fn said(left: &str, right: &str, left_latex: &str, right_latex: &str) -> Line {
+/// The equation `left = right`, in both notations.
+fn equation(left: &str, right: &str, left_latex: &str, right_latex: &str) -> Line {
     let [left, right, left_latex, right_latex] = [left, right, left_latex, right_latex].map(str::to_owned);
     Line::Equation { left, right, left_latex, right_latex }
 }
@@ -85,7 +86,7 @@ impl Coefficient {
     fn text(self, derived: &mut Derived) -> [String; 2] {
         let (whole, part, of) = match self {
             Self::Exact { whole, part, of } => (whole, part, of),
-            // The last digits of sums of numbers are rounding.
+            // Rounding affects the last digits of sums.
             Self::Decimal(value) => return [format!("{value:.14}"), format!("{value:.14}")],
         };
         let pool = &mut derived.pool;
@@ -115,7 +116,7 @@ fn tableau(derived: &mut Derived, stages: usize) -> Vec<Line> {
         let indices: Vec<String> = indices.iter().map(|index| (index + 1).to_string()).collect();
         let [text, in_latex] = of.text(derived);
         let index = indices.join(separator);
-        lines.push(said(&format!("{name}_{index}"), &text, &format!("{name}_{{{index}}}"), &in_latex));
+        lines.push(equation(&format!("{name}_{index}"), &text, &format!("{name}_{{{index}}}"), &in_latex));
     };
     for (name, values) in [("c", c), ("b", b)] {
         for (i, value) in values.into_iter().enumerate() {
@@ -163,7 +164,7 @@ impl Tableau {
         }
     }
 
-    /// By Legendre's polynomials: `a_ij = b_j (c_i + Σ_k P_k(y_j) (P_{k+1}(x_i) − P_{k−1}(x_i)) / 2)`, k = 1 … S − 1.
+    /// From Legendre polynomials: `a_ij = b_j (c_i + Σ_k P_k(y_j) (P_{k+1}(x_i) − P_{k−1}(x_i)) / 2)`, k = 1 … S − 1.
     fn computed(stages: usize) -> Self {
         let x: Vec<f64> = (0..stages).map(|i| node(stages, i)).collect();
         let weight = |x: f64| 1.0 / ((1.0 - x * x) * slope(stages, x).powi(2));
@@ -200,7 +201,7 @@ fn slope(n: usize, x: f64) -> f64 {
     n as f64 * (values[n - 1] - x * values[n]) / (1.0 - x * x)
 }
 
-/// Root i of P_n, ascending, by Newton's iteration from Tricomi's estimate.
+/// Root i of P_n, ascending, by Newton iteration from Tricomi's estimate.
 #[allow(clippy::cast_precision_loss)]
 fn node(n: usize, i: usize) -> f64 {
     let mut x = -(core::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
@@ -220,11 +221,11 @@ fn at_stage(derived: &Derived, symbol: &Symbol) -> String {
     }
 }
 
-/// An equation that gives an expression at stage i a name.
+/// The equation `left = right` at stage i.
 fn at(derived: &Derived, left: &str, left_latex: &str, right: Expr) -> Line {
     let right_text = derived.pool.render(right, &|symbol| at_stage(derived, symbol));
     let right_latex = latex::expression(&derived.pool, right, &|symbol| name::at_stage(derived, symbol, "i"));
-    said(left, &right_text, left_latex, &right_latex)
+    equation(left, &right_text, left_latex, &right_latex)
 }
 
 /// The sum over the stages of coefficients times a number: `a_i1*x_dot_1 + a_i2*x_dot_2`.
@@ -233,7 +234,7 @@ fn sum(stages: usize, coefficient: &str, of: &str) -> String {
     terms.join(" + ")
 }
 
-/// A coordinate with its names: as it is written, and in LaTeX.
+/// A coordinate with its names in plain text and in LaTeX.
 struct Named {
     text: String,
     latex: String,
@@ -243,7 +244,7 @@ struct Named {
     momentum: [String; 2],
 }
 
-/// The coordinates by number.
+/// The coordinates in order.
 fn named(derived: &Derived) -> Vec<Named> {
     let both = |symbol: &Symbol| [derived.system.spell(&derived.model, symbol), name::latex(derived, symbol)];
     let coordinates = derived.model.coordinates.iter().enumerate();
@@ -258,38 +259,38 @@ fn named(derived: &Derived) -> Vec<Named> {
     each.collect()
 }
 
-/// Where the stages are, L_v and L_q + f there, and the equations for which the momenta agree.
+/// The stages with L_v and L_q + f there, and the equations that make the momenta agree.
 fn equations(derived: &Derived, stages: usize) -> [Vec<Line>; 2] {
     let of = &derived.system.continuous;
     let separator = if stages > 9 { "," } else { "" };
     let a = format!("a_i{separator}");
-    let mut places = vec![said("t_i", "t0 + c_i*h", "t_{i}", "t_{0} + c_{i} h")];
+    let mut places = vec![equation("t_i", "t0 + c_i*h", "t_{i}", "t_{0} + c_{i} h")];
     let mut rates = Vec::new();
     let mut equations = Vec::new();
     for (index, Named { text, latex, velocity, start, momentum, .. }) in named(derived).iter().enumerate() {
         let right = format!("{} + h*({})", start[0], sum(stages, &a, &format!("{text}_dot")));
         let right_latex = format!("{} + h \\sum_{{j}} a_{{ij}} {velocity}", start[1]);
         let place = name::at_stage(derived, &Symbol::Continuous(Variable::Coordinate(index)), "i");
-        places.push(said(&format!("{text}_i"), &right, &place, &right_latex));
+        places.push(equation(&format!("{text}_i"), &right, &place, &right_latex));
         rates.push(at(derived, &format!("p_{text}_i"), &format!("p_{{{latex},i}}"), of.momentum[index]));
         rates.push(at(derived, &format!("F_{text}_i"), &format!("F_{{{latex},i}}"), of.applied_force[index]));
         let right = format!("{} + h*({})", momentum[0], sum(stages, &a, &format!("F_{text}")));
         let right_latex = format!("{} + h \\sum_{{j}} a_{{ij}} F_{{{latex},j}}", momentum[1]);
-        equations.push(said(&format!("p_{text}_i"), &right, &format!("p_{{{latex},i}}"), &right_latex));
+        equations.push(equation(&format!("p_{text}_i"), &right, &format!("p_{{{latex},i}}"), &right_latex));
     }
     places.extend(rates);
     [places, equations]
 }
 
-/// What a solved step adds to position and momentum.
+/// Update of position and momentum after a converged step.
 fn update(derived: &Derived, stages: usize) -> Vec<Line> {
     let mut lines = Vec::new();
     for Named { text, latex, velocity, start, end, momentum } in named(derived) {
         let right = format!("{} + h*({})", start[0], sum(stages, "b_", &format!("{text}_dot")));
-        lines.push(said(&end[0], &right, &end[1], &format!("{} + h \\sum_{{j}} b_{{j}} {velocity}", start[1])));
+        lines.push(equation(&end[0], &right, &end[1], &format!("{} + h \\sum_{{j}} b_{{j}} {velocity}", start[1])));
         let right = format!("{} + h*({})", momentum[0], sum(stages, "b_", &format!("F_{text}")));
         let right_latex = format!("{} + h \\sum_{{j}} b_{{j}} F_{{{latex},j}}", momentum[1]);
-        lines.push(said(&format!("p1_{text}"), &right, &format!("p_{{1,{latex}}}"), &right_latex));
+        lines.push(equation(&format!("p1_{text}"), &right, &format!("p_{{1,{latex}}}"), &right_latex));
     }
     lines
 }
@@ -320,7 +321,7 @@ fn slots(derived: &mut Derived) -> Vec<Line> {
     }
     let mut add = |left: &str, right: &str, left_latex: &str, right_latex: &str| {
         let [right, right_latex] = [format!("sum_i b_i*{right}"), format!("\\sum_{{i}} b_{{i}} {right_latex}")];
-        lines.push(said(left, &right, left_latex, &right_latex));
+        lines.push(equation(left, &right, left_latex, &right_latex));
     };
     add("L_d", "h*L_i", "L_d", "h L_{i}");
     add("D1 L_d", "(E_i + (1 - c_i)*h*L_t_i)", "D_1 L_d", "\\left(E_{i} + (1 - c_{i}) h L_{t,i}\\right)");
@@ -354,8 +355,8 @@ fn slots(derived: &mut Derived) -> Vec<Line> {
         add(&left[0], &format!("c_i*{force}"), &left[1], &format!("c_{{i}} {force_latex}"));
     }
     if !derived.model.forced {
-        lines.push(said("E0", "D1 L_d", "E_0", "D_1 L_d"));
-        lines.push(said("E1", "-D3 L_d", "E_1", "-D_3 L_d"));
+        lines.push(equation("E0", "D1 L_d", "E_0", "D_1 L_d"));
+        lines.push(equation("E1", "-D3 L_d", "E_1", "-D_3 L_d"));
         return lines;
     }
     let [work, work_latex] = [work.join(" + "), work_latex.join(" + ")];
@@ -364,9 +365,9 @@ fn slots(derived: &mut Derived) -> Vec<Line> {
     {
         let right = format!("-sum_i b_i*{}*h*({work})", part[0]);
         let right_latex = format!("-\\sum_{{i}} b_{{i}} {} h \\left({work_latex}\\right)", part[1]);
-        lines.push(said(name, &right, name_latex, &right_latex));
+        lines.push(equation(name, &right, name_latex, &right_latex));
     }
-    lines.push(said("E0", "D1 L_d + g_d⁻", "E_0", "D_1 L_d + g_d^-"));
-    lines.push(said("E1", "-D3 L_d - g_d⁺", "E_1", "-D_3 L_d - g_d^+"));
+    lines.push(equation("E0", "D1 L_d + g_d⁻", "E_0", "D_1 L_d + g_d^-"));
+    lines.push(equation("E1", "-D3 L_d - g_d⁺", "E_1", "-D_3 L_d - g_d^+"));
     lines
 }

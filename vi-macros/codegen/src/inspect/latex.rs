@@ -1,27 +1,27 @@
 //! Expressions in LaTeX.
 //!
-//! In: an expression, and the LaTeX of each symbol. Out: mathematics for `$…$`: quotients as fractions, fractional powers as
-//! roots, `\sin^{2}\left(x\right)`. As for plain text no pass recurses, and the text ends with `\ldots` where it grows
-//! beyond [`vi_expr::MAX_CHARACTERS`].
+//! In: an expression, and the LaTeX of each symbol. Out: mathematics for `$…$`: quotients as fractions, fractional
+//! powers as roots, `\sin^{2}\left(x\right)`. No pass recurses, and the text ends with `\ldots` beyond
+//! [`vi_expr::MAX_CHARACTERS`].
 
 use num_traits::{One, Signed, Zero};
 use std::hash::Hash;
 use vi_expr::{Expr, Function, MAX_CHARACTERS, Node, Pool, Rational, Sum};
 
-/// How strongly an expression holds together.
+/// Binding strength of an expression.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
     Product,
-    /// A power, a fraction in braces, or what stands for itself but cannot take an exponent.
+    /// A power, a fraction in braces, or an atom that cannot take an exponent.
     Power,
     Atom,
 }
 
-/// What is still to be written.
+/// Pending output.
 enum Piece {
     Text(String),
-    /// An expression, in parentheses if it binds less strongly.
+    /// An expression, in parentheses if it binds less tightly.
     Inside(Expr, Binding),
 }
 
@@ -48,14 +48,14 @@ pub fn expression<S: Clone + Eq + Hash>(pool: &Pool<S>, expr: Expr, name: &dyn F
             }
         }
         if written.len() > MAX_CHARACTERS {
-            // Cut where no brace is open: the formula is of no use to a reader anyway.
+            // Truncates at a point without open braces: a formula this long is unreadable anyway.
             return "\\ldots".to_owned();
         }
     }
     written
 }
 
-/// Words with the characters that LaTeX keeps for itself escaped.
+/// Escapes the characters that are special in LaTeX.
 #[must_use]
 pub fn plain(words: &str) -> String {
     let escape = |letter: char| match letter {
@@ -93,7 +93,7 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
         }
     }
 
-    /// The terms in their order, save that the first positive one leads.
+    /// The terms in order, but the first positive one comes first.
     fn sum(&self, sum: &Sum) -> (Binding, Vec<Piece>) {
         let mut terms: Vec<(Rational, Factors)> =
             sum.terms.iter().map(|(term, coefficient)| (coefficient.clone(), self.factors(*term))).collect();
@@ -140,7 +140,7 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
         }
         let (_, denominator) = self.product(&coefficient.denom().to_string(), &below);
         let mut pieces = vec![text("\\frac{")];
-        // A sum alone in a fraction needs no parentheses.
+        // A sum that fills one side of a fraction needs no parentheses.
         pieces.extend(bare(numerator));
         pieces.push(text("}{"));
         pieces.extend(bare(denominator));
@@ -148,7 +148,7 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
         (Binding::Product, pieces)
     }
 
-    /// Number and powers with positive exponents; the number 1 only if it is alone.
+    /// Number and powers with positive exponents; the number 1 only if there is nothing else.
     fn product(&self, number: &str, factors: &Factors) -> (Binding, Vec<Piece>) {
         if factors.is_empty() {
             return (Binding::Atom, vec![text(number)]);
@@ -160,7 +160,7 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
         }
         let alone = pieces.is_empty() && factors.len() == 1;
         for (base, exponent) in factors {
-            // Digits that stand beside digits would read as one number.
+            // Adjacent digits would read as one number.
             let digits = matches!(self.pool.node(*base), Node::Number(_));
             if !pieces.is_empty() {
                 pieces.push(text(if digits { " \\cdot " } else { " " }));
@@ -213,7 +213,7 @@ impl<S: Clone + Eq + Hash> Writer<'_, S> {
     }
 }
 
-/// The command of a function; nothing for those with a notation of their own.
+/// The command of a function; `None` for functions with their own notation.
 fn command(function: Function) -> Option<&'static str> {
     Some(match function {
         Function::Exp => "\\exp",
@@ -234,7 +234,7 @@ fn command(function: Function) -> Option<&'static str> {
     })
 }
 
-/// One expression alone between braces: no parentheses.
+/// One expression between braces: no parentheses.
 fn bare(mut pieces: Vec<Piece>) -> Vec<Piece> {
     if let [Piece::Inside(_, least)] = pieces.as_mut_slice() {
         *least = Binding::Sum;

@@ -1,8 +1,8 @@
-//! Every stage of the compiler as text, for people who want to see what becomes of a system.
+//! Every stage of the compiler as text, for users who inspect what becomes of a system.
 //!
-//! In: the tokens of a `lagrangian!`. Out: the product of one [`Stage`] as text, or the whole mathematics of the system as
-//! an [`Explanation`], in plain text or as a LaTeX document. [`source`] finds the declarations in a file, and [`report`]
-//! shows what is wrong with one at its place. Nothing here is part of the macro.
+//! In: the tokens of a `lagrangian!`. Out: the product of one [`Stage`] as text, or the mathematics of the system as an
+//! [`Explanation`], in plain text or LaTeX. [`source`] finds the declarations in a file; [`report`] prints a mistake
+//! with its line. The macro uses nothing of this.
 //!
 //! | file | what it shows |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | `gauss` | a chapter: the equations of a Gauss step |
 //! | `explanation` | chapters as text and as LaTeX |
 //! | `latex`, `name` | an expression, a symbol in LaTeX |
-//! | `unreadable` | what is no text of Rust at all |
+//! | `unreadable` | text that is not valid Rust |
 //! | `program` | the functions, operation by operation |
 
 mod discrete;
@@ -52,7 +52,7 @@ pub enum Stage {
 /// The product of a stage as text.
 ///
 /// # Errors
-/// What is wrong with the system, as far as the stages up to this one find it.
+/// The mistakes of the system that the stages up to this one find.
 pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
     let system = parse::system(tokens)?;
     match stage {
@@ -64,20 +64,21 @@ pub fn stage(tokens: TokenStream, stage: Stage) -> Result<String> {
     }
 }
 
-/// The mathematics of a system: L and f, then by each of its rules the discrete system, what was found out, and what it costs.
+/// The mathematics of a system: L and f, then for each rule the discrete system, findings and costs.
 ///
 /// # Errors
-/// What is wrong with the system.
+/// The mistakes of the system.
 pub fn explain(tokens: TokenStream) -> Result<Explanation> {
     let derivations = derive(&parse::system(tokens)?)?;
     let own: [Chapter; 3] = [model::sections, discrete::sections, findings::sections];
     Ok(explanation(&derivations, &own, &[discrete::sections, findings::of_steps]))
 }
 
-/// The mathematics of the Gauss steps of a system, of so many stages (1 to [`GAUSS_STAGES`]): L and f, then tableau, equations and slots.
+/// The mathematics of a Gauss step with `stages` stages (1 to [`GAUSS_STAGES`]): L and f, then tableau, equations and
+/// slots.
 ///
 /// # Errors
-/// What is wrong with the system.
+/// The mistakes of the system.
 pub fn explain_gauss(tokens: TokenStream, stages: usize) -> Result<Explanation> {
     let Derivations { mut own, .. } = derive(&parse::system(tokens)?)?;
     let mut sections = model::sections(&own);
@@ -85,12 +86,12 @@ pub fn explain_gauss(tokens: TokenStream, stages: usize) -> Result<Explanation> 
     Ok(Explanation { title: own.model.name.to_string(), sections })
 }
 
-/// Most stages that a Gauss step has.
+/// Largest number of stages of a Gauss step.
 pub const GAUSS_STAGES: usize = 16;
 
 type Chapter = fn(&Derived) -> Vec<Section>;
 
-/// The chapters of a system by its own rule, then those by each further one.
+/// The sections under the default rule, then those under each further rule.
 fn explanation(Derivations { own, further }: &Derivations, of_own: &[Chapter], of_further: &[Chapter]) -> Explanation {
     let mut sections: Vec<Section> = of_own.iter().flat_map(|chapter| chapter(own)).collect();
     for derived in further {

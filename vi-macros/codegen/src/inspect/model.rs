@@ -1,4 +1,4 @@
-//! The continuous system: what it is made of, and L and f with all names resolved.
+//! The continuous system: its declarations, and L and f with all names resolved.
 //!
 //! In: a derived system. Out: sections of an explanation.
 
@@ -8,13 +8,13 @@ use crate::Derived;
 use crate::discrete::TimeScale;
 use crate::model::{Coordinate, Model, Rule};
 
-/// The head of what is told of a system by a further rule.
+/// The heading of the sections for a further rule.
 pub(super) fn further_rule(derived: &Derived) -> Section {
     let rule = Line::words(format!("rule {}", title(&derived.model)));
-    Section { title: "The same system by a further rule", lines: vec![rule] }
+    Section { title: "The same system with another rule", lines: vec![rule] }
 }
 
-/// The rule of a system by its name.
+/// The name of the system's rule.
 pub(super) fn title(model: &Model) -> &'static str {
     model.rule.as_ref().map_or("none", Rule::title)
 }

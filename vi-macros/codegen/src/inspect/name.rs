@@ -1,22 +1,22 @@
 //! Symbols in LaTeX.
 //!
 //! In: a symbol. Out: its name with indices and dots: `\dot{\theta}_{1}` for the velocity of `θ1`, `q_{3}` for `q[3]`,
-//! `x_{0}` for a slot, `L_{\dot{x}}` for a field. Trailing digits and what follows an underscore become indices, Greek
-//! letters and their English names commands, and names of several letters stand upright.
+//! `x_{0}` for a slot, `L_{\dot{x}}` for a field. Trailing digits and the part after an underscore become indices.
+//! Greek letters and their English names become commands. Names of several letters are upright.
 
 use crate::Derived;
 use crate::model::Coordinate;
 use crate::symbol::{Field, Quantity, Symbol, Variable};
 use proc_macro2::Ident;
 
-/// A letter, or a word in its stead, with indices.
+/// A letter, or a word in its place, with indices.
 pub(super) struct Name {
     letter: String,
     indices: Vec<String>,
 }
 
 impl Name {
-    /// The name of something that the user called so.
+    /// From a user's name.
     fn of(written: &str) -> Self {
         let written = written.trim_start_matches("r#");
         let (stem, rest) = written.split_once('_').map_or((written, None), |(stem, rest)| (stem, Some(rest)));
@@ -33,13 +33,13 @@ impl Name {
         Self { letter: word(letters), indices }
     }
 
-    /// The same with an index more.
+    /// Appends an index.
     fn with(mut self, index: impl Into<String>) -> Self {
         self.indices.push(index.into());
         self
     }
 
-    /// The same with an accent over the letter.
+    /// Puts an accent over the letter.
     fn under(mut self, accent: &str) -> Self {
         self.letter = format!("\\{accent}{{{}}}", self.letter);
         self
@@ -56,7 +56,7 @@ pub(super) fn indexed(letter: &str, indices: &[&str]) -> String {
     if indices.is_empty() { letter.to_owned() } else { format!("{letter}_{{{}}}", indices.join(",")) }
 }
 
-/// A word: one letter as it is, Greek ones as commands, others upright.
+/// A word: one letter unchanged, Greek letters as commands, other words upright.
 fn word(letters: &str) -> String {
     let mut all = letters.chars();
     match (all.next(), all.next()) {
@@ -70,7 +70,7 @@ fn word(letters: &str) -> String {
     }
 }
 
-/// The command of a Greek letter; capitals that look Latin are those.
+/// The command of a Greek letter; capitals with a Latin shape are that Latin letter.
 pub(super) fn greek(letter: char) -> Option<&'static str> {
     GREEK.iter().find(|(known, _)| *known == letter).map(|(_, command)| *command)
 }
@@ -134,7 +134,7 @@ pub(super) fn latex(derived: &Derived, symbol: &Symbol) -> String {
     named(derived, symbol).text()
 }
 
-/// A symbol of L and f at a stage of a step, by the index of that.
+/// A symbol of L and f at a stage with this index.
 pub(super) fn at_stage(derived: &Derived, symbol: &Symbol, stage: &str) -> String {
     let name = named(derived, symbol);
     let name = if matches!(symbol, Symbol::Continuous(_)) { name.with(stage) } else { name };
@@ -171,7 +171,7 @@ fn named(derived: &Derived, symbol: &Symbol) -> Name {
     }
 }
 
-/// `L_{\dot{x}}`, `f_{x,\dot{x}}`; with several points of the rule `L^{(1)}_{\dot{x}}` in braces.
+/// `L_{\dot{x}}`, `f_{x,\dot{x}}`; `L^{(1)}_{\dot{x}}` in braces if the rule has several points.
 fn field(derived: &Derived, Field { quantity, derivatives, point }: &Field) -> Name {
     let by: String = derivatives
         .iter()

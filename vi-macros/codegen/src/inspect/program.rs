@@ -1,8 +1,8 @@
 //! The functions of a system, operation by operation.
 //!
-//! In: a system by each of its rules. Out: per function its operations in order, `%3 = %1 * x_mid`, and its results; then, by each
-//! further rule, those of the functions that depend on it. Inputs and numbers stand where they are used; an operation that is an
-//! argument of the rule says so.
+//! In: a system under each of its rules. Out: per function its operations in order, `%3 = %1 * x_mid`, and its results;
+//! then, for each further rule, the functions that depend on it. Inputs and numbers are inlined. A note marks
+//! operations that are arguments of the rule.
 
 use super::model;
 use crate::program::{Function, Operation, OperationId};

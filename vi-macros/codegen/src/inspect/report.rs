@@ -1,7 +1,7 @@
-//! Mistakes at their places.
+//! Mistakes with their lines of source.
 //!
-//! In: the text of a file and what is wrong in it. Out: per mistake the message, file:line:column, the line with carets
-//! under the token, and what to do.
+//! In: the text of a file and its mistakes. Out: per mistake the message, file:line:column, the line with carets under
+//! the token, and the help.
 
 use super::unreadable::{self, Unreadable};
 use proc_macro2::LineColumn;
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// Characters of a line that are shown.
 const WIDTH: usize = 120;
 
-/// What stands for the rest of a line.
+/// Marks an omitted part of a line.
 const CUT: &str = "…";
 
 /// All mistakes of a file, each a paragraph.
@@ -19,7 +19,7 @@ pub fn report(file: &str, text: &str, error: &syn::Error) -> String {
     error.into_iter().map(|error| paragraph(file, text, &error)).collect::<Vec<_>>().join("\n")
 }
 
-/// The mistake for which a text is none of Rust, as a paragraph: its place if it is known, else what the lexer says.
+/// The first mistake in text that is not valid Rust: at its place if known, otherwise the message of the lexer.
 #[must_use]
 pub fn unreadable(file: &str, text: &str, error: &syn::Error) -> String {
     match unreadable::unreadable(text) {
@@ -32,16 +32,16 @@ fn paragraph(file: &str, text: &str, error: &syn::Error) -> String {
     at(file, text, &error.to_string(), [error.span().start(), error.span().end()])
 }
 
-/// The message for a token from its start to its end.
+/// The message for a token from `start` to `end`.
 fn at(file: &str, text: &str, message: &str, [start, end]: [LineColumn; 2]) -> String {
     let (wrong, helps) = message.split_once('\n').unwrap_or((message, ""));
     let line: Vec<char> = text.lines().nth(start.line.saturating_sub(1)).unwrap_or_default().chars().collect();
     let margin = " ".repeat(start.line.to_string().len());
-    // A token of several lines is marked to the end of its first.
+    // A token of several lines is marked to the end of its first line.
     let stop = if end.line == start.line { end.column } else { line.len() };
     let Excerpt { shown, before, carets } = excerpt(&line, start.column, stop);
     let mut report = format!("error: {wrong}\n{margin}--> {file}:{}:{}\n", start.line, start.column + 1);
-    // Writing to a string does not fail.
+    // Writing to a string cannot fail.
     let _ = write!(report, "{margin} |\n{} | {shown}\n{margin} | {before}{carets}\n", start.line);
     for help in helps.lines() {
         let _ = writeln!(report, "{margin} = {help}");
@@ -51,21 +51,21 @@ fn at(file: &str, text: &str, message: &str, [start, end]: [LineColumn; 2]) -> S
 
 /// A line with carets under a token.
 struct Excerpt {
-    /// The line, or its characters about the token.
+    /// The line, or a part of it around the token.
     shown: String,
-    /// What stands before the carets.
+    /// The characters before the carets.
     before: String,
     carets: String,
 }
 
-/// The excerpt of a line whose token is that of these columns.
+/// The excerpt of a line whose token has these columns.
 fn excerpt(line: &[char], start: usize, stop: usize) -> Excerpt {
     let start = start.min(line.len());
     let from = if line.len() > WIDTH { start.saturating_sub(WIDTH / 2).min(line.len() - WIDTH) } else { 0 };
     let to = line.len().min(from + WIDTH);
     let [left, right] = [from > 0, to < line.len()].map(|is_cut| if is_cut { CUT } else { "" });
     let shown: String = line[from..to].iter().collect();
-    // Tabs stay tabs, so that the carets stand where the token does.
+    // Keeps tabs, so that the carets align with the token.
     let before = left.chars().chain(line[from..start].iter().copied()).map(|c| if c == '\t' { c } else { ' ' });
     Excerpt {
         before: before.collect(),

@@ -1,8 +1,8 @@
-//! The declarations in a file of Rust.
+//! The declarations in a Rust file.
 //!
-//! In: the text of a file. Out: the tokens of each `lagrangian!` in it, in order, wherever it stands: in modules, in
-//! functions, under any path that ends in that name; not in the arguments of other macros. Their spans are places in the text.
-//! The file is searched as tokens with a stack of its own, so that no nesting in it is too deep.
+//! In: the text of a file. Out: the tokens of each `lagrangian!` in order: in modules, in functions, under any path
+//! that ends in that name, but not in arguments of other macros. Spans refer to the text. An explicit stack replaces
+//! recursion, so that any nesting depth works.
 
 use proc_macro2::{TokenStream, TokenTree};
 use syn::Result;
@@ -10,7 +10,7 @@ use syn::Result;
 /// The tokens of each `lagrangian!` in a file.
 ///
 /// # Errors
-/// What Rust's lexer refuses.
+/// Text that the lexer of Rust rejects.
 pub fn declarations(text: &str) -> Result<Vec<TokenStream>> {
     let tokens: TokenStream = without_shebang(text).parse()?;
     let mut found = Vec::new();
@@ -32,7 +32,7 @@ pub fn declarations(text: &str) -> Result<Vec<TokenStream>> {
     Ok(found)
 }
 
-/// The arguments of a macro behind its name, `!(…)` or `! name(…)`; the tokens up to and with them are taken.
+/// The arguments after the name of a macro, `!(…)` or `! name(…)`; consumes them.
 fn arguments(behind: &mut proc_macro2::token_stream::IntoIter) -> Option<TokenStream> {
     let mut ahead = behind.clone();
     let is_call = matches!(ahead.next(), Some(TokenTree::Punct(mark)) if mark.as_char() == '!');
@@ -45,7 +45,7 @@ fn arguments(behind: &mut proc_macro2::token_stream::IntoIter) -> Option<TokenSt
     Some(group.stream())
 }
 
-/// The text from the end of its line `#!…` on, if it begins with one.
+/// The text after the line `#!…`, if it begins with one.
 fn without_shebang(text: &str) -> &str {
     let has_one = text.starts_with("#!") && !text[2..].trim_start().starts_with('[');
     text.find('\n').filter(|_| has_one).map_or(text, |end| &text[end..])

@@ -1,6 +1,6 @@
 //! The clauses as they were parsed, in the language itself.
 //!
-//! In: a [`System`] as written. Out: its clauses by kind, numbers exact, and the parentheses that are needed.
+//! In: a [`System`] as written. Out: its clauses by kind, with exact numbers and the necessary parentheses.
 
 use crate::syntax::{
     Default, Definition, Discretization, Expression, Indices, Kind, Operator, Parameter, Range, System,
@@ -58,7 +58,7 @@ fn range(of: &Range) -> String {
     format!("{} in {}..{}", of.index, expression(&of.from), expression(&of.to))
 }
 
-/// How strongly an expression holds together.
+/// Binding strength of an expression.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -72,7 +72,7 @@ fn expression(of: &Expression) -> String {
     within(of, Binding::Sum)
 }
 
-/// The expression, in parentheses if it binds less strongly. The parser bounds the depth.
+/// The expression, in parentheses if it binds less tightly. The parser bounds the depth.
 fn within(of: &Expression, least: Binding) -> String {
     let (binding, text) = written(of);
     if binding < least { format!("({text})") } else { text }
@@ -81,7 +81,7 @@ fn within(of: &Expression, least: Binding) -> String {
 fn written(of: &Expression) -> (Binding, String) {
     match &of.kind {
         Kind::Number(value) if value.is_integer() => (Binding::Atom, value.to_string()),
-        // As a quotient it would be read again.
+        // It would parse as a quotient.
         Kind::Number(value) => (Binding::Product, format!("{} / {}", value.numer(), value.denom())),
         Kind::Name(name) => (Binding::Atom, name.to_string()),
         Kind::Entry(name, index) => (Binding::Atom, format!("{name}[{}]", expression(index))),

@@ -1,21 +1,21 @@
-//! What is no text of Rust at all.
+//! Text that is not valid Rust.
 //!
-//! In: a text that Rust's lexer refuses; the macro never sees such a system. Out: the first place that is wrong, and what to write there: a bracket
-//! without its partner, a sign of paper.
+//! In: text that the lexer of Rust rejects, so that the macro never sees it. Out: the first wrong character with its
+//! help: an unmatched bracket, or a mathematical sign.
 
 use crate::habits::{DEGREES, Habit};
 use proc_macro2::LineColumn;
 
-/// A place that is wrong.
+/// A wrong character.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Unreadable {
-    /// Where; the line from 1, the column from 0.
+    /// Its position: line from 1, column from 0.
     pub(super) place: LineColumn,
-    /// What is wrong, and behind a line end what to write.
+    /// The error, then `help:` on a second line.
     pub(super) message: String,
 }
 
-/// The first place that is wrong; none where only the lexer knows.
+/// The first wrong character; `None` if only the lexer knows it.
 pub(super) fn unreadable(text: &str) -> Option<Unreadable> {
     let mut open: Vec<(char, LineColumn)> = Vec::new();
     let mut scanner = Scanner::new(text);
@@ -41,13 +41,15 @@ pub(super) fn unreadable(text: &str) -> Option<Unreadable> {
                     return Some(Unreadable { place, message });
                 }
                 None => {
-                    let message = format!("`{letter}` closes nothing\nhelp: remove it, or open it before");
+                    let message = format!(
+                        "`{letter}` has no opening bracket\nhelp: remove it, or write the opening bracket before it"
+                    );
                     return Some(Unreadable { place, message });
                 }
             },
             _ => {
                 if let Some(help) = sign(letter) {
-                    let message = format!("`{letter}` is no sign of the language\nhelp: {help}");
+                    let message = format!("`{letter}` is not a character of the language\nhelp: {help}");
                     return Some(Unreadable { place, message });
                 }
             }
@@ -66,7 +68,7 @@ fn closing(opening: char) -> char {
     }
 }
 
-/// What is written for a sign of paper.
+/// Help for a mathematical sign.
 fn sign(letter: char) -> Option<&'static str> {
     let help = match letter {
         '°' => DEGREES,
@@ -80,17 +82,17 @@ fn sign(letter: char) -> Option<&'static str> {
         '×' | '∙' | '⋅' | '•' => "write `*`",
         '÷' => "write `/`",
         '\u{2212}' | '–' | '—' => "write the hyphen `-`",
-        '∂' => "write `dot(x)` for a derivative by time; derivatives of `L` are taken for you",
+        '∂' => "write `dot(x)` for a derivative with respect to time; the macro differentiates `L`",
         '∑' => "write `sum(i in 0..8, …)`",
         '\\' => "write names without a backslash: `theta`, or `θ`",
-        '“' | '”' | '’' | '‘' => "write no quotation marks",
+        '“' | '”' | '’' | '‘' => "remove the quotation marks",
         '\u{a0}' => "write a plain space",
         _ => return None,
     };
     Some(help)
 }
 
-/// The letters of a text outside its comments and its strings.
+/// The characters of a text outside comments and strings.
 struct Scanner<'a> {
     letters: core::iter::Peekable<core::str::Chars<'a>>,
     place: LineColumn,
@@ -101,7 +103,7 @@ impl<'a> Scanner<'a> {
         Self { letters: text.chars().peekable(), place: LineColumn { line: 1, column: 0 } }
     }
 
-    /// The next letter of the text.
+    /// The next character of the text.
     fn letter(&mut self) -> Option<(LineColumn, char)> {
         let letter = self.letters.next()?;
         let place = self.place;
@@ -113,24 +115,24 @@ impl<'a> Scanner<'a> {
         Some((place, letter))
     }
 
-    /// Skips the letters up to and with the one at which `is_end` of it and the one before.
+    /// Skips characters up to the one at which `is_end(previous, current)` holds.
     fn skip(&mut self, is_end: impl Fn(char, char) -> bool) {
         let mut before = '\0';
         while let Some((_, letter)) = self.letter() {
             if is_end(before, letter) {
                 break;
             }
-            // A backslash that is itself behind one masks nothing.
+            // An escaped backslash escapes nothing.
             before = if before == '\\' && letter == '\\' { '\0' } else { letter };
         }
     }
 
-    /// Whether a character in quotes ends two letters further on.
+    /// Whether a character literal ends two characters further on.
     fn is_character(&self) -> bool {
         self.letters.clone().nth(1) == Some('\'')
     }
 
-    /// The next letter outside comments and strings.
+    /// The next character outside comments and strings.
     fn next(&mut self) -> Option<(LineColumn, char)> {
         loop {
             let (place, letter) = self.letter()?;
@@ -153,7 +155,7 @@ mod tests {
     use super::*;
 
     #[track_caller]
-    fn told(text: &str, line: usize, column: usize, message: &str) {
+    fn assert_message(text: &str, line: usize, column: usize, message: &str) {
         let found = unreadable(text).expect("something is wrong");
         assert_eq!((found.place.line, found.place.column + 1), (line, column), "{text}");
         assert!(found.message.starts_with(message), "{}", found.message);
@@ -161,31 +163,36 @@ mod tests {
 
     #[test]
     fn brackets_are_told_where_they_stand() {
-        told("a {\n  (b + c;\n}", 3, 1, "`}` closes the `(` of 2:3\nhelp: write `)` before it");
-        told("a)", 1, 2, "`)` closes nothing");
-        told("a {\n  b[1];\n", 1, 3, "`{` is not closed");
-        told("// (\n/* ) */ \"}\\\"]\" [", 2, 16, "`[` is not closed");
+        assert_message("a {\n  (b + c;\n}", 3, 1, "`}` closes the `(` of 2:3\nhelp: write `)` before it");
+        assert_message("a)", 1, 2, "`)` has no opening bracket");
+        assert_message("a {\n  b[1];\n", 1, 3, "`{` is not closed");
+        assert_message("// (\n/* ) */ \"}\\\"]\" [", 2, 16, "`[` is not closed");
         assert_eq!(unreadable("a { b(c[1]) } // ²"), None);
         assert_eq!(unreadable("a { '(' }"), None);
         assert_eq!(unreadable("fn f<'a>(a: &'a str) -> &'static str"), None);
     }
 
     #[test]
-    fn primes_are_told() {
+    fn primes_are_assert_message() {
         for (text, column) in [("L = q'^2 / 2;", 6), ("L = q'' * q;", 6), ("L = x'(t)^2;", 6), ("L = q[0]' - 1;", 9)] {
-            told(text, 1, column, "a prime is no derivative\nhelp: write `dot(x)` for the velocity of `x`");
+            assert_message(
+                text,
+                1,
+                column,
+                "a prime does not denote a derivative\nhelp: write `dot(x)` for the velocity of `x`",
+            );
         }
     }
 
     #[test]
-    fn signs_of_paper_are_told() {
-        told(
+    fn signs_of_paper_are_assert_message() {
+        assert_message(
             "x * sin(30°)",
             1,
             11,
-            "`°` is no sign of the language\nhelp: angles are in radians: write `30 * pi / 180`",
+            "`°` is not a character of the language\nhelp: angles are in radians: write `30 * pi / 180`",
         );
-        told("L = m * x²;", 1, 10, "`²` is no sign of the language\nhelp: write `^2`");
+        assert_message("L = m * x²;", 1, 10, "`²` is not a character of the language\nhelp: write `^2`");
         for (text, help) in [("½ * x", "write `1/2`"), ("√(x)", "write `sqrt(x)`"), ("a − b", "write the hyphen `-`")]
         {
             assert!(unreadable(text).is_some_and(|found| found.message.ends_with(help)), "{text}");

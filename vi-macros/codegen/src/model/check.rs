@@ -1,4 +1,4 @@
-//! The rules that a system has to keep, in the order in which they are checked.
+//! Checks of a system, in order.
 //!
 //! In: a [`System`]. Out: a [`Model`], or all messages.
 
@@ -13,10 +13,10 @@ use proc_macro2::Ident;
 use syn::Result;
 use vi_expr::{Expr, NoConstant, Pool};
 
-/// Checks a system, whose expressions go into the pool, with the rule of this place in its list.
+/// Checks a system with the rule at this position of its list, and adds its expressions to the pool.
 ///
 /// # Errors
-/// Everything that is wrong with it, whatever the place.
+/// All mistakes of the system.
 pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<Model> {
     let mut context = Context::new(pool);
     let System { constants, parameters, coordinates, lets, .. } = system;
@@ -39,7 +39,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
         let of_rule = rule.iter().flat_map(Rule::expressions);
         let acting = lagrangian.into_iter().chain(forces.iter().copied()).chain(time_scale);
         let acting: Vec<Expr> = acting.chain(of_rule).collect();
-        context.every_parameter_acts(&parameters, &acting);
+        context.check_parameters_used(&parameters, &acting);
     }
     let Context { pool, errors, .. } = context;
     errors.finish(())?;
@@ -48,7 +48,7 @@ pub fn model(pool: &mut Pool<Symbol>, system: &System, place: usize) -> Result<M
     };
     let lagrangian_span = system.lagrangians[0].name.span();
     let singular = mass::check(pool, (&coordinates, &parameters), lagrangian, lagrangian_span);
-    // What an exhausted pool says means nothing.
+    // Values from an exhausted pool are meaningless.
     bounded(pool).map_err(|found| error(system.name.span(), &Message::TooLarge(found)))?;
     singular?;
     Ok(Model {
@@ -71,14 +71,14 @@ impl Context<'_> {
     fn constants(&mut self, constants: &[Definition]) {
         for constant in constants {
             let value = self.value(&constant.value);
-            // What is smaller than all numbers may be multiplied before it is rounded.
+            // A value below the range of numbers may be multiplied before it is rounded.
             let is_small = self.pool.constant(value) == Err(NoConstant::TooSmall);
             let has_value = is_small || self.finite(value, constant.value.span, &constant.name).is_some();
             self.declare(&constant.name, Meaning::Number(if has_value { value } else { self.pool.one() }));
         }
     }
 
-    /// The parameters with their defaults, arrays entry by entry.
+    /// The parameters with their defaults; arrays entry by entry.
     fn parameters(&mut self, declared: &[syntax::Parameter]) -> Vec<Parameter> {
         let fields: Vec<Option<Vec<f64>>> = declared.iter().map(|parameter| self.defaults(parameter)).collect();
         let mut parameters = Vec::new();
@@ -103,7 +103,7 @@ impl Context<'_> {
         parameters
     }
 
-    /// The default of a parameter, or those of the entries of an array; where its length is wrong, a report.
+    /// The default of a parameter, or of the entries of an array; reports a wrong length.
     fn defaults(&mut self, parameter: &syntax::Parameter) -> Option<Vec<f64>> {
         let syntax::Parameter { name, length, default, .. } = parameter;
         let length = match length {
@@ -124,7 +124,7 @@ impl Context<'_> {
             return None;
         };
         if values != length {
-            // At the first value too many; where some are missing, at the length.
+            // Points at the first surplus value, or at the length if values are missing.
             let span = written.get(length).map_or(span, |value| value.span);
             self.errors.at(span, &Message::ParameterValues { name: name.to_string(), length, values });
             return None;
@@ -132,7 +132,7 @@ impl Context<'_> {
         Some(numbers)
     }
 
-    /// The length of an array of parameters; where it is wrong, a report.
+    /// The length of an array of parameters; reports a wrong length.
     fn length_of_parameters(&mut self, written: &Expression) -> Option<usize> {
         let length = self.scope.integer(self.pool, written);
         let given = self.report(length)?;
@@ -221,9 +221,9 @@ impl Context<'_> {
         Some(lagrangian)
     }
 
-    /// A parameter that none of L, f, the time scale and the rule depends on is a mistake of spelling or of thought. So is an array if
-    /// they depend on none of its entries; of an adjacency matrix, say, some may be unused.
-    fn every_parameter_acts(&mut self, parameters: &[Parameter], acting: &[Expr]) {
+    /// Reports a parameter that none of L, f, the time scale and the rule uses: it is a spelling mistake or an
+    /// oversight. An array is reported only if all its entries are unused: an adjacency matrix may have unused entries.
+    fn check_parameters_used(&mut self, parameters: &[Parameter], acting: &[Expr]) {
         let acting = self.pool.symbols_of(acting);
         if self.is_too_large() {
             return;

@@ -1,8 +1,8 @@
-//! The state at which a system is checked.
+//! The state of the checks.
 //!
-//! In: the clauses `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`. Out: one [`CheckState`] of numbers; coordinates and velocities that
-//! are not named are zero, and parameters have their defaults. The last plain `h` is the step, so that a coordinate or a parameter may
-//! be called h too.
+//! In: the clauses `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`. Out: one numeric [`CheckState`]. Unnamed
+//! coordinates and velocities are zero; unnamed parameters have their defaults. The last plain `h` is the step, so a
+//! coordinate or a parameter may also be called h.
 
 use super::Parameter;
 use super::context::Context;
@@ -19,20 +19,20 @@ pub struct CheckState {
     pub q: Vec<f64>,
     /// Velocities.
     pub v: Vec<f64>,
-    /// Values of parameters that differ from their defaults, by their numbers in ascending order.
+    /// Parameters with values other than the default, in ascending order of their indices.
     pub parameters: Vec<(usize, f64)>,
     /// Step, positive.
     pub h: f64,
 }
 
-/// Entries of a check, each once.
+/// Entries of a check, each at most once.
 struct Given {
     q: Vec<Option<f64>>,
     v: Vec<Option<f64>>,
     parameters: Vec<Option<f64>>,
 }
 
-/// The state of the first clause; a second clause is a mistake.
+/// The state of the first clause; reports a second clause.
 pub(super) fn check_state(
     context: &mut Context,
     written: &[syntax::Check],
@@ -83,7 +83,7 @@ fn plain(entry: &Entry) -> bool {
     !entry.velocity && entry.definition.indices.is_none()
 }
 
-/// A positive number.
+/// The step; reports a value that is not positive.
 fn step(context: &mut Context, written: &Definition) -> f64 {
     let (_, h) = context.number(&written.value, &written.name);
     if h <= 0.0 {
@@ -92,7 +92,7 @@ fn step(context: &mut Context, written: &Definition) -> f64 {
     h
 }
 
-/// Gives the entries of one line their numbers; whether one of them had a number before.
+/// Sets the entries of one line; returns whether one of them was set before.
 fn fill(context: &mut Context, Entry { velocity, definition }: &Entry, of: &[Parameter], given: &mut Given) -> bool {
     let is_parameter = |known: &str| of.iter().any(|parameter| parameter.name == known);
     let other = |Context { scope, pool, .. }: &Context, name: String| {
@@ -119,7 +119,7 @@ fn fill(context: &mut Context, Entry { velocity, definition }: &Entry, of: &[Par
     twice
 }
 
-/// The parameters of this name.
+/// The parameters with this name.
 fn of_parameter(parameters: &[Parameter], name: &str) -> Option<Entries> {
     let mut of_name = (0..).zip(parameters).filter(|(_, parameter)| parameter.name == name);
     let (first, parameter) = of_name.next()?;

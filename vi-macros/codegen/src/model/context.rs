@@ -1,7 +1,7 @@
-//! What a system is checked with: the pool of its expressions, the names that are declared so far, and what was found wrong.
+//! State of the checker: the pool of expressions, the names declared so far, and the errors found.
 //!
-//! In: one definition after the other. Out: their expressions and numbers. What is wrong is reported and read as 1, so that later lines
-//! are checked too.
+//! In: one definition after the other. Out: their expressions and numbers. A wrong expression is reported and evaluates
+//! to 1, so that later lines are checked too.
 
 use super::scope::{Meaning, Scope};
 use crate::limits::bounded;
@@ -12,34 +12,34 @@ use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, NoConstant, Pool};
 
-/// What a system is checked with.
+/// State of the checker.
 pub(super) struct Context<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
     pub(super) scope: Scope,
     pub(super) errors: Errors,
-    /// It was reported, or will be, that the system is too large.
+    /// The system is too large, and this is or will be reported.
     too_large: bool,
 }
 
 impl<'a> Context<'a> {
-    /// Of a system of which nothing is declared yet.
+    /// A context without declarations.
     pub(super) fn new(pool: &'a mut Pool<Symbol>) -> Self {
         Self { pool, scope: Scope::of_system(), errors: Errors::default(), too_large: false }
     }
 
-    /// A declared name gets its meaning; a name that cannot be declared is reported.
+    /// Declares a name; reports a name that cannot be declared.
     pub(super) fn declare(&mut self, name: &Ident, meaning: Meaning) {
         if let Err(error) = self.scope.declare(name, meaning) {
             self.errors.add(error);
         }
     }
 
-    /// Whether nothing more is to be made of the system.
+    /// Whether the system is too large to be processed further.
     pub(super) fn is_too_large(&self) -> bool {
         bounded(self.pool).is_err()
     }
 
-    /// What a stage makes, or nothing and a report. Of a system that is too large only the first: where it became so.
+    /// The product of a stage, or `None` after a report. For a system that is too large, only the first report counts.
     pub(super) fn report<P>(&mut self, made: Result<P>) -> Option<P> {
         let reported = self.too_large;
         self.too_large = self.is_too_large();
@@ -51,13 +51,13 @@ impl<'a> Context<'a> {
         None
     }
 
-    /// The exact expression that is written; a wrong one is reported and read as 1, so that later lines are checked.
+    /// The exact expression; reports a wrong one and returns 1, so that later lines are checked.
     pub(super) fn value(&mut self, written: &Expression) -> Expr {
         let value = self.scope.expression(self.pool, written);
         self.report(value).unwrap_or_else(|| self.pool.one())
     }
 
-    /// The finite number that a constant expression stands for, which defines this name.
+    /// The finite number of a constant expression that defines this name.
     pub(super) fn number(&mut self, written: &Expression, name: &Ident) -> (Expr, f64) {
         let value = self.value(written);
         match self.finite(value, written.span, name) {
@@ -66,7 +66,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The finite number that an expression stands for; where it has none, a report.
+    /// The finite number of an expression; reports an expression without one.
     pub(super) fn finite(&mut self, value: Expr, span: Span, name: &Ident) -> Option<f64> {
         let name = name.to_string();
         if !self.pool.is_constant(value) {

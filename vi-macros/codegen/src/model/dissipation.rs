@@ -1,9 +1,10 @@
-//! Whether Rayleigh's function takes energy out of the motion.
+//! Checks that Rayleigh's function dissipates energy.
 //!
-//! In: R as written and as an expression, its derivatives by the velocities. Out: nothing, or the message at the first summand that is
-//! wrong. A term that is linear in the velocities is a force that does not depend on them. And where the power −v·∂R/∂v is positive,
-//! beyond rounding, at every point of a fixed sequence, R adds energy: with all velocities, or with one of them alone. Parameters have
-//! their defaults; everything else is of any sign and of sizes from 1e-6 to 1e6, so that an R of either sign is accepted.
+//! In: R as written and as an expression, and its derivatives with respect to the velocities. Out: nothing, or a
+//! message at the first wrong summand. A term linear in the velocities is a force independent of them. R adds energy if
+//! the power −v·∂R/∂v is positive, beyond rounding, at every point of a fixed sequence, with all velocities or with one
+//! alone. Parameters have their defaults. All other symbols have either sign and sizes from 1e-6 to 1e6, so that an R
+//! of indefinite sign is accepted.
 
 use super::Parameter;
 use super::context::Context;
@@ -16,10 +17,10 @@ use vi_expr::{Expr, Node, Pool};
 
 /// Points at which the power is evaluated.
 const POINTS: u32 = 32;
-/// Points that have to have a power, for its sign to be known.
+/// Minimum number of points with a power, to decide its sign.
 const LEAST: usize = 2;
 
-/// Reports an R that acts as a constant force or adds energy.
+/// Reports an R that is a constant force or adds energy.
 pub(super) fn check(
     context: &mut Context,
     written: &Expression,
@@ -37,13 +38,13 @@ pub(super) fn check(
     context.errors.at(span.map_or(written.span, |(_, summand)| summand.span), &message);
 }
 
-/// The derivative by the velocity of this coordinate.
+/// The derivative with respect to the velocity of this coordinate.
 pub(super) fn slope(pool: &mut Pool<Symbol>, rayleigh: Expr, coordinate: usize) -> Expr {
     let velocity = Symbol::Continuous(Variable::Velocity(coordinate));
     pool.derivative(rayleigh, &mut |pool, symbol| if *symbol == velocity { pool.one() } else { pool.zero() })
 }
 
-/// The summands of an expression as it is written, and whether a minus stands before them.
+/// The summands of a written expression, each with whether it is negated.
 fn summands(written: &Expression) -> Vec<(bool, &Expression)> {
     match &written.kind {
         Kind::Chain(first, rest) => {
@@ -62,7 +63,7 @@ fn summands(written: &Expression) -> Vec<(bool, &Expression)> {
     }
 }
 
-/// What is wrong with an R of these derivatives.
+/// The error of an R with these derivatives.
 fn wrong(pool: &mut Pool<Symbol>, rayleigh: Expr, losses: &[Expr], parameters: &[Parameter]) -> Option<Message> {
     let terms = match pool.node(rayleigh) {
         Node::Sum(sum) => sum.terms.iter().map(|(term, _)| *term).collect(),
@@ -72,11 +73,12 @@ fn wrong(pool: &mut Pool<Symbol>, rayleigh: Expr, losses: &[Expr], parameters: &
         return Some(Message::ConstantDissipation);
     }
     let alone = losses.iter().enumerate().filter(|(_, loss)| !pool.is_zero(**loss)).map(|(index, _)| Some(index));
-    let adds_energy = [None].into_iter().chain(alone).any(|moving| is_fed(pool, losses, moving, parameters));
+    let adds_energy = [None].into_iter().chain(alone).any(|moving| adds_energy(pool, losses, moving, parameters));
     adds_energy.then_some(Message::FeedingDissipation)
 }
 
-/// Whether a term is linear in the velocities: a derivative by one of them is there, and none depends on any.
+/// Whether a term is linear in the velocities: it has a derivative with respect to one, and no derivative depends on
+/// any.
 fn is_linear(pool: &mut Pool<Symbol>, term: Expr) -> bool {
     let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
     let mut is_there = false;
@@ -91,8 +93,8 @@ fn is_linear(pool: &mut Pool<Symbol>, term: Expr) -> bool {
     is_there
 }
 
-/// Whether the power is positive wherever it has a value, with the velocity of one coordinate other than zero, or all of them.
-fn is_fed(pool: &Pool<Symbol>, losses: &[Expr], moving: Option<usize>, parameters: &[Parameter]) -> bool {
+/// Whether the power is positive at every point with a value, for all velocities or for one velocity alone.
+fn adds_energy(pool: &Pool<Symbol>, losses: &[Expr], moving: Option<usize>, parameters: &[Parameter]) -> bool {
     let of_moving = moving.map_or(losses, |index| &losses[index..=index]);
     let first = moving.unwrap_or(0);
     let mut positive = 0;

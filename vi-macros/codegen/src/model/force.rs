@@ -1,4 +1,4 @@
-//! The generalized force: the sum of what the lines `force` say and of what dissipates.
+//! The generalized force: the sum of the `force` lines and of the dissipation.
 //!
 //! In: the lines `force x = …;` and `dissipation = R;`. Out: one expression per coordinate,
 //!
@@ -46,7 +46,7 @@ pub(super) fn forces(
     forces
 }
 
-/// What a name stands for whose entries a line gives values: their numbers.
+/// The indices that a line assigns values to.
 #[derive(Clone, Copy)]
 pub(super) enum Entries {
     One(usize),
@@ -54,7 +54,7 @@ pub(super) enum Entries {
 }
 
 impl Entries {
-    /// The coordinates of this name.
+    /// The coordinates with this name.
     pub(super) fn of_coordinate(context: &Context, name: &str) -> Option<Self> {
         match context.scope.meaning(name)? {
             Meaning::Coordinate(coordinate) => Some(Self::One(*coordinate)),
@@ -64,10 +64,10 @@ impl Entries {
     }
 }
 
-/// What is said of a line of this name that is about no entries.
+/// The message for a name without entries.
 pub(super) type Other<'a> = &'a dyn Fn(&Context, String) -> Message;
 
-/// The entries that a line is about, with their values.
+/// The entries of a line with their values.
 pub(super) fn values(
     context: &mut Context,
     line: &Definition,
@@ -90,7 +90,7 @@ pub(super) fn values(
         }
         (None, _) if context.scope.meaning(&name) == Some(&Meaning::Wrong) => Ok(Vec::new()),
         (None, _) => {
-            // The value may be wrong too.
+            // Reports errors in the value too.
             context.value(&line.value);
             Err(error(line.name.span(), &other(context, name)))
         }
@@ -98,7 +98,7 @@ pub(super) fn values(
     context.report(wanted)
 }
 
-/// The values of some entries of an array, each with its number by `entry`, which is given an index and its place.
+/// The values of entries of an array; `entry` maps the value of the index and its position to the number of the entry.
 fn array_values(
     context: &mut Context,
     line: &Definition,

@@ -1,10 +1,10 @@
-//! The mass matrix M = ∂²L/∂v², which every method inverts.
+//! Checks that the mass matrix M = ∂²L/∂v², which every method inverts, is regular.
 //!
-//! In: L. Out: nothing, or the message that M is singular for every state. M is evaluated at points drawn from a fixed sequence;
-//! where a pivot is zero but for rounding at all of them, M is singular everywhere, but for a chance of nothing. Sizes do not
-//! matter: rows and columns are scaled to entries of about 1, so that masses of 1 and 1e-12 are as good as two of 1, and the points
-//! are of several sizes, so that an angle of 1e15 times a coordinate is known to its digits at one of them, and a root such as
-//! sqrt(c^2*dot(T)^2 - dot(x)^2) has a value at some.
+//! In: L. Out: nothing, or a message that M is singular in every state. M is evaluated at points of a fixed sequence.
+//! If a pivot vanishes to rounding at all of them, M is singular everywhere, except with negligible probability.
+//! Scaling rows and columns to entries of about 1 makes the test independent of units: masses of 1 and 1e-12 are as
+//! good as two of 1. The points have several sizes: at one of them an angle of 1e15 times a coordinate keeps its
+//! digits, and at some of them a root such as sqrt(c^2*dot(T)^2 - dot(x)^2) has a value.
 
 use super::{Coordinate, Parameter, probe};
 use crate::messages::{Massless, Message, Singular, error};
@@ -14,17 +14,17 @@ use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Pool, Rounded};
 
-/// Points at which the matrix is evaluated, as long as it has no value or is singular.
+/// Maximum number of points, used while the matrix has no value or is singular.
 const POINTS: u32 = 42;
-/// Sizes of the first of them; every other point is one of positive symbols, the others are of both signs.
+/// Sizes of the first points. Symbols are positive at every other point, and of both signs at the rest.
 const SIZES: [f64; 10] = [1.0, 1.0, 1.0, 1.0, 1e-8, 1e-8, 1e-16, 1e-16, 1e-40, 1e-40];
-/// How many times the rounding of the entries, per row, a pivot may be that is zero.
+/// A pivot below this multiple of the rounding of the entries, per row, counts as zero.
 const MARGIN: f64 = 64.0;
-/// Rounds of scaling, each of which takes the square root of how far a row is from its size: ratios of 1e300 become ratios of 1.2.
+/// Rounds of scaling. Each takes the square root of the distance of a row from its size: ratios of 1e300 become 1.2.
 const ROUNDS: usize = 12;
 
-/// Checks that M is not singular for every state. One with an entry that has no value for any state is left to those who ask for its
-/// derivatives.
+/// Reports an M that is singular in every state. An M with an entry without a value in any state is left to the check
+/// of its derivatives.
 pub(super) fn check(
     pool: &mut Pool<Symbol>,
     (coordinates, parameters): (&[Coordinate], &[Parameter]),
@@ -50,7 +50,7 @@ pub(super) fn check(
     Err(error(span, &Message::SingularMass { why }))
 }
 
-/// Whether v·L_v = L, but for rounding, at every point at which both have a value, and at some.
+/// Whether v·L_v = L to rounding at every point with values, and at one such point at least.
 fn is_homogeneous(pool: &mut Pool<Symbol>, lagrangian: Expr, momenta: &[Expr], parameters: &[Parameter]) -> bool {
     let product = |(index, momentum): (usize, &Expr)| {
         let velocity = pool.symbol(Symbol::Continuous(Variable::Velocity(index)));
@@ -67,7 +67,7 @@ fn is_homogeneous(pool: &mut Pool<Symbol>, lagrangian: Expr, momenta: &[Expr], p
     known.peek().is_some() && known.all(|energy| energy.value.abs() <= MARGIN * energy.error)
 }
 
-/// How a coordinate stands in L whose row of M is zero. One of Lagrange's multipliers it is where L is λ g(t, q) and terms without λ.
+/// How L depends on a coordinate whose row of M is zero. A Lagrange multiplier has L = λ g(t, q) + terms without λ.
 fn massless(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> Massless {
     let multiplier = Symbol::Continuous(Variable::Coordinate(row));
     let velocity = Symbol::Continuous(Variable::Velocity(row));
@@ -86,7 +86,7 @@ fn massless(pool: &mut Pool<Symbol>, lagrangian: Expr, row: usize) -> Massless {
     }
 }
 
-/// L_v, and M row by row; none if an entry has no value for any state.
+/// L_v, and M row by row; `None` if an entry has no value in any state.
 fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(Vec<Expr>, Vec<Expr>)> {
     let velocity = |index| Symbol::Continuous(Variable::Velocity(index));
     let by_velocity = |pool: &mut Pool<Symbol>, expr: Expr, index: usize| {
@@ -110,7 +110,7 @@ fn mass(pool: &mut Pool<Symbol>, lagrangian: Expr, dimension: usize) -> Option<(
     is_defined.then_some((momenta, mass))
 }
 
-/// Whether M is singular at every point at which it has a value, and has one at some.
+/// Whether M is singular at every point with a value, and at one such point at least.
 fn is_singular(pool: &Pool<Symbol>, mass: &[Expr], dimension: usize, parameters: &[Parameter]) -> bool {
     let mut singular_somewhere = false;
     for point in 0..POINTS {
@@ -135,8 +135,8 @@ fn values(pool: &Pool<Symbol>, exprs: &[Expr], point: u32, parameters: &[Paramet
     })
 }
 
-/// The number of a symbol at a point: at the first points all are of one size, at the others each is of its own, and at every other one
-/// of these parameters are what they are by default.
+/// The number of a symbol at a point. At the first points all numbers have one size; at the others each has its own
+/// size, and at every other of these the parameters have their defaults.
 fn number(point: u32, index: usize, symbol: &Symbol, parameters: &[Parameter]) -> f64 {
     if let Some(size) = usize::try_from(point).ok().and_then(|point| SIZES.get(point)) {
         return size * probe::near_one(point, index);
@@ -150,7 +150,7 @@ fn number(point: u32, index: usize, symbol: &Symbol, parameters: &[Parameter]) -
     default.filter(|default| *default != 0.0).unwrap_or_else(|| probe::of_any_size(point, index))
 }
 
-/// Elimination of the matrix, scaled, with the largest entry that is left as pivot: then no step enlarges the errors of the entries much.
+/// Elimination of the scaled matrix with complete pivoting, which keeps the growth of errors small.
 fn is_regular(entries: &[Rounded], dimension: usize) -> bool {
     let scales = scales(entries, dimension);
     let scaled = |place: usize, number: f64| number * scales[place / dimension] * scales[place % dimension];
@@ -181,7 +181,7 @@ fn is_regular(entries: &[Rounded], dimension: usize) -> bool {
     true
 }
 
-/// What each row, and the column of its number, is multiplied by so that its largest entry is about 1.
+/// Factors of rows and columns that scale the largest entry of each row to about 1.
 fn scales(entries: &[Rounded], dimension: usize) -> Vec<f64> {
     let mut scales = vec![1.0; dimension];
     for _ in 0..ROUNDS {

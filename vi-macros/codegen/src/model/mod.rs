@@ -1,8 +1,8 @@
-//! The system, checked: what it is called, what it is made of, and L and f as expressions.
+//! The checked system: its names, its parts, and L and f as expressions.
 //!
-//! In: a [`System`](crate::syntax::System). Out: a [`Model`], whose expressions are in the pool. AFTER THIS every name is resolved, those
-//! of the rule too, every number exact, and L and f are expressions in [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only;
-//! the spans that are left are those of declared names.
+//! In: a [`System`](crate::syntax::System). Out: a [`Model`], whose expressions are in the pool. AFTER THIS every name,
+//! including those of the rule, is resolved and every number is exact. L and f are expressions in
+//! [`Symbol::Continuous`](crate::symbol::Symbol) and parameters only. The remaining spans are those of declared names.
 
 pub mod check;
 mod check_state;
@@ -25,7 +25,7 @@ use crate::symbol::Symbol;
 use proc_macro2::{Ident, Span};
 use vi_expr::Expr;
 
-/// Characters of a number in words that is written without a power of ten.
+/// Maximum characters of a number written without a power of ten.
 const CHARACTERS: usize = 20;
 
 /// A checked system.
@@ -36,7 +36,7 @@ pub struct Model {
     pub visibility: syn::Visibility,
     /// Name of the struct.
     pub name: Ident,
-    /// Runtime parameters, the entries of an array side by side.
+    /// Runtime parameters; the entries of an array are adjacent.
     pub parameters: Vec<Parameter>,
     /// Coordinates.
     pub coordinates: Vec<Coordinate>,
@@ -44,15 +44,15 @@ pub struct Model {
     pub lagrangian: Expr,
     /// Where L is declared.
     pub lagrangian_span: Span,
-    /// f(t, q, v), one component per coordinate; zero where none is declared.
+    /// f(t, q, v), one component per coordinate; zero without a declaration.
     pub forces: Vec<Expr>,
     /// Whether a force is declared that is not identically zero.
     pub forced: bool,
-    /// g(t, q) of the time transformation dt = g dτ, where one is declared.
+    /// g(t, q) of the time transformation dt = g dτ, if declared.
     pub time_scale: Option<Expr>,
-    /// How L becomes L_d; `None` for a system that has Gauss steps alone.
+    /// The rule from L to L_d; `None` for a system with Gauss steps only.
     pub rule: Option<Rule>,
-    /// The state at which the system is checked, if it says so.
+    /// The state of the checks, if there is a `check` clause.
     pub check_state: Option<CheckState>,
 }
 
@@ -79,12 +79,12 @@ impl Coordinate {
     }
 }
 
-/// A name as an identifier, in an array with its index.
+/// A name as an identifier, with its index in an array.
 fn ident(name: &Ident, index: Option<usize>) -> String {
     index.map_or_else(|| name.to_string(), |index| format!("{name}_{index}"))
 }
 
-/// A name as the user writes it, in an array with its index.
+/// A name as the user writes it, with its index in an array.
 fn text(name: &Ident, index: Option<usize>) -> String {
     index.map_or_else(|| name.to_string(), |index| format!("{name}[{index}]"))
 }
@@ -102,7 +102,7 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Its symbol, where so many parameters stand before it.
+    /// Its symbol, if `before` parameters precede it.
     #[must_use]
     pub fn symbol(&self, before: usize) -> Symbol {
         Symbol::Parameter { index: before, array: self.index.map(|place| before - place) }
@@ -129,7 +129,7 @@ impl Parameter {
 }
 
 impl Model {
-    /// The parameters field by field of the struct: a parameter alone, or the entries of an array.
+    /// The parameters grouped by field of the struct: a scalar parameter, or the entries of an array.
     pub fn fields(&self) -> impl Iterator<Item = &[Parameter]> {
         self.parameters.chunk_by(|left, right| left.name == right.name)
     }
@@ -180,7 +180,7 @@ impl Model {
     }
 }
 
-/// A coordinate at an end of the interval: `x0`, `x1`; of one that ends in a digit or a bracket `θ1_0`, `q[3]_1`.
+/// A coordinate at an end of the interval: `x0`, `x1`; `θ1_0`, `q[3]_1` after a digit or a bracket.
 fn slot(coordinate: &str, end: u8) -> String {
     let separator = if coordinate.ends_with(char::is_alphabetic) { "" } else { "_" };
     format!("{coordinate}{separator}{end}")

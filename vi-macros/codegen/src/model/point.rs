@@ -1,4 +1,4 @@
-//! Where a rule evaluates L and f.
+//! Evaluation points of a rule.
 
 use crate::symbol::Variable;
 use vi_expr::Expr;
@@ -15,7 +15,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// The arguments of L and f there: the time, the coordinates, the velocities.
+    /// The arguments of L and f: time, coordinates, velocities.
     pub fn arguments(&self) -> impl Iterator<Item = (Variable, Expr)> + '_ {
         let coordinates = self.coordinates.iter().enumerate().map(|(i, e)| (Variable::Coordinate(i), *e));
         let velocities = self.velocities.iter().enumerate().map(|(i, e)| (Variable::Velocity(i), *e));

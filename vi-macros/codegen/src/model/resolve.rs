@@ -1,7 +1,8 @@
-//! Written expressions become exact ones.
+//! Resolves written expressions to exact ones.
 //!
-//! In: an [`Expression`] and the names in [`Scope`]. Out: a [`Value`] of the pool, or the message at the token. An expression of a system
-//! is a number; in the lines of a rule the coordinates at an end are a vector, the force is one, and `*` of two is their dot product.
+//! In: an [`Expression`] and the names in [`Scope`]. Out: a [`Value`] of the pool, or a message at the token. An
+//! expression of a system is a number. In a rule, the coordinates at an end and the force are vectors, and `*` of two
+//! vectors is their dot product.
 
 use super::point::Point;
 use super::scope::{Meaning, Scope};
@@ -16,16 +17,16 @@ use proc_macro2::{Ident, Span};
 use syn::Result;
 use vi_expr::{Expr, Function, NoConstant, Pool, Rational};
 
-/// Work of reading one part of an expression.
+/// Work of reading one node of an expression.
 const READING: usize = 8;
 
 /// Characters of a number in a message.
 const CHARACTERS: usize = 30;
 
-/// What is done with one value of an index.
+/// The operation for one value of an index.
 type Make<'a, P> = &'a mut dyn FnMut(&mut Scope, &mut Pool<Symbol>, i64) -> Result<P>;
 
-/// A number, or a vector with one entry for each coordinate.
+/// A number, or a vector with one entry per coordinate.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(Expr),
@@ -33,10 +34,10 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// The number that it is.
+    /// The number.
     ///
     /// # Errors
-    /// It is a vector: a message at this place.
+    /// A vector: a message at this place.
     pub(super) fn number(self, span: Span) -> Result<Expr> {
         match self {
             Self::Number(value) => Ok(value),
@@ -44,10 +45,10 @@ impl Value {
         }
     }
 
-    /// The vector that it is.
+    /// The vector.
     ///
     /// # Errors
-    /// It is a number: a message at this place.
+    /// A number: a message at this place.
     pub(super) fn vector(self, span: Span) -> Result<Vec<Expr>> {
         match self {
             Self::Vector(entries) => Ok(entries),
@@ -69,7 +70,7 @@ impl Value {
         }
     }
 
-    /// The sum of values of one shape, each with its place.
+    /// The sum of values of equal shape, each with its place.
     fn sum(pool: &mut Pool<Symbol>, terms: Vec<(Self, Span)>) -> Result<Self> {
         let Some((Self::Vector(first), _)) = terms.first() else {
             let numbers = terms.into_iter().map(|(term, span)| term.number(span)).collect::<Result<Vec<_>>>()?;
@@ -103,7 +104,7 @@ impl Value {
 }
 
 impl Scope {
-    /// The exact number that a written expression stands for.
+    /// The exact number of a written expression.
     ///
     /// # Errors
     /// Those of [`Self::value`], and a vector.
@@ -111,10 +112,10 @@ impl Scope {
         self.value(pool, written)?.number(written.span)
     }
 
-    /// The exact value that a written expression stands for.
+    /// The exact value of a written expression.
     ///
     /// # Errors
-    /// Unknown names, wrong arguments, no value (a division by zero, say), too much work: at the token.
+    /// Unknown names, wrong arguments, no value (such as a division by zero), too much work: at the token.
     pub(super) fn value(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<Value> {
         pool.spend(READING);
         let value = match &written.kind {
@@ -135,8 +136,8 @@ impl Scope {
         };
         let mut wrong = None;
         let value = value.map(|entry| {
-            settled(pool, entry).unwrap_or_else(|said| {
-                wrong = Some(said);
+            cancelled(pool, entry).unwrap_or_else(|message| {
+                wrong = Some(message);
                 entry
             })
         });
@@ -145,15 +146,15 @@ impl Scope {
             return Err(error(written.span, &Message::NoValue));
         }
         match wrong {
-            Some(said) => Err(error(written.span, &said)),
+            Some(message) => Err(error(written.span, &message)),
             None => Ok(value),
         }
     }
 
-    /// What is made of each part of an expression, in order.
+    /// Applies an operation to each part of an expression, in order.
     ///
     /// # Errors
-    /// Those of all parts; of a system that is too large only the first.
+    /// The errors of all parts; for a system that is too large, only the first.
     fn each_of<P, Q>(
         &mut self,
         pool: &mut Pool<Symbol>,
@@ -171,10 +172,10 @@ impl Scope {
         errors.finish(made)
     }
 
-    /// What is made of each value of an index, in order.
+    /// Applies an operation to each value of an index, in order.
     ///
     /// # Errors
-    /// A bound that is not an integer, a range that runs backwards, an index by a name that is taken; errors of `make`.
+    /// A bound that is not an integer, a reversed range, an index with a declared name; errors of `make`.
     pub(super) fn each<P>(&mut self, pool: &mut Pool<Symbol>, range: &Range, make: Make<P>) -> Result<Vec<P>> {
         let (from, to) = (self.integer(pool, &range.from)?, self.integer(pool, &range.to)?);
         if to < from {
@@ -191,10 +192,10 @@ impl Scope {
         made
     }
 
-    /// The integer that an expression stands for.
+    /// The integer value of an expression.
     ///
     /// # Errors
-    /// It is no constant, or not an integer.
+    /// It is not constant, or not an integer.
     pub(super) fn integer(&mut self, pool: &mut Pool<Symbol>, written: &Expression) -> Result<i64> {
         let value = self.expression(pool, written)?;
         let integer = pool.as_number(value).filter(|number| number.is_integer()).and_then(ToPrimitive::to_i64);
@@ -212,7 +213,7 @@ impl Scope {
         Ok(Value::product(pool, operands.into_iter().map(|(operand, _)| operand).collect()))
     }
 
-    /// A term or factor with its place: the negative of one after `-`, the inverse of one after `/`.
+    /// A term or factor with its place: negated after `-`, inverted after `/`.
     fn operand(&mut self, pool: &mut Pool<Symbol>, of: (Operator, &Expression)) -> Result<(Value, Span)> {
         let (operator, written) = of;
         let operand = self.value(pool, written)?;
@@ -221,7 +222,7 @@ impl Scope {
             Operator::Minus => operand.map(|operand| pool.neg(operand)),
             Operator::Over => {
                 let divisor = operand.number(written.span)?;
-                if is_nothing(pool, divisor) {
+                if is_zero(pool, divisor) {
                     return Err(error(written.span, &Message::DivisionByZero));
                 }
                 Value::Number(pool.power(divisor, &Rational::from_integer((-1).into())))
@@ -285,10 +286,10 @@ impl Scope {
         })
     }
 
-    /// The number of the coordinate that an entry is, if its array is one of coordinates.
+    /// The number of the coordinate of an entry, if its array is an array of coordinates.
     ///
     /// # Errors
-    /// The index is not an integer, or out of range.
+    /// The index is not an integer, or is out of range.
     pub(super) fn coordinate_entry(
         &mut self,
         pool: &mut Pool<Symbol>,
@@ -307,7 +308,7 @@ impl Scope {
         Err(error(index.span, &Message::IndexRange { name: text, index: at, first: 0, end }))
     }
 
-    /// What a name with an index was meant to be.
+    /// The message for an index on a name that is not an array.
     fn no_array(&self, pool: &Pool<Symbol>, name: String) -> Message {
         match self.meaning(&name) {
             Some(Meaning::OfState) => Message::NotInRule { name },
@@ -318,7 +319,7 @@ impl Scope {
         }
     }
 
-    /// What a name that stands for nothing was meant to be.
+    /// The message for an undeclared name.
     fn unknown(&self, pool: &Pool<Symbol>, name: String) -> Message {
         if name == "sum" || name == "sqrt" || Function::from_name(&name).is_some() {
             return Message::FunctionWithoutArguments { name };
@@ -381,7 +382,7 @@ impl Scope {
         }))
     }
 
-    /// The point that the arguments of L or f are: a time, coordinates, velocities.
+    /// The point given by the arguments of L or f: time, coordinates, velocities.
     fn arguments_of_point(
         &mut self,
         pool: &mut Pool<Symbol>,
@@ -405,7 +406,7 @@ impl Scope {
         Ok(self.point(point))
     }
 
-    /// The derivative by time of what a written expression stands for: of a coordinate its velocity, of X(t, q)
+    /// The derivative of a written expression with respect to time: the velocity of a coordinate, and for X(t, q)
     ///
     /// ```text
     /// dot(X) = ∂X/∂t + Σ_i ∂X/∂q_i v_i
@@ -443,7 +444,7 @@ impl Scope {
             return Err(error(name.span(), &Message::DotOfConstant { name: name.to_string() }));
         }
         if pool.depends_on(value, &|symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)))) {
-            // An array is named by its entries, whatever its index, and other expressions not at all.
+            // Names an array entry without its index; other expressions have no name.
             let name = match &argument.kind {
                 Kind::Name(name) => format!("dot({name})"),
                 Kind::Entry(name, _) => format!("dot({name}[…])"),
@@ -460,7 +461,7 @@ impl Scope {
         }))
     }
 
-    /// Whether a name stands for numbers that neither time nor state changes.
+    /// Whether a name denotes numbers independent of time and state.
     fn is_constant(&self, pool: &Pool<Symbol>, name: &str) -> bool {
         let changes = |expr: &Expr| pool.depends_on(*expr, &|symbol| matches!(symbol, Symbol::Continuous(_)));
         match self.meaning(name) {
@@ -472,8 +473,8 @@ impl Scope {
     }
 }
 
-/// A constant with a known sign: 0 if its terms cancel, as in sqrt(2) sqrt(3) − sqrt(6). Other expressions as they are.
-fn settled(pool: &Pool<Symbol>, value: Expr) -> core::result::Result<Expr, Message> {
+/// A constant whose sign is known: 0 if its terms cancel, as in sqrt(2) sqrt(3) − sqrt(6). Other expressions unchanged.
+fn cancelled(pool: &Pool<Symbol>, value: Expr) -> core::result::Result<Expr, Message> {
     if !pool.is_constant(value) || pool.as_number(value).is_some() {
         return Ok(value);
     }
@@ -486,8 +487,8 @@ fn settled(pool: &Pool<Symbol>, value: Expr) -> core::result::Result<Expr, Messa
     }
 }
 
-/// Whether a divisor is zero whatever the state: the number 0, or zero by h = t1 − t0.
-fn is_nothing(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
+/// Whether a divisor is identically zero: the number 0, or zero after h = t1 − t0.
+fn is_zero(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
     if pool.is_zero(divisor) || pool.is_constant(divisor) || pool.as_symbol(divisor).is_some() {
         return pool.is_zero(divisor);
     }
@@ -501,14 +502,14 @@ fn is_nothing(pool: &mut Pool<Symbol>, divisor: Expr) -> bool {
     false
 }
 
-/// `base^exponent`. A root that starts at a point gets the form of its base that is exactly zero before it.
+/// `base^exponent`. A root that starts at a point gets a form of its base that is exactly zero before that point.
 fn power(pool: &mut Pool<Symbol>, base: Expr, exponent: Expr) -> Expr {
     let is_root = !pool.as_number(exponent).is_some_and(Rational::is_integer);
     let base = if is_root { pool.with_ramps(base) } else { base };
     pool.call(Function::Pow, &[base, exponent])
 }
 
-/// L or a component of f itself, at a point of the rule.
+/// L or a component of f at a point of the rule.
 fn at_point(quantity: Quantity, point: usize) -> Symbol {
     Symbol::Field(Field { quantity, derivatives: Vec::new(), point })
 }

@@ -1,7 +1,7 @@
-//! A rule, its names resolved: L_d, and the discrete forces where they are written.
+//! A rule with resolved names: L_d, and the discrete forces if written.
 //!
-//! In: the lines `Ld = …; fd_minus = …; …`. Out: a [`Rule`] in the slots t0, q0, t1, q1, the step h, and L and f at the [`Point`]s where
-//! the rule evaluates them. Parameters, constants and arrays of them mean in a rule what they mean elsewhere.
+//! In: the lines `Ld = …; fd_minus = …; …`. Out: a [`Rule`] in the slots t0, q0, t1, q1, the step h, and L and f at the
+//! [`Point`]s of the rule. Parameters, constants and their arrays have their usual meaning.
 
 use super::context::Context;
 use super::point::Point;
@@ -16,28 +16,28 @@ use std::collections::BTreeSet;
 use syn::Result;
 use vi_expr::{Expr, Pool};
 
-/// How L becomes L_d.
+/// The rule from L to L_d.
 pub struct Rule {
-    /// The rule of the table, where the system says its name.
+    /// The built-in rule, if the system names one.
     pub named: Option<&'static NamedRule>,
     /// Where `Ld` is written.
     pub span: Span,
     /// L_d.
     pub ld: Expr,
-    /// The discrete forces and powers, where they are written and a force acts.
+    /// The discrete forces and powers, if written and if the system has a force.
     pub forces: Option<DiscreteForces>,
-    /// Where L and f are evaluated.
+    /// The points at which the rule evaluates L and f.
     pub points: Vec<Point>,
 }
 
 impl Rule {
-    /// The rule as documentation names it.
+    /// The name of the rule in documentation.
     #[must_use]
     pub fn title(&self) -> &'static str {
         self.named.map_or("written out", |rule| rule.name)
     }
 
-    /// All expressions that it is made of.
+    /// All expressions of the rule.
     pub(super) fn expressions(&self) -> impl Iterator<Item = Expr> {
         let points = self.points.iter().flat_map(Point::arguments).map(|(_, argument)| argument);
         let forces = self.forces.iter().flat_map(DiscreteForces::expressions);
@@ -69,10 +69,10 @@ impl DiscreteForces {
 /// The line of the discrete Lagrangian.
 const LD: &str = "Ld";
 
-/// The lines that say what a force does.
+/// The lines of the discrete forces.
 const FORCES: [&str; 4] = ["fd_minus", "fd_plus", "gd_minus", "gd_plus"];
 
-/// The rule of this place among those of the clause `discretize`, if there is one; a second clause is a mistake.
+/// The rule at this position of the `discretize` clause; reports a second clause.
 pub(super) fn rule(
     context: &mut Context,
     written: &System,
@@ -101,7 +101,7 @@ pub(super) fn rule(
     context.report(resolved)
 }
 
-/// The rules of a list of names: each name is `gauss` or one of the table, and there once.
+/// The rules of a list of names: each is `gauss` or built in, and appears once.
 fn of_names(context: &mut Context, names: &[Ident]) -> Vec<&'static NamedRule> {
     let mut rules: Vec<&'static NamedRule> = Vec::with_capacity(names.len());
     for (place, written) in names.iter().enumerate() {
@@ -121,10 +121,10 @@ fn of_names(context: &mut Context, names: &[Ident]) -> Vec<&'static NamedRule> {
     rules
 }
 
-/// A rule of the table, for a system of so many coordinates, with or without a force.
+/// A built-in rule for a system with `dimension` coordinates, with or without a force.
 ///
 /// # Errors
-/// A rule of the table that is written wrongly: a mistake of this compiler. A system that is too large.
+/// An invalid built-in rule: a bug of this compiler. A system that is too large.
 pub(crate) fn named(pool: &mut Pool<Symbol>, rule: &'static NamedRule, dimension: usize, forced: bool) -> Result<Rule> {
     let resolved = resolve(pool, Scope::of_rule(dimension), &parse::rule(rule.text)?, forced)?;
     Ok(Rule { named: Some(rule), ..resolved })
@@ -136,7 +136,7 @@ fn resolve(pool: &mut Pool<Symbol>, scope: Scope, rule: &syntax::Rule, forced: b
     lines.check_names();
     let ld = lines.number(LD);
     let span = lines.written(LD).map_or(rule.span, |line| line.name.span());
-    // The work of f follows from L_d where that is made of L. Without a force the four lines are nothing, and are not resolved.
+    // If L_d is made of L, the work of f follows from it. Without a force the four force lines are ignored.
     let is_lagrangian =
         |symbol: &Symbol| matches!(symbol, Symbol::Field(field) if field.quantity == Quantity::Lagrangian);
     let is_made_of_lagrangian = lines.pool.depends_on(ld, &is_lagrangian);
@@ -153,7 +153,7 @@ fn resolve(pool: &mut Pool<Symbol>, scope: Scope, rule: &syntax::Rule, forced: b
     errors.finish(Rule { named: None, span, ld, forces, points: scope.into_points() })
 }
 
-/// The lines of a rule as they are resolved; a wrong one is reported and read as zero.
+/// The lines of a rule during resolution; reports a wrong line and reads it as zero.
 struct Lines<'a> {
     pool: &'a mut Pool<Symbol>,
     scope: Scope,
@@ -162,7 +162,7 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// Every line is one of a rule, and there once.
+    /// Reports unknown and repeated lines.
     fn check_names(&mut self) {
         let mut seen = BTreeSet::new();
         for line in &self.rule.lines {
@@ -175,7 +175,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// A line as it is written, if it is.
+    /// The line with this name, if written.
     fn written(&self, name: &str) -> Option<&'a Definition> {
         self.rule.lines.iter().find(|line| line.name == name)
     }

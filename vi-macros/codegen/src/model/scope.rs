@@ -1,7 +1,7 @@
-//! The names that an expression may use, and what they stand for.
+//! The names that an expression may use, and their meanings.
 //!
-//! In: the declarations of a system, one by one. Out: what each name means, in the expressions of the system or in the lines of a rule.
-//! A name means one thing, and nothing where it is not declared yet.
+//! In: the declarations of a system, one by one. Out: the meaning of each name in expressions of the system or in lines
+//! of a rule. A name has one meaning, and none before its declaration.
 
 use super::point::Point;
 use crate::habits::{self, Habit};
@@ -12,35 +12,35 @@ use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Function, Pool};
 
-/// Names that the language keeps for itself, beside its functions.
+/// Names reserved by the language, besides its functions.
 const RESERVED: [&str; 8] = ["t", "pi", "L", "f", "self", "dot", "sum", "sqrt"];
 
-/// Work of comparing two names, beside that of comparing each of their letters with each.
+/// Cost of comparing two names, besides comparing each pair of their letters.
 const COMPARISON: usize = 16;
 
 /// The names that an expression may use.
 pub(super) struct Scope {
     names: BTreeMap<String, Meaning>,
-    /// Names that the system declares and that mean nothing yet.
+    /// Names that the system declares but that have no meaning yet.
     absent: BTreeMap<String, Absence>,
-    /// Where the expressions of a rule evaluate L and f.
+    /// Points at which the expressions of a rule evaluate L and f.
     points: Vec<Point>,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Meaning {
     /// A parameter, constant, index or `let`, with its expression.
     Number(Expr),
-    /// An array of `let`s: its first index, its entries.
+    /// An array of `let`s: its first index and its entries.
     Array { first: i64, entries: Vec<Expr> },
     /// Time, or a slot of a rule.
     Symbol(Symbol),
     /// π.
     Pi,
-    /// A coordinate, by its number.
+    /// A coordinate, by index.
     Coordinate(usize),
-    /// An array of coordinates: the number of its first one, its length.
+    /// An array of coordinates: the index of the first one, and the length.
     Coordinates { first: usize, length: usize },
     /// The coordinates at an end of the interval.
     Vector(Vec<Symbol>),
@@ -48,24 +48,24 @@ pub(super) enum Meaning {
     Dot,
     /// L of time, coordinates and velocities.
     Lagrangian,
-    /// f of time, coordinates and velocities, for so many coordinates.
+    /// f of time, coordinates and velocities, with this number of components.
     Force(usize),
-    /// Something that changes with the state, which a rule does not know but as an argument of L and f.
+    /// A quantity that depends on the state; in a rule it may only appear in arguments of L and f.
     OfState,
-    /// Something that depends on velocities, which a time scale does not know.
+    /// A quantity that depends on velocities; a time scale cannot use it.
     Moving,
-    /// Something that was reported wrong where it was declared: it reads as 1, with or without an index.
+    /// A declaration with a reported error: it evaluates to 1, with or without an index.
     Wrong,
 }
 
 impl Scope {
-    /// The names that the language gives to the expressions of a system.
+    /// The built-in names in expressions of a system.
     pub(super) fn of_system() -> Self {
         let time = Meaning::Symbol(Symbol::Continuous(Variable::Time));
         Self::of([("t", time), ("pi", Meaning::Pi), ("dot", Meaning::Dot)])
     }
 
-    /// The names that the language gives to the lines of a rule, for a system of so many coordinates.
+    /// The built-in names in the lines of a rule, for a system with `dimension` coordinates.
     pub(super) fn of_rule(dimension: usize) -> Self {
         Self::of([
             ("t0", Meaning::Symbol(Symbol::T0)),
@@ -84,8 +84,8 @@ impl Scope {
         Self { names, absent: BTreeMap::new(), points: Vec::new() }
     }
 
-    /// The same with what a system declares, but for the names that stand for something already: numbers of constants and parameters
-    /// keep their meaning.
+    /// Adds the declarations of a system. Names that already have a meaning keep it, as do numbers of constants and
+    /// parameters.
     pub(super) fn with_constants_of(mut self, system: &Self, pool: &Pool<Symbol>) -> Self {
         let is_constant = |expr: &Expr| !pool.depends_on(*expr, &|symbol| !matches!(symbol, Symbol::Parameter { .. }));
         for (name, meaning) in &system.names {
@@ -100,7 +100,7 @@ impl Scope {
         self
     }
 
-    /// The names that a time scale may use: what depends on velocities means nothing there.
+    /// The names that a time scale may use: those that depend on velocities are excluded.
     pub(super) fn of_time_scale(&self, pool: &Pool<Symbol>) -> Self {
         let is_velocity = |symbol: &Symbol| matches!(symbol, Symbol::Continuous(Variable::Velocity(_)));
         let moves = |expr: &Expr| pool.depends_on(*expr, &is_velocity);
@@ -114,7 +114,7 @@ impl Scope {
         Self { names, absent: BTreeMap::new(), points: Vec::new() }
     }
 
-    /// The number of a point where L or f is evaluated; the same for equal points.
+    /// The number of an evaluation point; equal points have the same number.
     pub(super) fn point(&mut self, point: Point) -> usize {
         self.points.iter().position(|known| *known == point).unwrap_or_else(|| {
             self.points.push(point);
@@ -122,17 +122,17 @@ impl Scope {
         })
     }
 
-    /// The points where L or f was evaluated.
+    /// The evaluation points of L and f.
     pub(super) fn into_points(self) -> Vec<Point> {
         self.points
     }
 
-    /// Names that the system declares, and why expressions do not see them yet.
+    /// Registers names that the system declares, and why expressions cannot use them yet.
     pub(super) fn expect<'a>(&mut self, names: impl Iterator<Item = &'a Ident>, absence: Absence) {
         self.absent.extend(names.map(|name| (name.to_string(), absence)));
     }
 
-    /// Why a name that the system declares means nothing here.
+    /// Why a declared name has no meaning here.
     pub(super) fn absence(&self, name: &str) -> Option<Absence> {
         self.absent.get(name).copied()
     }
@@ -140,12 +140,12 @@ impl Scope {
     /// Adds a name.
     ///
     /// # Errors
-    /// The name is reserved, or was declared before.
+    /// The name is reserved, or declared before.
     pub(super) fn declare(&mut self, name: &Ident, meaning: Meaning) -> Result<()> {
         let text = name.to_string();
         if RESERVED.contains(&text.as_str()) || Function::from_name(&text).is_some() {
             if ["L", "f"].contains(&text.as_str()) {
-                // Expressions of a system have neither, so that what reads it means this.
+                // Expressions of a system contain neither `L` nor `f`, so a use refers to this declaration.
                 self.names.entry(text.clone()).or_insert(Meaning::Wrong);
             }
             return Err(error(name.span(), &Message::Reserved { name: text }));
@@ -162,7 +162,7 @@ impl Scope {
         self.names.remove(name);
     }
 
-    /// Gives a declared name another meaning: an index its next value.
+    /// Changes the meaning of a declared name: the next value of an index.
     pub(super) fn set(&mut self, name: &str, meaning: Meaning) {
         if let Some(known) = self.names.get_mut(name) {
             *known = meaning;
@@ -179,7 +179,8 @@ impl Scope {
         matches!(self.meaning(name), Some(Meaning::Coordinate(_) | Meaning::Coordinates { .. }))
     }
 
-    /// The coordinate whose velocity a name says: `x` of `xdot`, `x_dot`, `dot_x`, `v_x`, `vx`, `dx` and `ẋ`; `q[…]` of an array.
+    /// The coordinate in the name of a velocity: `x` of `xdot`, `x_dot`, `dot_x`, `v_x`, `vx`, `dx` and `ẋ`; `q[…]` of
+    /// an array.
     pub(super) fn coordinate_of_velocity(&self, name: &str) -> Option<String> {
         let undotted = habits::without_dots(name, 1);
         let behind = ["_dot", "dot"].into_iter().filter_map(|ending| name.strip_suffix(ending));
@@ -188,14 +189,14 @@ impl Scope {
         behind.chain(before).chain(undotted.as_deref()).find_map(|stem| self.coordinate(stem))
     }
 
-    /// The coordinate whose acceleration a name says: `x` of `xddot`, `x_ddot`, `x_tt` and `ẍ`.
+    /// The coordinate in the name of an acceleration: `x` of `xddot`, `x_ddot`, `x_tt` and `ẍ`.
     pub(super) fn coordinate_of_acceleration(&self, name: &str) -> Option<String> {
         let undotted = habits::without_dots(name, 2);
         let behind = ["_ddot", "ddot", "_tt"].into_iter().filter_map(|ending| name.strip_suffix(ending));
         behind.chain(undotted.as_deref()).find_map(|stem| self.coordinate(stem))
     }
 
-    /// The coordinate of this name, Greek letters written as such or as words; `q[…]` of an array.
+    /// The coordinate with this name, Greek letters as such or spelt out; `q[…]` of an array.
     fn coordinate(&self, name: &str) -> Option<String> {
         let other = habits::other_alphabet(name);
         [Some(name), other.as_deref()].into_iter().flatten().find_map(|name| match self.meaning(name) {
@@ -205,7 +206,7 @@ impl Scope {
         })
     }
 
-    /// What a name says that stands for nothing, and is written otherwise here: a velocity, a function or a product without its signs.
+    /// The notation behind an undeclared name: a velocity, or a function or product without its signs.
     pub(super) fn habit(&self, name: &str) -> Option<Habit> {
         let text = name.to_owned();
         if let Some(coordinate) = self.coordinate_of_velocity(name) {
@@ -227,17 +228,17 @@ impl Scope {
         self.factors(name).map(|factors| Habit::ProductInName { name: text, product: factors.join(" * ") })
     }
 
-    /// The coordinate that is first in the alphabet, for an example.
+    /// The alphabetically first coordinate, for an example.
     fn first_coordinate(&self) -> Option<String> {
         self.names.keys().find_map(|name| self.coordinate(name))
     }
 
-    /// Whether a name was declared; those of the language are not.
+    /// Whether a name was declared; built-in names were not.
     pub(super) fn is_declared(&self, name: &str) -> bool {
         !RESERVED.contains(&name) && self.names.contains_key(name)
     }
 
-    /// The declared names that a name consists of, two or more of one letter each, and none twice, which is a slip of the finger.
+    /// Two or more declared one-letter names that form this name, each once: a repetition is a typing error.
     fn factors(&self, name: &str) -> Option<Vec<String>> {
         let letters: Vec<String> = name.chars().map(String::from).collect();
         let is_once = |(before, letter): (usize, &String)| !letters[..before].contains(letter);
@@ -253,7 +254,7 @@ impl Scope {
         other.or_else(|| self.near_of(pool, name, is_meant))
     }
 
-    /// The functions of the language, and those that only expressions of this scope have.
+    /// The functions of the language, and those of this scope only.
     pub(super) fn functions(&self) -> impl Iterator<Item = &'static str> {
         let own = self.names.values().filter_map(|meaning| match meaning {
             Meaning::Dot => Some("dot"),
@@ -264,7 +265,7 @@ impl Scope {
         Function::ALL.into_iter().map(Function::name).chain(["sqrt", "sum"]).chain(own)
     }
 
-    /// The nearest to a misspelt name of the declared names that may be meant.
+    /// The nearest declared name that satisfies `is_meant`.
     pub(super) fn near_of(&self, pool: &Pool<Symbol>, name: &str, is_meant: impl Fn(&str) -> bool) -> Option<String> {
         pool.spend(self.names.len() * (COMPARISON + name.len() * name.len()));
         let known = self.names.keys().map(String::as_str).filter(|known| is_meant(known));

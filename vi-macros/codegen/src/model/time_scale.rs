@@ -1,6 +1,6 @@
 //! The time scale: g of the time transformation dt = g(t, q) dτ.
 //!
-//! In: the lines `time_scale = g;`. Out: g, an expression of the time, coordinates and parameters; none where none is declared.
+//! In: the lines `time_scale = g;`. Out: g, an expression in time, coordinates and parameters, if declared.
 
 use super::context::Context;
 use crate::messages::Message;

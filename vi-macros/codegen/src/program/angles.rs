@@ -1,15 +1,15 @@
 //! Sines and cosines of sums of angles.
 //!
-//! In: `cos(a ± b)` or `sin(a ± b)` in a function that needs the sines or cosines of a and of b too. Out: products of
-//! those,
+//! In: `cos(a ± b)` or `sin(a ± b)` in a function that also needs the sines or cosines of a and of b. Out: products of
+//! these,
 //!
 //! ```text
 //! cos(a ± b) = cos a cos b ∓ sin a sin b        sin(a ± b) = sin a cos b ± cos a sin b
 //! ```
 //!
-//! Six operations, where a sine and a cosine take as long as about thirty: n links of a pendulum need n of them, not
-//! n(n + 1)/2. The results are as exact as the functions of the difference, some ulps of 1; but a sine of nearly equal
-//! angles keeps fewer digits of its own. The rounding scale of a residual covers that: it counts the rounding of a and of b.
+//! This takes six operations; a sine and a cosine take about thirty. A pendulum with n links needs n sine pairs, not
+//! n(n + 1)/2. The results are as accurate as direct evaluation, some ulps of 1, but a sine of nearly equal angles
+//! loses relative accuracy. The rounding scale of a residual covers this: it counts the rounding of a and of b.
 
 use super::lowering::Lowering;
 use super::operations::{Operation, OperationId};
@@ -17,7 +17,7 @@ use num_traits::{Signed, Zero};
 use vi_expr::{Expr, Function, Node};
 
 impl Lowering<'_> {
-    /// Notes the angles whose sines or cosines stand below these expressions.
+    /// Records the angles whose sines or cosines these expressions contain.
     pub(super) fn record_angles(&mut self, exprs: &[Expr]) {
         for expr in self.pool.reachable(exprs) {
             if let Node::Call(Function::Sin | Function::Cos, arguments) = self.pool.node(expr) {
@@ -26,7 +26,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The sine or cosine of a sum of two angles at hand.
+    /// The sine or cosine of a sum of two recorded angles.
     pub(super) fn of_two_angles(&mut self, function: Function, angle: Expr) -> Option<OperationId> {
         let Node::Sum(sum) = self.pool.node(angle).clone() else { return None };
         let [(left, left_factor), (right, right_factor)] = sum.terms.as_slice() else { return None };

@@ -1,7 +1,7 @@
 //! The functions of a system, assembled from its expressions.
 //!
 //! In: a [`Model`] and its [`DiscreteSystem`]. Out: a [`Program`]. Fields become derivatives of L and f at the points
-//! of the rule; the arguments of a point are evaluated once per function.
+//! of the rule. A function evaluates the arguments of a point once.
 
 use super::lowering::{Known, Lowering};
 use super::results::{FunctionId, Output, Results};
@@ -21,7 +21,7 @@ use vi_expr::{Expr, Node, Pool, TooLarge};
 ///
 /// # Errors
 /// A coefficient outside the range of `f64`, at the name of the system.
-/// Operations that do not reproduce their expressions: a mistake of this compiler, reported and not emitted.
+/// Operations that do not reproduce their expressions: a bug of this compiler, reported and not emitted.
 pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) -> Result<Program> {
     let too_large = |found: TooLarge| error(model.name.span(), &Message::TooLarge(found));
     let continuous = continuous(&mut Assembly::new(pool, system, &[]), system).map_err(too_large)?;
@@ -33,14 +33,14 @@ pub fn program(pool: &mut Pool<Symbol>, model: &Model, system: &DiscreteSystem) 
     }
     let check = |(function, expressions): (Function, Expressions)| {
         verify::has_finite_constants(&function, &model.name)?;
-        // Only builds with debug assertions do so: it is no work of the system's.
+        // Only builds with debug assertions verify, so this does not count as work of the system.
         pool.uncounted(|pool| verify::agrees(pool, &function, &expressions, &model.name)).map(|()| function)
     };
     let all = |list: Vec<_>| list.into_iter().map(check).collect::<Result<Vec<_>>>();
     Ok(Program { continuous: all(continuous)?, slots: all(of_slots)?, step: all(of_steps)? })
 }
 
-/// Work that an operation takes until it is emitted.
+/// Work of an operation until it is emitted.
 const OPERATION: usize = 128;
 
 pub(super) type Assembled = core::result::Result<Vec<(Function, Expressions)>, TooLarge>;
@@ -48,7 +48,7 @@ pub(super) type Assembled = core::result::Result<Vec<(Function, Expressions)>, T
 pub(super) struct Assembly<'a> {
     pub(super) pool: &'a mut Pool<Symbol>,
     fields: &'a Fields,
-    /// Where the points are: what is not here, the function is told.
+    /// The arguments of the points; missing ones are inputs of the function.
     pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
     known: Known,
 }
@@ -69,8 +69,7 @@ impl<'a> Assembly<'a> {
         Self { pool, fields: &system.fields, arguments, known }
     }
 
-    /// An expression without fields: derivatives of L and f at the points, whose arguments stay closed unless they
-    /// are bare symbols.
+    /// Replaces fields by derivatives of L and f at the points. Arguments remain opaque unless they are bare symbols.
     fn open(&mut self, expr: Expr) -> Expr {
         let Self { pool, fields, arguments, .. } = self;
         pool.substitute(expr, &mut |pool, symbol| {
@@ -98,14 +97,14 @@ impl<'a> Assembly<'a> {
         collected.into_iter().map(|expr| rounding_scale(self.pool, &mut self.known.products, expr)).collect()
     }
 
-    /// The expressions, with constants that are rounded once.
+    /// The expressions, with constants rounded once.
     fn collected(&mut self, expressions: &Results<Expr>) -> Results<Expr> {
         let entries: Vec<Expr> = expressions.entries().copied().collect();
         let mut collected = self.pool.collect_constants(&entries).into_iter();
         expressions.map(|expr| collected.next().unwrap_or(*expr))
     }
 
-    /// A function that computes these quantities, each given by its rows.
+    /// A function that computes these quantities, each given by rows.
     fn function(
         &mut self,
         id: FunctionId,
@@ -130,7 +129,7 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// The velocity of the step, where an argument of a point is nothing else.
+/// The velocity of the step, if an argument of a point equals it.
 fn step_velocity(pool: &mut Pool<Symbol>, argument: Expr) -> Option<Expr> {
     let moved = pool.substitute(argument, &mut |pool, symbol| match symbol {
         Symbol::Q1(index) => {

@@ -1,4 +1,4 @@
-//! The same formula again and again, shifted along the coordinates: in a chain, every spring has the same force.
+//! Repeated formulas, shifted along the coordinates: in a chain, every spring has the same force.
 //!
 //! In: a function. Out: families of its operations,
 //!
@@ -6,19 +6,19 @@
 //! member k:  op(a_(k + i), b_(k + j), c)      k = 0 … length − 1
 //! ```
 //!
-//! with the same operation and the same i, j for all k; a and b are components of vectors among the inputs, or families again,
-//! and c does not depend on any such. A loop computes a family. AFTER THIS the operands of a family's members are members of
-//! families, inputs, or the same for all.
+//! with the same operation and the same i, j for all k. a and b are components of input vectors or families; c depends
+//! on neither. A loop computes a family. AFTER THIS the operands of members are members of families, inputs, or the
+//! same for all.
 
 use super::{Function, Operation, OperationId};
 use crate::symbol::Symbol;
 use std::collections::BTreeMap;
 use vi_expr::{Distinct, Table};
 
-/// Members from which on there is a loop.
+/// Minimum number of members in a loop.
 const LEAST: usize = 8;
 
-/// What members of a family have in common.
+/// The common part of the members of a family.
 #[derive(PartialEq, Eq, Hash)]
 enum Shape {
     /// The component of a vector.
@@ -27,16 +27,16 @@ enum Shape {
     Operation(Operation, Vec<Relative>),
 }
 
-/// An operand as seen from the place of an operation.
+/// An operand relative to the position of its operation.
 #[derive(PartialEq, Eq, Hash)]
 enum Relative {
-    /// The same everywhere.
+    /// The same for all members.
     Fixed(OperationId),
     /// Of a shape, so many places on, or back.
     Shifted { shape: usize, on: usize, back: usize },
 }
 
-/// Where a member is: in which family, and at which place there.
+/// The family of a member and its position there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Membership {
     /// Index into the families.
@@ -47,13 +47,13 @@ pub struct Membership {
 
 /// The families of a function.
 pub struct Families {
-    /// Their members, in order; a family stands behind those of its operands.
+    /// Their members in order; a family comes after the families of its operands.
     pub members: Vec<Vec<OperationId>>,
     of: Table<OperationId, Membership>,
 }
 
 impl Families {
-    /// The membership of an operation that has one.
+    /// The membership of an operation, if it has one.
     #[must_use]
     pub fn of(&self, id: OperationId) -> Option<Membership> {
         self.of.get(id).copied()
@@ -73,7 +73,7 @@ impl Function {
             rows.resize_with(shapes.len(), BTreeMap::new);
             rows[number].insert(place, id);
         }
-        // Shapes are numbered after those of their operands.
+        // Shapes are numbered after the shapes of their operands.
         let is_work = |run: &Vec<OperationId>| self.operations.get(run[0]).is_work();
         let members: Vec<_> = rows.iter().flat_map(runs).filter(is_work).collect();
         let of = members
@@ -84,7 +84,7 @@ impl Function {
     }
 }
 
-/// The shape of an operation and the place of its first operand that has one; `None` where none has.
+/// The shape of an operation and the position of its first placed operand; `None` if no operand is placed.
 fn shape(operation: &Operation, placed: &Table<OperationId, (usize, usize)>) -> Option<(Shape, usize)> {
     if let Operation::Input(symbol) = operation {
         return symbol.component().map(|(vector, place)| (Shape::Input(vector), place));
@@ -99,7 +99,7 @@ fn shape(operation: &Operation, placed: &Table<OperationId, (usize, usize)>) -> 
     Some((Shape::Operation(operation.form(), relative.collect()), start))
 }
 
-/// Members side by side, where they are enough. An operand of theirs has the same neighbours.
+/// Runs of adjacent members of sufficient length. Their operands have the same neighbours.
 fn runs(row: &BTreeMap<usize, OperationId>) -> Vec<Vec<OperationId>> {
     let entries: Vec<(&usize, &OperationId)> = row.iter().collect();
     let runs = entries.chunk_by(|(left, _), (right, _)| **left + 1 == **right);

@@ -1,9 +1,8 @@
 //! From expressions to operations.
 //!
 //! In: expressions without fields. Out: operations, shared over everything that one function evaluates. Sums are
-//! factored by what their terms have in common, and products start with what is constant over a run: numbers,
-//! parameters and the step. In sums with terms of order h, those are added up first and joined to the large ones last,
-//! so that no digit of theirs is lost early.
+//! factored by common factors. Products start with their constant part: numbers, parameters and the step. In sums with
+//! terms of order h, these are added first and joined to the large ones last, so that they lose no digits early.
 
 use super::lowering::{Dependence, Factor, Lowering, SumForm};
 use super::operations::{Operation, OperationId, Operations};
@@ -14,12 +13,12 @@ use num_traits::{One, Signed, Zero};
 use vi_expr::{Expr, Node, Rational, Sum};
 
 impl Lowering<'_> {
-    /// Lowers expressions and all that they need, children first; to no number where the pool is exhausted.
+    /// Lowers expressions and their subexpressions, children first; NaN if the pool is exhausted.
     pub(super) fn lower(&mut self, exprs: &Results<Expr>) -> Results<OperationId> {
         let used: Vec<Expr> = exprs.entries().chain(self.arguments.values()).copied().collect();
         self.record_powers(&used);
         self.record_angles(&used);
-        // Children first, so that nothing is deep; products as they are needed, with their coefficients.
+        // Children first bounds the recursion; products are lowered on demand with their coefficients.
         for expr in self.pool.reachable(&used) {
             self.value(expr);
         }
@@ -51,12 +50,12 @@ impl Lowering<'_> {
         value
     }
 
-    /// The nearest `f64` to an expression that depends on nothing; NaN where no normal one is near, which is an error at the end.
+    /// The nearest `f64` to a constant expression. NaN if no normal number is near, which is reported at the end.
     fn constant(&self, expr: Expr) -> f64 {
         self.pool.constant(expr).unwrap_or(f64::NAN)
     }
 
-    /// What an expression depends on; its children are known but for those that lowering made.
+    /// The dependence of an expression. Children are known, except those made by lowering.
     pub(super) fn dependence(&mut self, expr: Expr) -> Dependence {
         if let Some(known) = self.known.dependences.get(expr) {
             return *known;
@@ -77,8 +76,8 @@ impl Lowering<'_> {
         found
     }
 
-    /// Whether a base of a term is made of parameters, and not of numbers alone. It was asked when the base was lowered, before
-    /// the term.
+    /// Whether the base of a term is made of parameters and not of numbers alone. Cached when the base was lowered,
+    /// before the term.
     pub(super) fn is_parameter(&self, expr: Expr) -> bool {
         self.known.dependences.get(expr) == Some(&Dependence::Parameters)
     }
@@ -91,7 +90,7 @@ impl Lowering<'_> {
             return self.operations.add(Operation::Input(Symbol::AtPoint(point, variable)));
         };
         let value = self.value(argument);
-        self.operations.call_it(value, Symbol::AtPoint(point, variable));
+        self.operations.set_name(value, Symbol::AtPoint(point, variable));
         value
     }
 
@@ -103,7 +102,7 @@ impl Lowering<'_> {
         match values[..] {
             [only] => self.operations.add(Operation::Call(function, only)),
             [first, second] => self.operations.add(Operation::Call2(function, first, second)),
-            // No function of the language takes another number of arguments.
+            // No other number of arguments exists.
             _ => self.operations.constant(f64::NAN),
         }
     }
@@ -166,7 +165,7 @@ impl Lowering<'_> {
         self.operations.add(Operation::Negate(all.unwrap_or(zero)))
     }
 
-    /// What is there, and an expression more.
+    /// Adds an expression to an operation.
     fn plus(&mut self, left: OperationId, right: Expr) -> OperationId {
         if self.leads_negative(right) {
             let positive = self.pool.neg(right);
@@ -177,7 +176,7 @@ impl Lowering<'_> {
         self.operations.add(Operation::Add(left, right))
     }
 
-    /// No term of a sum is positive: its negative reads better.
+    /// Whether a sum has no positive term: its negative reads better.
     fn leads_negative(&self, expr: Expr) -> bool {
         match self.pool.node(expr) {
             Node::Sum(sum) => {
@@ -242,7 +241,7 @@ impl Lowering<'_> {
             into.constants.push(self.pool.power(base, exponent));
             return;
         }
-        // A number before a sum is one with the coefficient.
+        // Merges a number before a sum into the coefficient.
         let value = match self.sum_form(base) {
             SumForm::Coefficient { coefficient, inside } if exponent.is_one() => {
                 match self.pool.as_number(coefficient).cloned() {
@@ -261,13 +260,13 @@ impl Lowering<'_> {
         }
     }
 
-    /// What is constant over a run first, so that the product with it is made once; unless the rest is there already.
+    /// The product of the constant factors, computed once per run, unless the rest already exists.
     fn numerator(&mut self, of: Gathered) -> OperationId {
         let Gathered { coefficient, constants, parameters, step, varying, .. } = of;
         let number = if constants.is_empty() {
             Self::number(&coefficient)
         } else {
-            // Rounded once.
+            // Rounds once.
             let product = self.pool.product(&constants);
             let product = self.pool.scale(product, &coefficient);
             self.constant(product)
@@ -285,7 +284,7 @@ impl Lowering<'_> {
                 return self.multiply(there, constant.unwrap_or(number));
             }
         }
-        // A number alone before a varying factor stands behind it; with a parameter it is constant over a run.
+        // A lone number before a varying factor moves behind it; with a parameter it is constant over a run.
         let mut all: Vec<OperationId> = parameters.into_iter().chain(step).collect();
         if all.is_empty() {
             let product = varying.into_iter().reduce(|left, right| self.multiply(left, right));
@@ -301,16 +300,16 @@ impl Lowering<'_> {
     }
 }
 
-/// The factors of a product, by what they depend on.
+/// The factors of a product, grouped by dependence.
 struct Gathered {
     coefficient: Rational,
-    /// What depends on nothing.
+    /// Constant factors.
     constants: Vec<Expr>,
     parameters: Vec<OperationId>,
-    /// What depends on h, but not on the state.
+    /// Factors that depend on h, but not on the state.
     step: Vec<OperationId>,
     varying: Vec<OperationId>,
-    /// What is divided by.
+    /// Divisors.
     below: Vec<OperationId>,
 }
 

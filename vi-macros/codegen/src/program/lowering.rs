@@ -1,8 +1,8 @@
-//! What the lowering of a function works on.
+//! State of the lowering of a function.
 //!
-//! In: the pool, the arguments of the points, and what was found out about expressions for other functions. Out: a [`Lowering`], whose
-//! passes stand in files of their own: `lower` takes expressions apart, `sums` says how a sum is written, `powers` what becomes of
-//! exponents, `angles` of sines, `vanishing` of products whose factors are zero and infinite.
+//! In: the pool, the arguments of the points, and cached properties of expressions. Out: a [`Lowering`]. Its passes
+//! have their own files: `lower` visits expressions, `sums` chooses the form of a sum, `powers` expands exponents,
+//! `angles` combines sines, `vanishing` handles products of zero and infinite factors.
 
 use super::operations::{OperationId, Operations};
 use super::vanishing;
@@ -11,20 +11,20 @@ use num_traits::{Signed, ToPrimitive};
 use std::collections::BTreeMap;
 use vi_expr::{Expr, Pool, Rational, Table};
 
-/// What an expression depends on, the widest last.
+/// What an expression depends on, in ascending order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Dependence {
-    /// Nothing: it is a number.
+    /// Nothing: a number.
     None,
-    /// Parameters: it is constant over a run.
+    /// Parameters: constant over a run.
     Parameters,
-    /// Parameters and the step: it is constant over a run of fixed steps.
+    /// Parameters and the step: constant over a run of fixed steps.
     Run,
-    /// What changes from step to step.
+    /// Quantities that change from step to step.
     Step,
 }
 
-/// What is found out about expressions, whichever function they are lowered for.
+/// Properties of expressions that hold in all functions.
 #[derive(Default)]
 pub(super) struct Known {
     pub(super) dependences: Table<Expr, Dependence>,
@@ -40,14 +40,14 @@ pub(super) struct Lowering<'a> {
     /// The arguments of sines and cosines.
     pub(super) angles: Table<Expr, ()>,
     pub(super) values: Table<Expr, OperationId>,
-    /// How the sums of this function are written.
+    /// The forms of the sums in this function.
     pub(super) sum_forms: Table<Expr, SumForm>,
     pub(super) known: &'a mut Known,
     pub(super) arguments: &'a BTreeMap<(usize, Variable), Expr>,
 }
 
 impl<'a> Lowering<'a> {
-    /// A function with these arguments of the points.
+    /// The lowering of a function with these arguments of the points.
     pub(super) fn new(
         pool: &'a mut Pool<Symbol>,
         known: &'a mut Known,
@@ -66,7 +66,7 @@ impl<'a> Lowering<'a> {
     }
 }
 
-/// With which exponents a base occurs.
+/// The exponents of a base.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Occurrence {
     /// Some exponent is an odd multiple of 1/2 or of 1/4.
@@ -81,18 +81,18 @@ impl Occurrence {
     }
 }
 
-/// A factor of a product: multiplied, or divided by.
+/// A factor of a product: a multiplier or a divisor.
 pub(super) enum Factor {
     Above(OperationId),
     Below(OperationId),
 }
 
-/// How an expression that is a sum is written.
+/// The form in which a sum is written.
 #[derive(Clone, Copy)]
 pub(super) enum SumForm {
     /// It is one term, or no sum.
     Term,
-    /// Large terms, and those of order h.
+    /// Large terms, and terms of order h.
     BySize { large: Expr, small: Expr },
     /// factor·inside + rest
     Factor { factor: Expr, inside: Expr, rest: Option<Expr> },

@@ -1,8 +1,8 @@
 //! The functions of a system as straight-line code.
 //!
 //! In: a [`Model`](crate::model::Model) and its [`DiscreteSystem`](crate::discrete::DiscreteSystem). Out: a
-//! [`Program`]: per emitted function its inputs, the operations with everything shared once, and its results.
-//! AFTER THIS no field, no power and no sum is left: only operations of two operands, calls, inputs and constants.
+//! [`Program`]: per emitted function its inputs, its operations, each shared term once, and its results.
+//! AFTER THIS only binary operations, calls, inputs and constants remain: no field, no power, no sum.
 
 mod angles;
 mod assemble;
@@ -25,7 +25,7 @@ pub use results::{FunctionId, Output, Results};
 
 use vi_expr::Table;
 
-/// What one function computes.
+/// A function of the emitted code.
 pub struct Function {
     /// Which function it is.
     pub id: FunctionId,
@@ -42,7 +42,7 @@ impl Function {
         self.operations.needed(self.results.entries())
     }
 
-    /// How often each operation that the results need is read: by others, and as a result.
+    /// How many operations and results read each needed operation.
     pub(crate) fn uses(&self) -> Table<OperationId, usize> {
         let mut uses = Table::default();
         let operands = self.needed().into_iter().flat_map(|id| self.operations.get(id).operands());
@@ -64,18 +64,18 @@ pub struct Program {
 }
 
 impl Program {
-    /// The function of this identity.
+    /// The function with this identity.
     #[must_use]
     pub fn function(&self, id: FunctionId) -> Option<&Function> {
         self.functions().find(|function| function.id == id)
     }
 
-    /// All functions, in the order in which they are emitted.
+    /// All functions in the order of emission.
     pub fn functions(&self) -> impl Iterator<Item = &Function> + Clone {
         self.continuous.iter().chain(self.by_rule())
     }
 
-    /// Those that depend on the rule, in the same order.
+    /// The functions that depend on the rule, in the same order.
     pub fn by_rule(&self) -> impl Iterator<Item = &Function> + Clone {
         self.slots.iter().chain(&self.step)
     }

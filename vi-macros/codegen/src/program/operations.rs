@@ -1,6 +1,6 @@
-//! Operations: what a processor does, each once.
+//! Operations: scalar instructions, each computed once.
 //!
-//! In: requests for operations. Out: a list in which equal operations are one entry and operands come first.
+//! In: requests for operations. Out: a list in which equal operations share one entry and operands come first.
 
 use crate::symbol::Symbol;
 use vi_expr::{Distinct, Function, Index, Table};
@@ -10,7 +10,7 @@ use vi_expr::{Distinct, Function, Index, Table};
 pub struct OperationId(u32);
 
 impl OperationId {
-    /// More than 2^32 operations do not fit the limit on nodes of the pool.
+    /// The limit on nodes of the pool keeps the number of operations below 2^32.
     fn at(place: usize) -> Self {
         Self(u32::try_from(place).unwrap_or(u32::MAX))
     }
@@ -25,7 +25,7 @@ impl Index for OperationId {
 /// An operation, its operands by index.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Operation {
-    /// A number, by its bits.
+    /// A number, as bits.
     Constant(u64),
     /// A parameter, an argument of the function, or a part of one.
     Input(Symbol),
@@ -47,7 +47,7 @@ pub enum Operation {
     Call(Function, OperationId),
     /// A function of two operands.
     Call2(Function, OperationId, OperationId),
-    /// a, and 0 where b is 0; there so many of its derivatives are 0 too
+    /// a, or 0 if b is 0; then this number of its derivatives is 0 too
     ZeroWhere(OperationId, OperationId, u8),
 }
 
@@ -59,7 +59,7 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// The operation, listed once. Constants fold, and 0 and 1 disappear where that is exact.
+    /// Lists the operation once. Folds constants, and removes 0 and 1 if the result is exact.
     pub fn add(&mut self, operation: Operation) -> OperationId {
         if let Some(simple) = self.simplified(&operation) {
             return simple;
@@ -72,7 +72,7 @@ impl Operations {
         self.add(Operation::Constant(value.to_bits()))
     }
 
-    /// The number that an operation is, if it is one.
+    /// The value of an operation that is a number.
     #[must_use]
     pub fn as_constant(&self, id: OperationId) -> Option<f64> {
         match self.get(id) {
@@ -81,32 +81,32 @@ impl Operations {
         }
     }
 
-    /// An operation by its index.
+    /// The operation with this index.
     #[must_use]
     pub fn get(&self, id: OperationId) -> &Operation {
         &self.list[id.index()]
     }
 
-    /// The index of an operation that is listed.
+    /// The index of a listed operation.
     #[must_use]
     pub fn find(&self, operation: &Operation) -> Option<OperationId> {
         self.list.get_index_of(operation).map(OperationId::at)
     }
 
-    /// The operation is the argument of the rule that this symbol names.
-    pub fn call_it(&mut self, id: OperationId, name: Symbol) {
+    /// Records that the operation is the argument of the rule with this symbol.
+    pub fn set_name(&mut self, id: OperationId, name: Symbol) {
         if self.get(id).is_work() && !self.names.contains(id) {
             self.names.insert(id, name);
         }
     }
 
-    /// The name that an operation was given.
+    /// The symbol recorded for an operation.
     #[must_use]
     pub fn name(&self, id: OperationId) -> Option<&Symbol> {
         self.names.get(id)
     }
 
-    /// How many operations are listed.
+    /// The number of listed operations.
     pub(super) fn len(&self) -> usize {
         self.list.len()
     }
@@ -149,9 +149,9 @@ impl Operations {
                 (_, Some(1.0)) => Some(*a),
                 (Some(-1.0), _) => Some(self.add(Negate(*b))),
                 (_, Some(-1.0)) => Some(self.add(Negate(*a))),
-                // A constant stands behind: `x * real(0.5)`.
+                // Moves a constant behind: `x * real(0.5)`.
                 (Some(_), None) => Some(self.add(Multiply(*b, *a))),
-                // The sign moves outward, until a sum takes it up.
+                // Moves the sign outward until a sum absorbs it.
                 _ => match (self.get(*a).clone(), self.get(*b).clone()) {
                     (Negate(a), _) => Some(self.negative_product(a, *b)),
                     (_, Negate(b)) => Some(self.negative_product(*a, b)),
@@ -231,13 +231,13 @@ impl Operation {
         }
     }
 
-    /// Whether it costs anything.
+    /// Whether it costs time.
     #[must_use]
     pub fn is_work(&self) -> bool {
         !matches!(self, Self::Constant(_) | Self::Input(_))
     }
 
-    /// What it costs, in additions: a quotient waits four times as long, and a sine is a polynomial.
+    /// Its cost in additions. A division has four times the latency; a sine is a polynomial.
     #[must_use]
     pub fn cost(&self) -> usize {
         match self {

@@ -1,15 +1,14 @@
-//! An order of the operations in which few values are held at a time.
+//! An order of the operations that keeps few values live.
 //!
-//! In: a function. Out: the operations that its results need, operands before results. Vectors and the rows of matrices
-//! go side by side, their first components before the second ones: in a chain neighbours share most of their operations.
-//! What is left is needed by single numbers only, as the sum of all energies is; each part of it comes as soon as its
-//! operands are there.
+//! In: a function. Out: the operations that its results need, operands before results. The order visits vectors and
+//! rows of matrices in parallel, first components first: in a chain, neighbours share most operations. Operations that
+//! only scalars need, such as a total energy, follow as soon as their operands exist.
 
 use super::{Function, OperationId};
 use vi_expr::Index;
 
 impl Function {
-    /// The operations that the results need, in an order in which few values are held at a time.
+    /// The operations that the results need, in an order that keeps few values live.
     #[must_use]
     pub fn local_order(&self) -> Vec<OperationId> {
         let (mut place, mut operations) = (vec![None; self.operations.len()], Vec::new());
@@ -25,12 +24,12 @@ impl Function {
                 operations.push((last, true, id));
             }
         }
-        // Ascending indices keep operands before results among those of one place.
+        // Ascending indices keep operands before results within one position.
         operations.sort_unstable();
         operations.into_iter().map(|(_, _, id)| id).collect()
     }
 
-    /// The components of all vectors, ordered by how far along their vector they are; all results where there is none.
+    /// The components of all vectors, ordered by relative position; all results if there is no vector.
     fn side_by_side(&self) -> Vec<OperationId> {
         let vectors = || self.results.rows().filter(|row| row.len() > 1);
         let longest = vectors().map(<[OperationId]>::len).max().unwrap_or(0);
@@ -44,7 +43,7 @@ impl Function {
         placed.into_iter().map(|(_, id)| id).collect()
     }
 
-    /// These operations and all that they need, each right after its operands.
+    /// These operations and all that they need, each directly after its operands.
     fn depth_first(&self, roots: &[OperationId]) -> Vec<OperationId> {
         let (mut seen, mut order) = (vec![false; self.operations.len()], Vec::new());
         let mut open: Vec<(OperationId, bool)> = roots.iter().rev().map(|root| (*root, false)).collect();

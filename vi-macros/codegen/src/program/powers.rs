@@ -1,8 +1,9 @@
 //! Powers as products, roots and one division.
 //!
-//! In: the exponents with which each base occurs in one function. Out: operations. Integer powers are products of
-//! squares; half-integer ones are these times one root, quarters these times the root of that; where a base is divided by more than once, its reciprocal is
-//! computed once. A root below is a root above and a reciprocal, `x^(−3/2) = (1/x)² √x`: the two do not wait for each other.
+//! In: the exponents of each base in one function. Out: operations. Integer powers are products of squares.
+//! Half-integer powers multiply them by one root, quarter powers by the root of that root. A base with several
+//! divisions gets one reciprocal. A negative root is a root times a reciprocal, `x^(−3/2) = (1/x)² √x`: the two are
+//! independent.
 
 use super::lowering::{Factor, Lowering};
 use super::operations::{Operation, OperationId};
@@ -10,7 +11,7 @@ use num_traits::{One, ToPrimitive, Zero};
 use vi_expr::{Expr, Function, Node, Rational};
 
 impl Lowering<'_> {
-    /// Notes how bases occur below these expressions.
+    /// Records the exponents of bases in these expressions.
     pub(super) fn record_powers(&mut self, exprs: &[Expr]) {
         for expr in self.pool.reachable(exprs) {
             if let Node::Product(product) = self.pool.node(expr) {
@@ -60,7 +61,7 @@ impl Lowering<'_> {
         Factor::Below(whole(self, value))
     }
 
-    /// `value^(quarters/4)`, an odd number of them: whole powers of the value or of its reciprocal, times roots.
+    /// `value^(quarters/4)` for odd `quarters`: whole powers of the value or its reciprocal, times roots.
     fn quarters(&mut self, value: OperationId, quarters: i32) -> OperationId {
         let root = self.operations.add(Operation::SquareRoot(value));
         let mut power = self.operations.add(Operation::SquareRoot(root));
@@ -90,7 +91,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The rational as the nearest `f64`; NaN, which is an error at the end, where that is no normal one.
+    /// The nearest `f64` to the rational. NaN if it is not normal, which is reported at the end.
     pub(super) fn number(value: &Rational) -> f64 {
         if value.is_zero() {
             0.0
@@ -102,7 +103,7 @@ impl Lowering<'_> {
     }
 }
 
-/// An exponent times `parts`, where that is an integer.
+/// An exponent times `parts`, if that is an integer.
 fn multiple(exponent: &Rational, parts: i32) -> Option<i32> {
     let product = exponent * Rational::from_integer(parts.into());
     if product.is_integer() { product.numer().to_i32() } else { None }

@@ -1,7 +1,7 @@
-//! What a function computes, by name.
+//! Results of a function, by name.
 //!
-//! In: values with the [`Output`] that they are. Out: [`Results`], looked up by that output: of expressions while a function is
-//! assembled, of operations in a [`Function`](super::Function), of formulas where it is printed.
+//! In: values keyed by [`Output`]. Out: [`Results`]: of expressions during assembly, of operations in a
+//! [`Function`](super::Function), of formulas during printing.
 
 /// A function of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -18,7 +18,7 @@ pub enum FunctionId {
     Acceleration,
     /// L_v, L_q + f, and M.
     Point,
-    /// How L_v and L_q + f change.
+    /// Derivatives of L_v and L_q + f.
     PointDerivatives,
     /// f·v − L_t.
     Power,
@@ -26,7 +26,7 @@ pub enum FunctionId {
     ScaledPoint,
     /// D.
     StepDensity,
-    /// What L and f are made of.
+    /// The parts of L and f.
     NonFinite,
     /// L_d.
     Ld,
@@ -50,7 +50,7 @@ pub enum FunctionId {
     MomentumEquation,
     /// The momentum row, its rounding scale, and p1 − p0.
     MomentumResidual,
-    /// How the momentum row and p1 − p0 change.
+    /// Derivatives of the momentum row and of p1 − p0.
     MomentumDerivatives,
     /// E1.
     DiscreteEnergy,
@@ -58,7 +58,7 @@ pub enum FunctionId {
     ExtendedSystem,
     /// Both rows, their rounding scales, p1 − p0 and E1 − E0.
     ExtendedResidual,
-    /// How both rows, p1 − p0 and E1 − E0 change.
+    /// Derivatives of both rows, of p1 − p0 and of E1 − E0.
     ExtendedDerivatives,
 }
 
@@ -98,7 +98,7 @@ impl FunctionId {
     }
 }
 
-/// One of the quantities that a function computes.
+/// A quantity computed by a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Output {
     /// The value of a function that computes one number or one vector.
@@ -137,9 +137,9 @@ pub enum Output {
     RoundingScale,
     /// c, the energy row combined with the momentum row.
     EnergyResidual,
-    /// The derivative of c by v, over h.
+    /// ∂c/∂v / h.
     EnergyDv,
-    /// The derivative of c by h, over h.
+    /// ∂c/∂h / h.
     EnergyDh,
     /// The sum of the absolute values of the terms of c.
     EnergyRoundingScale,
@@ -149,7 +149,7 @@ pub enum Output {
     EnergyIncrement,
     /// ∂r/∂q.
     ResidualDq,
-    /// The derivative of c by q.
+    /// ∂c/∂q.
     EnergyDq,
     /// ∂(p1 − p0)/∂q.
     MomentumIncrementDq,
@@ -165,31 +165,31 @@ pub enum Output {
     EnergyIncrementDh,
 }
 
-/// Quantities, each as rows: a number is a row of one entry, a vector a row, a matrix as many rows as it has.
+/// Quantities as rows: a number has one row of one entry, a vector one row, a matrix several.
 #[derive(Clone, Debug)]
 pub struct Results<E> {
     quantities: Vec<(Output, Vec<Vec<E>>)>,
 }
 
 impl<E> Results<E> {
-    /// Of these quantities, in this order.
+    /// From these quantities, in this order.
     pub(super) fn new(quantities: Vec<(Output, Vec<Vec<E>>)>) -> Self {
         Self { quantities }
     }
 
-    /// The rows of a matrix; none where it is not computed.
+    /// The rows of a matrix; empty if it is not computed.
     #[must_use]
     pub fn matrix(&self, output: Output) -> &[Vec<E>] {
         self.quantities.iter().find(|(known, _)| *known == output).map_or(&[], |(_, rows)| rows)
     }
 
-    /// The entries of a vector; none where it is not computed.
+    /// The entries of a vector; empty if it is not computed.
     #[must_use]
     pub fn vector(&self, output: Output) -> &[E] {
         self.matrix(output).first().map_or(&[], Vec::as_slice)
     }
 
-    /// A number, where it is computed.
+    /// A number, if it is computed.
     #[must_use]
     pub fn number(&self, output: Output) -> Option<&E> {
         self.vector(output).first()
@@ -205,7 +205,7 @@ impl<E> Results<E> {
         self.rows().flatten()
     }
 
-    /// What is made of each entry, under the same names.
+    /// Maps each entry, under the same names.
     pub(crate) fn map<F>(&self, mut make: impl FnMut(&E) -> F) -> Results<F> {
         let mut made = |rows: &Vec<Vec<E>>| rows.iter().map(|row| row.iter().map(&mut make).collect()).collect();
         Results { quantities: self.quantities.iter().map(|(output, rows)| (*output, made(rows))).collect() }

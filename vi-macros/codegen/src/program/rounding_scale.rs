@@ -1,15 +1,15 @@
-//! The rounding scale of a residual: what it is a sum of.
+//! The rounding scale of a residual: the sum of its absolute terms.
 //!
-//! In: a residual r. Out: Σ |coefficient|·|term|, where a sum inside a term counts term by term too, down to [`DEPTH`] levels. A residual
-//! below `eps` times this is zero as far as the arithmetic can tell. Low parts are below it, and left out. A product that has a limit where
-//! a factor is infinite counts as a whole.
+//! In: a residual r. Out: Σ |coefficient|·|term|. A sum inside a term counts term by term too, down to [`DEPTH`]
+//! levels. A residual below `eps` times this scale is zero to rounding. Low parts are smaller still and omitted. A
+//! product that has a limit although a factor is infinite counts as a whole.
 
 use super::vanishing::Known;
 use crate::symbol::Symbol;
 use num_traits::{One, Signed, Zero};
 use vi_expr::{Expr, Function, Node, Pool, Product, Rational, Sum};
 
-/// Levels of sums inside sums that count term by term.
+/// Levels of nested sums that count term by term.
 const DEPTH: u32 = 4;
 
 /// The sum of the absolute values of the terms of an expression.
@@ -39,7 +39,7 @@ fn terms(pool: &mut Pool<Symbol>, known: &mut Known, sum: &Sum, depth: u32) -> E
     pool.sum(&found)
 }
 
-/// The product of the scales of its factors: of a sum s to the power n `n |s|^(n−1)` times that of s, by which it changes.
+/// The product of the scales of its factors. For s^n this is `n |s|^(n−1)` times the scale of s, by the chain rule.
 fn factors(pool: &mut Pool<Symbol>, known: &mut Known, product: &Product, depth: u32) -> Expr {
     let (mut sums, mut others) = (Vec::new(), Vec::new());
     for (base, exponent) in &product.factors {
@@ -58,7 +58,7 @@ fn factors(pool: &mut Pool<Symbol>, known: &mut Known, product: &Product, depth:
     pool.product(&sums)
 }
 
-/// A low part, or a product with one.
+/// Whether it is a low part, or a product with one.
 fn is_low(pool: &Pool<Symbol>, expr: Expr) -> bool {
     let low = |expr: Expr| matches!(pool.node(expr), Node::Symbol(Symbol::Low(_)));
     match pool.node(expr) {
@@ -67,7 +67,7 @@ fn is_low(pool: &Pool<Symbol>, expr: Expr) -> bool {
     }
 }
 
-/// |expr|; what is never negative stays.
+/// |expr|; an expression that is never negative stays unchanged.
 fn absolute(pool: &mut Pool<Symbol>, expr: Expr) -> Expr {
     let never_negative = match pool.node(expr) {
         Node::Number(number) => !number.is_negative(),

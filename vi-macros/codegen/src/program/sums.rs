@@ -1,8 +1,8 @@
-//! How a sum is written.
+//! The form in which a sum is written.
 //!
-//! In: a sum. Out: what its terms have in common, and what is left. Terms of order h are added up first and joined to the large
-//! ones last. Factors are taken out where that saves products in every step. Parameters are not: they are coefficients,
-//! computed once per run, whatever stands in them.
+//! In: a sum. Out: the common factor of its terms, and the rest. Terms of order h are added first and joined to the
+//! large ones last. A factor is extracted if this saves products in every step. Parameters are coefficients, computed
+//! once per run, and are not extracted.
 
 use super::lowering::{Dependence, Lowering, SumForm};
 use crate::symbol::Symbol;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use vi_expr::{Expr, Node, Rational, Sum};
 
 impl Lowering<'_> {
-    /// How an expression is written.
+    /// The form of an expression.
     pub(super) fn sum_form(&mut self, expr: Expr) -> SumForm {
         if let Some(known) = self.sum_forms.get(expr) {
             return *known;
@@ -35,7 +35,7 @@ impl Lowering<'_> {
         form.or_else(|| self.common_coefficient(&sum)).unwrap_or(SumForm::Plain)
     }
 
-    /// Large terms and those of order h, where a sum has both.
+    /// Large terms and terms of order h, if a sum has both.
     fn by_size(&mut self, sum: &Sum) -> Option<SumForm> {
         let (small, large): (Vec<_>, Vec<_>) = sum.terms.iter().cloned().partition(|(term, _)| self.is_small(*term));
         if small.is_empty() || (large.is_empty() && sum.constant.is_zero()) {
@@ -61,12 +61,12 @@ impl Lowering<'_> {
         self.pool.combination(sum.terms.iter().cloned().chain([(constant, Rational::one())]))
     }
 
-    /// The factor that most terms share, what it is multiplied by, and the other terms. Parameters are factors of what
-    /// changes with the state at no cost, as coefficients computed once per run; they are taken out of sums of such only.
+    /// The factor shared by most terms, its cofactor, and the other terms. Parameters cost nothing as factors of
+    /// varying terms, because coefficients are computed once per run. They are extracted only from sums of constants.
     fn common_factor(&mut self, sum: &Sum) -> Option<SumForm> {
         let mut counts: BTreeMap<Expr, usize> = BTreeMap::new();
         let varies = sum.terms.iter().any(|(term, _)| self.dependence(*term) > Dependence::Parameters);
-        // A term that is zero in the limit of all its factors keeps them.
+        // A product with a limit needs all its factors in one place.
         let Self { pool, known, .. } = self;
         let (whole, terms): (Vec<_>, Vec<_>) =
             sum.terms.iter().cloned().partition(|(term, _)| known.products.has_limit(pool, *term));
@@ -77,7 +77,7 @@ impl Lowering<'_> {
                 }
             }
         }
-        // Of equally frequent ones the step, then the oldest.
+        // Ties go to the step, then to the oldest.
         let step = self.pool.symbol(Symbol::Step);
         let (base, count) =
             counts.into_iter().max_by_key(|(base, count)| (*count, *base == step, core::cmp::Reverse(*base)))?;
@@ -104,8 +104,8 @@ impl Lowering<'_> {
         Some(SumForm::Factor { factor, inside, rest: (!self.pool.is_zero(rest)).then_some(rest) })
     }
 
-    /// Whether a bare sum is among the terms: it would dissolve in their sum, and its differences with it. e²/2 + e³/3 stays as
-    /// it is.
+    /// Whether a term is a bare sum. Factoring would merge it with the others and lose its differences. So e²/2 + e³/3
+    /// stays.
     fn dissolves(&self, terms: &[Expr]) -> bool {
         terms.iter().any(|term| matches!(self.pool.node(*term), Node::Sum(sum) if sum.terms.len() > 1))
     }
@@ -137,7 +137,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// The coefficient that most terms share but for the sign, with parameters if all have the same, and the sum without it.
+    /// The coefficient shared by most terms up to sign, with parameters if all terms have the same, and the sum without
+    /// it.
     fn common_coefficient(&mut self, sum: &Sum) -> Option<SumForm> {
         let mut parameters = self.parameters(sum.terms.first()?.0);
         let alike = |(term, _): &(Expr, Rational)| self.parameters(*term) == parameters;
@@ -149,7 +150,7 @@ impl Lowering<'_> {
         for number in numbers.filter(|number| !number.is_zero()) {
             *counts.entry(number.abs()).or_default() += 1;
         }
-        // Every other one is a product still, and this one more; those that were one become products, too.
+        // Each other term remains a product, and the sum becomes one; terms without a coefficient become products too.
         let all: usize = counts.values().sum();
         let ones = counts.get(&Rational::one()).copied().unwrap_or(0);
         let (number, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
@@ -174,7 +175,7 @@ impl Lowering<'_> {
         (!self.dissolves(&terms)).then(|| SumForm::Coefficient { coefficient, inside: self.pool.sum(&terms) })
     }
 
-    /// The powers of parameters that a term which changes with the state has as factors.
+    /// The powers of parameters in a term that changes with the state.
     fn parameters(&self, term: Expr) -> Vec<(Expr, Rational)> {
         let Node::Product(product) = self.pool.node(term) else { return Vec::new() };
         let fixed = |(base, _): &&(Expr, Rational)| self.is_parameter(*base);

@@ -1,84 +1,84 @@
-//! Products with a limit at a state where one of their factors is infinite.
+//! Products that have a limit at a state although a factor is infinite there.
 //!
-//! In: the factors of a product. Out: [`Limits`], if the product is zero in the limit although floating point gives `0·∞`:
+//! In: the factors of a product. Out: [`Limits`], if the product tends to zero although floating point gives `0·∞`:
 //!
-//! - A factor that is constant but for jumps, made of `sign(…)`, numbers and parameters, is zero and does not jump at the state.
-//!   So the product is zero around the state, whatever its other factors are.
-//! - A negative power `B^(-e)` meets factors that vanish with B. B is a sum of terms `c |u|^a`, so `|u| ≤ C B^(1/a)`: factors
-//!   of total order m in B have the limit 0 if `m > e`. The numbers c are positive. Parameters among them are tested at run
-//!   time, and so is an exponent that depends on parameters.
+//! - A stepwise constant factor, made of `sign(…)`, numbers and parameters, is zero and does not jump at the state. So
+//!   the product is zero around the state for any other factors.
+//! - A negative power `B^(-e)` multiplies factors that vanish with B. B is a sum of terms `c |u|^a`, so `|u| ≤ C
+//!   B^(1/a)`. Factors of total order m in B have the limit 0 if `m > e`. The numbers c are positive. Parameters among
+//!   them are tested at run time, and so is an exponent that depends on parameters.
 //!
-//! AFTER THIS the other factors stand outside of what is set to zero: where they are infinite too, the product stays `0·∞`.
+//! AFTER THIS the other factors are outside the part set to zero. If they are infinite too, the product stays `0·∞`.
 
 use crate::symbol::{Symbol, Variable};
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::rc::Rc;
 use vi_expr::{Expr, Function, Node, Pool, Rational, Table};
 
-/// Signs whose values are tried one by one.
+/// Maximum number of signs whose values are tried one by one.
 const SIGNS: u32 = 4;
-/// Levels of operations below which nothing is looked for.
+/// Search depth in operations.
 const DEPTH: u32 = 4;
-/// Below this a sum of signs may be zero but for rounding.
+/// A sum of signs below this may be zero to rounding.
 const ROUNDING: f64 = 1e-9;
-/// Derivatives that are zero with a function that is zero around a state: more than any number keeps.
+/// Number of vanishing derivatives of a function that is zero around a state; larger than any count.
 pub(super) const ALL: u8 = u8::MAX;
 
-/// How an expression changes with the state.
+/// How an expression depends on the state.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Change {
-    /// It is made of numbers and parameters.
+    /// Made of numbers and parameters.
     Constant,
     /// It jumps, and is constant elsewhere.
     Stepwise,
     Varying,
 }
 
-/// What is known of an expression, whichever product it is in.
+/// Properties of an expression that hold in every product.
 #[derive(Clone, Copy)]
 struct Nature {
     change: Change,
     /// It may be infinite at a finite state.
     singular: bool,
-    /// Something in it jumps.
+    /// It contains a jump.
     jumps: bool,
 }
 
-/// What holds of every expression.
+/// Properties assumed by default.
 const LEAST_KNOWN: Nature = Nature { change: Change::Varying, singular: true, jumps: true };
 
 /// A product of powers.
 type Factors = Vec<(Expr, Rational)>;
 
-/// Factors that have the limit 0 where `base` is zero.
+/// Factors whose product tends to 0 where `base` is zero.
 pub(super) struct Limit {
     pub(super) factors: Factors,
     pub(super) base: Expr,
-    /// How many of their derivatives have the limit 0 too.
+    /// The number of their derivatives that tend to 0 too.
     pub(super) derivatives: u8,
 }
 
-/// A product by its limits.
+/// A product split into its limits.
 pub(super) struct Limits {
     pub(super) vanishing: Vec<Limit>,
-    /// The factors in none of them.
+    /// Factors outside all limits.
     pub(super) others: Factors,
-    /// Where one of these is zero, the product is zero around the state.
+    /// If one of these is zero, the product is zero around the state.
     pub(super) steps: Vec<Expr>,
 }
 
-/// What is known of the products of a system.
+/// Cached properties of products.
 #[derive(Default)]
 pub(super) struct Known {
     natures: Table<Expr, Nature>,
-    /// Where bases are zero, if a limit is looked for there.
+    /// Zeros of bases at which a limit is sought.
     zeros: Table<Expr, Option<Rc<Zeros>>>,
-    /// Where L or f is infinite: where all expressions in `(t, q, v)` of one of these are zero. No limit is looked for there.
+    /// Poles of L or f: common zeros of each list of expressions in `(t, q, v)`. No limit is sought there.
     poles: Vec<Vec<Expr>>,
 }
 
 impl Known {
-    /// Notes where L and f are infinite.
+    /// Records the poles of L and f.
     pub(super) fn of(pool: &mut Pool<Symbol>, sources: &[Expr]) -> Self {
         let mut known = Self::default();
         for node in pool.reachable(sources) {
@@ -86,7 +86,7 @@ impl Known {
             let poles = Analysis { pool, known: &mut known }.poles(&product.factors);
             known.poles.extend(poles);
         }
-        // Those found before the last pole was.
+        // Discards zeros found before the last pole was recorded.
         known.zeros = Table::default();
         known
     }
@@ -106,7 +106,7 @@ impl Known {
         Analysis { pool, known: self }.limits(&factors).is_some()
     }
 
-    /// Whether a factor of a product may be infinite, at a state where a limit is looked for.
+    /// Whether a factor of a product may be infinite at a state where a limit is sought.
     fn may_be_infinite(&mut self, pool: &Pool<Symbol>, factors: &[(Expr, Rational)]) -> bool {
         factors.len() > 1
             && factors.iter().any(|(base, exponent)| {
@@ -115,7 +115,7 @@ impl Known {
             })
     }
 
-    /// How an expression changes; of everything below it this is known afterwards.
+    /// How an expression depends on the state. Caches the result for all its parts.
     fn nature(&mut self, pool: &Pool<Symbol>, expr: Expr) -> Nature {
         if let Some(known) = self.natures.get(expr) {
             return *known;
@@ -162,14 +162,14 @@ impl Known {
     }
 }
 
-/// A power that may be infinite where its base is zero.
+/// A power that may be infinite at zeros of its base.
 struct Pole {
     base: Expr,
     zeros: Rc<Zeros>,
     exponent: Expr,
 }
 
-/// Where a base is zero: where all of `vanishing` and `fixed` are, if `coefficients` are positive.
+/// The zeros of a base: common zeros of `vanishing` and `fixed`, if all `coefficients` are positive.
 #[derive(Default)]
 struct Zeros {
     /// Each u with the exponent a of its term `c |u|^a`.
@@ -198,12 +198,12 @@ impl Analysis<'_> {
         (!vanishing.is_empty() || !steps.is_empty()).then_some(Limits { vanishing, others, steps })
     }
 
-    /// Where a product is infinite: the zeros of those of its bases for which it has no limit.
+    /// The poles of a product: zeros of the bases for which it has no limit.
     fn poles(&mut self, factors: &[(Expr, Rational)]) -> Vec<Vec<Expr>> {
         let mut others = factors.to_vec();
         let mut poles = Vec::new();
         for (power, exponent) in factors {
-            // Beside a term or with an exponent made of parameters it need not be infinite.
+            // With a term or an exponent made of parameters it may be finite.
             if let Some(pole) = self.pole(*power, exponent).filter(|_| exponent.is_negative())
                 && pole.zeros.fixed.is_empty()
                 && self.limit(*power, &pole, &mut others).is_none()
@@ -214,7 +214,7 @@ impl Analysis<'_> {
         if self.steps(&others).is_empty() { poles } else { Vec::new() }
     }
 
-    /// The base and the exponent of a power whose exponent may be negative.
+    /// Base and exponent of a power whose exponent may be negative.
     fn pole(&mut self, power: Expr, exponent: &Rational) -> Option<Pole> {
         let Nature { change, jumps, .. } = self.known.nature(self.pool, power);
         if change < Change::Varying || jumps {
@@ -233,7 +233,7 @@ impl Analysis<'_> {
         Some(Pole { base, zeros, exponent: self.pool.scale(inner, exponent) })
     }
 
-    /// Takes a power and the factors that vanish with its base out of a product, if they have the limit 0 together.
+    /// Removes a power and the factors that vanish with its base from a product, if together they tend to 0.
     fn limit(&mut self, power: Expr, pole: &Pole, others: &mut Factors) -> Option<Limit> {
         let (mut factors, mut left, mut order) = (Vec::new(), Vec::new(), pole.exponent);
         for (factor, exponent) in others.iter().cloned() {
@@ -252,7 +252,8 @@ impl Analysis<'_> {
         // The largest integer below the order.
         let derivatives = in_distance.as_ref().and_then(|order| (order.ceil() - Rational::one()).to_u8()).unwrap_or(0);
         let Zeros { fixed, coefficients, .. } = &*pole.zeros;
-        // A square may underflow: then the product, of the order of |u|, is 0 as well as any other number. A root of |u| is not.
+        // A square may underflow. Then 0 is as accurate as any other value of the product, which is of the order of
+        // |u|. This fails for a root of |u|.
         let is_plain =
             fixed.is_empty() && coefficients.is_empty() && in_distance.is_some_and(|order| order >= Rational::one());
         let base = if is_plain { pole.base } else { self.tested(&pole.zeros, order) };
@@ -269,7 +270,7 @@ impl Analysis<'_> {
         self.known.poles.iter().any(|pole| pole.iter().all(|u| zero.contains(u)))
     }
 
-    /// The power of the distance from its zeros of which a base is at most, if its u are linear in variables.
+    /// The power of the distance from its zeros that bounds a base from above, if its u are linear in the variables.
     fn least_power(&self, zeros: &Zeros) -> Option<Rational> {
         let is_variable = |expr: Expr| self.pool.as_symbol(expr).is_some();
         let is_linear = |(expr, _): &(Expr, Rational)| match self.pool.node(*expr) {
@@ -279,7 +280,7 @@ impl Analysis<'_> {
         zeros.vanishing.iter().map(|of| is_linear(of).then_some(&of.1)).min().flatten().cloned()
     }
 
-    /// `Σ |u| + Σ |fixed| + Σ (1 − sign(c)) + (1 − sign(order))`: zero where a limit of this order is one.
+    /// `Σ |u| + Σ |fixed| + Σ (1 − sign(c)) + (1 − sign(order))`: zero exactly where a limit of this order exists.
     fn tested(&mut self, zeros: &Zeros, order: Expr) -> Expr {
         let mut terms = Vec::new();
         for expr in zeros.vanishing.iter().map(|(expr, _)| expr).chain(&zeros.fixed) {
@@ -293,7 +294,7 @@ impl Analysis<'_> {
         self.pool.sum(&terms)
     }
 
-    /// Where a base is zero, if a limit is looked for there.
+    /// The zeros of a base, if a limit is sought there.
     fn zeros(&mut self, base: Expr) -> Option<Rc<Zeros>> {
         if let Some(known) = self.known.zeros.get(base) {
             return known.clone();
@@ -303,7 +304,7 @@ impl Analysis<'_> {
         found
     }
 
-    /// Where a base is zero, if none of its terms is negative.
+    /// The zeros of a base, if none of its terms is negative.
     fn find_zeros(&mut self, base: Expr, depth: u32) -> Option<Zeros> {
         let one = Rational::one();
         let mut zeros = Zeros::default();
@@ -330,7 +331,7 @@ impl Analysis<'_> {
         (!zeros.vanishing.is_empty() && !is_never_zero).then_some(zeros)
     }
 
-    /// The zeros of one term more.
+    /// Adds the zeros of one term.
     fn add_zeros(
         &mut self,
         zeros: &mut Zeros,
@@ -372,7 +373,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// With which power of a base an expression vanishes at its zeros, at least; 0 where that is not known.
+    /// A lower bound of the power of a base with which an expression vanishes at its zeros; 0 if unknown.
     fn order(&mut self, expr: Expr, zeros: &Zeros, depth: u32) -> Rational {
         self.pool.spend(zeros.vanishing.len());
         if self.pool.is_exhausted() {
@@ -414,7 +415,7 @@ impl Analysis<'_> {
             && sum.terms.iter().zip(&other.terms).all(alike)
     }
 
-    /// What is zero where a product is zero around the state, although a factor of it is infinite there.
+    /// Expressions that are zero where a product vanishes around the state although a factor is infinite.
     fn steps(&mut self, factors: &[(Expr, Rational)]) -> Vec<Expr> {
         if !self.known.may_be_infinite(self.pool, factors) {
             return Vec::new();
@@ -426,7 +427,7 @@ impl Analysis<'_> {
         steps.into_iter().filter_map(|step| self.zero_between_jumps(step)).collect()
     }
 
-    /// What is zero where a stepwise constant expression is zero and does not jump, if that may be:
+    /// An expression that is zero where a stepwise constant expression is zero and does not jump, if this is possible:
     /// `|expr| + Σ (1 − sign²)`, or the expression itself if it is never zero at a jump.
     fn zero_between_jumps(&mut self, expr: Expr) -> Option<Expr> {
         let nodes = self.pool.reachable(&[expr]);
@@ -455,7 +456,7 @@ impl Analysis<'_> {
         Some(self.pool.sum(&terms))
     }
 
-    /// Whether an expression may be zero where signs in it have these values, whatever the parameters are.
+    /// Whether an expression may be zero for these values of its signs and any parameters.
     fn may_be_zero(&self, nodes: &[Expr], expr: Expr, signs: &Table<Expr, f64>) -> bool {
         let mut known = Table::default();
         for node in nodes {
@@ -463,12 +464,12 @@ impl Analysis<'_> {
             let value = signs.get(*node).copied().unwrap_or_else(value);
             known.insert(*node, value);
         }
-        // Not a number where a parameter counts.
+        // NaN if a parameter contributes.
         !known.get(expr).is_some_and(|value| value.abs() > ROUNDING)
     }
 }
 
-/// The variable of L and f whose value a symbol is at a point of a rule.
+/// The variable of L and f that a symbol evaluates at a point of a rule.
 fn in_state(symbol: &Symbol) -> Symbol {
     Symbol::Continuous(match symbol {
         Symbol::AtPoint(_, variable) => *variable,

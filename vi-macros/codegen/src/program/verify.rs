@@ -1,8 +1,8 @@
-//! The operations compute what the expressions say.
+//! Verifies that the operations compute their expressions.
 //!
-//! In: a function and the expressions it was lowered from. Out: nothing, or an error at the system's name: a constant
-//! that is not finite, or an internal one where function and expressions differ at one point drawn from a fixed
-//! sequence, in builds with debug assertions only.
+//! In: a function and the expressions that it was lowered from. Out: nothing, or an error at the name of the system: a
+//! constant that is not finite or, in builds with debug assertions only, an internal error if function and expressions
+//! differ at one point of a fixed sequence.
 
 use super::operations::Operation;
 use super::results::Results;
@@ -14,18 +14,18 @@ use std::collections::BTreeMap;
 use syn::Result;
 use vi_expr::{Expr, Pool, Rounded, Table};
 
-/// Relative difference that reordering may cause: cancellation in the residuals included.
+/// Relative difference that reordering may cause, including cancellation in the residuals.
 const TOLERANCE: f64 = 1e-7;
-/// How many times the rounding of an expression that of its operations may be: an angle of 1e15 leaves few digits to its cosine.
+/// Ratio of the rounding of the operations to that of the expression: an angle of 1e15 leaves few digits to its cosine.
 const MARGIN: f64 = 16.0;
 
-/// The expressions that a function lowers, and the arguments of the points in them.
+/// The expressions of a function, and the arguments of the points in them.
 pub(super) struct Expressions {
     pub(super) results: Results<Expr>,
     pub(super) arguments: BTreeMap<(usize, Variable), Expr>,
 }
 
-/// Checks that every constant of a function is a finite number: derivatives multiply by exponents.
+/// Reports constants of a function that are not finite, such as exponents multiplied by differentiation.
 pub(super) fn has_finite_constants(function: &Function, system: &Ident) -> Result<()> {
     let finite = |id| match function.operations.get(id) {
         Operation::Constant(bits) => f64::from_bits(*bits).is_finite(),
@@ -76,7 +76,7 @@ pub(super) fn agrees(
 }
 
 impl Function {
-    /// The results, one after the other, for these inputs.
+    /// The results in order, for these inputs.
     pub fn evaluate(&self, input: &mut dyn FnMut(&Symbol) -> f64) -> Vec<f64> {
         let mut values: Table<OperationId, f64> = Table::default();
         for id in self.needed() {
@@ -106,14 +106,14 @@ impl Function {
         self.results.entries().map(|id| values.get(*id).copied().unwrap_or(f64::NAN)).collect()
     }
 
-    /// Operations that the results need: additions, products, divisions, roots and calls.
+    /// The number of operations that the results need: additions, products, divisions, roots and calls.
     #[must_use]
     pub fn operation_count(&self) -> usize {
         let needed = self.needed();
         needed.into_iter().filter(|id| self.operations.get(*id).is_work()).count()
     }
 
-    /// What these operations cost, in additions.
+    /// The cost of these operations, in additions.
     #[must_use]
     pub fn cost(&self) -> usize {
         let needed = self.needed();

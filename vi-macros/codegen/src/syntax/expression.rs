@@ -1,7 +1,7 @@
 //! Expressions, and the parser that gives `^` its mathematical precedence.
 //!
-//! In: tokens up to the end of an expression. Out: an [`Expression`] whose depth is bounded by [`DEPTH`]; sums and
-//! products are chains, not nested pairs, so that a sum of a thousand terms is one level deep.
+//! In: tokens up to the end of an expression. Out: an [`Expression`] of depth at most [`DEPTH`]. Sums and products are
+//! chains, not nested pairs: a sum of a thousand terms is one level deep.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -12,9 +12,9 @@
 //! range   = name "in" sum ".." sum
 //! ```
 //!
-//! A comma may stand behind the last one of a list. A power `a^1/2` is refused, since it is `(a^1)/2` and is never meant.
+//! A list may end with a comma. A power `a^1/2` is rejected: it means `(a^1)/2`, which is never intended.
 
-use super::unfitting;
+use super::unexpected;
 use crate::habits::Habit;
 use crate::messages::{Message, error};
 use num_bigint::BigInt;
@@ -24,16 +24,16 @@ use syn::parse::ParseStream;
 use syn::{Result, Token};
 use vi_expr::Rational;
 
-/// Levels of nesting that an expression may have.
+/// Maximum nesting depth of an expression.
 pub(crate) const DEPTH: usize = 100;
-/// Powers of ten that a literal may have, in absolute value; `f64` ends at 308.
+/// Maximum absolute exponent of a literal; `f64` ends at 308.
 const EXPONENT: i64 = 400;
-/// Digits that a literal may have, and other characters.
+/// Maximum number of characters of a literal.
 const DIGITS: usize = 800;
-/// The power of five that a machine integer holds.
+/// The largest power of five in a machine integer.
 const FIVES: u32 = 27;
 
-/// An expression as written, with the span of its first token.
+/// An expression as written, with the span of its main token.
 pub struct Expression {
     /// The smallest token that names it.
     pub span: Span,
@@ -41,7 +41,7 @@ pub struct Expression {
     pub kind: Kind,
 }
 
-/// What an expression can be.
+/// The kinds of expressions.
 pub enum Kind {
     /// An exact number.
     Number(Rational),
@@ -61,7 +61,7 @@ pub enum Kind {
     Chain(Box<Expression>, Vec<(Operator, Expression)>),
 }
 
-/// `i in 0..8`: the index runs from the first bound up to, and without, the second.
+/// `i in 0..8`: the index runs from the first bound to the second, which is excluded.
 pub struct Range {
     /// The index.
     pub index: Ident,
@@ -88,7 +88,7 @@ impl Expression {
     /// Parses one expression.
     ///
     /// # Errors
-    /// The message at the token that does not fit.
+    /// A message at the unexpected token.
     pub fn parse(input: ParseStream) -> Result<Self> {
         Self::sum(input, 0)
     }
@@ -106,7 +106,7 @@ impl Expression {
             return Err(error(input.span(), &Message::Habit(Habit::InclusiveRange)));
         }
         if !input.peek(Token![..]) {
-            return Err(unfitting::operator(input, start, "`..` and the end of the range"));
+            return Err(unexpected::operator(input, start, "`..` and the end of the range"));
         }
         input.parse::<Token![..]>()?;
         Ok(Range { index, from, to: Self::sum(input, depth)? })
@@ -168,7 +168,7 @@ impl Expression {
         let base = Self::atom(input, depth)?;
         if input.peek(Token![^]) {
             if let Kind::Name(name) = &base.kind
-                && unfitting::is_function(name)
+                && unexpected::is_function(name)
             {
                 return Err(error(name.span(), &Message::FunctionWithoutArguments { name: name.to_string() }));
             }
@@ -182,7 +182,7 @@ impl Expression {
         Ok(base)
     }
 
-    /// Refuses an exponent 1 or -1 over an integer: nobody writes `a^1/2` for half of a.
+    /// Rejects an exponent 1 or -1 followed by a division: `a^1/2` never means half of a.
     fn is_no_numerator(&self) -> Result<()> {
         let (number, exponent) = match &self.kind {
             Kind::Negative(positive) => (&positive.kind, "-1"),
@@ -209,7 +209,7 @@ impl Expression {
             return Self::alone(&inner, depth, "an operator or `)`");
         }
         let Ok(name) = input.parse::<Ident>() else {
-            return Err(unfitting::operand(input));
+            return Err(unexpected::operand(input));
         };
         if input.peek(syn::token::Bracket) {
             let inner;
@@ -234,7 +234,7 @@ impl Expression {
                 inner.parse::<Token![,]>()?;
             }
             if !inner.is_empty() {
-                return Err(unfitting::operator(&inner, start, "an operator or `)`"));
+                return Err(unexpected::operator(&inner, start, "an operator or `)`"));
             }
             return Ok(Self { span, kind: Kind::Sum(Box::new(range), Box::new(summand)) });
         }
@@ -245,14 +245,14 @@ impl Expression {
         Ok(Self { span, kind: Kind::Call(name, arguments) })
     }
 
-    /// The only expression between delimiters, whose end `what` names.
+    /// The only expression between delimiters; `what` names the expected end.
     pub(super) fn alone(inner: ParseStream, depth: usize, what: &'static str) -> Result<Self> {
         let start = inner.cursor();
         let expression = Self::sum(inner, depth + 1)?;
-        if inner.is_empty() { Ok(expression) } else { Err(unfitting::operator(inner, start, what)) }
+        if inner.is_empty() { Ok(expression) } else { Err(unexpected::operator(inner, start, what)) }
     }
 
-    /// Expressions between delimiters, separated by commas; `what` names what goes on or ends them.
+    /// Expressions between delimiters, separated by commas; `what` names the expected tokens.
     pub(super) fn list(inner: ParseStream, depth: usize, what: &'static str) -> Result<Vec<Self>> {
         let mut expressions = Vec::new();
         while !inner.is_empty() {
@@ -262,7 +262,7 @@ impl Expression {
                 break;
             }
             if !inner.peek(Token![,]) {
-                return Err(unfitting::operator(inner, start, what));
+                return Err(unexpected::operator(inner, start, what));
             }
             inner.parse::<Token![,]>()?;
         }
@@ -289,7 +289,7 @@ fn number(literal: &Literal) -> Result<Rational> {
     decimal(digits).ok_or_else(|| error(span, &Message::NumberRange))
 }
 
-/// How many characters of a literal are its number: `12.5e-3` of `12.5e-3kg`.
+/// The number of characters of a literal that form its number: `12.5e-3` of `12.5e-3kg`.
 fn length(text: &str) -> usize {
     let digits = |from: usize| text[from..].bytes().take_while(u8::is_ascii_digit).count();
     let mut length = digits(0);
@@ -307,7 +307,7 @@ fn length(text: &str) -> usize {
     length
 }
 
-/// `12.5e-3` as 125/10000; `None` beyond the range of `f64`.
+/// `12.5e-3` as 125/10000; `None` outside the range of `f64`.
 fn decimal(digits: &str) -> Option<Rational> {
     let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((digits, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
@@ -323,7 +323,7 @@ fn decimal(digits: &str) -> Option<Rational> {
     (rounded.is_finite() && (value.is_zero() || rounded.abs() >= f64::MIN_POSITIVE)).then_some(value)
 }
 
-/// `number / 10^power` in lowest terms. What both have in common are twos and fives: they are found faster than a common divisor.
+/// `number / 10^power` in lowest terms. Only twos and fives can be common, and removing them is faster than a gcd.
 fn over_power_of_ten(mut number: BigInt, power: u32) -> Rational {
     if number.is_zero() {
         return Rational::zero();
@@ -331,7 +331,7 @@ fn over_power_of_ten(mut number: BigInt, power: u32) -> Rational {
     let twos = number.trailing_zeros().and_then(|twos| u32::try_from(twos).ok()).unwrap_or(u32::MAX).min(power);
     number >>= twos;
     let mut fives = 0;
-    // As many at once as a machine integer holds.
+    // Up to one machine integer at a time.
     for together in [FIVES, 1] {
         let divisor = BigInt::from(5).pow(together);
         while fives + together <= power && (&number % &divisor).is_zero() {

@@ -1,17 +1,17 @@
-//! The language, as written: one type per clause, spans kept, nothing resolved.
+//! The language as written: one type per clause, with spans, unresolved.
 //!
-//! In: tokens. Out: a [`System`]. Grammar mistakes are all reported, clause by clause.
-//! AFTER THIS no token stream is left, only spans.
+//! In: tokens. Out: a [`System`]. Every clause reports its grammar mistakes.
+//! AFTER THIS only spans are left of the tokens.
 
 mod expression;
 pub mod parse;
-mod unfitting;
+mod unexpected;
 
 use crate::rules::GAUSS;
 pub use expression::{Expression, Kind, Operator, Range};
 use proc_macro2::{Ident, Span};
 
-/// The words that open a clause.
+/// The words that start a clause.
 const CLAUSES: [&str; 10] =
     ["const", "param", "coord", "let", "L", "force", "dissipation", "time_scale", "discretize", "check"];
 
@@ -31,22 +31,22 @@ pub struct System {
     pub coordinates: Vec<Coordinate>,
     /// `let a = …;` in order.
     pub lets: Vec<Definition>,
-    /// `L = …;`, each one that was written.
+    /// `L = …;`, each occurrence.
     pub lagrangians: Vec<Definition>,
     /// `force x = …;` in order; the name is the coordinate's.
     pub forces: Vec<Definition>,
-    /// `dissipation = …;`, each one that was written.
+    /// `dissipation = …;`, each occurrence.
     pub dissipations: Vec<Definition>,
-    /// `time_scale = …;`, each one that was written.
+    /// `time_scale = …;`, each occurrence.
     pub time_scales: Vec<Definition>,
-    /// `discretize …;`, each one that was written.
+    /// `discretize …;`, each occurrence.
     pub discretizations: Vec<Discretization>,
-    /// `check { … }`, each one that was written.
+    /// `check { … }`, each occurrence.
     pub checks: Vec<Check>,
 }
 
 impl System {
-    /// The number of rules that the system is declared with: those of a list, one that is written out, or none.
+    /// The number of declared rules: the length of the list, 1 for a written-out rule, or 0.
     #[must_use]
     pub fn rules(&self) -> usize {
         match self.discretizations.first() {
@@ -61,11 +61,11 @@ impl System {
 pub struct Definition {
     /// Doc comments before it.
     pub attributes: Vec<syn::Attribute>,
-    /// What is defined.
+    /// The defined name.
     pub name: Ident,
-    /// Which entries of an array are defined.
+    /// The entries of an array that are defined.
     pub indices: Option<Indices>,
-    /// As what.
+    /// Its value.
     pub value: Expression,
 }
 
@@ -89,9 +89,9 @@ pub struct Parameter {
     pub default: Default,
 }
 
-/// What a parameter is by default.
+/// The default of a parameter.
 pub enum Default {
-    /// `= 1.0`: this, and in an array each entry.
+    /// `= 1.0`: this value, for each entry of an array.
     Same(Expression),
     /// `= [1.0, 2.0]`: the entries of an array, in order.
     Each(Vec<Expression>),
@@ -105,25 +105,25 @@ pub struct Coordinate {
     pub length: Option<Expression>,
 }
 
-/// How L becomes L_d.
+/// The rule from L to L_d.
 pub enum Discretization {
-    /// `discretize midpoint, trapezoidal;`: rules, the system's own first, and `gauss`, which is none.
+    /// `discretize midpoint, trapezoidal;`: rules, the default first, and `gauss`, which is not a rule.
     Named(Vec<Ident>),
     /// `discretize { Ld = …; … }`
     Written(Rule),
 }
 
-/// A rule written out: each line of it, in order.
+/// A written-out rule: its lines, in order.
 pub struct Rule {
-    /// Where the rule stands.
+    /// Its location.
     pub span: Span,
     /// `Ld`, `fd_minus`, `fd_plus`, `gd_minus`, `gd_plus`.
     pub lines: Vec<Definition>,
 }
 
-/// `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`: where the system is checked.
+/// `check { x = 1, dot(x) = 0, k = 2; h = 0.01; }`: the state of the checks.
 pub struct Check {
-    /// Where the word `check` stands.
+    /// The location of the word `check`.
     pub span: Span,
     /// The entries, in order; the last plain `h` is the step.
     pub entries: Vec<Entry>,

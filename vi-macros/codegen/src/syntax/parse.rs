@@ -1,10 +1,10 @@
 //! Clauses.
 //!
-//! In: the tokens of a `lagrangian!`. Out: a [`System`]. A clause that cannot be read is reported and skipped up to
-//! its `;`, or up to the clause that begins where the `;` is missing, so that the next one is read too.
+//! In: the tokens of a `lagrangian!`. Out: a [`System`]. An unreadable clause is reported and skipped up to its `;`, or
+//! up to the next clause if the `;` is missing, so that later clauses are read too.
 
 use super::expression::DEPTH;
-use super::unfitting;
+use super::unexpected;
 use super::{
     CLAUSES, Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Kind, Parameter, Rule,
     System,
@@ -20,42 +20,42 @@ use syn::punctuated::Punctuated;
 use syn::{Attribute, Path, Result, Token, Visibility};
 use vi_expr::Rational;
 
-/// Names of types that the emitted code uses without a path.
+/// Types that the emitted code uses without a path.
 const TYPES: [&str; 6] = ["T", "W", "bool", "f64", "str", "usize"];
 
-/// What every system derives or implements.
+/// The traits that every system derives or implements.
 const DERIVED: [&str; 5] = ["Clone", "Copy", "Debug", "Default", "PartialEq"];
 
-/// Tokens that a system may have.
+/// Maximum number of tokens of a system.
 const TOKENS: usize = 200_000;
 
-/// Letters that a name may have.
+/// Maximum number of letters of a name.
 const LETTERS: usize = 200;
 
-/// What an index or a length is followed by.
+/// The tokens expected after an index or a length.
 const INSIDE_BRACKETS: &str = "an operator or `]`";
 
-/// Pairs of delimiters that an expression may stand in: those of the system, of a rule, of an index.
+/// Delimiter pairs around an expression: of the system, of a rule, of an index.
 const CLAUSE_DEPTH: usize = 3;
 
-/// Reads a system.
+/// Parses a system.
 ///
 /// # Errors
-/// Every clause that cannot be read, at the token that does not fit.
+/// Every unreadable clause, at the unexpected token.
 pub fn system(tokens: TokenStream) -> Result<System> {
     read(tokens, &mut None).map_err(bounded)
 }
 
-/// What can be read of a system whose clauses may be wrong: its head, and the clauses that are right.
+/// The readable part of a system with errors: its head and the correct clauses.
 #[must_use]
 pub fn outline(tokens: TokenStream) -> Option<System> {
     let mut outline = None;
     read(tokens, &mut outline).ok().or(outline)
 }
 
-/// Reads a system; one with errors is left in `outline`.
+/// Parses a system; after an error, `outline` contains the readable part.
 fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
-    let tokens = if small(&tokens)? { with_parentheses(tokens, false) } else { tokens };
+    let tokens = if check_size(&tokens)? { with_parentheses(tokens, false) } else { tokens };
     let whole = |input: ParseStream| {
         let (system, errors) = header(input)?;
         match errors.finish(()) {
@@ -69,9 +69,9 @@ fn read(tokens: TokenStream, outline: &mut Option<System>) -> Result<System> {
     whole.parse2(tokens)
 }
 
-/// Refuses more tokens than a system may have, and names of too many letters; and parentheses, brackets and braces nested deeper than any right system has them,
-/// attributes included: they are read by recursion. Whether some delimiters are not to be seen.
-fn small(tokens: &TokenStream) -> Result<bool> {
+/// Rejects too many tokens, names of too many letters, and delimiters nested deeper than any valid system has,
+/// attributes included, because parsing them recurses. Returns whether some delimiters are invisible.
+fn check_size(tokens: &TokenStream) -> Result<bool> {
     let mut open = vec![tokens.clone().into_iter()];
     let (mut count, mut invisible) = (0, false);
     while let Some(innermost) = open.last_mut() {
@@ -99,8 +99,7 @@ fn small(tokens: &TokenStream) -> Result<bool> {
     Ok(invisible)
 }
 
-/// What a macro puts in for its `$a:expr` is one operand, and stands in delimiters that nobody sees: inside the clauses they become
-/// parentheses.
+/// A macro wraps its `$a:expr` in invisible delimiters as one operand: inside clauses they become parentheses.
 fn with_parentheses(tokens: TokenStream, inside: bool) -> TokenStream {
     let token = |token: TokenTree| {
         let TokenTree::Group(group) = token else { return token };
@@ -117,10 +116,10 @@ fn with_parentheses(tokens: TokenStream, inside: bool) -> TokenStream {
     tokens.into_iter().map(token).collect()
 }
 
-/// Reads the lines of a rule given as text, as the named rules are.
+/// Parses the lines of a rule given as text; the built-in rules use this.
 ///
 /// # Errors
-/// As for a rule that a user writes.
+/// As for a user's rule.
 pub fn rule(text: &str) -> Result<Rule> {
     rule_lines.parse_str(text)
 }
@@ -158,13 +157,13 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
         checks: Vec::new(),
     };
     let mut errors = Errors::default();
-    if let Err(found) = derives_nothing_twice(&system.attributes) {
+    if let Err(found) = check_derives(&system.attributes) {
         errors.add(found);
     }
     while !body.is_empty() {
         if let Err(found) = clause(&body, &mut system) {
             errors.add(found);
-            if !unfitting::begins_clause(&body) {
+            if !unexpected::begins_clause(&body) {
                 skip_clause(&body);
             }
         }
@@ -175,11 +174,11 @@ fn header(input: ParseStream) -> Result<(System, Errors)> {
     Ok((system, errors))
 }
 
-/// A system derives some traits whether its struct says so or not.
-fn derives_nothing_twice(attributes: &[Attribute]) -> Result<()> {
+/// Rejects a derive of a trait that every system implements.
+fn check_derives(attributes: &[Attribute]) -> Result<()> {
     let mut errors = Errors::default();
     for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("derive")) {
-        // What is no list of paths, rustc reports.
+        // rustc reports an invalid list of paths.
         let Ok(derived) = attribute.parse_args_with(Punctuated::<Path, Token![,]>::parse_terminated) else { continue };
         for name in derived.iter().filter_map(|path| path.segments.last()).map(|segment| &segment.ident) {
             if DERIVED.contains(&name.to_string().as_str()) {
@@ -190,8 +189,8 @@ fn derives_nothing_twice(attributes: &[Attribute]) -> Result<()> {
     errors.finish(())
 }
 
-/// Attributes of a clause: those of a parameter go over to its field, of others to nothing, and the macro knows no conditions.
-fn fitting(attributes: &[Attribute], word: &Ident) -> Result<()> {
+/// Rejects attributes without effect. Those of a parameter move to its field; clauses cannot be conditional.
+fn check_attributes(attributes: &[Attribute], word: &Ident) -> Result<()> {
     let fits = |attribute: &Attribute| {
         let named = |names: &[&str]| names.iter().any(|name| attribute.path().is_ident(name));
         named(&["doc"]) || word == "param" && !named(&["cfg", "cfg_attr", "derive"])
@@ -202,7 +201,7 @@ fn fitting(attributes: &[Attribute], word: &Ident) -> Result<()> {
     }
 }
 
-/// Drops the tokens up to the end of a clause that could not be read.
+/// Skips the tokens up to the end of an unreadable clause.
 fn skip_clause(body: ParseStream) {
     while let Ok(token) = body.parse::<TokenTree>() {
         if matches!(&token, TokenTree::Punct(punct) if punct.as_char() == ';') {
@@ -221,7 +220,7 @@ fn clause(input: ParseStream, system: &mut System) -> Result<()> {
         return Err(error(input.span(), &Message::Expected { what: "a clause" }));
     };
     if CLAUSES.contains(&word.to_string().as_str()) {
-        fitting(&attributes, &word)?;
+        check_attributes(&attributes, &word)?;
     }
     match word.to_string().as_str() {
         "const" => list(input, &mut |input| definition(input, &attributes).map(|one| system.constants.push(one)))?,
@@ -285,7 +284,7 @@ fn rule_name(input: ParseStream) -> Result<Ident> {
     name(input)
 }
 
-/// The lines of a rule, written out.
+/// The lines of a written-out rule.
 fn rule_lines(input: ParseStream) -> Result<Rule> {
     let mut rule = Rule { span: input.span(), lines: Vec::new() };
     while !input.is_empty() {
@@ -310,7 +309,7 @@ fn check(span: Span, input: ParseStream) -> Result<Check> {
         let comma: Option<Token![,]> = inner.parse()?;
         let semicolon: Option<Token![;]> = inner.parse()?;
         if comma.is_none() && semicolon.is_none() && !inner.is_empty() {
-            return Err(unfitting::end_of_definition(&inner, start, "an operator, `,` or `;`"));
+            return Err(unexpected::end_of_definition(&inner, start, "an operator, `,` or `;`"));
         }
         if comma.is_some() && inner.peek(syn::Lit) {
             return Err(error(inner.span(), &Message::Habit(Habit::DecimalComma)));
@@ -338,7 +337,7 @@ fn entry(input: ParseStream) -> Result<Entry> {
     Ok(Entry { velocity, definition: Definition { indices, ..value_of(name, input, Vec::new())? } })
 }
 
-/// One or more, separated by commas; the last one may have one too.
+/// One or more items, separated by commas; a trailing comma is allowed.
 fn list(input: ParseStream, one: &mut dyn FnMut(ParseStream) -> Result<()>) -> Result<()> {
     one(input)?;
     while input.peek(Token![,]) {
@@ -378,7 +377,7 @@ fn indices(input: ParseStream) -> Result<Option<Indices>> {
     let start = inner.cursor();
     let range = Expression::range(&inner, 0)?;
     if !inner.is_empty() {
-        return Err(unfitting::operator(&inner, start, INSIDE_BRACKETS));
+        return Err(unexpected::operator(&inner, start, INSIDE_BRACKETS));
     }
     Ok(Some(Indices::Range(range)))
 }
@@ -389,15 +388,16 @@ fn value_of(name: Ident, input: ParseStream, attributes: Vec<Attribute>) -> Resu
     Ok(Definition { attributes, name, indices: None, value: Expression::parse(input)? })
 }
 
-/// The `=` behind a name.
+/// The `=` after a name.
 fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Result<()> {
     if !input.peek(Token![=]) {
-        return Err(unfitting::equals(input, name, is_parameter));
+        return Err(unexpected::equals(input, name, is_parameter));
     }
     input.parse::<Token![=]>().map(|_| ())
 }
 
-/// `a = 1`, `m[3] = 1` or `m[3] = [1, 2, 3]`; one whose default cannot be read is 0, so that its field is there for the code around.
+/// `a = 1`, `m[3] = 1` or `m[3] = [1, 2, 3]`. An unreadable default becomes 0, so that the field exists for the
+/// surrounding code.
 fn parameter(input: ParseStream, attributes: &[Attribute], parameters: &mut Vec<Parameter>) -> Result<()> {
     let name = name(input)?;
     let length = length(input)?;
@@ -448,25 +448,25 @@ fn name(input: ParseStream) -> Result<Ident> {
         return Err(error(span, &Message::Habit(Habit::Mutable)));
     }
     let is_keyword = syn::parse_str::<Ident>(&text).is_err();
-    // `gen` is reserved since the edition of 2024; the tokens do not say of which edition they are.
+    // `gen` is reserved since edition 2024, and tokens do not reveal their edition.
     if is_keyword || text.starts_with("r#") || text == "gen" {
         return Err(error(span, &Message::Reserved { name: text }));
     }
     Ok(name)
 }
 
-/// The end of a clause of expressions, which began at `start`.
+/// The end of a clause of expressions that starts at `start`.
 fn semicolon(input: ParseStream, start: Cursor) -> Result<()> {
     if input.peek(Token![;]) {
         return input.parse::<Token![;]>().map(|_| ());
     }
-    Err(unfitting::end_of_definition(input, start, "an operator or `;`"))
+    Err(unexpected::end_of_definition(input, start, "an operator or `;`"))
 }
 
-/// The end of a clause of names, which began at `start`.
+/// The end of a clause of names that starts at `start`.
 fn end_of_names(input: ParseStream, start: Cursor) -> Result<()> {
     if input.peek(Token![;]) {
         return input.parse::<Token![;]>().map(|_| ());
     }
-    Err(unfitting::end_of_names(input, start))
+    Err(unexpected::end_of_names(input, start))
 }

@@ -1,7 +1,7 @@
-//! What a token that does not fit was meant to be.
+//! Errors at unexpected tokens.
 //!
-//! In: the input at the token, and where the clause began. Out: the error, at the token that is wrong: habits of Rust, of other languages
-//! and of paper say what to write here; all others say what the grammar expects.
+//! In: the input at the token, and the start of the clause. Out: the error at the wrong token: the correction for a
+//! known habit of notation, otherwise what the grammar expects.
 
 use super::CLAUSES;
 use crate::habits::Habit;
@@ -12,10 +12,10 @@ use syn::parse::ParseStream;
 use syn::{Error, Ident, Token};
 use vi_expr::Function;
 
-/// Characters of a token that a message shows.
+/// Characters of a token shown in a message.
 const CHARACTERS: usize = 24;
 
-/// Where an operand is expected: a number, a name or a parenthesis.
+/// The error for a missing operand: a number, a name or a parenthesis.
 pub(super) fn operand(input: ParseStream) -> Error {
     let cursor = input.cursor();
     let point = || cursor.punct().filter(|(punct, _)| punct.as_char() == '.');
@@ -28,20 +28,20 @@ pub(super) fn operand(input: ParseStream) -> Error {
             .and_then(|(_, behind)| behind.literal())
             .map(|(digits, _)| Habit::PointWithoutDigits { number: format!("0.{}", short(digits.to_string())) }),
     };
-    told(input.span(), habit, "a number, a name or `(`")
+    unexpected(input.span(), habit, "a number, a name or `(`")
 }
 
-/// Behind an expression that began at `start`: neither an operator nor what ends it, which `what` names.
+/// The error after an expression that starts at `start`: neither an operator nor its end, which `what` names.
 pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) -> Error {
     let Some((next, behind)) = input.cursor().token_tree() else {
-        return told(input.span(), None, what);
+        return unexpected(input.span(), None, what);
     };
     let previous = previous(input, start);
     let habit = match &next {
         TokenTree::Punct(punct) => match punct.as_char() {
             '.' => {
                 let (word, habit) = behind_point(behind, previous.as_ref());
-                return told(word.unwrap_or_else(|| punct.span()), habit, what);
+                return unexpected(word.unwrap_or_else(|| punct.span()), habit, what);
             }
             '\'' => Some(Habit::Prime),
             '|' => Some(Habit::Bars),
@@ -65,15 +65,15 @@ pub(super) fn operator(input: ParseStream, start: Cursor, what: &'static str) ->
             previous.map(|left| missing_operator(&left, &next, behind))
         }
     };
-    told(input.span(), habit, what)
+    unexpected(input.span(), habit, what)
 }
 
-/// What is said at a token: what is written in place of a habit, or what the grammar expects.
-fn told(span: Span, habit: Option<Habit>, what: &'static str) -> Error {
+/// The error at a token: the correction of a habit, or what the grammar expects.
+fn unexpected(span: Span, habit: Option<Habit>, what: &'static str) -> Error {
     error(span, &habit.map_or(Message::Expected { what }, Message::Habit))
 }
 
-/// Where a definition that began at `start` does not end with `;`, or with something else that `what` names.
+/// The error for a definition that starts at `start` and does not end with `;` or another token named by `what`.
 pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'static str) -> Error {
     match previous(input, start) {
         Some(last) if ends(input) => no_semicolon(&last),
@@ -81,21 +81,21 @@ pub(super) fn end_of_definition(input: ParseStream, start: Cursor, what: &'stati
     }
 }
 
-/// Where a clause of names that began at `start` does not end with `;`.
+/// The error for a clause of names that starts at `start` and does not end with `;`.
 pub(super) fn end_of_names(input: ParseStream, start: Cursor) -> Error {
     let is_coordinates = start.ident().is_some_and(|(word, _)| word == "coord");
     let is_argument =
         input.peek(syn::token::Paren) || input.peek(Token![=]) || input.peek(Token![<]) || input.peek(syn::Lit);
     match previous(input, start) {
         Some(last) if ends(input) => no_semicolon(&last),
-        _ if is_coordinates && input.peek(Token![=]) => told(input.span(), Some(Habit::ValueOfCoordinate), ""),
-        _ if !is_coordinates && is_argument => told(input.span(), Some(Habit::RuleWithArguments), ""),
-        _ if input.peek(Token![:]) => told(input.span(), Some(Habit::Type), ""),
-        _ => told(input.span(), None, "`,` or `;`"),
+        _ if is_coordinates && input.peek(Token![=]) => unexpected(input.span(), Some(Habit::ValueOfCoordinate), ""),
+        _ if !is_coordinates && is_argument => unexpected(input.span(), Some(Habit::RuleWithArguments), ""),
+        _ if input.peek(Token![:]) => unexpected(input.span(), Some(Habit::Type), ""),
+        _ => unexpected(input.span(), None, "`,` or `;`"),
     }
 }
 
-/// Where the `=` of a definition is expected.
+/// The error for a definition without `=`.
 pub(super) fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Error {
     if input.peek(Token![;]) || input.peek(Token![,]) || ends(input) {
         return error(name.span(), &Message::Habit(Habit::MissingValue { name: name.to_string(), is_parameter }));
@@ -114,16 +114,16 @@ pub(super) fn equals(input: ParseStream, name: &Ident, is_parameter: bool) -> Er
     } else {
         None
     };
-    told(input.span(), habit, "`=`")
+    unexpected(input.span(), habit, "`=`")
 }
 
-/// Whether a clause begins here, by its word.
+/// Whether a word starts a clause here.
 pub(super) fn begins_clause(input: ParseStream) -> bool {
     let Some((word, _)) = input.cursor().ident() else { return false };
     if word == "L" { input.peek2(Token![=]) } else { CLAUSES.contains(&word.to_string().as_str()) }
 }
 
-/// Whether what was before ends here: nothing is left, or a clause begins, or another definition.
+/// Whether the previous definition ends here: at the end, at a clause, or at another definition.
 fn ends(input: ParseStream) -> bool {
     input.is_empty() || begins_clause(input) || input.peek(syn::Ident) && input.peek2(Token![=])
 }
@@ -136,11 +136,11 @@ fn no_semicolon(last: &Previous) -> Error {
     error(span, &Message::Habit(Habit::MissingSemicolon { after: last.text() }))
 }
 
-/// What stands before a token that does not fit.
+/// The tokens before an unexpected token.
 struct Previous {
-    /// The last token before.
+    /// The token directly before.
     token: TokenTree,
-    /// A name that stands before it.
+    /// The name before that token.
     name: Option<Ident>,
 }
 
@@ -151,7 +151,7 @@ impl Previous {
     }
 }
 
-/// Whether two numbers with a comma between them are one: in brackets they are two indices, and in a range its ends.
+/// Whether a comma between two numbers is a decimal comma: in brackets it separates indices, in a range its ends.
 fn is_one_number(what: &str) -> bool {
     what.starts_with("an operator") && !what.ends_with("`]`")
 }
@@ -161,7 +161,7 @@ fn is_number(previous: Option<&Previous>) -> bool {
     previous.is_some_and(|previous| matches!(previous.token, TokenTree::Literal(_)))
 }
 
-/// What stands before the next token, of the tokens from `start` on.
+/// The tokens before the next one, starting at `start`.
 fn previous(input: ParseStream, start: Cursor) -> Option<Previous> {
     let mut cursor = start;
     let mut last: Option<Previous> = None;
@@ -177,7 +177,7 @@ fn previous(input: ParseStream, start: Cursor) -> Option<Previous> {
     last
 }
 
-/// A name with what stands in brackets or parentheses behind it, or a token alone.
+/// A name with its brackets or parentheses, or a single token.
 fn operand_text(name: Option<&Ident>, token: &TokenTree) -> String {
     match (name, token) {
         (Some(name), TokenTree::Group(_)) => format!("{name}{}", text(token)),
@@ -185,7 +185,7 @@ fn operand_text(name: Option<&Ident>, token: &TokenTree) -> String {
     }
 }
 
-/// Behind a point, with its place: a method, or the exponent of a number without digits behind its point.
+/// The habit after a decimal point, with its place: a method call, or an exponent without digits before it.
 fn behind_point(behind: Cursor, previous: Option<&Previous>) -> (Option<Span>, Option<Habit>) {
     let Some((word, behind)) = behind.ident() else { return (None, None) };
     let text = word.to_string();
@@ -193,7 +193,7 @@ fn behind_point(behind: Cursor, previous: Option<&Previous>) -> (Option<Span>, O
     if let Some(Previous { token: TokenTree::Literal(digits), .. }) = previous
         && is_exponent
     {
-        // `1.e3` has its digits in the word, `1.e-3` behind it.
+        // `1.e3` has its digits in the word, `1.e-3` after it.
         let sign = behind.punct().filter(|_| text.len() == 1);
         let exponent = sign.as_ref().and_then(|(_, behind)| behind.literal());
         let signed = sign.zip(exponent).map(|((sign, _), (exponent, _))| format!("{}{exponent}", sign.as_char()));
@@ -205,7 +205,7 @@ fn behind_point(behind: Cursor, previous: Option<&Previous>) -> (Option<Span>, O
     (Some(word.span()), Some(habit))
 }
 
-/// Two operands side by side; what stands `behind` the name of the right one may belong to it.
+/// Two adjacent operands; the tokens `behind` the name on the right may belong to it.
 fn missing_operator(left: &Previous, right: &TokenTree, behind: Cursor) -> Habit {
     let group = behind.token_tree().map(|(token, _)| token).filter(|token| matches!(token, TokenTree::Group(_)));
     let right_text = match (right, group) {
@@ -223,13 +223,13 @@ fn missing_operator(left: &Previous, right: &TokenTree, behind: Cursor) -> Habit
     }
 }
 
-/// Whether a name is one of a function.
+/// Whether a name is that of a function.
 pub(super) fn is_function(name: &Ident) -> bool {
     let name = name.to_string();
     name == "dot" || name == "sqrt" || Function::from_name(&name).is_some()
 }
 
-/// A token in a message; a group by its delimiters.
+/// The text of a token in a message; a group by its delimiters.
 fn text(token: &TokenTree) -> String {
     match token {
         TokenTree::Group(group) => match group.delimiter() {
@@ -241,7 +241,7 @@ fn text(token: &TokenTree) -> String {
     }
 }
 
-/// A text, or its beginning.
+/// A text, truncated if it is long.
 fn short(mut text: String) -> String {
     if let Some((end, _)) = text.char_indices().nth(CHARACTERS) {
         text.truncate(end);

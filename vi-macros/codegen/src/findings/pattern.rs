@@ -1,29 +1,29 @@
 //! The zero pattern of a matrix.
 //!
-//! In: which entries are other than zero. Out: the narrowest [`Pattern`] that holds them, with (i, j) and (j, i) taken
-//! together, as an elimination needs both.
+//! In: which entries are nonzero. Out: the narrowest [`Pattern`] that contains them. An entry (i, j) implies (j, i), as
+//! elimination needs both.
 
 use std::collections::BTreeSet;
 
-/// Where a square matrix has entries other than zero.
+/// Zero pattern of a square matrix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Pattern {
     /// One row.
     Scalar,
     /// On the diagonal only.
     Diagonal,
-    /// In blocks that do not touch each other: the indices of each.
+    /// Decoupled blocks: the indices of each.
     Blocks(Vec<Vec<usize>>),
-    /// On the diagonal and beside it, of three rows or more.
+    /// Tridiagonal, with three rows or more.
     Tridiagonal,
-    /// Up to so many places from the diagonal, which leaves at least half of each row out of the band.
+    /// Half-bandwidth. At least half of each row is outside the band.
     Banded(usize),
-    /// Everywhere, or nearly.
+    /// Dense, or nearly so.
     Dense,
 }
 
 impl Pattern {
-    /// The pattern in words; `list` names some coordinates.
+    /// The pattern in words; `list` names coordinates.
     pub(super) fn text(&self, list: &dyn Fn(&[usize]) -> String) -> String {
         match self {
             Self::Scalar => "a number".to_owned(),
@@ -39,7 +39,7 @@ impl Pattern {
     }
 }
 
-/// The pattern of a square matrix, given row by row which entries are other than zero.
+/// The pattern of a square matrix; `rows` flags its nonzero entries.
 pub(super) fn pattern(rows: &[Vec<bool>]) -> Pattern {
     let size = rows.len();
     let filled = |i: usize, j: usize| rows.get(i).and_then(|row| row.get(j)).copied().unwrap_or(false);
@@ -57,7 +57,7 @@ pub(super) fn pattern(rows: &[Vec<bool>]) -> Pattern {
     }
 }
 
-/// The indices that touch each other, directly or through others; each group ascends, and so do their first members.
+/// Groups of coupled indices; each group is ascending, and so are the first members.
 fn blocks(size: usize, touching: &dyn Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut left: BTreeSet<usize> = (0..size).collect();
     let mut blocks = Vec::new();

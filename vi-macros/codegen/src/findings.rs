@@ -1,8 +1,8 @@
-//! What the generator found out about a system.
+//! Properties of a system that the generator finds.
 //!
-//! In: a [`Model`], its [`DiscreteSystem`] and its [`Program`]. Out: [`Findings`], each read off the operations that are
-//! emitted: what they take as input, which of them are the constant 0, which are one and the same. With
-//! A = ∂residual/∂v, the Jacobian of the momentum row:
+//! In: a [`Model`], its [`DiscreteSystem`] and its [`Program`]. Out: [`Findings`], read from the emitted operations:
+//! their inputs, which results are the constant 0, which are equal. With the Jacobian A = ∂residual/∂v of the momentum
+//! row:
 //!
 //! ```text
 //! linear           A takes no velocity: one solve, exact but for rounding, gives the step
@@ -11,7 +11,7 @@
 //! separable        p = L_v takes velocities and parameters only: L = T(v) + U(t, q)
 //! ```
 //!
-//! The generator chooses by these the form of A and of the mass matrix, and how a step is solved.
+//! The findings select the form of A and of the mass matrix, and the solver of a step.
 
 mod pattern;
 
@@ -24,10 +24,10 @@ use crate::symbol::{Symbol, Variable};
 use std::collections::BTreeSet;
 use vi_expr::Table;
 
-/// Rows up to which a matrix that is not diagonal is solved in closed form.
+/// Largest size of a non-diagonal matrix that is solved in closed form.
 pub const CLOSED: usize = 3;
 
-/// What is special about a system.
+/// Properties of a system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(clippy::struct_excessive_bools, reason = "each is a finding of its own")]
 pub struct Findings {
@@ -45,45 +45,48 @@ pub struct Findings {
     pub constant_mass: bool,
     /// L_v is M v with a constant mass matrix M, and neither L_q nor f depends on v: the acceleration is a function of t and q.
     pub force_of_position: bool,
-    /// Where the mass matrix has entries other than zero.
+    /// Zero pattern of the mass matrix.
     pub mass: Pattern,
-    /// Where the derivatives of L_v and L_q + f by q and v have entries other than zero, all together.
+    /// Common zero pattern of the derivatives of L_v and L_q + f with respect to q and v.
     pub point_derivatives: Pattern,
-    /// What is special about the steps by the rule of the system, if it has one.
+    /// Properties of the steps, if the system has a rule.
     pub steps: Option<StepFindings>,
 }
 
-/// What is special about the steps by a rule.
+/// Properties of the steps under one rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StepFindings {
-    /// No `abs`, `sign` or `atan2` in the momentum row: it has no kink and no jump, and Newton's iteration is quadratic.
+    /// The momentum row contains no `abs`, `sign` or `atan2`: it has no kink or jump, and Newton iteration converges
+    /// quadratically.
     pub smooth: bool,
-    /// On what the Jacobian A depends.
+    /// What the Jacobian A depends on.
     pub jacobian: Dependence,
-    /// Where A has entries other than zero.
+    /// Zero pattern of A.
     pub pattern: Pattern,
-    /// A is its own transpose.
+    /// A is symmetric.
     pub symmetric: bool,
-    /// Where the derivatives of the momentum row by q, and of p1 − p0 by q and v, have entries other than zero, all together.
+    /// Common zero pattern of the derivatives of the momentum row with respect to q, and of p1 − p0 with respect to q
+    /// and v.
     pub step_derivatives: Pattern,
-    /// The momentum row and what the momenta gain are linear in what changes from step to step, their coefficients free of it.
+    /// The momentum row and p1 − p0 are linear in the quantities that change from step to step, with constant
+    /// coefficients.
     pub affine: bool,
 }
 
-/// On what the Jacobian A depends, from little to much.
+/// What the Jacobian A depends on, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
     /// On parameters only: the step is explicit.
     Parameters,
     /// On parameters and the step h.
     Step,
-    /// On the node and h too, yet not on the unknown v: the momentum row is linear.
+    /// On the node and h too, but not on the unknown v: the momentum row is linear.
     Node,
     /// On the unknown v: the momentum row is nonlinear.
     Unknown,
 }
 
-/// Finds out about a system.
+/// Finds the properties of a system.
 #[must_use]
 pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Findings {
     let cyclic = system.continuous.cyclic.iter().enumerate().filter(|(_, cyclic)| **cyclic).map(|(index, _)| index);
@@ -115,7 +118,7 @@ pub fn findings(model: &Model, system: &DiscreteSystem, program: &Program) -> Fi
     }
 }
 
-/// Finds out about the steps with this momentum equation.
+/// Finds the properties of the steps with this momentum equation.
 fn steps(equation: &Function, program: &Program) -> StepFindings {
     let jacobian = equation.results.matrix(Output::Jacobian);
     StepFindings {
@@ -131,18 +134,18 @@ fn steps(equation: &Function, program: &Program) -> StepFindings {
     }
 }
 
-/// The pattern of a matrix among the results of a function.
+/// The zero pattern of a matrix among the results of a function.
 fn filled(function: &Function, rows: &[Vec<OperationId>]) -> Pattern {
     pattern::pattern(&entries(function, rows))
 }
 
-/// Which entries of a matrix are other than zero.
+/// Which entries of a matrix are nonzero.
 fn entries(function: &Function, rows: &[Vec<OperationId>]) -> Vec<Vec<bool>> {
     let zero = |id: &OperationId| function.operations.as_constant(*id) == Some(0.0);
     rows.iter().map(|row| row.iter().map(|id| !zero(id)).collect()).collect()
 }
 
-/// The pattern that holds each of these matrices among the results of a function.
+/// The common zero pattern of these matrices among the results of a function.
 fn filled_together(function: Option<&Function>, outputs: &[Output]) -> Pattern {
     let Some(function) = function else { return Pattern::Dense };
     let mut matrices = outputs.iter().map(|output| entries(function, function.results.matrix(*output)));
@@ -164,7 +167,7 @@ fn smooth(function: &Function) -> bool {
         .any(|id| matches!(function.operations.get(id), Operation::Call(Abs | Sign, _) | Operation::Call2(Atan2, ..)))
 }
 
-/// What these results take as input.
+/// The inputs of these results.
 fn inputs<'a>(function: &Function, results: impl Iterator<Item = &'a OperationId>) -> BTreeSet<Symbol> {
     let needed = function.operations.needed(results).into_iter();
     needed
@@ -185,9 +188,9 @@ fn dependence(function: &Function, rows: &[Vec<OperationId>]) -> Dependence {
     inputs(function, rows.iter().flatten()).into_iter().map(of).max().unwrap_or(Dependence::Parameters)
 }
 
-/// Whether residual and increment of a momentum row are linear in what changes from step to step, but for a constant.
+/// Whether residual and increment of a momentum row are affine in the quantities that change from step to step.
 fn affine(function: &Function) -> bool {
-    // The degree of each operation; `None` where it is no polynomial, or one of degree 2 or more.
+    // The degree of each operation; `None` if it is not a polynomial of degree 0 or 1.
     let mut degrees: Table<OperationId, Option<u8>> = Table::default();
     let residual = function.results.vector(Output::Residual);
     let increment = function.results.vector(Output::MomentumIncrement);
@@ -218,13 +221,13 @@ fn list(name: &dyn Fn(usize) -> String, indices: &[usize]) -> String {
 }
 
 impl StepFindings {
-    /// The momentum row is linear with a matrix that is the same in every step of one length: it is inverted once per run.
+    /// The momentum row is linear and smooth, and A is the same for all steps of equal length: one inversion per run.
     #[must_use]
     pub fn constant_jacobian(&self) -> bool {
         self.smooth && self.jacobian <= Dependence::Step
     }
 
-    /// How A is solved, for a system of so many coordinates.
+    /// How a system with `size` coordinates solves for A.
     fn solved(&self, size: usize) -> &'static str {
         match &self.pattern {
             Pattern::Scalar | Pattern::Diagonal => "by division",
@@ -239,14 +242,14 @@ impl StepFindings {
 }
 
 impl Findings {
-    /// What a step adds to q and p is a constant matrix times (q, p) but for a constant, computed once per run.
+    /// A step is one constant affine map of (q, p), computed once per run.
     #[must_use]
     pub fn closed_form(&self) -> bool {
         let is_linear = self.steps.as_ref().is_some_and(|steps| steps.constant_jacobian() && steps.affine);
         is_linear && self.autonomous && self.size <= CLOSED
     }
 
-    /// The findings in words, one line each, formulas between backticks; `name` names a coordinate.
+    /// The findings in words, one per line, with formulas between backticks; `name` names a coordinate.
     #[must_use]
     pub fn lines(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
         let mut lines = vec![
@@ -272,7 +275,7 @@ impl Findings {
         lines
     }
 
-    /// Those of the findings that depend on the rule; none without one.
+    /// The findings that depend on the rule; empty without one.
     #[must_use]
     pub fn of_steps(&self, name: &dyn Fn(usize) -> String) -> Vec<String> {
         let Some(steps) = &self.steps else { return Vec::new() };
@@ -281,7 +284,7 @@ impl Findings {
             match steps.jacobian {
                 _ if !steps.smooth =>
                     "not smooth: it has a kink or a jump, across which Newton's iteration may have to be damped",
-                _ if self.closed_form() => "linear, and the whole step one constant matrix, computed once per run",
+                _ if self.closed_form() => "linear: one constant matrix, computed once per run, gives the whole step",
                 Dependence::Parameters =>
                     "explicit: its Jacobian `A` depends on parameters only and is inverted once per run",
                 Dependence::Step =>
