@@ -1,31 +1,31 @@
-//! Copies of a loop for the instruction sets of a processor.
+//! Compiles a loop for several instruction sets and selects one at run time.
 //!
-//! In: a [`Loop`]. Out: what it computes, by the widest vector instructions that this processor has. The compiler makes
-//! each copy of the same source; a build for one processor (`-C target-cpu=native`) needs none of them. Builds with debug assertions
-//! leave out the copy for vectors of eight: it computes the same numbers as that for four, and takes as long to compile.
+//! In: a [`Loop`]. Out: its result, computed with the widest vector instructions of this processor. All copies come
+//! from one source. A build for one processor (`-C target-cpu=native`) needs no copies. Builds with debug assertions
+//! omit the copy for vectors of eight: it computes the same numbers as the copy for four and takes as long to compile.
 
-/// A loop over numbers, inlined with all that it calls.
+/// A numeric loop, inlined with everything that it calls.
 pub trait Loop {
-    /// What it computes.
+    /// Its result.
     type Output;
 
-    /// Runs it; `FUSED` where the processor adds products in one instruction.
+    /// Runs the loop. `FUSED` is true if the processor has fused multiply-add.
     fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
-/// Runs a loop by what every processor of this architecture has: one copy, where a loop is not worth more.
+/// Runs a loop with the baseline instructions of the architecture: one copy, for loops that do not profit from more.
 #[inline]
 pub fn by_baseline<L: Loop>(of: L) -> L::Output {
     of.run::<{ cfg!(target_feature = "fma") }>()
 }
 
-/// The vector instructions that a loop is run by. There is no way to one that the processor does not have.
+/// A vector instruction set that this processor has; no other can be constructed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instructions(Set);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Set {
-    /// What every processor of this architecture has.
+    /// The baseline of the architecture.
     Baseline,
     /// Vectors of four numbers, with fused multiply-add.
     #[cfg(target_arch = "x86_64")]
@@ -36,10 +36,10 @@ enum Set {
 }
 
 impl Instructions {
-    /// What every processor of this architecture has.
+    /// The baseline of the architecture.
     pub const BASELINE: Self = Self(Set::Baseline);
 
-    /// The most that this processor has.
+    /// The widest set that this processor has.
     #[must_use]
     pub fn detected() -> Self {
         #[cfg(target_arch = "x86_64")]
@@ -59,7 +59,7 @@ impl Instructions {
         Self::BASELINE
     }
 
-    /// Runs a loop by these instructions.
+    /// Runs a loop with these instructions.
     #[inline]
     #[allow(unsafe_code)]
     pub fn run<L: Loop>(self, of: L) -> L::Output {
@@ -75,7 +75,7 @@ impl Instructions {
         }
         match self.0 {
             Set::Baseline => by_baseline(of),
-            // SAFETY: `Instructions::detected` saw that the processor has these instructions.
+            // SAFETY: `Instructions::detected` checked that the processor has these instructions.
             #[cfg(target_arch = "x86_64")]
             Set::Avx2 => unsafe { avx2(of) },
             // SAFETY: as above.

@@ -1,4 +1,4 @@
-//! Nanoseconds per trajectory and step of one core, beside those of [`FixedStep`]: least of interleaved rounds.
+//! Nanoseconds per trajectory and step on one core, next to [`FixedStep`]: the minimum of interleaved rounds.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 fn compare<S: Batch<N>, const N: usize>(name: &str, system: S, q: [f64; N], v: [f64; N]) -> Result<(), StepError> {
     let count = TRAJECTORIES as usize;
-    // Spread, so that the trajectories are not all at the same place.
+    // Spreads the initial states, so that the trajectories differ.
     let start =
         |i: u32| State::at(&system, 0.0, q.map(|q| q * (1.0 - 0.2 * f64::from(i) / f64::from(TRAJECTORIES))), v);
     let mut ensemble = Ensemble::new(vec![system; count], (0..TRAJECTORIES).map(start).collect(), 0.01)?;

@@ -1,18 +1,19 @@
-//! Trajectories side by side.
+//! Trajectories in vector lanes.
 //!
-//! In: [`WIDTH`] systems and states, or fewer. Out: where each is after so many steps, or how it ended. Each step starts from
-//! velocities extrapolated over the last ones,
+//! In: up to [`WIDTH`] systems and states. Out: the state of each after a number of steps, or how it ended. A step
+//! starts from extrapolated velocities,
 //!
 //! ```text
 //! v0 = Σ_j (−1)^j C(n, j + 1) v_j,  j = 0 … n − 1        the polynomial of degree n − 1 through the last n, j = 0 the newest
 //! ```
 //!
-//! and is taken by a sweep; by another one, where a trajectory was refused. One that is still refused takes that step alone, by the
-//! same equations solved to the rounding floor; where that fails it has ended, and its lane is filled with what no one looks at.
+//! Then one pass over the block takes the step, and a second pass repeats it for rejected trajectories. A trajectory
+//! that is still rejected takes the step alone: the same equations, converged to the rounding floor. If that fails, the
+//! trajectory ends, and its lane is filled with values that nothing reads.
 
 use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
-use crate::sweep::{Elapsed, Extrapolate, Fixed, Sweep, Verdict};
+use crate::pass::{Elapsed, Extrapolate, Fixed, Pass, Verdict};
 use nalgebra::SVector;
 use vi_core::node::Node;
 use vi_core::stepping::Batch;
@@ -20,36 +21,36 @@ use vi_core::support::{step_alone, weights as extrapolation};
 use vi_core::{FixedStep, Starts, State, StepError};
 use vi_dispatch::Instructions;
 
-/// Velocities that the next one is extrapolated from, at most. Of coupled pendula (h = 0.01, amplitude 1) a polynomial of degree 6 is
-/// refused in 22 steps of 100, one of degree 8 in 4 and one of degree 10 in 0.1, and a second sweep is one for the whole block.
+/// Maximum number of velocities in the extrapolation. For coupled pendula (h = 0.01, amplitude 1), degree 6 is rejected
+/// in 22 of 100 steps, degree 8 in 4 and degree 10 in 0.1. One rejection costs a second pass for the whole block.
 const DEPTH: usize = 11;
 
-/// The same for one degree of freedom, of which degree 6 is refused nowhere.
+/// The same for one degree of freedom, for which degree 6 is never rejected.
 const DEPTH_OF_ONE: usize = 7;
 
-/// Trajectories side by side; see the [module](self).
+/// Trajectories in vector lanes; see the [module](self).
 #[derive(Clone, Debug)]
 pub(crate) struct Block<S: Batch<N>, const N: usize> {
     fixed: Fixed<[S::Rows<HALF>; 2]>,
     steps: u64,
     instructions: Instructions,
-    /// The last nodes, and room for the next ones.
+    /// The last nodes, and a buffer for the next ones.
     nodes: [Box<Nodes<N>>; 2],
-    /// The velocities of the last steps, the newest first, and room for the next ones.
+    /// The velocities of the last steps, newest first, and a buffer for the next ones.
     velocities: Vec<Box<Rows<N>>>,
-    /// What the next velocities take of the last ones.
+    /// Weights of the extrapolation.
     weights: Vec<f64>,
     verdict: Box<Verdict>,
-    /// How many trajectories have not ended.
+    /// Number of trajectories that have not ended.
     running: usize,
     ended: Vec<Option<Ended<N>>>,
 }
 
 impl<S: Batch<N>, const N: usize> Block<S, N> {
-    /// The block of these trajectories, at least one and at most [`WIDTH`].
+    /// A block of at least one and at most [`WIDTH`] trajectories.
     pub(crate) fn new(trajectories: &[(S, State<N>)], h: f64, instructions: Instructions) -> Self {
         let count = trajectories.len();
-        // The last trajectory stands in for those that are not there.
+        // The last trajectory fills the unused lanes.
         let all: [(S, State<N>); WIDTH] = core::array::from_fn(|number| trajectories[number.min(count - 1)]);
         let fixed = Fixed {
             systems: [0, HALF].map(|first| S::rows(&core::array::from_fn(|index| all[first + index].0))),
@@ -90,12 +91,12 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         self.verdict.running.set(LaneIndex::of(number), 0);
     }
 
-    /// How many trajectories there are, ended or not.
+    /// Number of trajectories, including ended ones.
     pub(crate) fn len(&self) -> usize {
         self.ended.len()
     }
 
-    /// How many have not ended.
+    /// Number of trajectories that have not ended.
     pub(crate) fn running(&self) -> usize {
         self.running
     }
@@ -105,7 +106,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         self.ended[number].map_or_else(|| Ok(self.node(number).state()), Err)
     }
 
-    /// The velocity of the last step of a trajectory; before the first one that which belongs to its momenta.
+    /// The velocity of the last step of a trajectory; before the first step, the velocity of its momenta.
     #[cfg(test)]
     pub(crate) fn velocity(&self, number: usize) -> SVector<f64, N> {
         self.velocities[0].get(LaneIndex::of(number))
@@ -121,7 +122,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         Elapsed::after(self.steps, self.fixed.h)
     }
 
-    /// Takes `steps` steps, or as many as there are trajectories for.
+    /// Takes `steps` steps, or fewer if all trajectories end.
     pub(crate) fn run(&mut self, steps: u64) {
         for _ in 0..steps {
             if self.running == 0 {
@@ -135,14 +136,14 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         let (instructions, elapsed) = (self.instructions, self.elapsed());
         let Self { fixed, nodes: [before, after], velocities, weights, verdict, .. } = self;
         let Some((velocity, known)) = velocities.split_last_mut() else { return };
-        // One velocity is known before the first step, and one more after each.
+        // One velocity is known before the first step, and one more after each step.
         if weights.len() < known.len() {
             let degree = weights.len();
             *weights = extrapolation::<DEPTH>(degree)[..=degree].to_vec();
         }
         instructions.run(Extrapolate { weights, velocities: known, guess: velocity });
-        let refused = instructions.run(Sweep::<S, N, false> { fixed, elapsed, before, after, velocity, verdict })
-            && instructions.run(Sweep::<S, N, true> { fixed, elapsed, before, after, velocity, verdict });
+        let refused = instructions.run(Pass::<S, N, false> { fixed, elapsed, before, after, velocity, verdict })
+            && instructions.run(Pass::<S, N, true> { fixed, elapsed, before, after, velocity, verdict });
         if refused {
             self.take_alone();
         }
@@ -151,7 +152,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         self.steps += 1;
     }
 
-    /// The step of every trajectory that was refused.
+    /// Takes the step of each rejected trajectory alone.
     #[cold]
     fn take_alone(&mut self) {
         for number in 0..WIDTH {
@@ -172,8 +173,9 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
         }
     }
 
-    /// Makes the velocities of a trajectory a line that ends in v, which extrapolation of any degree continues: those before a step that
-    /// could not be predicted say nothing of what comes after it, and all trajectories of a block share the degree.
+    /// Replaces the velocity history of a trajectory by a line that ends in v, which extrapolation of any degree
+    /// continues. Velocities before an unpredictable step do not predict the next ones, and all trajectories of a block
+    /// share the degree.
     fn restart(&mut self, lane: LaneIndex, v: SVector<f64, N>, change: SVector<f64, N>) {
         let Some((newest, known)) = self.velocities.split_last_mut() else { return };
         newest.set(lane, &v);

@@ -8,9 +8,9 @@ use vi_core::{State, StepError};
 pub struct Ended<const N: usize> {
     /// The last good state.
     pub state: State<N>,
-    /// Steps taken up to there.
+    /// Number of steps taken before it ended.
     pub steps: u64,
-    /// Why there was no other.
+    /// The error of the next step.
     pub error: StepError,
 }
 

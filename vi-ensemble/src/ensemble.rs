@@ -1,7 +1,7 @@
-//! The trajectories of a caller.
+//! The ensemble of a caller.
 //!
-//! In: systems, states, a step h; then how many steps to take. Out: for each trajectory, in the order given, the state
-//! reached or how it [`Ended`]. Groups of 64 trajectories are shared among the threads of rayon's current pool.
+//! In: systems, states, a step h, a number of steps. Out: for each trajectory, in the order given, its state or how it
+//! [`Ended`]. The threads of the current rayon pool share groups of 64 trajectories.
 
 use crate::ended::Ended;
 use crate::group::Group;
@@ -12,11 +12,11 @@ use vi_core::support::check_step;
 use vi_core::{State, StepError};
 use vi_dispatch::Instructions;
 
-/// Steps of one trajectory that are worth giving to another thread: 50 µs and more.
+/// Minimum number of steps of a task for another thread: 50 µs and more.
 const WORTHWHILE: u64 = 1 << 14;
 
-/// Many trajectories of one system, each with its own parameters and state, with one step. The [crate] says which systems gain from
-/// vector lanes, and which from threads alone.
+/// Many trajectories of one system with a common step; each has its own parameters and state. The [crate] documentation
+/// lists which systems run in vector lanes and which on threads only.
 ///
 /// ```
 /// use vi_core::State;
@@ -43,11 +43,12 @@ pub struct Ensemble<S: Batch<N>, const N: usize> {
 }
 
 impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
-    /// The trajectories of `systems` from `states`, pair by pair, with the step `h` in units of time (negative: backwards).
-    /// A state from which no step can be taken is a trajectory that ended before its first step.
+    /// The trajectories of `systems` from `states`, pair by pair, with the step `h` in units of time (negative:
+    /// backwards). A state without a first step is a trajectory that has ended.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, and where there are not as many systems as states.
+    /// [`StepError::InvalidInput`] for an h that is zero, subnormal or not finite, or if the numbers of systems and
+    /// states differ.
     #[allow(clippy::needless_pass_by_value, clippy::cast_precision_loss)]
     pub fn new(systems: Vec<S>, states: Vec<State<N>>, h: f64) -> Result<Self, StepError> {
         check_step(h)?;
@@ -62,7 +63,7 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
         Ok(Self { groups, h, steps: 0 })
     }
 
-    /// Takes `steps` steps of every trajectory that has not ended; none are left to take where all have.
+    /// Takes `steps` steps of every trajectory that has not ended.
     pub fn run(&mut self, steps: u64) {
         self.steps = self.steps.saturating_add(steps);
         if let [group] = &mut self.groups[..] {
@@ -73,7 +74,7 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
         self.groups.par_iter_mut().with_min_len(together).for_each(|group| group.run(steps));
     }
 
-    /// Takes `steps` steps, `every` at a time (at least one), and lets `observe` look after each part.
+    /// Takes `steps` steps, `every` at a time (at least one), and calls `observe` after each part.
     pub fn run_observed(&mut self, steps: u64, every: u64, mut observe: impl FnMut(&Self)) {
         let mut left = steps;
         while left > 0 {
@@ -84,18 +85,18 @@ impl<S: Batch<N>, const N: usize> Ensemble<S, N> {
         }
     }
 
-    /// The state of each trajectory, in the order given; of one that has ended, how.
+    /// The state of each trajectory, in the order given, or how it ended.
     pub fn results(&self) -> impl Iterator<Item = Result<State<N>, Ended<N>>> + '_ {
         self.groups.iter().flat_map(|group| (0..group.len()).map(|index| group.result(index)))
     }
 
-    /// How many trajectories have not ended.
+    /// Number of trajectories that have not ended.
     #[must_use]
     pub fn running(&self) -> usize {
         self.groups.iter().map(Group::running).sum()
     }
 
-    /// Steps taken by those that have not ended.
+    /// Number of steps taken by trajectories that have not ended.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps

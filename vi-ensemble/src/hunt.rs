@@ -1,7 +1,8 @@
-//! A hunt for steps of lanes that are taken and not solved, as `tests/long/hunt` hunts those of other integrators.
+//! Searches for accepted steps of lanes that do not satisfy their equations, as `tests/long/hunt` does for other
+//! integrators.
 //!
-//! The residual of each step is computed here, in plain numbers, from the node before it and the velocity that was taken; row by row
-//! it must be at most four roundings of what the row is a sum of, and of what running error analysis says.
+//! This module recomputes the residual of each step in `f64` from the previous node and the accepted velocity. Each row
+//! must be at most four roundings of the sum of its absolute terms plus its running error bound.
 
 use crate::block::Block;
 use crate::layout::WIDTH;
@@ -12,7 +13,7 @@ use vi_systems::{DoublePendulum, DoubleWell, Kepler, SphericalPendulum};
 
 /// Steps of a block of trajectories.
 const STEPS: usize = 400;
-/// Roundings that a solved row may leave.
+/// Maximum residual of a solved row, in roundings.
 const FLOOR: f64 = 4.0;
 
 lagrangian! {
@@ -55,7 +56,7 @@ lagrangian! {
     }
 }
 
-/// Hunts among trajectories from starts between `(q, v)` and their doubles.
+/// Searches trajectories with starts between `(q, v)` and twice these values.
 fn hunt<S: Batch<N> + Default, const N: usize>(h: f64, q: [f64; N], v: [f64; N]) {
     for instructions in [Instructions::BASELINE, Instructions::detected()] {
         hunt_by::<S, N>(instructions, h, q, v);
@@ -86,7 +87,7 @@ fn hunt_by<S: Batch<N> + Default, const N: usize>(instructions: Instructions, h:
         }
     }
     println!("{}, {instructions:?}: {hunted} steps, {worst} roundings", <S as Lagrangian<N>>::NAME);
-    // Measured: 2.0 at most, of the bump.
+    // Measured: 2.0 at most, for the bump.
     assert!(worst <= FLOOR, "{}: {worst} roundings", <S as Lagrangian<N>>::NAME);
     assert!(hunted > STEPS * WIDTH / 2 && worst > 0.1, "{}: {hunted}, {worst}", <S as Lagrangian<N>>::NAME);
 }

@@ -1,7 +1,7 @@
 //! Nodes and velocities of a block, one row per coordinate.
 //!
-//! In: vectors of N entries, one per trajectory. Out: N rows of [`WIDTH`] numbers each, in which one vector instruction
-//! meets the same coordinate of neighbouring trajectories.
+//! In: vectors of N entries, one per trajectory. Out: N rows of [`WIDTH`] numbers, in which one vector instruction
+//! processes the same coordinate of adjacent trajectories.
 
 use nalgebra::SVector;
 use vi_core::State;
@@ -9,13 +9,13 @@ use vi_core::node::Node;
 use vi_core::real::Lane;
 use vi_core::real::Real;
 
-/// Trajectories in a block: several vectors, so that one is computed while another waits.
+/// Trajectories in a block: several vectors, so that their instructions overlap.
 pub(crate) const WIDTH: usize = 2 * HALF;
 
 /// Trajectories in half of a block.
 pub(crate) const HALF: usize = 32;
 
-/// Numbers that are summed at a time: two of the widest vectors.
+/// Numbers summed at a time: two of the widest vectors.
 const CHUNK: usize = 16;
 
 /// One number of each trajectory of a block.
@@ -23,8 +23,8 @@ const CHUNK: usize = 16;
 #[repr(align(64))]
 pub(crate) struct Row<U = f64>([[U; HALF]; 2]);
 
-/// Where a trajectory stands in a row: its half, and its index there. Both are known to be inside, one as a constant and
-/// the other as the counter of a loop.
+/// The position of a trajectory in a row: its half and its index there. The compiler sees both in bounds, one as a
+/// constant and the other as a loop counter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaneIndex {
     pub(crate) half: usize,
@@ -32,7 +32,7 @@ pub(crate) struct LaneIndex {
 }
 
 impl LaneIndex {
-    /// That of a trajectory by its number in the block.
+    /// The index of a trajectory, from its number in the block.
     pub(crate) fn of(number: usize) -> Self {
         Self { half: number / HALF, index: number % HALF }
     }
@@ -78,7 +78,7 @@ impl<const N: usize> Rows<N> {
         }
     }
 
-    /// Sets it where it is not `kept`.
+    /// Sets the vector unless `kept`.
     #[inline(always)]
     pub(crate) fn set_unless<T: Real>(&mut self, kept: bool, lane: LaneIndex, vector: &SVector<T, N>) {
         for k in 0..N {
@@ -87,12 +87,12 @@ impl<const N: usize> Rows<N> {
         }
     }
 
-    /// Sets these to `Σ weight · other`.
+    /// Sets the rows to `Σ weight · other`.
     #[inline(always)]
     pub(crate) fn set_sum<const FUSED: bool>(&mut self, weights: &[f64], others: &[Box<Self>]) {
         for (k, row) in self.0.iter_mut().enumerate() {
             for (place, sums) in row.0.as_flattened_mut().chunks_exact_mut(CHUNK).enumerate() {
-                // In registers, until the sums are whole.
+                // Accumulates in registers.
                 let mut whole = [0.0; CHUNK];
                 for (weight, other) in weights.iter().zip(others) {
                     let entries = &other.0[k].0.as_flattened()[place * CHUNK..(place + 1) * CHUNK];
@@ -106,7 +106,7 @@ impl<const N: usize> Rows<N> {
     }
 }
 
-/// Coordinates and momenta of a block with their low parts, and what the last step left of its equations.
+/// Coordinates and momenta of a block with their low parts, and the residuals of the last step.
 #[derive(Clone, Debug)]
 pub(crate) struct Nodes<const N: usize> {
     q: Rows<N>,
@@ -122,7 +122,7 @@ impl<const N: usize> Nodes<N> {
         Self { q: zeros(), q_low: zeros(), p: zeros(), p_low: zeros(), remainder: zeros() }
     }
 
-    /// The node of one trajectory, at the time t with its low part. Its energy has no meaning.
+    /// The node of one trajectory at the time t with its low part. Its energy is meaningless.
     #[inline(always)]
     pub(crate) fn get<T: Real>(&self, lane: LaneIndex, (t, t_low): (f64, f64)) -> Node<N, T> {
         let state = State { t: T::real(t), q: self.q.get(lane), p: self.p.get(lane) };
@@ -140,7 +140,7 @@ impl<const N: usize> Nodes<N> {
         self.set_unless(false, lane, node);
     }
 
-    /// Sets it where it is not `kept`.
+    /// Sets the node unless `kept`.
     #[inline(always)]
     pub(crate) fn set_unless<T: Real>(&mut self, kept: bool, lane: LaneIndex, node: &Node<N, T>) {
         self.q.set_unless(kept, lane, &node.q);

@@ -1,36 +1,36 @@
-//! Many trajectories of one system, each with its own parameters and its own start: by fixed steps of order 2 ([`Ensemble`]), or by
-//! any integrator ([`Runs`]).
+//! Many trajectories of one system, each with its own parameters and initial state: with fixed steps of order 2
+//! ([`Ensemble`]), or with any integrator ([`Runs`]).
 //!
-//! In: systems of one kind, a state for each, one step h. Out: for each trajectory the state reached, or the typed error
-//! that it ended with and the step at which it did. The equations of a step are those of [`vi_core::FixedStep`]. AFTER A STEP the
-//! residual of each trajectory was measured at the velocity that was taken, and is at the rounding floor.
+//! In: systems of one type, a state for each, a step h. Out: for each trajectory its state, or the typed error that
+//! ended it and the number of its steps. A step solves the equations of [`vi_core::FixedStep`]. AFTER A STEP the
+//! residual of each trajectory, evaluated at its velocity, is at the rounding floor.
 //!
-//! Systems of up to three degrees of freedom whose functions are short ([`FixedStepping::INLINED`](vi_core::stepping::FixedStepping::INLINED)) go side by
-//! side in vector lanes, 64 trajectories a thread at a time. All others are one `FixedStep` a trajectory, shared among threads: on
-//! one core that costs what single runs cost.
+//! Systems of up to three degrees of freedom with short functions
+//! ([`FixedStepping::INLINED`](vi_core::stepping::FixedStepping::INLINED)) run in vector lanes, 64 trajectories per
+//! task. Other systems run one `FixedStep` per trajectory, shared among threads: on one core this costs as much as
+//! single runs.
 //!
-//! | module | what it holds |
+//! | module | content |
 //! |---|---|
-//! | [`ensemble`] | the trajectories of a caller, in groups, over threads |
-//! | `runs` | many runs of any integrator, over threads |
-//! | `alone` | a trajectory by itself |
-//! | `group` | whether trajectories go side by side or one after the other |
-//! | `block` | 64 trajectories side by side, and what becomes of one that the common path refuses |
-//! | `sweep` | one step of a block: a loop without a branch, which the compiler turns into vector instructions |
+//! | [`ensemble`] | the ensemble of a caller: groups of trajectories on threads |
+//! | `runs` | many runs of any integrator, on threads |
+//! | `single` | a single trajectory |
+//! | `group` | vector lanes, or one trajectory after the other |
+//! | `block` | 64 trajectories in vector lanes, and the retry of rejected steps |
+//! | `pass` | one step of a block: a branch-free loop, which LLVM vectorizes |
 //! | `layout` | nodes and velocities of a block, one row per coordinate |
 //! | `ended` | how a trajectory ended |
 //!
-//! A trajectory depends neither on its neighbours nor on the number of threads, bit for bit; on processors with and
-//! without fused multiply-add it differs by rounding.
+//! A trajectory does not depend on its neighbours or on the number of threads, bit for bit. Processors with and without
+//! fused multiply-add give results that differ by rounding.
 //!
-//! Where the momentum equation has one root only, a trajectory agrees with [`vi_core::FixedStep`] and with steps converged
-//! each by itself, to a few roundings, which the motion may enlarge. Where it has several, the root taken depends on the guess, and
-//! an ensemble guesses otherwise: there it need not agree.
+//! If the momentum equation has one root, a trajectory agrees with [`vi_core::FixedStep`] and with individually
+//! converged steps to a few roundings, which the motion may amplify. If it has several roots, the initial guess selects
+//! one. An ensemble uses another guess, so its root may differ.
 
-// A call inside a loop over trajectories keeps it from becoming vector instructions.
+// A call inside a loop over trajectories prevents vectorization.
 #![allow(clippy::inline_always)]
 
-mod alone;
 mod block;
 mod ended;
 pub mod ensemble;
@@ -38,8 +38,9 @@ mod group;
 #[cfg(test)]
 mod hunt;
 mod layout;
+mod pass;
 mod runs;
-mod sweep;
+mod single;
 
 pub use ended::Ended;
 pub use ensemble::Ensemble;

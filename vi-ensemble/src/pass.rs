@@ -1,17 +1,17 @@
-//! One step of a block: a loop over its trajectories without a branch.
+//! One step of a block: a branch-free loop over its trajectories.
 //!
-//! In: the nodes before the step, and velocities to start from. Out: the nodes after it, the velocities of the step, and which
-//! trajectories were refused; what stands in the rows of those has no meaning. Each trajectory is corrected and measured as in
+//! In: the nodes before the step and initial velocities. Out: the nodes after it, the velocities of the step, and the
+//! rejected trajectories, whose rows are meaningless. Each trajectory takes the Newton step and the acceptance test of
 //! `FixedStep`:
 //!
 //! ```text
 //! correct    v = v0 − A⁻¹ r(v0)
 //! measure    r(v) and p1 − p0, by one evaluation at v
-//! accept     where each row, with what is carried to it, is at most ε times the sum of the absolute values of its terms
+//! accept     if each row, plus its carried residual, is at most ε times the sum of the absolute values of its terms
 //! ```
 //!
-//! What is left of a row then is carried to the next step. So a row itself is at most ε times this sum and that of the step before;
-//! where the sums shrink, that it is at most [`FLOOR`] ε times its own is asked too.
+//! The next step carries the remaining residual. So a row is at most ε times its own sum plus that of the previous
+//! step. In case the sums shrink, the test also requires at most [`FLOOR`] ε times its own sum.
 
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows};
 use nalgebra::SVector;
@@ -22,10 +22,10 @@ use vi_core::stepping::{Batch, FixedStepping, MomentumResidual};
 use vi_core::support::two_sum;
 use vi_dispatch::Loop;
 
-/// Roundings that a row may leave.
+/// Maximum residual of a row, in roundings.
 const FLOOR: f64 = 4.0;
 
-/// What does not change during a run.
+/// Constants of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Fixed<B> {
     /// The parameters of each trajectory.
@@ -35,7 +35,7 @@ pub(crate) struct Fixed<B> {
     pub(crate) h: f64,
 }
 
-/// Time since the start, with what rounding took from it.
+/// Time since the start, with its low part.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Elapsed {
     pub(crate) t: f64,
@@ -43,14 +43,14 @@ pub(crate) struct Elapsed {
 }
 
 impl Elapsed {
-    /// After so many steps of length h.
+    /// After `steps` steps of length h.
     #[allow(clippy::cast_precision_loss)]
     pub(crate) fn after(steps: u64, h: f64) -> Self {
         let t = steps as f64 * h;
         Self { t, t_low: (steps as f64).mul_add(h, -t) }
     }
 
-    /// The time of a trajectory that began at `start`, and what rounding took from it.
+    /// The time of a trajectory that started at `start`, with its low part.
     #[inline(always)]
     pub(crate) fn since(self, start: f64) -> (f64, f64) {
         let (t, low) = two_sum(start, self.t);
@@ -58,16 +58,16 @@ impl Elapsed {
     }
 }
 
-/// Which trajectories a sweep refuses.
+/// The trajectories rejected by a pass.
 #[derive(Clone, Debug)]
 pub(crate) struct Verdict {
-    /// All bits one where a trajectory was refused, none elsewhere.
+    /// All bits one if the trajectory was rejected, otherwise zero.
     pub(crate) refused: Row<u64>,
-    /// All bits one where there is a trajectory that has not ended.
+    /// All bits one if the trajectory exists and has not ended.
     pub(crate) running: Row<u64>,
 }
 
-/// A trajectory of the block, before the step.
+/// A trajectory of the block before the step.
 struct Trajectory<const N: usize, const FUSED: bool, S> {
     system: S,
     node: Node<N, Lane<FUSED>>,
@@ -84,7 +84,7 @@ struct Step<const N: usize, const FUSED: bool> {
 }
 
 impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajectory<N, FUSED, S> {
-    /// The step after a Newton step from v.
+    /// The step after one Newton iteration from v.
     #[inline(always)]
     fn step(&self, v: &SVector<Lane<FUSED>, N>) -> Step<N, FUSED> {
         let equation = self.system.momentum_equation(&self.node, self.h, v);
@@ -93,7 +93,7 @@ impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajec
         let remainder = residual + self.remainder;
         let mut accepted = true;
         for k in 0..N {
-            // A scale that overflows proves nothing.
+            // An infinite scale accepts nothing.
             let rounding = (scale[k] * Lane::new(f64::EPSILON)).get();
             accepted &= remainder[k].get().abs() <= rounding && rounding < f64::MAX * f64::EPSILON;
             accepted &= residual[k].get().abs() <= FLOOR * rounding;
@@ -101,7 +101,7 @@ impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajec
         Step { v, increment, remainder, accepted }
     }
 
-    /// Writes the step to its lane; all bits one where the trajectory is running and was refused.
+    /// Writes the step to its lane; returns all bits one if the trajectory is running and was rejected.
     #[inline(always)]
     fn take<const AGAIN: bool>(
         &self,
@@ -114,7 +114,7 @@ impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajec
         let kept = AGAIN && verdict.refused.get(lane) == 0;
         let mut node = self.node;
         node.advance(self.h, &step.v, &step.increment);
-        // A sum, not a number where one of its terms is not: what solves the equations need not lead anywhere.
+        // NaN if any term is not finite: a solution of the equations may have no finite end.
         let sum = (0..N).fold(0.0, |sum, k| sum + (node.q[k].get() * 0.0 + node.p[k].get() * 0.0));
         let accepted = step.accepted && sum == 0.0;
         after.set_unless(kept, lane, &node);
@@ -126,9 +126,9 @@ impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajec
     }
 }
 
-/// The step of every trajectory from the velocities given, which become those of the step; or, `AGAIN`, of those that were refused
-/// from where they came, while the others stay as they are. Whether a running trajectory was refused.
-pub(crate) struct Sweep<'a, S: Batch<N>, const N: usize, const AGAIN: bool> {
+/// Takes the step of every trajectory from the given velocities and overwrites these. With `AGAIN`, repeats it for
+/// rejected trajectories only. Returns whether a running trajectory was rejected.
+pub(crate) struct Pass<'a, S: Batch<N>, const N: usize, const AGAIN: bool> {
     pub(crate) fixed: &'a Fixed<[S::Rows<HALF>; 2]>,
     pub(crate) elapsed: Elapsed,
     pub(crate) before: &'a Nodes<N>,
@@ -137,21 +137,21 @@ pub(crate) struct Sweep<'a, S: Batch<N>, const N: usize, const AGAIN: bool> {
     pub(crate) verdict: &'a mut Verdict,
 }
 
-impl<S: Batch<N>, const N: usize, const AGAIN: bool> Loop for Sweep<'_, S, N, AGAIN> {
+impl<S: Batch<N>, const N: usize, const AGAIN: bool> Loop for Pass<'_, S, N, AGAIN> {
     type Output = bool;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
         let Self { fixed, elapsed, before, after, velocity, verdict } = self;
-        // Arguments do not overlap, so far as the compiler knows; what stands in a struct of references may.
-        sweep::<S, N, FUSED, AGAIN>(fixed, elapsed, before, after, velocity, verdict)
+        // Separate arguments tell LLVM that the references do not alias; fields of a struct do not.
+        pass::<S, N, FUSED, AGAIN>(fixed, elapsed, before, after, velocity, verdict)
     }
 }
 
-/// A step is a chain of operations that wait for each other, and longer than what a processor looks ahead: two
-/// trajectories, one of each half, are written into each other, so that it finds work in one while the other waits.
+/// A step is a dependency chain longer than the reorder window of a processor. Interleaving two trajectories, one per
+/// half, fills the pipeline.
 #[inline(always)]
-fn sweep<S: Batch<N>, const N: usize, const FUSED: bool, const AGAIN: bool>(
+fn pass<S: Batch<N>, const N: usize, const FUSED: bool, const AGAIN: bool>(
     fixed: &Fixed<[S::Rows<HALF>; 2]>,
     elapsed: Elapsed,
     before: &Nodes<N>,
@@ -188,7 +188,7 @@ fn trajectory<S: Batch<N>, const N: usize, const FUSED: bool>(
     }
 }
 
-/// `Σ weight · velocity` over the last steps, the newest first, into `guess`.
+/// Writes `Σ weight · velocity` over the last steps, newest first, into `guess`.
 pub(crate) struct Extrapolate<'a, const N: usize> {
     pub(crate) weights: &'a [f64],
     pub(crate) velocities: &'a [Box<Rows<N>>],

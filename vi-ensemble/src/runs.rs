@@ -1,15 +1,15 @@
-//! Many runs by any method, over threads.
+//! Many runs with any method, on threads.
 //!
-//! In: runs, each of its own system, state and step. Out: for each, in the order given, the state reached or how it [`Ended`]. A run
-//! returns bit for bit what it returns alone, whatever the number of threads.
+//! In: runs, each with its own system, state and step. Out: for each, in the order given, its state or how it
+//! [`Ended`]. A run returns the same bits as alone, for any number of threads.
 
-use crate::alone::Alone;
 use crate::ended::Ended;
+use crate::single::Single;
 use rayon::prelude::*;
 use vi_core::{Lagrangian, Method, Run, State};
 
-/// Many runs by one method: Gauss steps, compositions, energy-preserving steps. For fixed steps of order 2 of small systems
-/// [`Ensemble`](crate::Ensemble) is several times as fast. Threads are those of rayon's current pool.
+/// Many runs with one method: Gauss, compositions, energy-preserving. For small systems with fixed steps of order 2,
+/// [`Ensemble`](crate::Ensemble) is several times as fast. Uses the threads of the current rayon pool.
 ///
 /// ```
 /// use vi_core::prelude::*;
@@ -29,7 +29,7 @@ use vi_core::{Lagrangian, Method, Run, State};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Runs<M: Method<S, N>, S, const N: usize> {
-    all: Vec<Alone<M, S, N>>,
+    all: Vec<Single<M, S, N>>,
 }
 
 impl<M, S, const N: usize> Runs<M, S, N>
@@ -41,33 +41,33 @@ where
     /// The runs, in this order.
     #[must_use]
     pub fn new(runs: Vec<Run<M, S, N>>) -> Self {
-        Self { all: runs.into_iter().map(|run| Alone::new(Ok(run))).collect() }
+        Self { all: runs.into_iter().map(|run| Single::new(Ok(run))).collect() }
     }
 
     /// Takes `steps` steps of every run that has not ended.
     pub fn run(&mut self, steps: u64) {
-        self.all.par_iter_mut().for_each(|alone| alone.take(steps));
+        self.all.par_iter_mut().for_each(|single| single.take(steps));
     }
 
-    /// Takes every run that has not ended to the time `t`, exactly; a run that cannot go there has ended with the reason. How an
-    /// ended run [`Ended`] counts the steps of [`Runs::run`] only.
+    /// Advances every run that has not ended to the time `t`, exactly. A run that fails on the way ends with the error.
+    /// The step count of [`Ended`] includes steps of [`Runs::run`] only.
     pub fn until(&mut self, t: f64) {
-        self.all.par_iter_mut().for_each(|alone| alone.until(t));
+        self.all.par_iter_mut().for_each(|single| single.until(t));
     }
 
-    /// The runs, in the order given, for their energies, dense output, checkpoints; of one that has ended, how.
+    /// The runs in the order given, for energies, dense output and checkpoints, or how they ended.
     pub fn runs(&self) -> impl Iterator<Item = Result<&Run<M, S, N>, Ended<N>>> + '_ {
-        self.all.iter().map(Alone::run)
+        self.all.iter().map(Single::run)
     }
 
-    /// The state of each run, in the order given; of one that has ended, how.
+    /// The state of each run in the order given, or how it ended.
     pub fn results(&self) -> impl Iterator<Item = Result<State<N>, Ended<N>>> + '_ {
-        self.all.iter().map(Alone::result)
+        self.all.iter().map(Single::result)
     }
 
-    /// How many runs have not ended.
+    /// Number of runs that have not ended.
     #[must_use]
     pub fn running(&self) -> usize {
-        self.all.iter().filter(|alone| alone.is_running()).count()
+        self.all.iter().filter(|single| single.is_running()).count()
     }
 }

@@ -1,22 +1,22 @@
-//! A trajectory by itself, as far as it has come.
+//! A single trajectory with its progress.
 
 use crate::ended::Ended;
 use vi_core::{Lagrangian, Method, Run, State, StepError};
 
-/// A run, or how it ended.
+/// A run, or its end.
 #[derive(Clone, Debug)]
-pub(crate) struct Alone<M: Method<S, N>, S, const N: usize> {
+pub(crate) struct Single<M: Method<S, N>, S, const N: usize> {
     run: Result<Run<M, S, N>, Ended<N>>,
     steps: u64,
 }
 
-impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Alone<M, S, N> {
-    /// A run before its first step, or why there is none.
+impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Single<M, S, N> {
+    /// A run before its first step, or the reason why there is none.
     pub(crate) fn new(run: Result<Run<M, S, N>, Ended<N>>) -> Self {
         Self { run, steps: 0 }
     }
 
-    /// The run, where it has not ended.
+    /// The run, if it has not ended.
     pub(crate) fn run(&self) -> Result<&Run<M, S, N>, Ended<N>> {
         self.run.as_ref().map_err(|ended| *ended)
     }
@@ -31,7 +31,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Alone<M, S, N> {
         self.run.is_ok()
     }
 
-    /// Takes `steps` steps, or as many as there are.
+    /// Takes `steps` steps, or fewer if the run ends.
     pub(crate) fn take(&mut self, steps: u64) {
         self.advance(|run, taken| {
             while *taken < steps {
@@ -42,12 +42,12 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> Alone<M, S, N> {
         });
     }
 
-    /// Goes on to the time `t`, by steps that are not counted.
+    /// Advances to the time `t`, with uncounted steps.
     pub(crate) fn until(&mut self, t: f64) {
         self.advance(|run, _| run.until(t).map(drop));
     }
 
-    /// Lets the run go on, which counts its steps; where it cannot, it has ended.
+    /// Advances the run and counts its steps; after an error the run has ended.
     fn advance(&mut self, advance: impl FnOnce(&mut Run<M, S, N>, &mut u64) -> Result<(), StepError>) {
         let Ok(run) = &mut self.run else { return };
         let mut taken = 0;

@@ -41,7 +41,7 @@ fn converged<S: Batch<N>, const N: usize>(
 }
 
 /// Largest difference of coordinates and momenta.
-fn apart<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
+fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
     (a.q - b.q).amax().max((a.p - b.p).amax())
 }
 
@@ -56,9 +56,9 @@ fn differences<S: Batch<N>, const N: usize>(starts: &[Start<S, N>], h: f64, step
         }
         let (together, alone) = (outcome.map_err(|ended| ended.error)?, alone.state());
         assert!((together.t - alone.t).abs() <= 1e-12 * alone.t.abs().max(1.0));
-        worst[0] = worst[0].max(apart(&together, &alone));
+        worst[0] = worst[0].max(distance(&together, &alone));
         if i % 5 == 0 {
-            worst[1] = worst[1].max(apart(&together, &converged(start, h, steps)?));
+            worst[1] = worst[1].max(distance(&together, &converged(start, h, steps)?));
         }
     }
     assert!(worst.iter().all(|worst| worst.is_finite()));
@@ -297,7 +297,7 @@ fn the_last_state_is_a_good_one() -> Result<(), StepError> {
         let Err(Ended { state, steps, error }) = outcome else { panic!("{} goes on", system.a) };
         assert_eq!(Some(steps), taken);
         assert!(matches!(error, StepError::NonFinite { .. }), "{error}");
-        assert!(apart(&state, &alone.state()) < 1e-14);
+        assert!(distance(&state, &alone.state()) < 1e-14);
     }
     Ok(())
 }
