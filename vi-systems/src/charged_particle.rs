@@ -4,10 +4,10 @@ use vi_core::lagrangian;
 
 lagrangian! {
     /// Charged particle in the field B = (0, 0, b + s x), with the vector potential A = (0, b x + s x²/2, 0) and an
-    /// electric potential κ z²/2 that holds it in the plane.
+    /// electric potential κ z²/2 that confines it to the plane.
     ///
     /// L depends on the velocity beyond the kinetic energy: `L_qv` is not zero. y is cyclic: p_y = m ẏ + e A_y is
-    /// conserved bit for bit. For s = 0 the projection is a circle of radius m v/(e b), run through at e b/m.
+    /// conserved bit for bit. For s = 0 the projection is a circle of radius m v/(e b) with angular velocity e b/m.
     /// Source: Jackson, Classical Electrodynamics, section 12.1.
     pub struct ChargedParticle {
         /// Mass.

@@ -5,7 +5,7 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Double-well Duffing oscillator, a + c v − x + x³ = A cos ω t.
     ///
-    /// With these parameters the motion is chaotic, and the energy-preserving step ends at t ≈ 7.98, whatever h0.
+    /// With these parameters the motion is chaotic, and the energy-preserving step ends at t ≈ 7.98 for every h0.
     /// Source: Guckenheimer and Holmes, Nonlinear Oscillations, section 2.2.
     pub struct DoubleWellDuffing {
         /// Damping.

@@ -1,14 +1,14 @@
-//! Masses on a line, with springs that are not quite linear.
+//! Masses on a line, coupled by slightly nonlinear springs.
 
 use vi_core::lagrangian;
 
 lagrangian! {
     /// Chain of Fermi, Pasta, Ulam and Tsingou: 16 masses between two walls; q[i] is the displacement from rest.
     ///
-    /// Every spring, 17 with those at the walls, pulls with k r + α r² + β r³, r being its stretch. For α = β = 0 the
-    /// frequencies are 2 √(k/m) sin(π j/34), j = 1 … 16. Started in the lowest mode, the chain does not come to
-    /// thermal equilibrium: the energy returns to where it was. The Jacobian of a step is tridiagonal.
-    /// Source: Fermi, Pasta, Ulam, Studies of nonlinear problems I, Los Alamos report LA-1940 (1955); with α = 1/4 there.
+    /// Each of the 17 springs, including those at the walls, has the force k r + α r² + β r³ at the elongation r. For α
+    /// = β = 0 the frequencies are 2 √(k/m) sin(π j/34), j = 1 … 16. Started in the lowest mode, the chain does not
+    /// reach thermal equilibrium: the energy returns to that mode. The Jacobian of a step is tridiagonal. Source:
+    /// Fermi, Pasta, Ulam, Studies of nonlinear problems I, Los Alamos report LA-1940 (1955), with α = 1/4.
     pub struct FpuChain {
         const N = 16;
         /// Each mass.

@@ -5,7 +5,7 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Hard Duffing oscillator, a + c v + α x + β x³ = A cos ω t.
     ///
-    /// The drive stands in the force, not in L: the step density is not the same for both (`docs/mathematics.md`).
+    /// The drive is in the force, not in L: the two choices have different step densities (`docs/mathematics.md`).
     /// Source: Guckenheimer and Holmes, Nonlinear Oscillations, section 2.2.
     pub struct HardDuffing {
         /// Linear stiffness.

@@ -5,8 +5,8 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Harmonic oscillator, m a + k x = 0.
     ///
-    /// The exact motion is x(t) = x(0) cos ω t + (v(0)/ω) sin ω t with ω = √(k/m). The midpoint rule gives
-    /// tan(ω̃ h/2) = ω h/2 for the frequency ω̃ that it sees. Source: Goldstein, Classical Mechanics, chapter 6.
+    /// The exact motion is x(t) = x(0) cos ω t + (v(0)/ω) sin ω t with ω = √(k/m). The frequency ω̃ of the midpoint
+    /// rule satisfies tan(ω̃ h/2) = ω h/2. Source: Goldstein, Classical Mechanics, chapter 6.
     pub struct HarmonicOscillator {
         /// Mass.
         param m = 1.0;

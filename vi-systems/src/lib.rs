@@ -1,8 +1,8 @@
-//! Ready mechanical systems, each a few lines of the language of `lagrangian!`.
+//! Predefined mechanical systems, each a few lines of the language of `lagrangian!`.
 //!
-//! Every system is a struct whose public fields are its parameters; its documentation holds its physics and where it comes
-//! from, and `Default` the parameters that the source uses. Each file declares one system. [`SOURCES`] holds the text of these
-//! files, so that tools can show how a system is declared.
+//! Every system is a struct whose public fields are its parameters. Its documentation gives its physics and its source,
+//! and `Default` the parameters of the source. Each file declares one system. [`SOURCES`] contains the text of these
+//! files for tools that show declarations.
 //!
 //! ```
 //! use vi_core::prelude::*;
@@ -53,7 +53,7 @@ pub use rotating_hoop::RotatingHoop;
 pub use spherical_pendulum::SphericalPendulum;
 pub use three_body::ThreeBody;
 
-/// The declaration of every system, as the text of the file that holds it.
+/// The declaration of every system, as the text of its file.
 pub const SOURCES: [&str; 17] = [
     include_str!("charged_particle.rs"),
     include_str!("damped_oscillator.rs"),

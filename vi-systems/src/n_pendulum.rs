@@ -5,10 +5,10 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Four equal pendula, each hanging from the one above, in absolute angles; θ = 0 hangs down.
     ///
-    /// Link i carries all masses from i on, so that its square has the weight N − i, and the pair (i, j) with j < i
-    /// the weight N − i and the cosine of the angle between the links. The mass matrix is full and depends on the
-    /// configuration; the motion is chaotic at large angles. For N = 2 it is the double pendulum with equal parts.
-    /// Source: Landau and Lifshitz, Mechanics, section 5, continued.
+    /// Link i carries all masses from i on. So its square has the weight N − i, and the pair (i, j) with j < i has the
+    /// weight N − i times the cosine of the angle between the links. The mass matrix is full and depends on the
+    /// configuration; the motion is chaotic at large angles. For N = 2 it is the double pendulum with equal masses and
+    /// rods. Source: Landau and Lifshitz, Mechanics, section 5, continued.
     pub struct NPendulum {
         const N = 4;
         /// Each mass.

@@ -3,11 +3,11 @@
 use vi_core::lagrangian;
 
 lagrangian! {
-    /// Sun, Jupiter, Saturn, Uranus, Neptune and Pluto, in this order, each attracting each.
+    /// Sun, Jupiter, Saturn, Uranus, Neptune and Pluto, in this order, with mutual attraction.
     ///
-    /// Lengths in astronomical units, times in days, masses relative to the Sun's; its own includes those of the inner planets.
-    /// Conserved: energy, momentum, angular momentum. Jupiter takes 4333 days for a turn, Pluto 90 600.
-    /// Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.3 and table 2.2.
+    /// Lengths in astronomical units, times in days, masses relative to the Sun's; the mass of the Sun includes the
+    /// inner planets. Conserved: energy, momentum, angular momentum. Jupiter has a period of 4333 days, Pluto of 90
+    /// 600. Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, section I.2.3 and table 2.2.
     pub struct OuterSolarSystem {
         const N = 6;
         /// Constant of gravitation.
@@ -51,14 +51,14 @@ lagrangian! {
 }
 
 impl OuterSolarSystem {
-    /// Where Sun and planets were on 5 September 1994: x of all of them, then y, then z, in astronomical units.
+    /// Positions of Sun and planets on 5 September 1994: all x, then all y, then all z, in astronomical units.
     #[rustfmt::skip]
     pub const POSITIONS: [f64; 18] = [
         0.0, -3.502_365_3, 9.075_531_4, 8.310_142_0, 11.470_766_6, -15.538_735_7,
         0.0, -3.816_984_7, -3.045_835_3, -16.290_108_6, -25.729_482_9, -25.222_559_4,
         0.0, -1.550_796_3, -1.648_370_8, -7.252_127_8, -10.816_945_6, -3.190_238_2,
     ];
-    /// Their velocities, in astronomical units a day.
+    /// Velocities in the same order, in astronomical units per day.
     #[rustfmt::skip]
     pub const VELOCITIES: [f64; 18] = [
         0.0, 0.005_654_29, 0.001_683_18, 0.003_541_78, 0.002_889_30, 0.002_767_25,

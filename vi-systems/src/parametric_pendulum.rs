@@ -5,7 +5,7 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Parametric pendulum, a = −(1 + ε cos ω t) sin θ.
     ///
-    /// The time stands in L and cannot be put into a force that leaves the energy as it is. With ε = 0.5, ω = 2 the
+    /// L depends on time, and no force can replace this dependence without changing the energy. With ε = 0.5, ω = 2 the
     /// energy-preserving step ends at t = 0.870. Source: Landau and Lifshitz, Mechanics, section 27.
     pub struct ParametricPendulum {
         /// Depth of the modulation.

@@ -5,8 +5,8 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Plane pendulum, m l² a = −m g l sin θ; θ = 0 hangs down.
     ///
-    /// Librations run with the energy-preserving integrator; rotations end where the step density vanishes.
-    /// Source: Goldstein, Classical Mechanics, chapter 1.
+    /// Librations run with the energy-preserving integrator; rotations end when the step density vanishes. Source:
+    /// Goldstein, Classical Mechanics, chapter 1.
     pub struct Pendulum {
         /// Mass.
         param m = 1.0;

@@ -5,8 +5,8 @@ use vi_core::lagrangian;
 lagrangian! {
     /// Bead on a hoop of radius r that turns with the angular velocity Ω; θ = 0 is the bottom.
     ///
-    /// The conserved quantity is Jacobi's, v·L_v − L, not kinetic plus potential energy. Above Ω² = g/r the bottom is
-    /// unstable and the bead rests at cos θ = g/(r Ω²). Source: Goldstein, Classical Mechanics, chapter 2.
+    /// The conserved quantity is the Jacobi integral v·L_v − L, not kinetic plus potential energy. Above Ω² = g/r the
+    /// bottom is unstable and the bead rests at cos θ = g/(r Ω²). Source: Goldstein, Classical Mechanics, chapter 2.
     pub struct RotatingHoop {
         /// Mass.
         param m = 1.0;

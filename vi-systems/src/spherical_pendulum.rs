@@ -1,4 +1,4 @@
-//! A pendulum that swings in all directions.
+//! A pendulum with two angles.
 
 use vi_core::lagrangian;
 

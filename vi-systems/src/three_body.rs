@@ -3,10 +3,11 @@
 use vi_core::lagrangian;
 
 lagrangian! {
-    /// Three bodies in a plane, each attracting each, with the constant of gravitation 1.
+    /// Three bodies in a plane with mutual attraction; the constant of gravitation is 1.
     ///
-    /// Conserved: energy, momentum, angular momentum. Equal masses can follow one another on a figure of eight, an orbit that is stable.
-    /// Source: Chenciner and Montgomery, Annals of Mathematics 152 (2000) 881, with the start that C. Simó computed.
+    /// Conserved: energy, momentum, angular momentum. Equal masses can follow one another on a stable figure-eight
+    /// orbit. Source: Chenciner and Montgomery, Annals of Mathematics 152 (2000) 881; initial state computed by C.
+    /// Simó.
     pub struct ThreeBody {
         const N = 3;
         /// Mass of the first body.

@@ -1,7 +1,7 @@
-//! The expansions in `docs/expanded` are what the compiler emits today, and they compute what the macro's systems do.
+//! The files in `docs/expanded` equal the current expansions and compute the same as the macro's systems.
 //!
-//! After a change of the compiler, `UPDATE_EXPANDED=1 cargo test -p vi-systems --test expanded` writes them anew; read the
-//! difference before it is committed.
+//! After a change of the compiler, `UPDATE_EXPANDED=1 cargo test -p vi-systems --test expanded` rewrites them; read the
+//! difference before you commit it.
 
 #![allow(mixed_script_confusables, reason = "θ is the only Greek letter in these files")]
 
@@ -80,7 +80,7 @@ fn the_documented_systems_move_as_the_macros_do() {
     assert!(kepler == bits(&vi_systems::Kepler::default(), [0.4, 0.0], [0.0, 2.0], 0.005));
     let pendulum = bits(&double_pendulum::DoublePendulum::default(), [1.0, 1.0], [0.0, 0.0], 0.005);
     assert!(pendulum == bits(&vi_systems::DoublePendulum::default(), [1.0, 1.0], [0.0, 0.0], 0.005));
-    // Another parameter is another motion: what is compared is no constant.
+    // Another parameter gives another motion, so the compared values are not constant.
     let heavier = damped_oscillator::DampedOscillator { m: 1.5, ..Default::default() };
     assert!(damped != bits(&heavier, [1.0], [0.5], 0.01));
 }

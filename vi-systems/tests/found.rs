@@ -1,12 +1,12 @@
-//! What the generator says it found is what the numbers show, for every ready system.
+//! The findings of the generator match numerical evaluation, for every predefined system.
 //!
-//! The Jacobian A of the momentum equation is evaluated at generic states: where it is said to be free of v or of the node,
-//! it does not change with them, bit for bit; where it is said to depend on them, it does. The same for its symmetry, its
-//! zeros, and the mass matrix, whose change shows in that of p with v.
+//! The Jacobian A of the momentum equation is evaluated at generic states. If the findings declare A independent of v
+//! or of the node, it does not change, bit for bit; otherwise it does. The same holds for its symmetry, its zeros, and
+//! the mass matrix, which follows from the change of p with v.
 
 use std::fs;
 use std::path::Path;
-use vi_codegen::found::{Dependence, Findings, Pattern};
+use vi_codegen::findings::{Dependence, Findings, Pattern};
 use vi_codegen::inspect::source;
 use vi_codegen::{derive, syntax::parse};
 use vi_core::linear::Matrix;
@@ -61,7 +61,7 @@ fn check<S: FixedStepping<N> + Default, const N: usize>(file: &str) -> Findings 
         Pattern::Dense => assert!((0..N).all(|i| (0..i).any(|j| filled(i, j)) || i == 0), "{file}: {a}"),
         other => panic!("{file}: no ready system is {other:?}"),
     }
-    // M = ∂p/∂v, to first order by a difference; what is constant does not change at all for L quadratic in v.
+    // M = ∂p/∂v, to first order by a difference; a constant M is exact if L is quadratic in v.
     let p = |q: f64, v: f64| system.momentum(0.4, &generic(q), &generic(v));
     let difference = |q: f64| p(q, 3.0) - p(q, 4.0);
     let change = (difference(1.0) - difference(2.0)).amax();
