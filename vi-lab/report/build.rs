@@ -1,4 +1,4 @@
-//! Tells the command which compiler built it: files that it writes say so.
+//! Passes the compiler version to the command, which writes it into its files.
 
 use std::env;
 use std::process::Command;

@@ -1,7 +1,8 @@
-//! The entry of a system that `vi_lab::main!` lists, with a rule or without one.
+//! Entries for the systems listed in `vi_lab::main!`, with or without a rule.
 //!
-//! In: a type. Out: its [`Entry`]. The call `(&&Declared::<S>::new()).entry(…)` takes [`WithRule`] if the system has a rule with a step density, else
-//! [`WithoutRule`], one reference deeper: the type is known where the macro is expanded.
+//! In: a type. Out: its [`Entry`]. The call `(&&Declared::<S>::new()).entry(…)` resolves to [`WithRule`] if the system
+//! has a rule with a step density, otherwise to [`WithoutRule`], one reference deeper. The macro knows the type at its
+//! expansion.
 
 use crate::Entry;
 use core::marker::PhantomData;
@@ -9,7 +10,7 @@ use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
 use vi_core::stepping::{Convertible, EnergyStepping};
 
-/// A system that a program declares.
+/// A system declared by a program.
 #[derive(Debug)]
 pub struct Declared<S>(PhantomData<S>);
 
@@ -24,13 +25,13 @@ impl<S> Declared<S> {
 
 /// A system with a rule.
 pub trait WithRule<const N: usize> {
-    /// What it is, its initial coordinates and velocities, a step.
+    /// Builds the entry from a description, initial coordinates and velocities, and a step.
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
 }
 
 /// A system without a rule.
 pub trait WithoutRule<const N: usize> {
-    /// What it is, its initial coordinates and velocities, a step.
+    /// Builds the entry from a description, initial coordinates and velocities, and a step.
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry;
 }
 

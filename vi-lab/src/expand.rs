@@ -1,7 +1,7 @@
-//! `vi-lab expand`: what the systems in a file become.
+//! `vi-lab expand`: the products of the compiler for the systems in a file.
 //!
-//! In: a file of Rust. Out: the product of one stage for each `lagrangian!` in it. Mistakes in a system are shown at their
-//! places, and the systems after it are expanded all the same.
+//! In: a Rust file. Out: the product of one stage for each `lagrangian!` in it. Mistakes are printed with their source
+//! lines; later systems are still expanded.
 
 use crate::place;
 use clap::{Args, ValueEnum};
@@ -13,10 +13,10 @@ use vi_report::failure::Failure;
 /// The command line of `vi-lab expand`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A file of Rust that declares systems with `lagrangian!`
+    /// A Rust file that declares systems with `lagrangian!`
     #[arg(value_name = "FILE.rs")]
     file: PathBuf,
-    /// How far to go
+    /// The last stage to run
     #[arg(long, value_enum, default_value_t = Stage::Rust)]
     stage: Stage,
 }
@@ -53,7 +53,7 @@ pub(crate) fn expand(arguments: &Arguments) -> Result<String, Failure> {
     each(&arguments.file, |tokens| inspect::stage(tokens, arguments.stage.into()))
 }
 
-/// Makes a text of every system in a file.
+/// Produces a text for every system in a file.
 pub(super) fn each(file: &Path, mut show: impl FnMut(TokenStream) -> syn::Result<String>) -> Result<String, Failure> {
     let name = file.display().to_string();
     let text = place::text(file)?;

@@ -1,8 +1,8 @@
 //! `vi-lab explain`: the mathematics of a system.
 //!
-//! In: the name of a ready system, or a file of Rust with systems of one's own. Out: L, f, L_d, its slot derivatives, the
-//! equations of a step, what the generator found out, and operation counts, or the equations of a Gauss step, as text or as a LaTeX document. The ready
-//! systems are read from the files that the library itself is made of.
+//! In: the name of a predefined system, or a Rust file with your own systems. Out: L, f, L_d, its slot derivatives, the
+//! equations of a step, findings and operation counts, or the equations of a Gauss step, as text or as a LaTeX
+//! document. The predefined systems are read from the sources of the library.
 
 use super::{catalogue, expand};
 use clap::{Args, ValueEnum};
@@ -14,32 +14,32 @@ use vi_report::failure::Failure;
 /// The command line of `vi-lab explain`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A system of `vi-lab list`, or a file of Rust [default: the first system of this program's own]
+    /// A system of `vi-lab list`, or a Rust file [default: the first system of this program]
     #[arg(value_name = "SYSTEM|FILE.rs")]
     system: Option<String>,
     /// Write a LaTeX document
     #[arg(long)]
     latex: bool,
-    /// Show the steps of this rule instead of those by the rules that the system is declared with
+    /// Show the steps with this rule instead of the declared rules
     #[arg(long, value_enum)]
     rule: Option<Rule>,
-    /// Stages of a Gauss step, 1 to 16; 2 unless this is given
+    /// Stages of a Gauss step, 1 to 16 [default: 2]
     #[arg(long, value_name = "S", requires = "rule", value_parser = clap::value_parser!(u8).range(1..=MOST))]
     stages: Option<u8>,
 }
 
-/// A rule that no system is declared with, since each has its steps.
+/// A rule that needs no declaration.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Rule {
     /// Collocation at the Gauss points
     Gauss,
 }
 
-/// Most stages of a Gauss step.
+/// Maximum stages of a Gauss step.
 const MOST: i64 = 16;
 
 impl Arguments {
-    /// The mathematics that is asked for.
+    /// The requested mathematics.
     fn explained(&self, tokens: TokenStream) -> syn::Result<inspect::Explanation> {
         match self.rule {
             Some(Rule::Gauss) => inspect::explain_gauss(tokens, usize::from(self.stages.unwrap_or(2))),
@@ -61,21 +61,21 @@ pub(crate) fn explain(arguments: &Arguments) -> Result<String, Failure> {
     ready(entry.system.name(), explained).map(show)
 }
 
-/// The mathematics of a ready system.
+/// The mathematics of a predefined system.
 fn ready(
     name: &str,
     explained: impl Fn(TokenStream) -> syn::Result<inspect::Explanation>,
 ) -> Result<inspect::Explanation, Failure> {
     let mut declared = catalogue::sources().filter_map(|text| source::declarations(text).ok()).flatten();
     let found = declared.find_map(|tokens| {
-        // The name stands first of all that a declaration says: no other system needs to be derived.
+        // The name comes first in a declaration, so that no other system needs to be derived.
         let system = vi_codegen::syntax::parse::system(tokens.clone()).ok()?;
         (system.name == name).then(|| explained(tokens))
     });
     match found {
         Some(Ok(explanation)) => Ok(explanation),
         Some(Err(error)) => Err(Failure::Input(format!("{name}: {error}"))),
-        None => Err(Failure::Input(format!("the declaration of {name} is not at hand"))),
+        None => Err(Failure::Input(format!("the source of {name} is not available"))),
     }
 }
 

@@ -1,20 +1,20 @@
-//! The command `vi-lab`: runs, and the paper's study as a page.
+//! The command `vi-lab`: runs, and the study of the paper as a web page.
 //!
-//! In: the command line. Out: files, text on standard output, and an exit status: 0, 1 where a step or a file failed,
-//! 2 where the input is wrong, 130 or 143 where a signal ended a run, 141 where nobody reads standard output any more.
-//! Progress and errors go to standard error.
+//! In: the command line. Out: files, text on standard output, and an exit status. Status 0 is success, 1 a failed step
+//! or file, 2 wrong input, 130 or 143 a run interrupted by a signal, 141 a closed standard output. Progress and errors
+//! go to standard error.
 //!
-//! | module | what it makes |
+//! | module | product |
 //! |---|---|
-//! | `new` | `vi-lab new`: a crate of one's own with all of this command |
+//! | `new` | `vi-lab new`: a project with this command for your own systems |
 //! | `run` | `vi-lab run`: rows as CSV or NPY |
 //! | `vi_studies` | `vi-lab paper`: figures, tables and the page; `vi-lab stability`: where methods fail, as maps |
 //! | `work_precision` | `vi-lab work-precision`: error against time, for every method |
 //! | `sweep` | `vi-lab sweep`, `vi-lab merge`: many runs of one scene, on all cores and many machines |
-//! | `lyapunov` | `vi-lab lyapunov`: how fast neighbouring motions part |
-//! | `expand`, `explain` | what a system becomes, stage by stage; its mathematics |
-//! | `npy`, `place` | the head of an array file; which files can be read and written |
-//! | `vi_report` | what all of them show and say; the systems by name |
+//! | `lyapunov` | `vi-lab lyapunov`: Lyapunov exponents |
+//! | `expand`, `explain` | the products of the compiler; the mathematics of a system |
+//! | `npy`, `place` | the header of an array file; checks of files to read and write |
+//! | `vi_report` | output shared by all subcommands; the systems by name |
 
 #[doc(hidden)]
 pub mod declared;
@@ -39,7 +39,7 @@ use vi_report::machine::visible;
 pub use vi_runs::ready::Entry;
 use vi_studies::{paper, stability};
 
-/// Variational integrators at work: simulate a system, or reproduce the paper.
+/// Variational integrators: simulate a system, or reproduce the paper.
 #[derive(Debug, Parser)]
 #[command(name = "vi-lab", version, max_term_width = 100)]
 struct Command {
@@ -49,38 +49,39 @@ struct Command {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// Make every figure and table of the paper's numerical study, with this project's numbers beside the paper's
+    /// Compute every figure and table of the paper's numerical study, next to the published numbers
     Paper {
         /// Folder for the page, its figures (SVG) and their data (CSV)
         #[arg(long, value_name = "DIR", default_value = "paper")]
         out: PathBuf,
-        /// Length of the long runs
+        /// Number of steps of the long runs
         #[arg(long, value_name = "N", default_value_t = paper::STEPS, value_parser = paper::steps)]
         steps: u32,
     },
     /// Simulate one system, and write its states
     Run(run::Arguments),
-    /// Chart where methods fail: the whole page, or the map of one system
+    /// Map where methods fail: the complete page, or the map of one system
     Stability(stability::Arguments),
     /// Chart error against time, evaluations and step for every method on one system
     WorkPrecision(work_precision::Arguments),
     /// Estimate the largest Lyapunov exponents of a system along one run
     Lyapunov(lyapunov::Arguments),
-    /// Take many runs of one scene, over parameters, initial values and steps: on all cores, or one share of many
+    /// Run a scene many times over parameters, initial values and steps: on all cores, or one shard of several
     Sweep(sweep::Arguments),
     /// Merge the chunks of a sweep into tables
     Merge(sweep::merge::Arguments),
-    /// Show what the systems in a file become, stage by stage
+    /// Show the products of the compiler for the systems in a file
     Expand(expand::Arguments),
-    /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, what was found, operation counts
+    /// Show the mathematics of a system: L, `L_d`, D1 to D4, equations, findings, operation counts
     Explain(explain::Arguments),
-    /// Write a crate with a system of your own and all of this command for it
+    /// Create a project with this command for your own systems
     New(new::Arguments),
-    /// List the systems, their parameters and where they start
+    /// List the systems, their parameters and initial states
     List,
 }
 
-/// Gives a program the command `vi-lab` for systems of its own, beside the ready ones: `run`, `stability`, `work-precision`, `explain`, scenes.
+/// Adds the command `vi-lab` to a program for its own systems, besides the predefined ones: `run`, `stability`,
+/// `work-precision`, `explain`, scenes.
 ///
 /// ```text
 /// vi_lab::main! {
@@ -91,8 +92,8 @@ enum Action {
 /// }
 /// ```
 ///
-/// A system needs `Default`, which every parameter with a value gives it. One without a rule has Gauss steps alone. `q`, `v` and `h` are where a run starts that
-/// is not told otherwise: coordinates, velocities, a step.
+/// A system needs `Default`, which every parameter with a value provides. A system without a rule runs with Gauss
+/// methods only. `q`, `v` and `h` are the default initial coordinates, initial velocities and step.
 #[macro_export]
 macro_rules! main {
     (
@@ -112,7 +113,7 @@ macro_rules! main {
     };
 }
 
-/// Runs the command line of this process, for systems of one's own too.
+/// Runs the command line of this process, including the systems of the program.
 #[must_use]
 pub fn main_with(own: Own) -> ExitCode {
     own.declare();
@@ -125,7 +126,7 @@ pub fn main() -> ExitCode {
     let outcome = match Command::try_parse() {
         Ok(Command { action }) => act(action),
         Err(error) if !error.use_stderr() => {
-            // Help or the version was asked for.
+            // The user asked for help or for the version.
             error.print().map_err(Failure::standard_output)
         }
         Err(error) => Err(Failure::usage(&error)),
@@ -134,13 +135,13 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure @ Failure::Unread) => ExitCode::from(failure.exit_status()),
         Err(Failure::System { shown, wrong }) => {
-            // The command shows what is right first. It reports the mistakes also where nobody reads standard output.
+            // Prints the correct systems first. Mistakes are reported even if standard output is closed.
             let _ = if shown.is_empty() { Ok(()) } else { print(&shown) };
             let _ = write!(io::stderr(), "{}", visible(&wrong));
             ExitCode::FAILURE
         }
         Err(failure) => {
-            // Standard error may be closed; the exit status says the same.
+            // Standard error may be closed; the exit status reports the failure.
             let _ = writeln!(io::stderr(), "error: {}", visible(&failure.to_string()));
             ExitCode::from(failure.exit_status())
         }
@@ -166,7 +167,7 @@ fn act(action: Action) -> Result<(), Failure> {
     }
 }
 
-/// Writes a text and a line end to standard output, its control characters escaped.
+/// Prints a text and a line end to standard output, with control characters escaped.
 fn print(text: &str) -> Result<(), Failure> {
     writeln!(io::stdout(), "{}", visible(text)).map_err(Failure::standard_output)
 }

@@ -1,7 +1,8 @@
-//! `vi-lab lyapunov`: how fast neighbouring motions part.
+//! `vi-lab lyapunov`: the rates at which neighbouring trajectories diverge.
 //!
-//! In: the command line. Out: estimates of the largest Lyapunov exponents along one run of Gauss steps, at times each twice the one before, so that a reader
-//! sees whether they have settled; as CSV on standard output. The directions are those of the tangent map of the steps themselves (`vi_core::derivatives`).
+//! In: the command line. Out: estimates of the largest Lyapunov exponents along one run of Gauss steps, as CSV on
+//! standard output. Each output time is twice the previous one, which shows the convergence. The tangent vectors are
+//! those of the discrete steps (`vi_core::derivatives`).
 
 use crate::run;
 use clap::Args;
@@ -14,13 +15,14 @@ use vi_runs::plan::Method;
 /// The command line of `vi-lab lyapunov`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Columns: t, and the exponents λ1, λ2, … as their means up to t, in units of one over time. A chaotic motion has λ1 > 0; without force and time they come in pairs λ and −λ, \
-and one pair is zero. With a negative --h they are those of the motion backwards in time: in units of one over the time that has passed. An estimate differs from its limit by a term of order 1/t, and by the fluctuations of the motion.")]
+Columns: t, and the exponents λ1, λ2, … averaged up to t, in units of 1/time. A chaotic motion has λ1 > 0. An autonomous system without force has pairs λ and −λ, \
+of which one is zero. A negative --h gives the exponents of the motion backwards in time. An estimate differs from its limit by O(1/t) and by the fluctuations of the motion.")]
 pub(crate) struct Arguments {
-    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
+    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of
+    /// this program]
     #[arg(value_name = "SYSTEM|SCENE.toml")]
     target: Option<String>,
-    /// How many exponents, the largest first, at most twice the coordinates
+    /// Number of exponents, largest first; at most twice the number of coordinates
     #[arg(long, value_name = "K", default_value_t = 2)]
     count: usize,
     /// Step [default: five times the system's]
@@ -29,7 +31,7 @@ pub(crate) struct Arguments {
     /// Number of steps, such as 1e6
     #[arg(long, value_name = "N", default_value = "1e5", value_parser = count)]
     steps: u64,
-    /// Sets a parameter; may be given once for each
+    /// Set a parameter; repeat for several
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Initial coordinates, separated by commas [default: the system's]
@@ -40,15 +42,15 @@ pub(crate) struct Arguments {
     v: Option<Vec<f64>>,
 }
 
-/// Steps before the first estimate that is written.
+/// Steps before the first printed estimate.
 const FIRST: u64 = 100;
-/// How many times a step is longer than that of order 2 which the system has by default.
+/// Ratio of the Gauss step to the default step of the system, which is meant for order 2.
 const LONGER: f64 = 5.0;
 
-/// Writes the estimates.
+/// Prints the estimates.
 ///
 /// # Errors
-/// Wrong input; a step that fails, after the estimates up to there.
+/// Wrong input; a failed step, after printing the estimates so far.
 pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Failure>) -> Result<(), Failure> {
     let Arguments { target, count, h, steps, set, q, v } = arguments;
     let wanted = run::Arguments {
@@ -63,7 +65,7 @@ pub(crate) fn write(arguments: &Arguments, print: impl Fn(&str) -> Result<(), Fa
     };
     let (system, mut plan) = run::start(&wanted)?;
     if h.is_none() {
-        // Gauss steps are longer than those of order 2.
+        // Gauss steps are longer than steps of order 2.
         plan.h *= LONGER;
     }
     let most = 2 * system.coordinates().len();

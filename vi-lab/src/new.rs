@@ -1,7 +1,7 @@
-//! `vi-lab new`: a crate with a system of one's own, and all of this command for it.
+//! `vi-lab new`: a project with one system, and this command for it.
 //!
-//! In: a name. Out: a folder with a crate that builds and runs as it is: the manifest, with profiles in which debug builds step fast and
-//! release builds are short; a library with one system; the program with all of this command for it; a README of five lines.
+//! In: a name. Out: a folder with a crate that builds and runs unchanged: a manifest with profiles for fast debug steps
+//! and short release builds, a library with one system, a program with this command, and a README of five lines.
 
 use clap::Args;
 use std::fs;
@@ -11,7 +11,7 @@ use vi_report::failure::Failure;
 /// The command line of `vi-lab new`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Name of the crate, and of its folder
+    /// Name of the crate and of its folder
     #[arg(value_name = "NAME")]
     name: PathBuf,
 }
@@ -27,13 +27,13 @@ pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Fa
     let name = folder.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     if !is_crate_name(name) {
         let allowed = "letters, digits, - and _, the first a letter";
-        return Err(Failure::Input(format!("`{}` is no name of a crate; it has {allowed}", folder.display())));
+        return Err(Failure::Input(format!("`{}` is not a crate name; use {allowed}", folder.display())));
     }
     if let Some(why) = taken(name) {
         return Err(Failure::Input(format!("`{name}` {why}; choose another name")));
     }
     if folder.exists() {
-        return Err(Failure::Input(format!("{} is there already", folder.display())));
+        return Err(Failure::Input(format!("{} already exists", folder.display())));
     }
     let file = |path: PathBuf, text: &str| {
         fs::write(&path, text).map_err(|error| Failure::File { name: path.display().to_string(), error })
@@ -54,30 +54,30 @@ pub(crate) fn write(Arguments { name: folder }: &Arguments) -> Result<String, Fa
     ))
 }
 
-/// Whether Cargo takes a name for a crate.
+/// Whether Cargo accepts a name for a crate.
 fn is_crate_name(name: &str) -> bool {
     let mut letters = name.chars();
     letters.next().is_some_and(|first| first.is_ascii_alphabetic())
         && letters.all(|letter| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_'))
 }
 
-/// Why a crate cannot have a name: Rust has the word, or another crate in the same build.
+/// Why a crate cannot have this name: it is a keyword, or the name of another crate in the same build.
 fn taken(name: &str) -> Option<&'static str> {
     let word = name.replace('-', "_");
     if matches!(word.as_str(), "core" | "std" | "alloc" | "proc_macro" | "test") {
-        return Some("is a crate of Rust itself");
+        return Some("is a standard crate of Rust");
     }
     if syn::parse_str::<syn::Ident>(&word).is_err() {
-        return Some("is a word of Rust");
+        return Some("is a keyword of Rust");
     }
-    word.starts_with("vi_").then_some("may be a crate that this one depends on: their names begin with vi-")
+    word.starts_with("vi_").then_some("may clash with a dependency: their names begin with vi-")
 }
 
-/// The lines of the manifest that say where the libraries are: beside this command, where its source still stands, else by version.
+/// The dependencies in the manifest: paths if the source of this command exists, otherwise versions.
 fn libraries() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().filter(|root| root.join("vi-core/Cargo.toml").is_file());
     let line = |name: &str| match root {
-        // Quoted as Rust does, which TOML reads: both escape backslashes and quotes alike.
+        // Rust and TOML escape backslashes and quotes alike.
         Some(root) => format!("{name} = {{ path = {:?} }}", root.join(name).display().to_string()),
         None => format!("{name} = {:?}", env!("CARGO_PKG_VERSION")),
     };

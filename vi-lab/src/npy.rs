@@ -1,12 +1,12 @@
-//! The head of an NPY file, the array format of `NumPy`: float64, row by row. Source: the format's version 1.0.
+//! The header of an NPY file, the array format of `NumPy`: float64, row by row. Source: version 1.0 of the format.
 
-/// Bytes before the numbers: magic, version, length of the head, head; a multiple of 64.
+/// Bytes before the numbers: magic, version, length of the header, header; a multiple of 64.
 pub(crate) const ROOM: usize = 128;
 
-/// Magic, version 1.0, length of the description, description padded with blanks to the fixed room.
+/// Magic, version 1.0, length of the description, description padded with blanks to the fixed size.
 pub(crate) fn head(rows: u64, columns: usize) -> Vec<u8> {
     let description = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
-    // Ten bytes come before the description, and a line end closes it: its length is 118, which two bytes hold.
+    // Ten bytes precede the description and a line end follows it: its length is 118, which fits two bytes.
     let mut head = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
     head.extend(description.as_bytes());
     head.resize(ROOM - 1, b' ');

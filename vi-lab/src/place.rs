@@ -1,7 +1,8 @@
-//! Which files can be read, and where one can be written.
+//! Checks of files to read and to write.
 //!
-//! In: a path. Out: its text, a file to write, or [`Failure::Input`]. A file is read if it is a regular one: a pipe may never end. A file that stands in for
-//! another until it is whole is always a new one: what else has its name, as a link to somewhere, stays as it is.
+//! In: a path. Out: its text, a file to write, or [`Failure::Input`]. Only regular files are read: a pipe may never
+//! end. Output goes to a new temporary file, which replaces the target when it is complete; existing files and links
+//! keep their content until then.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -12,28 +13,28 @@ use vi_report::failure::Failure;
 /// The text of a file.
 ///
 /// # Errors
-/// [`Failure::Input`] if it cannot be read, or is no regular file.
+/// [`Failure::Input`] if it cannot be read, or is not a regular file.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     check_regular(path)?;
     fs::read_to_string(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
 }
 
-/// Whether a path names a regular file.
+/// Checks that a path is a regular file.
 ///
 /// # Errors
-/// [`Failure::Input`] if it does not.
+/// [`Failure::Input`] if it is not.
 pub(crate) fn check_regular(path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     match fs::metadata(path) {
         Err(error) => Err(Failure::Input(format!("{shown}: {error}"))),
         Ok(found) if !found.is_file() => {
-            Err(Failure::Input(format!("{shown} is no regular file; give the name of one")))
+            Err(Failure::Input(format!("{shown} is not a regular file; name a regular file")))
         }
         Ok(_) => Ok(()),
     }
 }
 
-/// A path with one more ending.
+/// A path with an appended extension.
 pub(crate) fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".");
@@ -41,21 +42,21 @@ pub(crate) fn beside(path: &Path, ending: &str) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// A new file that takes the place of another when it is whole; without that it is removed.
+/// A new file that replaces another one when complete; dropped earlier, it is removed.
 #[derive(Debug)]
 pub(crate) struct Temporary {
     path: PathBuf,
     place: PathBuf,
 }
 
-/// Names that are tried for a new file: those before may be left by processes that were killed.
+/// Number of names to try: killed processes may have left earlier files.
 const NAMES: u32 = 1000;
 
 impl Temporary {
-    /// A new file beside `place`.
+    /// Creates a new file beside `place`.
     ///
     /// # Errors
-    /// Why it cannot be made.
+    /// The error of the file system.
     pub(crate) fn create(place: &Path) -> io::Result<(Self, File)> {
         let mut number = 0;
         loop {
@@ -68,10 +69,10 @@ impl Temporary {
         }
     }
 
-    /// Gives the file its place.
+    /// Moves the file to its target.
     ///
     /// # Errors
-    /// Why it cannot have it.
+    /// The error of the file system.
     pub(crate) fn finish(self) -> io::Result<()> {
         fs::rename(&self.path, &self.place)
     }
@@ -79,15 +80,15 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // After it was given its place there is no such file.
+        // After the move there is no such file.
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// Writes a small file whose name follows from that of another.
+/// Writes a small file whose name derives from another one.
 ///
 /// # Errors
-/// Why it cannot be written.
+/// The error of the file system.
 pub(crate) fn replace(path: &Path, text: &str) -> io::Result<()> {
     let (temporary, mut file) = Temporary::create(path)?;
     file.write_all(text.as_bytes())?;
@@ -95,22 +96,23 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<()> {
     temporary.finish()
 }
 
-/// Waits until the names in a folder are on the disk, on systems that can.
+/// Waits until the entries of a folder are on disk, on systems that support it.
 pub(crate) fn sync_folder(folder: &Path) {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// Whether a file can be made at a path, were it not for permissions: its folder is there, and the path is no folder itself. `what` is what the file is.
+/// Checks that a file can be created at a path, except for permissions: its folder exists and the path is not a folder.
+/// `what` names the file.
 ///
 /// # Errors
-/// [`Failure::Input`] where it cannot.
+/// [`Failure::Input`] if it cannot.
 pub(crate) fn check(what: &str, path: &Path) -> Result<(), Failure> {
     let shown = path.display();
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         let folder = folder.display();
-        return Err(Failure::Input(format!("there is no folder `{folder}` for the {what} `{shown}`; make it first")));
+        return Err(Failure::Input(format!("there is no folder `{folder}` for the {what} `{shown}`; create it first")));
     }
     if path.is_dir() {
         return Err(Failure::Input(format!("the {what} `{shown}` is a folder; name a file")));

@@ -1,4 +1,4 @@
-//! The command `vi-lab` as a user meets it: output, exit status, messages, files.
+//! The command `vi-lab` as a user sees it: output, exit status, messages, files.
 
 #[path = "command/ends.rs"]
 mod ends;
@@ -21,12 +21,12 @@ fn lab(arguments: &[&str]) -> (Option<i32>, String, String) {
     (status.code(), text(stdout), text(stderr))
 }
 
-/// A file of this test in the folder for temporary files.
+/// A file of this test in the temporary folder.
 fn temporary(name: &str) -> PathBuf {
     std::env::temp_dir().join(format!("vi-lab-{}-{name}", std::process::id()))
 }
 
-/// Asserts that the command refuses arguments with a message on one line, and status 2.
+/// Asserts that the command rejects arguments with a message on one line, and status 2.
 fn assert_refused(cases: &[(&[&str], &str)]) {
     for (arguments, message) in cases {
         let (status, output, errors) = lab(arguments);
@@ -35,7 +35,7 @@ fn assert_refused(cases: &[(&[&str], &str)]) {
     }
 }
 
-/// Starts the command, its outputs to be read.
+/// Starts the command with piped outputs.
 fn start(arguments: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_vi-lab"));
     command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
@@ -48,14 +48,14 @@ fn send(signal: &str, child: &Child) {
     assert!(status.success());
 }
 
-/// The lines of a CSV file without comments and head, as numbers; what is empty is not a number.
+/// The lines of a CSV file without comments and head as numbers; an empty entry is NaN.
 fn rows(csv: &str) -> Vec<Vec<f64>> {
     let lines = csv.lines().filter(|line| !line.starts_with('#')).skip(1);
     let number = |text: &str| if text.is_empty() { f64::NAN } else { text.parse().expect("a number") };
     lines.map(|line| line.split(',').map(number).collect()).collect()
 }
 
-/// The rows of an NPY file of so many columns, by its head.
+/// The rows of an NPY file with this number of columns.
 fn array(bytes: &[u8], columns: usize) -> Vec<Vec<f64>> {
     assert_eq!(bytes.get(..8), Some(b"\x93NUMPY\x01\x00".as_slice()));
     let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
@@ -71,7 +71,7 @@ fn array(bytes: &[u8], columns: usize) -> Vec<Vec<f64>> {
     numbers.chunks(columns).map(<[f64]>::to_vec).collect()
 }
 
-/// Numbers by their bits, so that NaN is NaN.
+/// Numbers as bits, so that NaN equals NaN.
 fn bits(rows: &[Vec<f64>]) -> Vec<Vec<u64>> {
     rows.iter().map(|row| row.iter().map(|number| number.to_bits()).collect()).collect()
 }
@@ -85,7 +85,7 @@ fn exponents_of_chaos_and_of_a_swing() {
     let (status, text, errors) = lab(&["lyapunov", "double-well-duffing", "--set", "amplitude=0.5", "--steps", "5000"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     let last = rows(&text).pop().expect("a row");
-    // The sum is minus the damping, 0.3, to the digits that are written.
+    // The sum is minus the damping, 0.3, to the printed digits.
     assert!(last[1] > 0.05 && (last[1] + last[2] + 0.3).abs() < 2e-6, "{text}");
     assert!(text.starts_with("t,λ1,λ2\n5,"), "{text}");
     let (_, text, _) = lab(&["lyapunov", "pendulum", "--count", "1", "--steps", "5000"]);
@@ -93,7 +93,7 @@ fn exponents_of_chaos_and_of_a_swing() {
     assert!(last[1].abs() < 0.05, "{text}");
     assert_refused(&[
         (&["lyapunov", "kepler", "--count", "5"], "kepler has 1 to 4 exponents (--count), not 5"),
-        (&["lyapunov"], "name a system, as `vi-lab list` does"),
+        (&["lyapunov"], "name a system of `vi-lab list`"),
     ]);
 }
 
@@ -107,7 +107,7 @@ fn the_list_names_every_system_with_its_parameters() {
     assert!(list.contains("m = 1, k = 4, c = 0.04"), "{list}");
 }
 
-/// The names of all ready systems.
+/// The names of all predefined systems.
 const SYSTEMS: [&str; 17] = [
     "double-well",
     "damped-oscillator",
@@ -158,7 +158,7 @@ fn both_methods_write_csv_to_standard_output() {
         assert_eq!(rows.len(), 501);
         assert!((rows[0][0] - first).abs() < 1e-15, "{method} starts at {}", rows[0][0]);
         let spread = rows[1..].iter().map(|row| (row[4] - rows[1][4]).abs()).fold(0.0, f64::max);
-        // Measured: fixed 7.2e-9 (the swing that theory gives), energy 0.
+        // Measured: fixed 7.2e-9 (the energy error of the theory), energy 0.
         assert!(spread < tolerance, "{method}: {spread}");
     }
 }
@@ -186,7 +186,7 @@ fn a_failing_step_leaves_the_output_so_far() {
     assert_eq!((status, output.as_str()), (Some(1), ""));
     assert!(errors.starts_with("error: no energy-preserving step leads forward from t = "), "{errors}");
     let written = rows(&fs::read_to_string(&file).expect("the file"));
-    // The step of the last row is number 113 or 114: the paper's theory has no solution at step 114 ± 1.
+    // The last step is number 113 or 114: the theory of the paper has no solution at step 114 ± 1.
     assert!((112..=115).contains(&written.len()), "{} rows", written.len());
     let last = written.last().expect("rows");
     assert!(errors.contains(&format!("last good state: t = {}, q = [{}]", last[0], last[1])), "{errors}");
@@ -211,7 +211,7 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
         fs::remove_file(&plot).expect("the file can be removed");
         (texts(&svg), svg, errors)
     };
-    // Two coordinates: the energies, the plane, and of each coordinate its course and its portrait.
+    // Two coordinates: the energies, the plane, and a time series and a phase portrait for each coordinate.
     let (words, svg, _) = drawn(&["run", "kepler", "--steps", "2000", "-o", path(&csv)], 0);
     assert_eq!(words[..2], ["kepler, fixed, h = 0.005", "mu = 1"]);
     for axis in ["energy − H₀", "H at the start: H₀ = -0.5", "x", "y", "p_x", "p_y", "t"] {
@@ -219,12 +219,12 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
     }
     assert_eq!((svg.matches("<svg ").count(), rows(&fs::read_to_string(&csv).expect("rows")).len()), (7, 2001));
     fs::remove_file(&csv).expect("the file can be removed");
-    // A run that fails shows what it has: one that ends on its way, and one that has its first row alone.
+    // A failed run draws its rows: one that ends on the way, and one with its first row only.
     let (_, svg, errors) = drawn(&["run", "double-well", "--q", "1.05", "--method", "energy"], 1);
     assert!(errors.starts_with("error: no energy-preserving step") && svg.contains("<path "), "{errors}");
     let (_, svg, _) = drawn(&["run", "double-well", "--steps", "0"], 0);
     assert!(svg.contains("<circle ") || svg.contains("<rect x="), "one row is a dot");
-    // Ten times as many rows make no larger file; forty coordinates would be 24.
+    // Ten times as many rows make no larger file; of forty coordinates 24 are drawn.
     let long = |steps: &str| drawn(&["run", "pendulum", "--steps", steps], 0).1.len();
     let sizes = (long("2e4"), long("2e5"));
     // Measured 222 kB and 230 kB.
@@ -234,15 +234,15 @@ fn a_plot_shows_the_rows_however_the_run_ends() {
 #[test]
 fn wrong_input_is_one_line_and_status_2() {
     let cases: [(&[&str], &str); 32] = [
-        (&["explain"], "name a system, as `vi-lab list` does"),
-        (&["work-precision"], "name a system, as `vi-lab list` does"),
+        (&["explain"], "name a system of `vi-lab list`"),
+        (&["work-precision"], "name a system of `vi-lab list`"),
         (&["run", "dubble-well", "--steps", "1"], "there is no system `dubble-well`; did you mean `double-well`?"),
-        (&["run"], "name a system, as `vi-lab list` does"),
+        (&["run"], "name a system of `vi-lab list`"),
         (&["run", "double-well", "--steps", "1", "--until", "2"], "give either --steps or --until, not both"),
         (&["run", "double-well", "--steps", "1", "--set", "k=1"], "double-well has no parameter `k`; it has `m`"),
         (
             &["run", "double-well", "--steps", "1", "--set", "m=1", "--set", "m=2"],
-            "the parameter `m` is set twice; give --set once for each",
+            "the parameter `m` is set twice; use --set once per parameter",
         ),
         (&["run", "double-well", "--steps", "1", "--h", "0"], "the step (--h) must not be zero"),
         (
@@ -263,7 +263,7 @@ fn wrong_input_is_one_line_and_status_2() {
         ),
         (
             &["run", "double-well", "--steps", "1", "--q", "−1"],
-            "invalid value '−1' for '--q <Q,…>': write a number such as 0.5 or 1e-3; the minus of a number is the hyphen `-`",
+            "invalid value '−1' for '--q <Q,…>': write a number such as 0.5 or 1e-3; write the minus sign as a hyphen `-`",
         ),
         (&["run", "double-well", "--steps", "1", "--q", "1e400"], "the coordinates (--q) must be finite, not inf"),
         (
@@ -276,7 +276,7 @@ fn wrong_input_is_one_line_and_status_2() {
         ),
         (
             &["run", "double-well", "--steps", "1", "--stages", "4"],
-            "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or leave it out",
+            "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it",
         ),
         (&["work-precision", "kepler", "--q", "1"], "give 2 finite coordinates (--q), not [1.0]"),
         (
@@ -285,7 +285,7 @@ fn wrong_input_is_one_line_and_status_2() {
         ),
         (
             &["run", "double-well", "--steps", "1", "--start", "points"],
-            "only energy-preserving steps have a --start; add --method energy, or leave it out",
+            "only energy-preserving steps have a --start; add --method energy, or remove it",
         ),
         (
             &["run", "double-well", "--steps", "1", "--q", "1,2"],
@@ -295,18 +295,15 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["run", "double-well", "--steps", "1", "--plot", "x.png"], "the plot `x.png` must end in .svg"),
         (
             &["run", "double-well", "--steps", "1", "--plot", "no-such-folder/x.svg"],
-            "there is no folder `no-such-folder` for the plot `no-such-folder/x.svg`; make it first",
+            "there is no folder `no-such-folder` for the plot `no-such-folder/x.svg`; create it first",
         ),
         (
             &["run", "double-well", "--steps", "1", "-o", "no-such-folder/x.csv"],
-            "there is no folder `no-such-folder` for the output `no-such-folder/x.csv`; make it first",
+            "there is no folder `no-such-folder` for the output `no-such-folder/x.csv`; create it first",
         ),
         (&["run", "none.toml", "--steps", "1"], "none.toml: No such file or directory (os error 2)"),
         (&[], "no command is given; `vi-lab help` lists them"),
-        (
-            &["run", "a/none.yml"],
-            "there is no system `a/none.yml`; a scene is a file whose name ends in .toml, a declaration one in .rs",
-        ),
+        (&["run", "a/none.yml"], "there is no system `a/none.yml`; a scene file ends in .toml, a declaration in .rs"),
         (&["fly"], "unrecognized subcommand 'fly'; `vi-lab help` shows what there is"),
         (&["run", "kepler", "--stepz", "1"], "unexpected argument '--stepz' found; did you mean `--steps`?"),
         (
@@ -324,39 +321,39 @@ fn wrong_input_is_one_line_and_status_2() {
 #[test]
 fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
     let cases: [(&[&str], &str); 9] = [
-        // Steps that change nothing.
+        // Steps below rounding.
         (
             &["run", "pendulum", "--h", "1e-300", "--until", "1"],
-            "the step (--h) 1e-300 is out of range: its square is no normal number in double precision; give one from \
+            "the step (--h) 1e-300 is out of range: its square is not a normal number in double precision; use a step from \
              1.49e-154 to 1.34e154",
         ),
         (
             &["run", "pendulum", "--h", "1e-20", "--until", "1"],
-            "a step of h = 1e-20 is lost at t = 1 in double precision, where numbers are 2.22e-16 apart; give a larger \
-             --h, or times nearer to zero",
+            "a step of h = 1e-20 is below rounding at t = 1, where double-precision numbers are 2.22e-16 apart; use a larger \
+             --h, or times closer to zero",
         ),
         (
             &["run", "pendulum", "--until", "1e30"],
-            "a step of h = 0.01 is lost at t = 1e30 in double precision, where numbers are 141000000000000 apart; give \
-             a larger --h, or times nearer to zero",
+            "a step of h = 0.01 is below rounding at t = 1e30, where double-precision numbers are 141000000000000 apart; use \
+             a larger --h, or times closer to zero",
         ),
         (
             &["run", "pendulum", "--method", "energy", "--t", "1e17", "--steps", "1"],
-            "a step of h = 0.01 is lost at t = 1e17 in double precision, where numbers are 16 apart; give a larger --h, \
-             or times nearer to zero",
+            "a step of h = 0.01 is below rounding at t = 1e17, where double-precision numbers are 16 apart; use a larger --h, \
+             or times closer to zero",
         ),
         (
-            // Every fourth step would round to no step.
+            // Every fourth step would round to zero.
             &["run", "pendulum", "--t", "1e10", "--h", "1.5e-6", "--steps", "10"],
-            "a step of h = 1.5e-6 is lost at t = 10000000000 in double precision, where numbers are 1.91e-6 apart; give a \
-             larger --h, or times nearer to zero",
+            "a step of h = 1.5e-6 is below rounding at t = 10000000000, where double-precision numbers are 1.91e-6 apart; use a \
+             larger --h, or times closer to zero",
         ),
         (
             &["run", "kepler", "--h", "1e-100", "--steps", "3"],
             "the first step of h = 1e-100 changes neither q = [0.4, 0.0] nor p = [0.0, 2.0] in double precision, although \
-             v = [0.0, 2.0]; give a larger --h, or a start and parameters where the mass matrix is not singular",
+             v = [0.0, 2.0]; give a larger --h, or a start and parameters with a regular mass matrix",
         ),
-        // Gigabytes that nobody asked for: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers of 8 bytes.
+        // Gigabytes without permission: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers of 8 bytes.
         (
             &["run", "pendulum", "--until", "1e7"],
             "the output would have about 1000000000 rows, 114 GB; write fewer rows with --every 114, or allow more than 1 GB \
@@ -380,20 +377,20 @@ fn a_mistake_in_a_scene_is_one_line_and_status_2() {
     let file = temporary("mistaken.toml");
     for (text, message) in [
         ("system = \"kepler\"\nq = [0.4 0.0]\n", "entries are such as `method = \"energy\"`, `h = 0.01`"),
-        ("", "no system is named; add a line such as `system = \"kepler\"`"),
+        ("", "the scene names no system; add a line such as `system = \"kepler\"`"),
         (
             "system = \"kepler\"\nmethod = 3\n",
             "line 2: wanted string or table; entries are such as `method = \"energy\"`",
         ),
         ("system = \"kepler\"\ncolour = 1\n", "line 2: unknown field `colour`, expected one of `system`, `method`"),
-        ("steps = 1\n", "no system is named; add a line such as `system = \"kepler\"`"),
+        ("steps = 1\n", "the scene names no system; add a line such as `system = \"kepler\"`"),
     ] {
         fs::write(&file, text).expect("the scene");
         let (status, output, errors) = lab(&["run", path(&file)]);
         assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
         assert!(errors.starts_with(&format!("error: {}: ", path(&file))) && errors.contains(message), "{errors}");
     }
-    // What is wrong of its values is told as of the command line, which may have replaced them.
+    // Wrong values are reported as for the command line, which may have replaced them.
     for (text, message) in [
         ("system = \"keple\"\n", "there is no system `keple`; did you mean `kepler`?"),
         (
@@ -403,7 +400,7 @@ fn a_mistake_in_a_scene_is_one_line_and_status_2() {
         ("system = \"kepler\"\nq = [0.4]\n", "kepler has the coordinates x, y: give as many coordinates (--q), not 1"),
         ("system = \"kepler\"\nq = [nan, 0]\n", "the coordinates (--q) must be finite, not NaN"),
         ("system = \"kepler\"\nh = 0.0\n", "the step (--h) must not be zero"),
-        ("system = \"kepler\"\nuntil = -1.0\n", "steps of 0.005 from t = 0 do not lead to --until -1"),
+        ("system = \"kepler\"\nuntil = -1.0\n", "steps of 0.005 from t = 0 do not reach --until -1"),
         ("system = \"kepler\"\n[parameters]\nm = 1\n", "kepler has no parameter `m`; it has `mu`"),
         ("system = \"kepler\"\n[parameters]\nmu = inf\n", "the parameter `mu` must be finite, not inf"),
     ] {
@@ -482,17 +479,17 @@ fn where_no_step_exists_the_advice_leads_on() {
     let advice = advised(&[]);
     let given = shift(&advice).expect("a shift");
     let rest = format!(
-        "what to do: --shift {given} makes steps that exist along this motion; other orders have other step densities, here --stages 2, D = "
+        "what to do: --shift {given} gives steps along this motion; other orders have other step densities: --stages 2, D = "
     );
     assert!(advice.starts_with(&rest) && advice.contains("; --stages 3, D = "), "{advice}");
-    let end = "; --method fixed and --method gauss take no others";
-    assert!(advice.contains("; --fallback goes on with fixed steps of h = ") && advice.ends_with(end), "{advice}");
+    let end = "; --method fixed and --method gauss need no step density";
+    assert!(advice.contains("; --fallback continues with fixed steps of h = ") && advice.ends_with(end), "{advice}");
     for options in [["--shift", &given].as_slice(), &["--shift", "auto"], &["--stages", "2"], &["--fallback"]] {
         leads_on(&[&["--method", "energy"], options].concat());
     }
     leads_on(&["--method", "fixed"]);
     leads_on(&["--method", "gauss"]);
-    // A shift that is too small: the one to take is larger.
+    // A shift that is too small: the suggested one is larger.
     let small = advised(&["--stages", "1", "--shift", "0.01"]);
     assert!(small.starts_with("what to do: --stages 1 --shift "), "{small}");
     leads_on(&["--method", "energy", "--stages", "1", "--shift", &shift(&small).expect("a shift")]);
@@ -518,7 +515,7 @@ fn steps_with_a_shift_keep_an_energy_of_their_own() {
     let (status, csv, errors) = lab(&[pendulum.as_slice(), &["--stages", "2", "--shift", "auto"]].concat());
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     assert!(csv.contains("\nt,θ,p_θ,H,E,E',h\n"), "{csv}");
-    let kept = "E': E − C h^4 D*, which is kept, with C = 1/864 and the shift D* = 18.";
+    let kept = "E': E − C h^4 D*, which is conserved, with C = 1/864 and the shift D* = 18.";
     assert!(csv.contains("\n# method: energy, 2 stages, shift 18.") && csv.contains(kept), "{csv}");
     let rows = rows(&csv);
     assert_eq!((rows.len(), rows[0][0]), (341, 0.0));
@@ -531,7 +528,7 @@ fn steps_with_a_shift_keep_an_energy_of_their_own() {
     println!("H swings by {total:e}, E by {discrete:e}, E' by {shifted:e}");
     assert!((total / 1.21e-8 - 1.0).abs() < 0.01 && (discrete / 4.08e-8 - 1.0).abs() < 0.01, "{total:e}, {discrete:e}");
     assert!(shifted < 5e-16, "{shifted:e}");
-    // The order of the stages without a shift: E is kept, and H nearer to it.
+    // The order of the stages without a shift: E is conserved, and H is closer to it.
     let (_, csv, _) =
         lab(&["run", "kepler", "--method", "energy", "--stages", "3", "--h", "0.05", "--q", "0.7,0", "--v", "0,1.36"]);
     assert!(
@@ -545,14 +542,14 @@ fn steps_with_a_shift_keep_an_energy_of_their_own() {
     fs::write(&scene, "system = \"pendulum\"\nmethod = \"energy\"\nstages = 2\nshift = \"auto\"\nq = [2.0]\n")
         .expect("a scene");
     assert_eq!(lab(&["run", path(&scene)]).0, Some(0));
-    // What belongs to the method of the scene is none of another.
+    // Options for the method of the scene do not apply to another method.
     assert_eq!(lab(&["run", path(&scene), "--method", "fixed"]).0, Some(0));
     fs::remove_file(&scene).expect("the file can be removed");
 }
 
 #[test]
 fn gauss_steps_in_scaled_time_follow_an_eccentric_orbit() {
-    // Eccentricity 0.9: three periods of fifteen steps each, as in the cookbook.
+    // Eccentricity 0.9: three periods of fifteen steps, as in the cookbook.
     let orbit = ["run", "kepler", "--q", "0.1,0", "--v", "0,4.358898943540674", "--method", "gauss"];
     let (status, csv, errors) = lab(&[orbit.as_slice(), &["--dtau", "0.5578667", "--steps", "45"]].concat());
     assert_eq!((status, errors.as_str()), (Some(0), ""));
@@ -561,12 +558,13 @@ fn gauss_steps_in_scaled_time_follow_an_eccentric_orbit() {
     let last = rows.last().expect("rows");
     let longest = rows.iter().fold(0.0_f64, |longest, row| longest.max(row[7]));
     println!("t = {}, H + 1/2 = {:e}, the longest step {longest}", last[0], last[5] + 0.5);
-    // Measured: 45 steps end 2e-3 before the third period is over; H as it began to 1.5e-13, while a step is up to 80 times as long as the first.
+    // Measured: 45 steps end 2e-3 before the end of the third period, with the initial H to 1.5e-13; a step is up to 80
+    // times as long as the first.
     assert!((last[0] - 6.0 * std::f64::consts::PI).abs() < 0.01 && (last[5] + 0.5).abs() < 1e-12 && longest > 1.0);
     assert_refused(&[
         (
             &["run", "pendulum", "--method", "gauss", "--dtau", "0.5"],
-            "pendulum has no time scale; take steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+            "pendulum has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
         ),
         (
             &["run", "kepler", "--method", "gauss", "--dtau", "0.5", "--h", "0.1"],
@@ -591,7 +589,7 @@ fn a_singular_mass_matrix_is_status_1_with_the_initial_state() {
 fn an_interrupted_run_leaves_whole_rows() {
     let csv = temporary("interrupted.csv");
     let npy = temporary("interrupted.npy");
-    // Longer than any test lasts.
+    // Longer than any test.
     let run = ["run", "kepler", "--steps", "1e10", "--every", "100", "--large-output"];
     for (signal, name, status) in [("-INT", "SIGINT", 130), ("-TERM", "SIGTERM", 143)] {
         for file in [&csv, &npy] {
@@ -632,7 +630,7 @@ fn a_disk_that_is_full_leaves_whole_rows() {
     let csv = temporary("full.csv");
     let npy = temporary("full.npy");
     for file in [&csv, &npy] {
-        // A file may have 200 blocks of 512 bytes, and what is written beyond fails.
+        // A file is limited to 200 blocks of 512 bytes; writing more fails.
         let limited = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
         let lab = env!("CARGO_BIN_EXE_vi-lab");
         let run = ["-c", limited, lab, "run", "kepler", "--steps", "1e5", "-o", path(file)];
@@ -651,7 +649,7 @@ fn a_disk_that_is_full_leaves_whole_rows() {
 #[cfg(target_os = "linux")]
 #[test]
 fn an_output_that_fails_costs_the_other_nothing() {
-    // A plot that cannot be written costs no row.
+    // A failed plot loses no row.
     let plot = temporary("device.svg");
     std::os::unix::fs::symlink("/dev/full", &plot).expect("a link");
     let csv = temporary("beside.csv");
@@ -659,7 +657,7 @@ fn an_output_that_fails_costs_the_other_nothing() {
     assert_eq!((status, output.as_str()), (Some(1), ""));
     assert_eq!(errors, format!("error: {}: No space left on device (os error 28)\n", path(&plot)));
     assert_eq!(rows(&fs::read_to_string(&csv).expect("rows")).len(), 11);
-    // And rows that cannot be written cost no plot.
+    // Failed rows lose no plot.
     let full = temporary("device.csv");
     std::os::unix::fs::symlink("/dev/full", &full).expect("a link");
     fs::remove_file(&plot).expect("the link can be removed");
@@ -682,7 +680,7 @@ fn an_npy_file_cannot_be_a_pipe_and_a_csv_file_can() {
     let (status, _, errors) = lab(&["run", "kepler", "--steps", "5", "-o", path(&npy)]);
     assert_eq!((status, errors.lines().count()), (Some(2), 1));
     assert!(
-        errors.contains("is a pipe or a device, and the head of an NPY file is written last; write CSV"),
+        errors.contains("is a pipe or a device, but the header of an NPY file is written last; write CSV"),
         "{errors}"
     );
     let child = start(&["run", "kepler", "--steps", "5", "-o", path(&csv)]);
@@ -699,7 +697,7 @@ fn output_that_nobody_reads_is_status_141() {
     for method in ["fixed", "energy"] {
         let mut child = start(&["run", "kepler", "--method", method, "--steps", "1e5"]);
         let mut first = String::new();
-        // Read one line and go away, as `head -1` does.
+        // Reads one line and closes the pipe, as `head -1` does.
         BufReader::new(child.stdout.take().expect("the output")).read_line(&mut first).expect("a line");
         let Output { status, stderr, .. } = child.wait_with_output().expect("the command ends");
         assert!(first.starts_with("# vi-lab "), "{first}");
@@ -715,7 +713,10 @@ fn a_run_of_days_says_so() {
     BufReader::new(child.stderr.take().expect("messages")).read_line(&mut said).expect("a line");
     send("-INT", &child);
     let Output { status, stdout, .. } = child.wait_with_output().expect("the command ends");
-    assert!(said.starts_with("this run takes ") && said.contains(" days more "), "{said}");
+    assert!(
+        said.starts_with("at the rate of its first second, this run takes ") && said.contains(" more days"),
+        "{said}"
+    );
     let rows = rows(&String::from_utf8(stdout).expect("text"));
     assert_eq!((status.code(), rows.len()), (Some(130), 2), "the first node and the last");
 }
@@ -750,7 +751,7 @@ fn a_scene_is_run_and_the_command_line_overrides_it() {
     let rows_to_end = rows(&csv);
     let [.., before, last] = &rows_to_end[..] else { panic!("{csv}") };
     assert_eq!(last[0].to_bits(), 100.0_f64.to_bits());
-    // The last step is as long as is left. h/h0 at t = 100 for ζ = 0.005, mathematics of the step law: 2.712.
+    // The last step is shortened. h/h0 at t = 100 for ζ = 0.005, from the step law: 2.712.
     assert!((before[5] / 0.01 - 2.712).abs() < 5e-4 && last[5] < before[5], "{before:?}, {last:?}");
     let (status, csv, _) = lab(&["run", scene, "--steps", "3", "--method", "fixed", "--set", "c=0.5"]);
     assert_eq!((status, rows(&csv).len()), (Some(0), 4));
@@ -798,7 +799,7 @@ fn the_map_of_a_system_is_a_page_with_its_files() {
     assert!(csv.contains("# 0: runs to the end\n# 2: no forward step\n") && csv.contains("# curve, D = 0: ("), "{csv}");
     let cells: Vec<&str> = csv.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!((cells.len(), cells[0].split(',').count()), (12, 21));
-    // Rest at the bottom of the right well runs, a run across the barrier ends.
+    // Rest at the bottom of the right well continues, a run across the barrier ends.
     let cell =
         |row: usize, column: usize| cells[row + 1].split(',').nth(column + 1).and_then(|cell| cell.parse::<u8>().ok());
     assert_eq!(cell(5, 14), Some(0));
@@ -839,7 +840,7 @@ fn where_nothing_can_be_compared_the_command_says_why() {
     let rest = ["work-precision", "pendulum", "--q", "0", "--v", "0", "--quick", "--out", path(&out)];
     let (status, output, errors) = lab(&rest);
     assert_eq!((status, output.as_str()), (Some(2), ""), "{errors}");
-    let why = "error: on pendulum no run has an error to compare: errors are relative to the largest coordinate and momentum, and one of them is zero on the whole way\n";
+    let why = "error: pendulum has no run with an error to compare: errors are relative to the largest coordinate and momentum, and one of them is always zero\n";
     assert_eq!(errors, format!("{why}{} has all runs\n", path(&out.join("index.html"))));
     fs::remove_dir_all(out).expect("the folder can be removed");
 }
@@ -848,7 +849,10 @@ fn where_nothing_can_be_compared_the_command_says_why() {
 fn wrong_axes_are_status_2() {
     let cases: [(&[&str], &str); 5] = [
         (&["stability", "double-wel"], "there is no system `double-wel`; did you mean `double-well`?"),
-        (&["stability", "kepler", "--x", "z=0:1"], "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h"),
+        (
+            &["stability", "kepler", "--x", "z=0:1"],
+            "there is no quantity `z` to vary; the quantities are x, y, v_x, v_y, mu, h",
+        ),
         (&["stability", "kepler", "--x", "x=1"], "an axis is given as NAME=LOW:HIGH, with LOW below HIGH, not `x=1`"),
         (&["stability", "kepler", "--x", "h=1:2"], "both axes vary `h`; give two different ones with --x and --y"),
         (&["stability", "--columns", "5"], "invalid value '5' for '--columns <N>': 5 is not in 10..=596"),
@@ -896,7 +900,7 @@ fn gauss_steps_run_and_have_both_energies() {
             }
         }
     }
-    // The command line names another method: the stages of the scene are none of its.
+    // The command line names another method: the stages of the scene do not apply.
     let (status, _, errors) = lab(&["run", path(&scene), "--method", "fixed"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     fs::remove_file(scene).expect("the file can be removed");
@@ -938,7 +942,7 @@ fn mistakes_in_a_file_are_shown_at_their_places() {
     let (status, output, errors) = lab(&["expand", path(&file)]);
     assert_eq!((status, output.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
     assert!(errors.contains("declares no system with `lagrangian!`"), "{errors}");
-    // What Rust cannot read is shown at its place too.
+    // Text that Rust cannot read is also shown with its line.
     for (text, message) in [
         ("fn `() {}\n", ":1:4\n  |\n1 | fn `() {}\n  |    ^\n"),
         ("lagrangian! {\n    L = x²;\n}\n", ":2:10\n  |\n2 |     L = x²;\n  |          ^\n  = help: write `^2`\n"),
@@ -949,7 +953,7 @@ fn mistakes_in_a_file_are_shown_at_their_places() {
         assert_eq!((status, output.as_str()), (Some(1), ""), "{errors}");
         assert!(errors.ends_with(message), "{errors}");
     }
-    // However deep it is nested, and however many mistakes one line holds.
+    // For any nesting depth, and any number of mistakes in one line.
     let nested = format!("lagrangian! {{ struct A {{ L = {}1{}; }} }}", "(".repeat(12_000), ")".repeat(12_000));
     let unused = (0..4000).map(|i| format!("param a{i} = 1; ")).collect::<Vec<_>>().concat();
     let many = format!("lagrangian! {{ struct A {{ {unused} coord x; L = dot(x)^2; discretize midpoint; }} }}");
@@ -973,7 +977,7 @@ fn a_system_is_explained_in_text_and_in_latex() {
     for line in ["    f_x = -c*dot(x)", "    A_x,x = m + k*h^2/4 + c*h/2"] {
         assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
     }
-    // In columns as wide as the longest name.
+    // The columns are as wide as the longest name.
     assert!(text.lines().any(|shown| shown.split_whitespace().eq(["momentum", "1"])), "{text}");
     let (status, latex, errors) = lab(&["explain", "DampedOscillator", "--latex"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));

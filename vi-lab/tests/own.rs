@@ -1,4 +1,4 @@
-//! Systems of a user's own in the command: the program that `vi-lab new` writes, run as it is, and the crate around it.
+//! A user's own systems in the command: the program of `vi-lab new`, run unchanged, and its crate.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ fn every_tool_knows_the_system() {
             && rows.contains("\nt,r,θ,p_r,p_θ,H,E,h\n"),
         "{rows}"
     );
-    // 1000 steps, their start, six lines of words.
+    // 1000 steps, the initial node, six comment lines.
     assert_eq!(rows.lines().filter(|line| !line.starts_with('#')).count(), 1002);
     let (_, set, _) = run(&own(), &["run", "spring-pendulum", "--set", "k=80", "--method", "energy", "--steps", "10"]);
     assert!(set.contains("k = 80"), "{set}");
@@ -73,13 +73,13 @@ fn a_new_crate_has_what_it_needs() {
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     let program = fs::read_to_string(other.join("src/main.rs")).expect("a program");
     assert!(program.contains("use my_own::SpringPendulum;"), "{program}");
-    // What is there is not written over.
+    // Existing files are not overwritten.
     let (status, _, errors) = run(&lab(), &["new", name.to_str().expect("text")]);
-    assert_eq!((status, errors), (Some(2), format!("error: {} is there already\n", name.display())));
+    assert_eq!((status, errors), (Some(2), format!("error: {} already exists\n", name.display())));
     for wrong in ["2d", "a b", "ä", ".."] {
         let (status, output, errors) = run(&lab(), &["new", wrong]);
         assert_eq!((status, output.as_str()), (Some(2), ""), "{wrong}");
-        assert!(errors.contains("is no name of a crate"), "{errors}");
+        assert!(errors.contains("is not a crate name"), "{errors}");
     }
     fs::remove_dir_all(&folder).expect("the folder goes");
 }

@@ -1,7 +1,7 @@
-//! The systems that the command knows by name, each with a place to start from: those of the program that the command stands in
-//! (`vi_lab::main!`), then the ready ones.
+//! The named systems of the command, each with an initial state: those of the program (`vi_lab::main!`), then the
+//! predefined ones.
 //!
-//! In: a name, in any spelling of case and hyphens. Out: an [`Entry`]. The first near name is offered where there is none.
+//! In: a name, in any spelling of case and hyphens. Out: an [`Entry`], or an error with the nearest name.
 
 use crate::failure::Failure;
 use crate::machine::program;
@@ -10,22 +10,22 @@ use std::path::Path;
 use std::sync::OnceLock;
 use vi_runs::ready::{self, Entry};
 
-/// The systems of a program of one's own, set once before its command is read.
+/// The systems of the program, set once before the command line is read.
 static OWN: OnceLock<Own> = OnceLock::new();
 
-/// The systems of a program of one's own; `vi_lab::main!` writes it.
+/// The systems of a program; `vi_lab::main!` builds it.
 #[derive(Clone, Copy)]
 pub struct Own {
-    /// The text of the files that declare them.
+    /// The text of the files that declare the systems.
     pub sources: &'static [&'static str],
     /// The systems.
     pub entries: fn() -> Vec<Entry>,
 }
 
 impl Own {
-    /// Makes these systems known to the command.
+    /// Registers these systems for the command.
     pub fn declare(self) {
-        // A second set of systems in one process is none.
+        // A second registration in one process has no effect.
         let _ = OWN.set(self);
     }
 }
@@ -36,7 +36,7 @@ pub fn sources() -> impl Iterator<Item = &'static str> {
     own.iter().copied().chain(vi_systems::SOURCES)
 }
 
-/// All systems, in the order in which they are listed: one's own hide ready ones of the same name.
+/// All systems in the order of the list; a system of the program hides a predefined one of the same name.
 pub fn entries() -> Vec<Entry> {
     let mut all = OWN.get().map_or_else(Vec::new, |own| (own.entries)());
     let own: Vec<&str> = all.iter().map(|entry| entry.system.name()).collect();
@@ -45,20 +45,20 @@ pub fn entries() -> Vec<Entry> {
     all
 }
 
-/// The first system of one's own: what a command is about that names none.
+/// The first system of the program: the default of every command.
 ///
 /// # Errors
-/// [`Failure::Input`] where the program has none.
+/// [`Failure::Input`] if the program has none.
 pub fn first_own() -> Result<Entry, Failure> {
-    own().ok_or_else(|| Failure::Input(format!("name a system, as `{} list` does", program())))
+    own().ok_or_else(|| Failure::Input(format!("name a system of `{} list`", program())))
 }
 
-/// The first of one's own systems, where the program has one.
+/// The first system of the program, if there is one.
 pub fn own() -> Option<Entry> {
     OWN.get().and_then(|own| (own.entries)().into_iter().next())
 }
 
-/// The entry of this name, or the first of one's own.
+/// The entry with this name, or the first one of the program.
 ///
 /// # Errors
 /// As [`find`] and [`first_own`].
@@ -66,7 +66,7 @@ pub fn named(name: Option<&str>) -> Result<Entry, Failure> {
     name.map_or_else(first_own, find)
 }
 
-/// Refuses an entry without a rule for a page that compares steps by one.
+/// Rejects an entry without a rule for a page that compares steps by a rule.
 ///
 /// # Errors
 /// [`Failure::Input`] if the system has no rule.
@@ -80,10 +80,10 @@ pub fn with_rule(entry: Entry, page: &str) -> Result<Entry, Failure> {
     )))
 }
 
-/// The entry of this name.
+/// The entry with this name.
 ///
 /// # Errors
-/// [`Failure::Input`] where there is none, with the nearest name.
+/// [`Failure::Input`] with the nearest name if there is none.
 pub fn find(name: &str) -> Result<Entry, Failure> {
     let wanted = plain(name);
     let mut entries = entries();
@@ -98,10 +98,8 @@ pub fn find(name: &str) -> Result<Entry, Failure> {
     let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
     let hint = match near {
         Some((_, entry)) => format!("did you mean `{}`?", kebab(entry.system.name())),
-        None if extension == Some("rs") => "of a file of Rust `explain` and `expand` show the systems".to_owned(),
-        None if name.contains(['/', '\\', '.']) => {
-            "a scene is a file whose name ends in .toml, a declaration one in .rs".to_owned()
-        }
+        None if extension == Some("rs") => "use `explain` or `expand` for a Rust file".to_owned(),
+        None if name.contains(['/', '\\', '.']) => "a scene file ends in .toml, a declaration in .rs".to_owned(),
         None => format!("`{} list` names them all", program()),
     };
     Err(Failure::Input(format!("there is no system `{name}`; {hint}")))
@@ -124,7 +122,7 @@ fn list(values: &[f64]) -> String {
     shortened(values.iter().map(f64::to_string).collect())
 }
 
-/// A list that fits in a table: of more than four entries the first two and the last.
+/// A short list for a table: of more than four entries the first two and the last.
 fn shortened(mut entries: Vec<String>) -> String {
     if entries.len() > 4 {
         entries.splice(2..entries.len() - 1, ["…".to_owned()]);
@@ -132,7 +130,7 @@ fn shortened(mut entries: Vec<String>) -> String {
     entries.join(", ")
 }
 
-/// The name of a type as it is written on a command line: `double-well` for `DoubleWell`.
+/// The name of a type on a command line: `double-well` for `DoubleWell`.
 #[must_use]
 pub fn kebab(name: &str) -> String {
     let mut kebab = String::new();
@@ -170,9 +168,7 @@ mod tests {
         );
         assert_eq!(
             message("folder/xyz.yml").as_deref(),
-            Some(
-                "there is no system `folder/xyz.yml`; a scene is a file whose name ends in .toml, a declaration one in .rs"
-            )
+            Some("there is no system `folder/xyz.yml`; a scene file ends in .toml, a declaration in .rs")
         );
         let listed = format!("there is no system `xyz`; `{} list` names them all", program());
         assert_eq!(message("xyz"), Some(listed));

@@ -1,4 +1,4 @@
-//! Why the command did not do what was asked, in one line, and the exit status that goes with it.
+//! The failures of the command, each with one line of text and an exit status.
 
 use crate::interrupt::Signal;
 use crate::machine::program;
@@ -10,7 +10,7 @@ use std::path::Path;
 use vi_core::StepError;
 use vi_runs::plan::{Method, Plan};
 
-/// The exit status where nobody reads standard output any more: that of a command which SIGPIPE ends.
+/// The exit status for a closed standard output: that of a command ended by SIGPIPE.
 const UNREAD: u8 = 141;
 
 /// A failure of the command.
@@ -22,42 +22,42 @@ pub enum Failure {
     Step {
         /// The error of the integrator.
         error: Box<StepError>,
-        /// The last good state and how many steps led to it.
+        /// The last good state and its number of steps.
         before: String,
-        /// What the command line can do about it.
+        /// Options on the command line.
         advice: Option<String>,
     },
-    /// A run cannot go on, though no step failed: exit status 1.
+    /// A run that cannot continue although no step failed: exit status 1.
     Ended {
-        /// Why, and what to do.
+        /// The reason and the remedy.
         why: String,
-        /// The last state and how many steps led to it.
+        /// The last state and its number of steps.
         before: String,
     },
     /// A signal ended a run: exit status 130 or 143.
     Interrupted {
         /// Which signal.
         signal: Signal,
-        /// How far the run came.
+        /// The progress of the run.
         reached: String,
     },
     /// Systems have mistakes: exit status 1.
     System {
-        /// What is shown of the systems that are right.
+        /// The output for the correct systems.
         shown: String,
-        /// The mistakes at their places.
+        /// The mistakes with their lines.
         wrong: String,
     },
-    /// A file could not be written or read: exit status 1.
+    /// A file cannot be written or read: exit status 1.
     File {
         /// Which file.
         name: String,
-        /// What the system said.
+        /// The error of the operating system.
         error: io::Error,
     },
-    /// The reader of standard output went away, as `head` does: exit status 141.
+    /// The reader closed standard output, as `head` does: exit status 141.
     Unread,
-    /// One failure after the other; the exit status is that of the first.
+    /// Two failures; the exit status is that of the first.
     Both(Box<[Failure; 2]>),
 }
 
@@ -76,13 +76,13 @@ impl Failure {
         }
     }
 
-    /// One failure after the other.
+    /// Combines two failures.
     #[must_use]
     pub fn both(first: Self, second: Self) -> Self {
         Self::Both(Box::new([first, second]))
     }
 
-    /// A run that does not start from the initial state; an input with which no integrator can start is wrong input.
+    /// A failed start from the initial state; an input that no integrator accepts is wrong input.
     pub fn start(error: StepError, plan: &Plan) -> Self {
         let Plan { t, q, v, .. } = plan;
         match error {
@@ -95,10 +95,10 @@ impl Failure {
         }
     }
 
-    /// What the parser of the command line found, as one line.
+    /// The error of the command-line parser, as one line.
     pub fn usage(error: &clap::Error) -> Self {
         if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-            return Self::Input(format!("no command is given; `{} help` lists them", program()));
+            return Self::Input(format!("no command given; `{} help` lists the commands", program()));
         }
         let text = error.to_string();
         let first: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
@@ -120,7 +120,7 @@ impl Failure {
     }
 }
 
-/// What to write instead of an option or a command that does not exist.
+/// The replacement for an unknown option or command.
 fn suggestion(error: &clap::Error) -> Option<String> {
     let [argument, command, usage] =
         [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::Usage].map(|kind| error.get(kind));
@@ -137,14 +137,14 @@ fn suggestion(error: &clap::Error) -> Option<String> {
             format!("--set NAME=VALUE sets a parameter, `{} run --help` lists the options", program())
         }
         ErrorKind::UnknownArgument | ErrorKind::InvalidSubcommand => {
-            format!("`{} help` shows what there is", program())
+            format!("`{} help` lists the commands", program())
         }
         _ => return None,
     };
     Some(advice)
 }
 
-/// What the command line can do about a step that failed.
+/// The options of the command line for a failed step.
 #[must_use]
 pub fn advice(error: &StepError, plan: &Plan) -> Option<&'static str> {
     match (error, plan.method) {
@@ -155,17 +155,17 @@ pub fn advice(error: &StepError, plan: &Plan) -> Option<&'static str> {
             | StepError::DegenerateStep { .. },
             _,
         ) => {
-            Some("take fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this place")
+            Some("use fixed steps with --method fixed, which exist here; another --h, --q or --v may avoid this state")
         }
         (StepError::NotConverged { .. }, Method::Energy) => {
-            Some("take shorter steps with --h, or fixed ones with --method fixed")
+            Some("use shorter steps with --h, or fixed steps with --method fixed")
         }
         (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) if plan.dtau.is_some() => {
-            Some("take shorter steps with --dtau")
+            Some("use shorter steps with --dtau")
         }
-        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => Some("take shorter steps with --h"),
+        (StepError::NotConverged { .. } | StepError::StagesUnsettled { .. }, _) => Some("use shorter steps with --h"),
         (StepError::TimeScale { .. }, _) => Some(
-            "take shorter steps with --dtau, or steps in time with --h; or write a `time_scale` that is positive there",
+            "use shorter steps with --dtau, or steps in time with --h, or write a `time_scale` that is positive there",
         ),
         _ => None,
     }
@@ -176,17 +176,17 @@ impl fmt::Display for Failure {
         match self {
             Self::Input(message) => f.write_str(message),
             Self::Step { error, before, advice } => {
-                // The advice of the library is for those who call it.
+                // The advice of the library is for programmers.
                 write!(f, "{}\nlast good state: {before}", error.reason())?;
                 advice.as_ref().map_or(Ok(()), |advice| write!(f, "\nwhat to do: {advice}"))
             }
             Self::Ended { why, before } => write!(f, "{why}\nlast good state: {before}"),
             Self::Interrupted { signal, reached } => {
-                write!(f, "interrupted by {} after {reached}; the output up to there is whole", signal.name)
+                write!(f, "interrupted by {} after {reached}; the output up to this point is complete", signal.name)
             }
             Self::System { wrong, .. } => f.write_str(wrong),
             Self::File { name, error } => write!(f, "{name}: {error}"),
-            Self::Unread => f.write_str("nobody reads standard output"),
+            Self::Unread => f.write_str("standard output was closed"),
             Self::Both(failures) => write!(f, "{}\n{}", failures[0], failures[1]),
         }
     }

@@ -1,6 +1,6 @@
-//! HTML: what is computed is escaped before it stands on a page.
+//! HTML: escapes computed text for a page.
 
-/// Text with the characters that HTML reserves replaced.
+/// Replaces the characters reserved in HTML.
 #[must_use]
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")

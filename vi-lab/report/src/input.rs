@@ -1,50 +1,50 @@
-//! Numbers as a user writes them on a command line or in a scene.
+//! Numbers on the command line and in scenes.
 //!
-//! In: text, or a value of TOML. Out: the number, or one line that says what is allowed.
+//! In: text, or a TOML value. Out: the number, or one line with the allowed values.
 
 use core::fmt;
 use serde::Deserializer;
 use serde::de::{self, Unexpected, Visitor};
 
-/// A number of steps or rows: `1000`, or `1e6` where that is whole.
+/// A number of steps or rows: `1000`, or `1e6` if it is a whole number.
 ///
 /// # Errors
-/// What is allowed, where the text is no such number.
+/// The allowed values, if the text is not such a number.
 pub fn count(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let digits = text.parse().ok();
     digits.or_else(|| text.parse().ok().and_then(whole)).ok_or_else(|| format!("write {COUNT}"))
 }
 
-/// What a number of steps is.
+/// The allowed values.
 const COUNT: &str = "a whole number from 0 to 1.8e19, such as 1000 or 1e6";
 
-/// A number with a decimal point or an exponent as a count; what rounds to zero is none.
+/// A number with a decimal point or an exponent as a count; `None` if it is not a whole number.
 fn whole(value: f64) -> Option<u64> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole, and below 2^64
     (value.fract() == 0.0 && (1.0..18_446_744_073_709_551_616.0).contains(&value)).then_some(value as u64)
 }
 
-/// A number; whether it has to be finite depends on what it is for.
+/// A number; the caller decides whether it must be finite.
 ///
 /// # Errors
 /// As [`count`].
 pub fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| {
-        let hint = if text.contains('\u{2212}') { "; the minus of a number is the hyphen `-`" } else { "" };
+        let hint = if text.contains('\u{2212}') { "; write the minus sign as a hyphen `-`" } else { "" };
         format!("write a number such as 0.5 or 1e-3{hint}")
     })
 }
 
-/// The count of an entry of a scene, `1000` or `1e6`.
+/// The count in an entry of a scene, `1000` or `1e6`.
 ///
 /// # Errors
-/// As [`count`], at the place of the entry.
+/// As [`count`], at the position of the entry.
 pub fn count_of_scene<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<u64>, D::Error> {
     entry.deserialize_any(Count).map(Some)
 }
 
-/// Reads a count.
+/// Parser of a count.
 struct Count;
 
 impl Visitor<'_> for Count {
@@ -91,6 +91,6 @@ mod tests {
     fn a_printed_minus_is_explained() {
         assert_eq!(number(" -1.5e-3 "), Ok(-1.5e-3));
         assert_eq!(number("one"), Err("write a number such as 0.5 or 1e-3".to_owned()));
-        assert!(number("−1").is_err_and(|message| message.ends_with("; the minus of a number is the hyphen `-`")));
+        assert!(number("−1").is_err_and(|message| message.ends_with("; write the minus sign as a hyphen `-`")));
     }
 }

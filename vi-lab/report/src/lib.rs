@@ -1,14 +1,14 @@
-//! What the command `vi-lab` shows and says, and the systems that it knows by name.
+//! The output of the command `vi-lab`, and its systems by name.
 //!
-//! In: numbers and words of a subcommand. Out: figures, tables and pages as files; progress, and failures with their exit statuses, for a
-//! terminal. No loop over steps stands here, so that nothing of it has to be optimized: it is compiled in seconds.
+//! In: numbers and text of a subcommand. Out: figures, tables and pages as files; progress, and failures with exit
+//! statuses, for a terminal. This crate has no loop over steps, needs no optimization and compiles in seconds.
 //!
-//! | module | what it makes |
+//! | module | product |
 //! |---|---|
-//! | [`chart`], [`table`], [`html`], [`page`] | figures, tables, and the page that holds them |
-//! | [`input`], [`numbers`] | numbers as users write them, and as pages and messages do |
+//! | [`chart`], [`table`], [`html`], [`page`] | figures, tables, and their page |
+//! | [`input`], [`numbers`] | numbers in input, pages and messages |
 //! | [`progress`], [`machine`], [`interrupt`], [`failure`] | bars, versions, signals, errors |
-//! | [`catalogue`], [`quantity`] | the systems by name; what differs from run to run |
+//! | [`catalogue`], [`quantity`] | the systems by name; the quantities that vary from run to run |
 
 pub mod catalogue;
 pub mod chart;

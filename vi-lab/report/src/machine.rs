@@ -1,4 +1,4 @@
-//! What made a file: versions, command line, machine.
+//! The origin of a file: versions, command line, machine.
 
 use std::borrow::Cow;
 use std::env;
@@ -11,7 +11,7 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Version of the compiler.
 const RUSTC: &str = env!("VI_RUSTC");
 
-/// The machine, and when the work began.
+/// The machine and the start time.
 #[derive(Clone, Debug)]
 pub struct Machine {
     processor: String,
@@ -20,7 +20,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// This machine, now.
+    /// This machine at this time.
     pub fn here() -> Self {
         Self {
             processor: processor().unwrap_or_else(|| "unknown processor".to_owned()),
@@ -47,27 +47,28 @@ impl Machine {
     }
 }
 
-/// The name of the program that runs: `vi-lab`, or one of a user's own.
+/// The name of the running program: `vi-lab`, or the user's own.
 pub fn program() -> String {
     let path = env::args_os().next().map(PathBuf::from);
     let name = path.as_deref().and_then(Path::file_stem).map(|name| name.to_string_lossy().into_owned());
     name.unwrap_or_else(|| "vi-lab".to_owned())
 }
 
-/// The command line on one line, the program by its name alone; an argument with blanks stands in quotes.
+/// The command line on one line with the name of the program only; an argument with blanks is quoted.
 #[must_use]
 pub fn command_line() -> String {
     let arguments = env::args_os().skip(1).map(|argument| quoted(&argument.to_string_lossy()));
     core::iter::once(quoted(&program())).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-/// A text for a terminal: line ends and tabs stay, other control characters, by which names and files could change what it shows, are escaped.
+/// A text for a terminal: keeps line ends and tabs, escapes other control characters, with which names and files could
+/// change the display.
 #[must_use]
 pub fn visible(text: &str) -> Cow<'_, str> {
     escaped(text, |letter| letter.is_control() && !matches!(letter, '\n' | '\t'))
 }
 
-/// A text with some of its characters escaped.
+/// A text with the selected characters escaped.
 fn escaped(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     if !text.contains(&is_escaped) {
         return Cow::Borrowed(text);
@@ -76,14 +77,14 @@ fn escaped(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     text.chars().map(one).collect()
 }
 
-/// An argument as one word of one line.
+/// An argument as one word on one line.
 fn quoted(argument: &str) -> String {
     let needs_quotes = argument.is_empty() || argument.contains(|letter: char| letter.is_whitespace());
     let argument = escaped(argument, char::is_control);
     if needs_quotes { format!("'{argument}'") } else { argument.into_owned() }
 }
 
-/// The processor's name, where the system tells it.
+/// The name of the processor, if the system provides it.
 fn processor() -> Option<String> {
     let description = fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = description.lines().find(|line| line.starts_with("model name"))?;

@@ -1,6 +1,6 @@
-//! Numbers as pages and messages write them, and the few statistics that they need.
+//! Number formats of pages and messages, and some statistics.
 
-/// A number in three digits, with a power of ten where that is shorter: `7.19·10⁻⁹`.
+/// A number with three digits, and a power of ten if that is shorter: `7.19·10⁻⁹`.
 #[must_use]
 pub fn scientific(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -28,38 +28,38 @@ pub fn superscript(exponent: i32) -> String {
         .collect()
 }
 
-/// A number in all its digits, with an exponent where it would have many zeros: `0.01`, `1e-300`.
+/// A number with all its digits, and an exponent if it would have many zeros: `0.01`, `1e-300`.
 #[must_use]
 pub fn short(value: f64) -> String {
     let is_plain = value == 0.0 || !value.is_finite() || (1e-5..1e15).contains(&value.abs());
     if is_plain { value.to_string() } else { format!("{value:e}") }
 }
 
-/// Names with their values, in all digits: `m = 1, k = 4`.
+/// Names with their values, with all digits: `m = 1, k = 4`.
 #[must_use]
 pub fn assigned(values: &[(&str, f64)]) -> String {
     let each: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {}", short(*value))).collect();
     each.join(", ")
 }
 
-/// A number in three digits at most: `1.5e-154`, `84`.
+/// A number with at most three digits: `1.5e-154`, `84`.
 pub fn about(value: f64) -> String {
     format!("{value:.2e}").parse().map_or_else(|_| value.to_string(), short)
 }
 
-/// The middle one of some numbers; none of none.
+/// The median; `None` without numbers.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied()
 }
 
-/// Smallest and largest of some numbers.
+/// Smallest and largest number.
 pub fn extremes(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     values.into_iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Slope of the straight line through `(log x, log y)` by least squares: the order of a power law.
+/// Least-squares slope of `(log x, log y)`: the exponent of a power law.
 #[must_use]
 pub fn order(points: &[(f64, f64)]) -> f64 {
     let mut n = 0.0;

@@ -1,11 +1,11 @@
-//! Progress of what takes longer than a second, on standard error if it is a terminal.
+//! Progress of long operations, on standard error if it is a terminal.
 
 use crate::numbers::about;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
-/// Steps between two looks at the clock.
+/// Steps between two readings of the clock.
 const PATIENCE: u64 = 4096;
 /// The same for runs of any system, whose steps may be slow.
 const SHORT_PATIENCE: u64 = 256;
@@ -20,21 +20,21 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Length of the bar of a run: so fine that the slowest run moves it, which the time left is reckoned from.
+    /// Length of the bar of a run: fine enough that the slowest run moves it, for the estimate of the remaining time.
     pub const FINENESS: u64 = 1_000_000_000_000_000;
 
     /// A bar of the given length.
     #[must_use]
     pub fn new(length: u64) -> Self {
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
-        // The template is a constant; were it wrong, the bar's own style would do.
+        // The template is a constant; on an error the default style remains.
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left  {wide_msg}") {
             bar.set_style(style);
         }
         Self { bar, started: Instant::now(), visible: false, calls: 0 }
     }
 
-    /// Says what is being done.
+    /// Shows the current operation.
     pub fn message(&self, message: impl Into<std::borrow::Cow<'static, str>>) {
         self.bar.set_message(message);
     }
@@ -48,8 +48,8 @@ impl Progress {
         }
     }
 
-    /// Moves the bar of a run, of length [`Self::FINENESS`], to the part between 0 and 1 that is done. Where the rest takes
-    /// more than a day at this pace, says so once, on standard error whatever it is.
+    /// Sets the bar of a run, of length [`Self::FINENESS`], to the completed part between 0 and 1. Reports once on
+    /// standard error if the rest takes more than a day at this rate.
     pub fn reach(&mut self, part: f64) {
         self.calls += 1;
         if !self.calls.is_multiple_of(SHORT_PATIENCE) {
@@ -60,9 +60,9 @@ impl Progress {
         if self.show() {
             let days = self.started.elapsed().as_secs_f64() * (1.0 - part) / part / 86_400.0;
             if days > 1.0 {
-                // Standard error may be closed; the run goes on.
+                // Standard error may be closed; the run continues.
                 let say = || {
-                    writeln!(io::stderr(), "this run takes {} days more at the pace of its first second", about(days))
+                    writeln!(io::stderr(), "at the rate of its first second, this run takes {} more days", about(days))
                 };
                 let _ = self.bar.suspend(say);
             }
@@ -75,7 +75,7 @@ impl Progress {
         self.show();
     }
 
-    /// Shows the bar after the first second; whether it appears only now.
+    /// Shows the bar after the first second; returns whether it has just appeared.
     fn show(&mut self) -> bool {
         let appears = !self.visible && self.started.elapsed() > Duration::from_secs(1);
         if appears {

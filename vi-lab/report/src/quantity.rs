@@ -1,12 +1,13 @@
-//! What can be varied from run to run: a coordinate, a velocity, a parameter, or the step.
+//! The quantities that can vary from run to run: a coordinate, a velocity, a parameter, the step.
 //!
-//! In: a name: that of a coordinate or a parameter, `v_` before a coordinate for its velocity, `h`. Out: a [`Quantity`], which sets a system and a plan.
+//! In: the name of a coordinate or a parameter, `v_` plus a coordinate for its velocity, `h`. Out: a [`Quantity`],
+//! which sets a system and a plan.
 
 use crate::failure::Failure;
 use vi_runs::plan::Plan;
 use vi_runs::system::System;
 
-/// One quantity that differs from run to run.
+/// A quantity that varies from run to run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Initial coordinate.
@@ -20,10 +21,10 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// The quantity of this name.
+    /// The quantity with this name.
     ///
     /// # Errors
-    /// [`Failure::Input`] with the names that there are.
+    /// [`Failure::Input`] with the existing names.
     pub fn named(system: &dyn System, name: &str) -> Result<Self, Failure> {
         let coordinates = system.coordinates();
         let place = |name: &str| coordinates.iter().position(|coordinate| *coordinate == name);
@@ -41,12 +42,15 @@ impl Quantity {
                 let velocities: Vec<String> = coordinates.iter().map(|coordinate| format!("v_{coordinate}")).collect();
                 let names = [coordinates.join(", "), velocities.join(", "), parameters.join(", "), "h".to_owned()];
                 let names: Vec<&str> = names.iter().map(String::as_str).filter(|names| !names.is_empty()).collect();
-                Err(Failure::Input(format!("there is no quantity `{name}` to vary; there are {}", names.join(", "))))
+                Err(Failure::Input(format!(
+                    "there is no quantity `{name}` to vary; the quantities are {}",
+                    names.join(", ")
+                )))
             }
         }
     }
 
-    /// Sets the quantity of this system and this plan.
+    /// Sets the quantity in this system and this plan.
     pub fn set(&self, value: f64, system: &mut dyn System, plan: &mut Plan) {
         match self {
             Self::Coordinate(index) => plan.q.iter_mut().skip(*index).take(1).for_each(|q| *q = value),

@@ -1,4 +1,4 @@
-//! Tables: one product for the page, the terminal and the CSV file.
+//! Tables for the page, the terminal and the CSV file.
 //!
 //! In: a head and rows of the same length, as text. Out: HTML, CSV, or text in columns.
 
@@ -6,7 +6,7 @@ use crate::html::escape;
 use comfy_table::{ContentArrangement, presets};
 use core::fmt::Write as _;
 
-/// Width of a table of text in characters.
+/// Width of a text table in characters.
 const WIDTH: u16 = 120;
 
 /// A head and rows of text.
@@ -24,7 +24,7 @@ impl Table {
         Self { name, head: head.map(str::to_owned).to_vec(), rows: Vec::new() }
     }
 
-    /// One more row.
+    /// Adds a row.
     pub fn row<const N: usize>(&mut self, cells: [String; N]) {
         self.rows.push(Vec::from(cells));
     }
@@ -75,7 +75,7 @@ impl Table {
     }
 }
 
-/// A field of a CSV file, quoted where RFC 4180 asks for it.
+/// A field of a CSV file, quoted as RFC 4180 requires.
 #[must_use]
 pub fn csv_field(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }

@@ -1,13 +1,13 @@
 //! A system that counts how often its equations are evaluated.
 //!
-//! In: a system. Out: the same system, and a count of the calls that an integrator pays for: a residual with its
-//! Jacobian, with or without the gain, the gain of a step, an acceleration; each counts one. Everything else is passed on uncounted.
+//! In: a system. Out: the same system with a count of evaluations. Each of these counts one: a residual with its
+//! Jacobian (with or without the increment), the increment of a step, an acceleration. Other calls are not counted.
 
 use core::cell::Cell;
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{DiscreteLagrangian, Lagrangian, forward};
 
-/// A system, and the evaluations so far: its copies count together.
+/// A system and its evaluations so far; copies share the count.
 #[derive(Clone, Copy, Debug)]
 pub struct Counting<'a, S> {
     system: S,
@@ -15,12 +15,12 @@ pub struct Counting<'a, S> {
 }
 
 impl<'a, S> Counting<'a, S> {
-    /// The system, and where its evaluations are added.
+    /// Wraps a system; `evaluations` receives its count.
     pub fn new(system: S, evaluations: &'a Cell<u64>) -> Self {
         Self { system, evaluations }
     }
 
-    /// The system, for a call that counts.
+    /// The system, for a counted call.
     fn counted(&self) -> &S {
         self.evaluations.update(|count| count + 1);
         &self.system

@@ -1,6 +1,7 @@
-//! Lyapunov exponents along one run of any system, its number of degrees of freedom erased.
+//! Lyapunov exponents along one run of a type-erased system.
 //!
-//! In: a system with its parameters, a [`Plan`], how many exponents. Out: [`Exponents`], whose estimates follow the run.
+//! In: a system with its parameters, a [`Plan`], the number of exponents. Out: [`Exponents`], which are updated along
+//! the run.
 
 use crate::plan::Plan;
 use crate::simulation::vector;
@@ -9,19 +10,19 @@ use vi_core::derivatives::Lyapunov;
 use vi_core::stepping::Convertible;
 use vi_core::{Gauss, Starts, StepError};
 
-/// Stages of the Gauss steps, which the command has anyway.
+/// Stages of the Gauss steps; the command contains these anyway.
 const STAGES: usize = 8;
 
 /// Lyapunov exponents along a run.
 pub trait Exponents {
-    /// Takes so many steps.
+    /// Takes `steps` steps.
     ///
     /// # Errors
-    /// That of the step that fails.
+    /// The error of the failed step.
     fn advance(&mut self, steps: u64) -> Result<(), StepError>;
-    /// Time of the node reached last.
+    /// Time of the last node.
     fn t(&self) -> f64;
-    /// Its coordinates.
+    /// Coordinates of the last node.
     fn q(&self) -> &[f64];
     /// The estimates.
     fn exponents(&self) -> Vec<f64>;
@@ -51,7 +52,7 @@ where
 /// The exponents of a system along the run of a plan.
 ///
 /// # Errors
-/// What the integrator says of the initial state.
+/// The error of the integrator for the initial state.
 pub fn begin<'a, S, const N: usize>(system: S, plan: &Plan, count: usize) -> Result<Box<dyn Exponents + 'a>, StepError>
 where
     S: Collocation<N> + Convertible<N> + 'a,

@@ -1,6 +1,7 @@
-//! What the command can do with a system by the rules that it is declared with.
+//! The operations of the command on a system with or without a rule.
 //!
-//! In: a system of a known type. Out: its runs by a rule and its step density, or the error that it has none. A system without a rule has Gauss steps alone.
+//! In: a system of a known type. Out: its runs with a rule and its step density, or the error that it has none. A
+//! system without a rule has Gauss methods only.
 
 use crate::plan::Plan;
 use crate::simulation::{self, Simulation};
@@ -14,10 +15,10 @@ pub trait Kind<S, const N: usize>: Send + Sync + 'static {
     /// Whether it has a rule.
     const HAS_RULE: bool;
 
-    /// Starts a run by the rule.
+    /// Starts a run with the rule.
     ///
     /// # Errors
-    /// What the integrators say of the initial state; [`StepError::NoRule`] for a system without one.
+    /// The error of the integrators for the initial state; [`StepError::NoRule`] for a system without one.
     fn begin<'a>(
         system: S,
         plan: &Plan,

@@ -1,17 +1,17 @@
-//! Runs of any system by any integrator, their types erased.
+//! Type-erased runs of any system with any integrator.
 //!
-//! In: a system that `lagrangian!` declares. Out: a [`System`](system::System), and of a [`Plan`](plan::Plan) a
-//! [`Simulation`](simulation::Simulation), whose rows a command writes or charts. All that is generic over systems stands here, and is compiled
-//! once for each of them; the command `vi-lab` names none of their types.
+//! In: a system declared by `lagrangian!`. Out: a [`System`](system::System), and for a [`Plan`](plan::Plan) a
+//! [`Simulation`](simulation::Simulation), whose rows a command writes or draws. All code that is generic over systems
+//! is here and is compiled once per system; the command `vi-lab` names none of their types.
 //!
-//! | module | what it makes |
+//! | module | product |
 //! |---|---|
-//! | [`ready`] | the ready systems, each with a place to start from |
-//! | [`plan`] | what is to be run |
+//! | [`ready`] | the predefined systems, each with an initial state |
+//! | [`plan`] | the description of a run |
 //! | [`system`], [`simulation`] | any system, and one run of it |
 //! | [`counting`] | a system that counts its evaluations |
-//! | [`rival`] | its motion by DOP853 |
-//! | [`start`] | an accurate start |
+//! | [`rival`] | the motion by DOP853 |
+//! | [`start`] | an accurate second node |
 //! | [`exponents`] | Lyapunov exponents along a run |
 
 pub mod counting;

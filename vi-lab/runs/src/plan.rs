@@ -1,12 +1,12 @@
-//! What is to be run: an integrator with its options, and where it starts.
+//! The description of a run: an integrator with its options, and the initial state.
 //!
-//! In: what a command line or a scene asks for. Out: a [`Plan`].
+//! In: the request of a command line or a scene. Out: a [`Plan`].
 
 use clap::ValueEnum;
 use serde::Deserialize;
 use vi_core::Composition;
 
-/// Which integrator.
+/// The integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
@@ -24,18 +24,19 @@ pub enum Method {
     #[value(name = "kahan-li-8")]
     #[serde(rename = "kahan-li-8")]
     KahanLi8,
-    /// Collocation at Gauss points, of twice the order of its --stages
+    /// Gauss collocation, of order 2S for --stages S
     Gauss,
     /// The integrator that solves for its own step and preserves the discrete energy
     Energy,
 }
 
-/// Numbers of stages of the Gauss steps that are built into the command, for each system: each costs a second or two of the compiler.
+/// Numbers of stages of Gauss steps built into the command, for each system: each costs a second or two of compile
+/// time.
 pub const STAGES: [usize; 2] = [4, 8];
-/// The number of stages that nobody asked for: the most accurate steps for their time, from errors of 1e-6 on.
+/// The default number of stages: the most accurate steps for their time, for errors below 1e-6.
 pub const USUAL_STAGES: usize = 8;
 
-/// Numbers of stages of energy-preserving Gauss steps: with more, rounding loses their length.
+/// Numbers of stages of energy-preserving Gauss steps: with more, rounding hides their length.
 pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];
 
 impl Method {
@@ -64,39 +65,39 @@ impl Method {
     }
 }
 
-/// How the energy-preserving integrator gets its first interval.
+/// The first interval of the energy-preserving integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Start {
-    /// The initial state is the middle of the first interval
+    /// The initial state is the midpoint of the first interval
     Midpoint,
-    /// The first interval ends in the exact solution at t0 + h: the paper's start
+    /// The first interval ends at the exact solution at t0 + h, as in the paper
     Points,
 }
 
 /// The shift D_* of the step density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shift {
-    /// This one.
+    /// This value.
     Of(f64),
     /// Twice the largest step density over this time from the start.
     Over(f64),
 }
 
-/// What is to be run.
+/// The description of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The integrator.
     pub method: Method,
-    /// The start of the energy-preserving integrator without stages and shift; the others need none.
+    /// The start of the energy-preserving integrator without stages and shift; unused by others.
     pub start: Start,
     /// The stages of Gauss steps, one of [`STAGES`], or of energy-preserving ones, one of [`ENERGY_STAGES`].
     pub stages: Option<usize>,
     /// The shift of energy-preserving steps.
     pub shift: Option<Shift>,
-    /// Whether fixed steps are taken where there is no energy-preserving one.
+    /// Whether to take fixed steps if there is no energy-preserving one.
     pub fallback: bool,
-    /// The step of Gauss steps in transformed time.
+    /// The Gauss step in transformed time.
     pub dtau: Option<f64>,
     /// The step, or the first one.
     pub h: f64,
@@ -109,21 +110,21 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A run by steps of the length h from a point, by what is usual of the method.
+    /// A run with steps of length h from a point, with the defaults of the method.
     #[must_use]
     pub fn new(method: Method, h: f64, PhasePoint { t, q, v }: PhasePoint) -> Self {
         Self { method, start: Start::Midpoint, stages: None, shift: None, fallback: false, dtau: None, h, t, q, v }
     }
 
-    /// The stages of energy-preserving steps by [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); none where
-    /// [`EnergyPreserving`](vi_core::EnergyPreserving) takes them.
+    /// The stages of energy-preserving steps with [`EnergyPreservingGauss`](vi_core::EnergyPreservingGauss); `None` for
+    /// steps with [`EnergyPreserving`](vi_core::EnergyPreserving).
     #[must_use]
     pub fn energy_stages(&self) -> Option<usize> {
         self.stages.or(self.shift.map(|_| 1)).filter(|_| self.method == Method::Energy)
     }
 }
 
-/// Where a motion is.
+/// A point of a trajectory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhasePoint {
     /// Time.

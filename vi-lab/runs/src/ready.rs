@@ -1,7 +1,7 @@
-//! The ready systems, each with a place to start from.
+//! The predefined systems, each with an initial state.
 //!
-//! In: the systems of `vi_systems`. Out: a list of [`Entry`], their types erased: here, once for each of them, the compiler meets all that is
-//! generic over systems.
+//! In: the systems of `vi_systems`. Out: a list of type-erased [`Entry`] values. Here the compiler instantiates all
+//! code that is generic over systems, once per system.
 
 use crate::kind::{ByRule, GaussAlone};
 use crate::system::{self, System};
@@ -14,11 +14,11 @@ use vi_systems::{
     SphericalPendulum, ThreeBody,
 };
 
-/// A system with a place to start from.
+/// A system with an initial state.
 pub struct Entry {
     /// The system, with the default parameters.
     pub system: Box<dyn System>,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     /// Default initial coordinates.
     pub q: Vec<f64>,
@@ -29,7 +29,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// A system with a place to start from: what it is, its initial coordinates and velocities, a step.
+    /// A system from its description, initial coordinates and velocities, and a step.
     #[must_use]
     pub fn new<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
@@ -38,7 +38,7 @@ impl Entry {
         Self { system: system::erased::<S, ByRule, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 
-    /// The same of a system without a rule, which has Gauss steps alone.
+    /// The same for a system without a rule, which has Gauss methods only.
     #[must_use]
     pub fn with_gauss_alone<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
@@ -52,7 +52,7 @@ impl Entry {
 const LOWEST_MODE: [f64; 16] =
     [0.184, 0.361, 0.526, 0.674, 0.798, 0.895, 0.962, 0.996, 0.996, 0.962, 0.895, 0.798, 0.674, 0.526, 0.361, 0.184];
 
-/// The figure of eight: coordinates x and y of the bodies, in the digits of C. Simó.
+/// The figure-eight orbit: coordinates x and y of the bodies, in the digits of C. Simó.
 const EIGHT: [f64; 6] =
     [0.970_004_356_697_34, -0.970_004_356_697_34, 0.0, -0.243_087_531_535_83, 0.243_087_531_535_83, 0.0];
 /// The velocities: the third body, in the middle, moves against both others.
@@ -77,7 +77,7 @@ pub fn pendulum() -> Entry {
     Entry::new::<Pendulum, 1>("mass on a rod", [1.0], [0.0], 0.01)
 }
 
-/// The ready systems, in the order in which they are listed.
+/// The predefined systems in the order of the list.
 #[must_use]
 pub fn systems() -> Vec<Entry> {
     let rest = [0.0];

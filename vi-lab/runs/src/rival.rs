@@ -1,9 +1,9 @@
 //! The rival: the Runge–Kutta method of order 8 of Dormand and Prince (DOP853), of the crate `differential-equations`.
 //!
-//! In: a system, of which nothing is used but its acceleration, a motion, the time to reach and a tolerance, relative and
-//! absolute. Out: the motion at that time, each step on the way, and the number of accelerations. The library evaluates
-//! fifteen of them in an accepted step, three of them for dense output, which it makes always. It counts them whether the
-//! run is timed or not: an addition beside some ten operations of each stage.
+//! In: the acceleration of a system, an initial state, the end time, and a tolerance, relative and absolute. Out: the
+//! final state, each step on the way, and the number of accelerations. The library evaluates fifteen accelerations per
+//! accepted step, three of them for dense output, which cannot be disabled. The count is always active: one addition
+//! per some ten operations of a stage.
 
 use core::array;
 use core::cell::Cell;
@@ -19,16 +19,16 @@ use differential_equations::traits::State;
 use vi_core::check::Motion;
 use vi_core::{Lagrangian, SVector, StepError};
 
-/// Why a run did not reach its end.
+/// The reason why a run did not reach its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ended {
     /// A step failed, or the acceleration.
     Step(StepError),
-    /// The rival gave up at this time, for this reason.
+    /// The rival stopped at this time, for this reason.
     Rival(f64, &'static str),
-    /// The steps became so short that the run would not have ended.
+    /// The steps became too short to finish the run.
     Short(f64),
-    /// The run arrived, but with numbers that are not finite.
+    /// The final state is not finite.
     NonFinite,
 }
 
@@ -37,7 +37,7 @@ impl fmt::Display for Ended {
         match self {
             Self::Step(error) => error.reason().fmt(f),
             Self::Rival(t, reason) => write!(f, "{reason} at t = {t:.9}"),
-            Self::Short(t) => write!(f, "more than ten times the steps were taken up to t = {t:.9}"),
+            Self::Short(t) => write!(f, "the run took more than ten times the predicted steps up to t = {t:.9}"),
             Self::NonFinite => f.write_str("a number is not finite at the end"),
         }
     }
@@ -49,7 +49,7 @@ impl From<StepError> for Ended {
     }
 }
 
-/// Coordinates and velocities as the library carries them.
+/// Coordinates and velocities as the library stores them.
 #[derive(Clone, Copy, Debug)]
 struct Phase<const N: usize>([[f64; N]; 2]);
 
@@ -98,8 +98,8 @@ impl<const N: usize> State<f64> for Phase<N> {
     }
 }
 
-/// The motion as a system of first order. Where the acceleration fails, the library gets NaN and shortens its
-/// step. Where that does not help, the run ends with the failure of the acceleration.
+/// The motion as a first-order system. If the acceleration fails, the library gets NaN and shortens its step. If that
+/// does not help, the run ends with the failure of the acceleration.
 struct Equations<'a, S> {
     system: S,
     evaluations: &'a Cell<u64>,
@@ -118,7 +118,7 @@ impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<'_, S> {
     }
 }
 
-/// Shows every accepted step, and stores the last.
+/// Passes on every accepted step, and stores the last.
 struct Watch<'a, const N: usize> {
     last: Motion<N>,
     show: &'a mut dyn FnMut(&Motion<N>),
@@ -140,10 +140,11 @@ impl<const N: usize> Solout<f64, Phase<N>> for Watch<'_, N> {
     }
 }
 
-/// The motion at `end`; `show` is given the start and every step, `evaluations` grows by the number of accelerations.
+/// The motion at `end`. `show` gets the initial state and every step; `evaluations` grows by the number of
+/// accelerations.
 ///
 /// # Errors
-/// Why the run did not reach `end`.
+/// The reason why the run did not reach `end`.
 pub fn motion<S: Lagrangian<N>, const N: usize>(
     system: S,
     start: &Motion<N>,
@@ -160,8 +161,8 @@ pub fn motion<S: Lagrangian<N>, const N: usize>(
     match (solved, equations.failure.get()) {
         (Ok(()), _) => Ok(last),
         (Err(_), Some(failure)) => Err(Ended::Step(failure)),
-        (Err(Error::Stiffness { .. }), _) => Err(Ended::Rival(last.t, "the equations were found stiff")),
+        (Err(Error::Stiffness { .. }), _) => Err(Ended::Rival(last.t, "the solver reported stiff equations")),
         (Err(Error::StepSize { .. }), _) => Err(Ended::Rival(last.t, "the step became too small")),
-        (Err(_), _) => Err(Ended::Rival(last.t, "the library refused")),
+        (Err(_), _) => Err(Ended::Rival(last.t, "the solver failed")),
     }
 }

@@ -1,10 +1,10 @@
-//! One run of any system, its number of degrees of freedom erased.
+//! One type-erased run of any system.
 //!
-//! In: a system with its parameters, a [`Plan`]. Out: a [`Simulation`], whose rows are the nodes that the integrator
-//! reaches, the first one the node it starts from. Erased, so that a name on the command line can choose the system;
-//! the numbers are those of the generic integrators, to the last bit, and [`Simulation::advance_until`] is their loop, in
-//! which no call is virtual. Integrators that only a user's run takes are those of [`Called`] systems: built in a third of the time, and
-//! off by rounding.
+//! In: a system with its parameters, a [`Plan`]. Out: a [`Simulation`], whose rows are the nodes of the integrator,
+//! starting with its first node. Type erasure lets a name on the command line choose the system. The numbers are those
+//! of the generic integrators, to the last bit, and [`Simulation::advance_until`] contains their loop without virtual
+//! calls. Integrators that only user runs need take [`Called`] systems, which build in a third of the time and differ
+//! by rounding.
 
 use crate::counting::Counting;
 use crate::kind::Kind;
@@ -28,19 +28,19 @@ pub struct Row {
     pub q: Vec<f64>,
     /// Momenta.
     pub p: Vec<f64>,
-    /// H, the energy at the node; none where no velocity belongs to the momenta.
+    /// H, the energy at the node; `None` if the momenta have no velocity.
     pub energy: Option<f64>,
-    /// E, the discrete energy of the interval that ends at the node; none before the first fixed step, and none of a
-    /// composition, whose whole step is no interval of one discrete Lagrangian.
+    /// E, the discrete energy of the interval that ends at the node; `None` before the first fixed step and for
+    /// compositions, whose step is not an interval of one discrete Lagrangian.
     pub discrete_energy: Option<f64>,
-    /// E', the energy that steps with a shift keep; none of other methods, whose rows have no such column.
+    /// E', the energy conserved by steps with a shift; `None` for other methods, whose rows have no such column.
     pub shifted_energy: Option<f64>,
-    /// Length of the step; in the first row the length asked for.
+    /// Length of the step; in the first row the requested length.
     pub h: f64,
 }
 
 impl Row {
-    /// The names of the columns, for these coordinates, of steps with a shift or without.
+    /// The names of the columns for these coordinates, with or without a shift.
     #[must_use]
     pub fn columns(coordinates: &[&str], is_shifted: bool) -> Vec<String> {
         let q = coordinates.iter().map(|&name| name.to_owned());
@@ -58,7 +58,7 @@ impl Row {
     }
 }
 
-/// In which direction a coordinate passes a value, in the direction of the run.
+/// The direction in which a coordinate crosses a value, along the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From below.
@@ -69,10 +69,10 @@ pub enum Direction {
     Both,
 }
 
-/// A surface that a motion crosses again and again: a Poincaré section.
+/// A surface that a motion crosses repeatedly: a Poincaré section.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
-    /// A coordinate has this value, and passes it in this direction.
+    /// A coordinate crosses this value in this direction.
     Coordinate {
         /// Which coordinate.
         index: usize,
@@ -81,7 +81,7 @@ pub enum Section {
         /// Rising, falling, or both.
         direction: Direction,
     },
-    /// The time is `start` and a whole number of periods.
+    /// The time is `start` plus a whole number of periods.
     Period {
         /// Time of the first one.
         start: f64,
@@ -91,20 +91,20 @@ pub enum Section {
 }
 
 impl Section {
-    /// A function of time and coordinates that changes its sign at the section.
+    /// A function of time and coordinates that changes sign at the section.
     fn value(&self, t: f64, q: &[f64]) -> f64 {
         match self {
             Self::Coordinate { index, at, .. } => q[*index] - at,
             Self::Period { start, period } => {
                 let passed = (t - start) / period;
-                // Within half a period of zero, so that late crossings are as sharp as early ones.
+                // Within half a period of zero, so that late crossings are as accurate as early ones.
                 let is_odd = if passed.round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
                 is_odd * (core::f64::consts::PI * (passed - passed.round())).sin()
             }
         }
     }
 
-    /// The event that the function passes zero in the direction of the section.
+    /// The event that the function crosses zero in the direction of the section.
     fn event<const N: usize>(&self) -> Event<N> {
         let section = self.clone();
         let g = move |moment: &Moment<N>| section.value(moment.t, moment.q.as_slice());
@@ -116,48 +116,48 @@ impl Section {
     }
 }
 
-/// A run that has been started.
+/// A started run.
 pub trait Simulation {
-    /// Time of the node reached last.
+    /// Time of the last node.
     fn t(&self) -> f64;
-    /// Coordinates of the node reached last.
+    /// Coordinates of the last node.
     fn q(&self) -> &[f64];
-    /// Momenta of the node reached last.
+    /// Momenta of the last node.
     fn p(&self) -> &[f64];
-    /// Length of the last step; before the first one the length asked for.
+    /// Length of the last step; before the first one the requested length.
     fn h(&self) -> f64;
-    /// H, the energy at the node reached last, of its coordinates and momenta.
+    /// H, the energy at the last node, from its coordinates and momenta.
     ///
     /// # Errors
-    /// Where no velocity belongs to the momenta.
+    /// The momenta have no velocity.
     fn energy(&self) -> Result<f64, StepError>;
-    /// E, the discrete energy of the interval that ends at the node reached last; none where there is no such interval.
+    /// E, the discrete energy of the interval that ends at the last node; `None` without such an interval.
     fn discrete_energy(&self) -> Option<f64>;
-    /// E', which steps with a shift keep, and that shift; none of other methods.
+    /// E', conserved by steps with a shift, and that shift; `None` for other methods.
     fn shifted_energy(&self) -> Option<ShiftedEnergy> {
         None
     }
     /// Takes one step.
     ///
     /// # Errors
-    /// That of the integrator.
+    /// The error of the integrator.
     fn advance(&mut self) -> Result<(), StepError>;
-    /// Takes one step toward the time `end`, which lies ahead. A step that would lead beyond is as long as is left instead, and ends at `end` exactly; it has no
-    /// discrete energy.
+    /// Takes one step toward the time `end`, which lies ahead. A step beyond it is shortened to end at `end` exactly,
+    /// and has no discrete energy.
     ///
     /// # Errors
-    /// That of the integrator.
+    /// The error of the integrator.
     fn advance_to(&mut self, end: f64) -> Result<(), StepError>;
 
-    /// Goes on to the time `end`, and gives `take` the point of each crossing of a section on the way, in their order: located by
-    /// steps of the exact length, which h tells. Their discrete energy is none.
+    /// Advances to the time `end`, and passes each crossing of a section to `take`, in order. A crossing is located by
+    /// a step of the exact length h, and has no discrete energy.
     ///
     /// # Errors
-    /// That of the step that fails.
+    /// The error of the failed step.
     fn cross(&mut self, section: &Section, end: f64, take: &mut dyn FnMut(Row)) -> Result<(), StepError>;
 
-    /// Time and H where the method keeps H best: at the node; with energy-preserving steps in the middle of the last one,
-    /// since H swings by h²D/8 at their nodes.
+    /// Time and H at which H is most accurate: at the node; for energy-preserving steps at the midpoint of the last
+    /// one, since H deviates by h²D/8 at their nodes.
     ///
     /// # Errors
     /// As [`Simulation::energy`].
@@ -165,18 +165,18 @@ pub trait Simulation {
         Ok((self.t(), self.energy()?))
     }
 
-    /// Takes so many steps.
+    /// Takes `steps` steps.
     ///
     /// # Errors
-    /// That of the step that fails.
+    /// The error of the failed step.
     fn advance_by(&mut self, steps: u64) -> Result<(), StepError> {
         self.advance_until(f64::INFINITY, steps).map(drop)
     }
 
-    /// Takes steps until a node at `end` or later is reached, so many at most; returns how many.
+    /// Takes steps until a node at `end` or later, at most `most`; returns their number.
     ///
     /// # Errors
-    /// That of the step that fails.
+    /// The error of the failed step.
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
         let mut taken = 0;
         while taken < most && self.t() < end {
@@ -188,7 +188,7 @@ pub trait Simulation {
 }
 
 impl dyn Simulation + '_ {
-    /// The node reached last, with its energies.
+    /// The last node with its energies.
     #[must_use]
     pub fn row(&self) -> Row {
         Row {
@@ -203,7 +203,7 @@ impl dyn Simulation + '_ {
     }
 }
 
-/// What steps with a shift keep.
+/// The conserved quantity of steps with a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShiftedEnergy {
     /// `E' = E − C_s h^2s D_*`.
@@ -212,12 +212,13 @@ pub struct ShiftedEnergy {
     pub shift: f64,
 }
 
-/// Starts a run of `system`. `evaluations` grows by those of its equations, which [`Counting`] counts; by Gauss steps it grows by the
-/// sweeps of each step times its stages, so that no copy of these steps is built for a system that counts.
+/// Starts a run of `system`. `evaluations` grows by the evaluations of its equations, which [`Counting`] counts. For
+/// Gauss steps it grows by the iterations of each step times its stages, so that these steps need no second
+/// instantiation.
 ///
 /// # Errors
-/// What the integrators say of the initial state; [`StepError::InvalidInput`] where the numbers of coordinates or
-/// velocities are not those of the system, and for stages that are not built in: 4 and 8 of Gauss steps, 1 to 3 of energy-preserving ones.
+/// The error of the integrators for the initial state. [`StepError::InvalidInput`] for wrong numbers of coordinates or
+/// velocities, and for stages that are not built in: 4 and 8 for Gauss steps, 1 to 3 for energy-preserving ones.
 pub fn begin<'a, S, K: Kind<S, N>, const N: usize>(
     system: S,
     plan: &Plan,
@@ -251,10 +252,10 @@ where
     }
 }
 
-/// Starts a run by the rule of a system.
+/// Starts a run with the rule of a system.
 ///
 /// # Errors
-/// What the integrators say of the initial state.
+/// The error of the integrators for the initial state.
 pub(crate) fn by_rule<'a, S, const N: usize>(
     system: S,
     plan: &Plan,
@@ -275,7 +276,7 @@ where
     }
 }
 
-/// Starts a run by energy-preserving steps of one stage without a shift.
+/// Starts a run of energy-preserving steps of one stage without a shift.
 fn one_stage<'a, S, const N: usize>(
     system: S,
     plan: &Plan,
@@ -303,7 +304,7 @@ where
     Ok(Box::new(Simulated { sampled_energy: in_the_middle, ..run }))
 }
 
-/// What is done where there is no energy-preserving step.
+/// The action if there is no energy-preserving step.
 fn fallback(plan: &Plan) -> Fallback {
     if plan.fallback { Fallback::FixedSteps } else { Fallback::Stop }
 }
@@ -314,7 +315,7 @@ fn wrong_stages(allowed: &'static str, stages: usize) -> StepError {
     StepError::InvalidInput { input: "number of stages", allowed, value: stages as f64 }
 }
 
-/// Starts a run by energy-preserving Gauss steps of so many stages.
+/// Starts a run of energy-preserving Gauss steps.
 fn energy<'a, S, const N: usize, const STAGES: usize>(
     system: S,
     state: State<N>,
@@ -340,7 +341,7 @@ where
     Ok(Box::new(Simulated { uncounted: Some(count), shifted, ..run }))
 }
 
-/// Starts a run by Gauss steps of so many stages in transformed time.
+/// Starts a run of Gauss steps in transformed time.
 fn scaled<'a, S, const N: usize, const STAGES: usize>(
     system: S,
     state: State<N>,
@@ -350,7 +351,7 @@ fn scaled<'a, S, const N: usize, const STAGES: usize>(
 where
     S: Collocation<N> + Convertible<N> + 'a,
 {
-    // Else they would be built for every system.
+    // Otherwise they would be built for every system.
     if !S::SCALES_TIME {
         return Err(StepError::NoTimeScale { system: S::NAME });
     }
@@ -362,7 +363,7 @@ where
     Ok(Box::new(Simulated { uncounted: Some(count), ..run }))
 }
 
-/// Starts a run by Gauss steps of so many stages.
+/// Starts a run of Gauss steps.
 fn gauss<'a, S, const N: usize, const STAGES: usize>(
     system: S,
     state: State<N>,
@@ -380,7 +381,7 @@ where
 /// A vector of the system's size.
 ///
 /// # Errors
-/// [`StepError::InvalidInput`] where there are more or fewer values.
+/// [`StepError::InvalidInput`] for another number of values.
 pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVector<f64, N>, StepError> {
     if values.len() == N {
         Ok(SVector::from_column_slice(values))
@@ -391,34 +392,34 @@ pub fn vector<const N: usize>(values: &[f64], input: &'static str) -> Result<SVe
     }
 }
 
-/// A number that is read of a run.
+/// A number read from a run.
 type Reading<M, S, const N: usize, R> = fn(&Run<M, S, N>) -> R;
 
-/// A run by a method, with what its rows need.
+/// A run with a method, and the data for its rows.
 struct Simulated<'a, M: vi_core::Method<S, N>, S, const N: usize> {
     run: Run<M, S, N>,
-    /// Time and H where the method keeps H best.
+    /// Time and H at which H is most accurate.
     sampled_energy: Reading<M, S, N, Result<(f64, f64), StepError>>,
     evaluations: &'a Cell<u64>,
-    /// The evaluations of the last step, where its system does not count them.
+    /// The evaluations of the last step, if its system does not count them.
     uncounted: Option<Reading<M, S, N, u64>>,
-    /// What steps with a shift keep.
+    /// The conserved quantity of steps with a shift.
     shifted: Option<Reading<M, S, N, ShiftedEnergy>>,
-    /// Length of the last step, if it was shorter than those of the run.
+    /// Length of the last step, if it was shortened.
     shortened: Option<f64>,
 }
 
-/// Part of a step by which its length may be off and it still counts as the next step of the run.
+/// Relative deviation below which a length counts as the step of the run.
 const ROUNDED: f64 = 1e-9;
 
 impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: usize> Simulated<'a, M, S, N> {
-    /// A run whose system counts its evaluations, and which keeps H best at the nodes.
+    /// A run whose system counts its evaluations, and whose H is most accurate at the nodes.
     fn new(run: Run<M, S, N>, evaluations: &'a Cell<u64>) -> Self {
         let at_the_node = |run: &Run<M, S, N>| Ok((run.t(), run.energy()?));
         Self { run, sampled_energy: at_the_node, evaluations, uncounted: None, shifted: None, shortened: None }
     }
 
-    /// The same, its type erased.
+    /// The same, type-erased.
     fn boxed(run: Run<M, S, N>, evaluations: &'a Cell<u64>) -> Box<dyn Simulation + 'a> {
         Box::new(Self::new(run, evaluations))
     }
@@ -455,7 +456,7 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
     }
 
     fn discrete_energy(&self) -> Option<f64> {
-        // A step of another length is none of those whose energy is kept.
+        // A step of another length does not conserve the energy.
         if self.shortened.is_some() { None } else { self.run.discrete_energy() }
     }
 
@@ -479,7 +480,7 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
         let rounding = (f64::EPSILON * end.abs()).min(ROUNDED * h.abs());
         let is_beyond = |left: f64| left * h.signum() < -rounding;
         if is_beyond(left - self.run.longest()) {
-            // Steps that find their length have to be taken to know it.
+            // Steps that solve for their length must be taken to know it.
             let ahead = if M::FINDS_LENGTH { Some(self.run.after_a_step()?) } else { None };
             let Some(ahead) = ahead.filter(|ahead| !is_beyond(ahead.time_to(end))) else {
                 self.run.end_at(end)?;
@@ -515,7 +516,7 @@ impl<'a, M: vi_core::Method<S, N> + 'a, S: Lagrangian<N> + Copy + 'a, const N: u
     }
 
     fn advance_until(&mut self, end: f64, most: u64) -> Result<u64, StepError> {
-        // The loop has a run of its own: behind a pointer its numbers would go through memory in every step.
+        // A local copy of the run: behind a pointer its numbers would go through memory in every step.
         let mut run = self.run.clone();
         let mut taken = 0;
         let mut outcome = Ok(());

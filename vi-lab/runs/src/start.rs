@@ -1,17 +1,17 @@
-//! Accurate motion over a short time: the paper's start needs the second node of the exact solution.
+//! Accurate motion over a short time: the start of the paper needs the second node of the exact solution.
 //!
 //! In: a system and an initial state. Out: coordinates at a later time, by the classical Runge–Kutta method of order 4
-//! in the deviation from the start, which keeps the digits that a sum with q0 would round away.
+//! for the deviation from the start, which keeps digits that a sum with q0 would lose.
 
 use vi_core::{Lagrangian, SVector, StepError};
 
-/// Substeps for the second node: with h0 = 0.1 the error of a motion of unit scale is below 1e-16.
+/// Substeps for the second node: with h0 = 0.1 the error for a motion of unit scale is below 1e-16.
 const SUBSTEPS: u32 = 1024;
 
 /// The point that the motion reaches at `t0 + h0`.
 ///
 /// # Errors
-/// [`StepError::Singular`] where the mass matrix cannot be inverted.
+/// [`StepError::Singular`] if the mass matrix cannot be inverted.
 pub fn second_point<S: Lagrangian<N>, const N: usize>(
     system: &S,
     t0: f64,
@@ -26,7 +26,7 @@ pub fn second_point<S: Lagrangian<N>, const N: usize>(
 /// Deviation from `q0`, and velocity, after the time `duration`.
 ///
 /// # Errors
-/// [`StepError::Singular`] where the mass matrix cannot be inverted.
+/// [`StepError::Singular`] if the mass matrix cannot be inverted.
 pub fn motion<S: Lagrangian<N>, const N: usize>(
     system: &S,
     t0: f64,

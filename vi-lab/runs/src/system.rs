@@ -1,8 +1,8 @@
-//! A system of any number of degrees of freedom, its type erased.
+//! A type-erased system with any number of degrees of freedom.
 //!
-//! In: a system of a known type. Out: a [`System`], by which runs, maps and comparisons use it. Below this trait stands all
-//! code of the command that is generic over systems: its integrators, its accurate motion and the rival are compiled
-//! once for each system, however many charts use them.
+//! In: a system of a known type. Out: a [`System`] for runs, maps and comparisons. This trait hides all code of the
+//! command that is generic over systems: integrators, accurate motion and the rival are compiled once per system, for
+//! any number of charts.
 
 use crate::exponents::{self, Exponents};
 use crate::kind::Kind;
@@ -26,24 +26,24 @@ pub trait System: Send + Sync {
     fn coordinates(&self) -> Vec<&'static str>;
     /// Names and values of the parameters.
     fn parameters(&self) -> Vec<(&'static str, f64)>;
-    /// Sets a parameter; false where there is none of this name.
+    /// Sets a parameter; false if there is none with this name.
     fn set(&mut self, name: &str, value: f64) -> bool;
     /// A system of the same type with the same parameters.
     fn copy(&self) -> Box<dyn System>;
     /// Whether the system has a rule, and with it fixed and energy-preserving steps of order 2.
     fn has_rule(&self) -> bool;
-    /// Whether the energy of a motion is constant: L and f are free of the time, and there is no force.
+    /// Whether the energy of a motion is constant: L and f are autonomous, and there is no force.
     fn conserves_energy(&self) -> bool;
-    /// Step density D at t = 0; none where it has no value, or the system no rule.
+    /// Step density D at t = 0; `None` without a value or without a rule.
     fn step_density(&self, q: &[f64], v: &[f64]) -> Option<f64>;
-    /// Step densities of 1, 2 and 3 stages at a node, its time, coordinates and momenta given; none where one has no value.
+    /// Step densities of 1, 2 and 3 stages at a node with its time, coordinates and momenta; `None` without a value.
     fn step_densities(&self, t: f64, q: &[f64], p: &[f64]) -> [Option<f64>; ENERGY_STAGES.len()];
-    /// g of the time scale at a point; none of a system without a time scale.
+    /// g of the time scale at a point; `None` for a system without a time scale.
     fn time_scale(&self, at: &PhasePoint) -> Option<f64>;
     /// H at a point.
     ///
     /// # Errors
-    /// [`StepError::InvalidInput`] where the point has another number of coordinates, here and below.
+    /// [`StepError::InvalidInput`] for a point with another number of coordinates, here and below.
     fn energy(&self, at: &PhasePoint) -> Result<f64, StepError>;
     /// Momenta ∂L/∂v at a point.
     ///
@@ -53,23 +53,24 @@ pub trait System: Send + Sync {
     /// The point of the same motion at the time `end`, by [`Motion::at`].
     ///
     /// # Errors
-    /// Where the motion cannot be followed.
+    /// The motion cannot be computed.
     fn follow(&self, from: &PhasePoint, end: f64) -> Result<PhasePoint, StepError>;
     /// Starts a run; `evaluations` grows by the evaluations of the equations.
     ///
     /// # Errors
-    /// What the integrators say of the initial state.
+    /// The error of the integrators for the initial state.
     fn begin<'a>(&self, plan: &Plan, evaluations: &'a Cell<u64>) -> Result<Box<dyn Simulation + 'a>, StepError>;
-    /// Lyapunov exponents, as many as wanted, along the run of Gauss steps from the start of a plan.
+    /// `count` Lyapunov exponents along the run of Gauss steps of a plan.
     ///
     /// # Errors
     /// As [`System::begin`].
     fn lyapunov(&self, plan: &Plan, count: usize) -> Result<Box<dyn Exponents>, StepError>;
-    /// The point of the same motion at the time `end`, by the rival with a tolerance. `evaluations` grows by the number of
-    /// accelerations, also where the run ends early; `watch`, if any, is given time and H at the start and after every step.
+    /// The point of the same motion at the time `end`, by the rival with a tolerance. `evaluations` grows by the number
+    /// of accelerations, even if the run ends early; `watch`, if any, gets time and H at the start and after every
+    /// step.
     ///
     /// # Errors
-    /// Why the run did not reach its end.
+    /// The reason why the run did not reach its end.
     fn rival(
         &self,
         from: &PhasePoint,
@@ -194,7 +195,7 @@ fn sized<const N: usize>(point: &PhasePoint) -> Result<Motion<N>, StepError> {
     Ok(Motion { t: point.t, q, v })
 }
 
-/// A point of any number of coordinates.
+/// A type-erased point.
 fn erased_point<const N: usize>(motion: Motion<N>) -> PhasePoint {
     PhasePoint { t: motion.t, q: motion.q.as_slice().to_vec(), v: motion.v.as_slice().to_vec() }
 }

@@ -1,4 +1,4 @@
-//! Evaluations are counted, and no bit changes.
+//! Evaluations are counted without changing a bit.
 
 use core::cell::Cell;
 use vi_core::{FixedStep, Starts, State};
@@ -18,7 +18,7 @@ fn every_evaluation_of_a_fixed_step_is_counted_and_no_bit_is_changed() {
     for _ in 0..100 {
         let before = evaluations.get();
         assert_eq!(runs.0.step(), runs.1.step());
-        // The equation with its Jacobian before each correction, and the residual after it.
+        // Each correction evaluates the equation with its Jacobian, and then the residual.
         assert_eq!(evaluations.get() - before, 2 * u64::from(runs.1.iterations()));
     }
 }

@@ -1,4 +1,4 @@
-//! The tests of this crate, one program.
+//! The tests of this crate as one program.
 
 mod counting;
 mod ready;

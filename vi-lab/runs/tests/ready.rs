@@ -1,4 +1,4 @@
-//! Every ready system starts, by every method.
+//! Every predefined system starts with every method.
 
 use core::cell::Cell;
 use vi_runs::plan::{Method, PhasePoint, Plan};

@@ -3,14 +3,14 @@
 use vi_core::lagrangian;
 
 lagrangian! {
-    /// A mass on a spring that swings.
+    /// A mass on a spring that swings about a pivot.
     pub struct SpringPendulum {
-        /// Mass, stiffness, length at rest, gravity.
+        /// Mass, stiffness, rest length, gravity.
         param m = 1.0, k = 40.0, l = 1.0, g = 9.81;
         coord r, θ;
         L = m * (dot(r)^2 + r^2 * dot(θ)^2) / 2 + m * g * r * cos(θ) - k * (r - l)^2 / 2;
         discretize midpoint;
-        // `cargo test` proves what is generated.
+        // `cargo test` checks the generated code at this state.
         check { r = 1.2, θ = 0.5; h = 0.01; }
     }
 }

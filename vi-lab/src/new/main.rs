@@ -5,6 +5,6 @@ use mine::SpringPendulum;
 vi_lab::main! {
     sources: ["lib.rs"],
     systems: [
-        SpringPendulum { about: "a mass on a spring that swings", q: [1.2, 0.8], v: [0.0, 0.0], h: 0.01 },
+        SpringPendulum { about: "a swinging mass on a spring", q: [1.2, 0.8], v: [0.0, 0.0], h: 0.01 },
     ],
 }

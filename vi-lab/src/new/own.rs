@@ -1,4 +1,4 @@
-//! The crate that `vi-lab new mine` writes, its library and its program in one.
+//! The library and the program of the crate that `vi-lab new mine` writes.
 
 #[path = "lib.rs"]
 pub mod mine;

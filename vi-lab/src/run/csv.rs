@@ -1,7 +1,7 @@
-//! Rows as CSV: comment lines that say what made the file, the names of the columns, one line per node.
+//! Rows as CSV: comment lines with the origin of the file, the names of the columns, one line per node.
 //!
-//! Numbers are the shortest that read back to the same bits; an entry that has no value is empty. AFTER A BLOCK IS
-//! WRITTEN the file consists of whole lines, whatever ends the run.
+//! Numbers have the fewest digits that read back to the same bits; a missing value is an empty entry. AFTER A BLOCK IS
+//! WRITTEN the file consists of complete lines, even if the run ends.
 
 use super::{BLOCK, Request, Sink, energies, method};
 use core::fmt::Write as _;
@@ -17,14 +17,14 @@ use vi_runs::simulation::Row;
 /// A CSV file, or standard output.
 pub(super) struct Csv {
     target: Target,
-    /// Whole lines that are to be written.
+    /// Complete lines to be written.
     block: String,
 }
 
-/// Where lines go.
+/// The destination of lines.
 enum Target {
     StandardOutput,
-    /// A file with the length of its whole lines.
+    /// A file, with the length of its complete lines.
     File {
         path: PathBuf,
         file: File,
@@ -47,7 +47,7 @@ impl Csv {
     /// Writes the block.
     fn flush(&mut self) -> Result<(), Failure> {
         if self.block.is_empty() {
-            // Of a failure too: what the block held is lost, and told.
+            // After a failure too: its content is lost, and the failure is reported.
             return Ok(());
         }
         let block = core::mem::take(&mut self.block);
@@ -67,7 +67,7 @@ impl Target {
             }
             Self::File { path, file, length } => {
                 if let Err(error) = file.write_all(lines) {
-                    // Half a number reads as another number. A pipe cannot be cut, and what reads it sees its end.
+                    // A truncated number reads as another number. A pipe cannot be truncated; its reader sees the end.
                     let _ = file.set_len(*length);
                     return Err(Failure::file(path, error));
                 }
@@ -78,7 +78,7 @@ impl Target {
     }
 }
 
-/// What made the file, in comment lines, and the names of the columns.
+/// The origin of the file in comment lines, and the names of the columns.
 fn head(request: &Request) -> String {
     let Request { system, plan, every, .. } = request;
     let columns: Vec<String> = request.columns().iter().map(|column| csv_field(column)).collect();

@@ -1,18 +1,18 @@
-//! How large the output of a run will be.
+//! Limits the size of the output of a run.
 //!
 //! In: a [`Request`]. Out: an [`Extent`], or [`Failure::Input`] where the run would write more than a gigabyte and
-//! nobody allowed it. AFTER THIS the output of fixed steps is as large as foreseen. Steps that find their own length may
+//! permission. AFTER THIS the output of fixed steps has the predicted size. Steps that solve for their own length may
 //! become many more: [`Extent::check`] ends such a run.
 
 use super::request::Request;
 use vi_report::failure::Failure;
 use vi_report::numbers::{about, short};
 
-/// Bytes of output that need no permission.
+/// Maximum output in bytes without permission.
 const LIMIT: f64 = 1e9;
-/// Bytes at which an output ends that was foreseen to be smaller than the limit.
+/// Maximum output in bytes if the prediction was below the limit.
 const UNFORESEEN: f64 = 2.0 * LIMIT;
-/// The largest N that is proposed for --every.
+/// The largest N suggested for --every.
 const LARGEST_EVERY: f64 = 1e15;
 
 /// The size of an output.
@@ -23,10 +23,10 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// The extent of a run that is not too large.
+    /// The predicted output of a run.
     ///
     /// # Errors
-    /// [`Failure::Input`] with the size and what to do.
+    /// [`Failure::Input`] with the size and the options if it is too large.
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub(super) fn of(request: &Request) -> Result<Self, Failure> {
         let bytes_per_row = request.output.bytes_per_number() * request.columns().len() as f64;
@@ -51,12 +51,12 @@ impl Extent {
         )))
     }
 
-    /// Checks the rows written so far; an error says why they are too many.
+    /// Checks the rows written so far.
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub(super) fn check(self, rows: u64) -> Result<(), String> {
         if self.is_limited && rows as f64 * self.bytes_per_row > UNFORESEEN {
             return Err(format!(
-                "the output has {rows} rows, {} GB, far more than was foreseen, because the steps became short; write fewer \
+                "the output has {rows} rows, {} GB, far more than predicted, because the steps became short; write fewer \
                  rows with --every N, or allow them with --large-output",
                 about(UNFORESEEN / 1e9)
             ));
@@ -70,11 +70,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_output_that_grows_beyond_what_was_foreseen_ends() {
+    fn an_output_beyond_the_prediction_ends() {
         let extent = Extent { bytes_per_row: 100.0, is_limited: true };
         assert_eq!(extent.check(20_000_000), Ok(()));
         let message = extent.check(20_000_001).expect_err("too many rows");
-        assert!(message.starts_with("the output has 20000001 rows, 2 GB, far more than was foreseen"), "{message}");
+        assert!(message.starts_with("the output has 20000001 rows, 2 GB, far more than predicted"), "{message}");
         assert_eq!(Extent { is_limited: false, ..extent }.check(u64::MAX), Ok(()));
     }
 }

@@ -3,7 +3,7 @@
 use vi_report::numbers::short;
 use vi_runs::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
 
-/// The integrator of a plan and its start, as they are asked for on the command line.
+/// The integrator of a plan and its start, in the terms of the command line.
 pub(crate) fn in_words(plan: &Plan) -> String {
     let start = |name: &str| format!("start {name}");
     let of_the_method = match (plan.method, plan.energy_stages(), plan.start) {

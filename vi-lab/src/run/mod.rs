@@ -1,16 +1,17 @@
-//! `vi-lab run`: one system simulated, its nodes written as CSV or NPY, or drawn.
+//! `vi-lab run`: simulates one system and writes its nodes as CSV or NPY, or draws them.
 //!
-//! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`, where
-//! H is the energy at the node and E the discrete energy of the interval that ends there; before h, E' of steps with a shift. AFTER A RUN THAT ENDS
-//! EARLY, by a step that fails or a signal, the output and the plot hold every row up to there, and the last node whatever `--every` says.
+//! In: the command line, or a scene file whose entries the command line overrides. Out: rows `t, q…, p…, H, E, h`. H is
+//! the energy at the node, E the discrete energy of the interval that ends there; steps with a shift add E' before h.
+//! AFTER A RUN THAT ENDS EARLY, by a failed step or a signal, output and plot contain every row so far and the last
+//! node, for any `--every`.
 //!
 //! | module | part of a run |
 //! |---|---|
-//! | [`request`], [`scene`] | what is to be done: command line and scene, checked |
-//! | [`shift`] | how a shift is written |
-//! | [`resolution`], [`extent`] | what is refused: steps that rounding swallows, outputs of gigabytes |
-//! | [`ways_out`] | what to do where an energy-preserving step does not exist |
-//! | [`csv`], [`npy`], [`plot`] | where rows go |
+//! | [`request`], [`scene`] | the request: command line and scene, checked |
+//! | [`shift`] | the notation of a shift |
+//! | [`resolution`], [`extent`] | rejected runs: steps below rounding, outputs of gigabytes |
+//! | [`ways_out`] | alternatives if an energy-preserving step does not exist |
+//! | [`csv`], [`npy`], [`plot`] | destinations of rows |
 
 mod csv;
 mod extent;
@@ -41,26 +42,26 @@ use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift, Start};
 use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
-/// Bytes of whole rows that are written at once.
+/// Bytes of complete rows written at once.
 const BLOCK: usize = 1 << 16;
 
-/// What the two columns of energies are, for the files that hold them.
-const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interval that ends there, none before the first \
-                        step of a given length and none of a composition";
-/// `C_s` of 1, 2 and 3 stages: H − E is `C_s h^2s D` to leading order, D the step density.
+/// Description of the two energy columns, for the output files.
+const ENERGIES: &str = "H: energy at the node; E: discrete energy of the interval that ends there, empty before the first \
+                        fixed or Gauss step and for compositions";
+/// `C_s` for 1, 2 and 3 stages: H − E is `C_s h^2s D` to leading order, with the step density D.
 const CONSTANTS: [&str; ENERGY_STAGES.len()] = ["1/8", "1/864", "1/288000"];
 
-/// What the columns of energies are in the rows of a plan, and which of them is kept.
+/// Description of the energy columns for a plan, and which energy is conserved.
 fn energies(plan: &Plan) -> String {
     let kept = match (plan.method, plan.shift) {
         (Method::Energy, Some(Shift::Of(shift))) => {
             let stages = plan.energy_stages().unwrap_or(1);
             let constant = CONSTANTS.get(stages - 1).copied().unwrap_or_default();
             let (order, shift) = (2 * stages, short(shift));
-            format!("; E': E − C h^{order} D*, which is kept, with C = {constant} and the shift D* = {shift}")
+            format!("; E': E − C h^{order} D*, which is conserved, with C = {constant} and the shift D* = {shift}")
         }
-        (Method::Energy, _) if plan.fallback => "; E is kept, but by fixed steps".to_owned(),
-        (Method::Energy, _) => "; E is kept".to_owned(),
+        (Method::Energy, _) if plan.fallback => "; E is conserved except by fixed steps".to_owned(),
+        (Method::Energy, _) => "; E is conserved".to_owned(),
         _ => String::new(),
     };
     format!("{ENERGIES}{kept}")
@@ -69,32 +70,33 @@ fn energies(plan: &Plan) -> String {
 /// Arguments of `vi-lab run`.
 #[derive(Clone, Debug, Default, Args)]
 #[command(after_help = "\
-Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, of its coordinates and momenta. E is the \
-discrete energy of the interval that ends at the node, which --method energy preserves; with fixed steps it swings by a \
-term of order h², with Gauss steps of S stages by one of order h^2S. H and E of the first two differ by h²D/8 to leading order, D the step density. \
-With --shift D* a column E' comes before h: E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3, which is kept then, while E and H swing. A run of fixed or Gauss steps has no interval \
-before its first row, and the whole step of a composition is none: E is empty there (NaN in .npy). The last step to --until T is as long as is left, and has no E if that is shorter. H is empty if no velocity belongs to the momenta; \
-standard error says in how many rows. h is the length of the step that led to the node.
+Columns: t, coordinates, momenta p_…, H, E, h. H is the energy at the node, from its coordinates and momenta. E is the \
+discrete energy of the interval that ends at the node, which --method energy preserves. Its error is bounded: O(h²) with fixed steps, \
+O(h^2S) with Gauss steps of S stages. With --method energy or fixed, H and E differ by h²D/8 to leading order, with the step density D. \
+With --shift D* a column E' precedes h: E' = E − C h^2S D*, C = 1/8, 1/864, 1/288000 for S = 1, 2, 3. E' is then conserved, and E and H oscillate. E is empty (NaN in .npy) \
+in the first row of a run of fixed or Gauss steps, and for compositions, whose step is not one interval. The last step to --until T may be shorter; then it has no E. H is empty if the momenta have no velocity; \
+standard error reports the number of such rows. h is the length of the step before the node.
 
---plot draws the rows that --every leaves: energies less H at the start, every coordinate over time and with its momentum, up to 24 of them, and \
-the path of two in their plane. A long run takes no more memory than a short one: stretches of it keep their extremes, a phase portrait becomes dots.
+--plot draws the rows selected by --every: energies relative to the initial H; up to 24 coordinates over time and with their momenta; \
+the trajectory of two coordinates in their plane. Memory is bounded: long runs keep the extremes of each stretch, and phase portraits become dots.
 
-Energy-preserving steps: without --stages and --shift they are of order 2. They exist where the step density D, another \
-one for each number of stages, keeps its sign; with --shift D*, where D + D* does: D* above the largest |D| makes steps everywhere, the larger the \
-nearer to fixed ones. --shift auto takes twice the largest |D| that fixed steps meet over the time of the run, or over its first 10000 steps, and the \
-head of the CSV names it. --fallback takes fixed steps where there is no other.
+Energy-preserving steps: without --stages and --shift they have order 2. They exist while the step density D keeps its sign; each number of \
+stages has its own D. With --shift D* they exist while D + D* keeps its sign. A D* above the largest |D| gives steps everywhere; the larger D*, \
+the closer they are to fixed steps. --shift auto takes twice the largest |D| of fixed steps over the run, or over its first 10000 steps, and the \
+header of the CSV contains it. --fallback takes fixed steps if there is no energy-preserving one.
 
-Rows: the first row is the node from which the integrator starts. With --method energy and --start midpoint the initial \
-state is the middle of the first interval, and that node lies half a step later. With --stages or --shift the first row is the initial state. The node reached last is always written.
+Rows: the first row is the first node of the integrator. With --method energy and --start midpoint the initial \
+state is the midpoint of the first interval, and the first node is half a step later. With --stages or --shift the first row is the initial state. The last node is always written.
 
-Exit status: 0 all is written; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
-(SIGINT, SIGTERM); 141 nobody reads standard output any more, as after `| head`. Whatever ends a run, the rows up to there \
-are whole, and drawn by --plot; only a second signal ends the command at once.")]
+Exit status: 0 success; 1 a step or a file failed; 2 the input is wrong; 130 and 143 the run was interrupted \
+(SIGINT, SIGTERM); 141 standard output was closed, as after `| head`. After any end the written rows are complete, \
+and --plot draws them; a second signal ends the command at once.")]
 pub(crate) struct Arguments {
-    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of this program's own]
+    /// Name of a system (see `vi-lab list`), or a scene file whose name ends in .toml [default: the first system of
+    /// this program]
     #[arg(value_name = "SYSTEM|SCENE.toml")]
     pub(crate) target: Option<String>,
-    /// One run of a scene with [sweep], by its number
+    /// One run of a scene with [sweep], by number
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = count)]
     pub(crate) item: Option<u64>,
     /// Integrator [default: fixed]
@@ -103,62 +105,63 @@ pub(crate) struct Arguments {
     /// First interval of energy-preserving steps without --stages and --shift [default: midpoint]
     #[arg(long)]
     pub(crate) start: Option<Start>,
-    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3, of order 2, 4 or 6
+    /// Stages of a step of --method gauss: 4 or 8 [default: 8]; of --method energy: 1, 2 or 3 (order 2, 4 or 6)
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = count)]
     pub(crate) stages: Option<u64>,
-    /// Shift of the step density of --method energy, with which steps exist where its sign changes: a number, or auto
+    /// Shift of the step density of --method energy, for steps across its sign changes: a number, or auto
     #[arg(long, value_name = "D|auto", allow_hyphen_values = true, value_parser = shift::wanted)]
     pub(crate) shift: Option<Wanted>,
-    /// Takes fixed steps where --method energy has no others
+    /// Take fixed steps if --method energy has no step
     #[arg(long)]
     pub(crate) fallback: bool,
     /// Step of --method gauss in transformed time, for systems with a `time_scale`
     #[arg(long, value_name = "DTAU", allow_hyphen_values = true, value_parser = number, conflicts_with = "h")]
     pub(crate) dtau: Option<f64>,
-    /// Step, or first step [default: the system's; four and eight times that with --method energy --stages 2 and 3]
+    /// Step, or first step [default: that of the system; four and eight times that with --method energy --stages 2 and
+    /// 3]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = number)]
     pub(crate) h: Option<f64>,
     /// Number of steps, such as 1e6 [default: 1000]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) steps: Option<u64>,
-    /// Ends at this time exactly
+    /// End at this time exactly
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = number)]
     pub(crate) until: Option<f64>,
-    /// Sets a parameter; may be given once for each
+    /// Set a parameter; repeat for several
     #[arg(long, value_name = "NAME=VALUE")]
     pub(crate) set: Vec<String>,
     /// Initial time [default: 0]
     #[arg(long, value_name = "T0", allow_hyphen_values = true, value_parser = number)]
     pub(crate) t: Option<f64>,
-    /// Initial coordinates, separated by commas [default: the system's]
+    /// Initial coordinates, separated by commas [default: those of the system]
     #[arg(long, value_name = "Q,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     pub(crate) q: Option<Vec<f64>>,
-    /// Initial velocities, separated by commas [default: the system's]
+    /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     pub(crate) v: Option<Vec<f64>>,
-    /// Writes every Nth node, and the last [default: 1]
+    /// Write every Nth node and the last [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = count)]
     pub(crate) every: Option<u64>,
-    /// File to write, .csv or .npy, an existing one anew; without it and without --plot CSV goes to standard output
+    /// Output file, .csv or .npy, overwritten if it exists; without it and without --plot CSV goes to standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Draws energies, coordinates and phase portraits of the rows into an SVG file, an existing one anew
+    /// Draw energies, coordinates and phase portraits of the rows into an SVG file, overwritten if it exists
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
-    /// Allows an output of more than a gigabyte
+    /// Allow an output of more than a gigabyte
     #[arg(long)]
     pub(crate) large_output: bool,
 }
 
-/// Where rows go.
+/// A destination of rows.
 trait Sink {
-    /// Takes a row; rows are written in blocks.
+    /// Accepts a row; rows are written in blocks.
     fn write(&mut self, row: &Row) -> Result<(), Failure>;
-    /// Writes what has been taken; after a failure, what can still be written.
+    /// Writes the remaining rows; after a failure, as many as possible.
     fn finish(&mut self) -> Result<(), Failure>;
 }
 
-/// The system and the start that the arguments ask for.
+/// The system and the plan of the arguments.
 ///
 /// # Errors
 /// Wrong input.
@@ -167,19 +170,19 @@ pub(crate) fn start(arguments: &Arguments) -> Result<(Box<dyn System>, Plan), Fa
     Ok((request.system, request.plan))
 }
 
-/// Whether a run can be: its initial state, and steps that lead to its end and are not lost in rounding.
+/// Checks the initial state, and that the steps reach the end and exceed rounding.
 ///
 /// # Errors
-/// [`Failure::Input`] for the first input that is wrong.
+/// [`Failure::Input`] for the first wrong input.
 pub(crate) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<(), Failure> {
     request::check(system, plan, length)?;
     resolution::check_times(plan, length)
 }
 
-/// Simulates what the arguments ask for.
+/// Runs the simulation of the arguments.
 ///
 /// # Errors
-/// Wrong input, a failed step, a file that cannot be written, a signal.
+/// Wrong input, a failed step, a failed file, a signal.
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut request = Request::of(arguments)?;
     resolution::check_times(&request.plan, request.length)?;
@@ -188,29 +191,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begun = request.system.begin(&request.plan, &evaluations);
     let mut simulation = begun.map_err(|error| Failure::start(error, &request.plan))?;
     if let Some(of) = simulation.shifted_energy() {
-        // A shift that was measured is from here on one that is given.
+        // From here on a measured shift is a given one.
         request.plan.shift = Some(Shift::Of(of.shift));
     }
     resolution::check_state(&request)?;
     if request.length.is_before(simulation.as_ref()) {
-        return Err(Failure::Input(format!("the first node, at t = {}, lies beyond --until", short(simulation.t()))));
+        return Err(Failure::Input(format!("the first node, at t = {}, is after --until", short(simulation.t()))));
     }
     let mut sinks = sinks(&request)?;
     let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
     let mut course = Course::new(&request, extent, &mut sinks);
     let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
     if let Some(note) = course.note() {
-        // Standard error may be closed; the rows are whole.
+        // Standard error may be closed; the rows are complete.
         let _ = writeln!(io::stderr(), "{note}");
     }
-    // Whatever ended the run, and where one of the outputs failed too, each gets what can still be written.
+    // After any end, and if one output failed, each sink writes what it can.
     sinks.iter_mut().fold(outcome, |outcome, sink| match (outcome, sink.finish()) {
         (Err(first), Err(second)) => Err(Failure::both(first, second)),
         (outcome, finished) => outcome.and(finished),
     })
 }
 
-/// The sinks that the request names.
+/// The sinks of the request.
 fn sinks(request: &Request) -> Result<Vec<Box<dyn Sink>>, Failure> {
     let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
     match &request.output {
@@ -225,17 +228,17 @@ fn sinks(request: &Request) -> Result<Vec<Box<dyn Sink>>, Failure> {
     Ok(sinks)
 }
 
-/// A run under way: what was asked for, and how far it came.
+/// A run in progress.
 struct Course<'a> {
     request: &'a Request,
     extent: Extent,
-    /// Where rows go.
+    /// Destinations of rows.
     sinks: &'a mut [Box<dyn Sink>],
     steps: u64,
     rows: u64,
-    /// The number of steps that led to the row written last.
+    /// Number of steps before the last written row.
     written: u64,
-    /// Rows without H, and why the first of them has none.
+    /// Number of rows without H, and the first reason.
     lost: u64,
     first_lost: Option<StepError>,
 }
@@ -246,13 +249,13 @@ impl<'a> Course<'a> {
         Self { request, extent, sinks, steps: 0, rows: 0, written: 0, lost: 0, first_lost: None }
     }
 
-    /// What to say of rows without H.
+    /// The note about rows without H.
     fn note(&self) -> Option<String> {
         let why = self.first_lost?;
-        Some(format!("note: {} of {} rows have no H, the first because {}", self.lost, self.rows, why.reason()))
+        Some(format!("note: {} of {} rows have no H; first reason: {}", self.lost, self.rows, why.reason()))
     }
 
-    /// Steps to the end, and writes the nodes that are asked for, and the last.
+    /// Steps to the end, and writes the requested nodes and the last.
     fn follow(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
         let Request { plan, length, every, .. } = self.request;
         let mut progress = Progress::new(Progress::FINENESS);
@@ -275,7 +278,7 @@ impl<'a> Course<'a> {
         outcome
     }
 
-    /// Takes one step; an error says why the run ends here.
+    /// Takes one step; an error contains the reason of the end.
     fn advance(&mut self, simulation: &mut dyn Simulation, signal: &dyn Fn() -> Option<Signal>) -> Result<(), Failure> {
         let t = simulation.t();
         if let Some(signal) = signal() {
@@ -291,14 +294,13 @@ impl<'a> Course<'a> {
         let ended = |why| Failure::Ended { why, before: describe(&simulation.row(), self.steps) };
         #[allow(clippy::float_cmp)] // exactly
         if simulation.t() == t {
-            let why =
-                "the step does not change t in double precision any more; end the run before, with --until or --steps";
+            let why = "the step no longer changes t in double precision; end the run earlier with --until or --steps";
             return Err(ended(why.to_owned()));
         }
         self.extent.check(self.rows).map_err(ended)
     }
 
-    /// Writes the node reached last.
+    /// Writes the last node.
     fn write(&mut self, simulation: &dyn Simulation) -> Result<(), Failure> {
         self.rows += 1;
         self.written = self.steps;
@@ -311,7 +313,7 @@ impl<'a> Course<'a> {
     }
 }
 
-/// A node in words.
+/// A node as text.
 fn describe(row: &Row, steps: u64) -> String {
     let Row { t, q, p, energy, discrete_energy, shifted_energy, h } = row;
     let energies: String = [("H", energy), ("E", discrete_energy), ("E'", shifted_energy)]
@@ -328,10 +330,10 @@ mod tests {
     use std::rc::Rc;
     use vi_runs::simulation::Section;
 
-    /// A run that cannot go on after three steps, at t = 1.5.
+    /// A run that fails after three steps, at t = 1.5.
     struct Ending {
         t: f64,
-        /// What the fourth step does.
+        /// The result of the fourth step.
         fourth: Result<(), StepError>,
         /// The nodes from this time on have no H.
         lost: f64,
@@ -380,7 +382,7 @@ mod tests {
         }
     }
 
-    /// Keeps the rows.
+    /// Stores the rows.
     #[derive(Clone, Default)]
     struct Kept(Rc<RefCell<Vec<Row>>>);
 
@@ -395,7 +397,7 @@ mod tests {
         }
     }
 
-    /// Why the run ends, and the times of its rows.
+    /// The failure of the run, and the times of its rows.
     fn followed(every: u64, fourth: Result<(), StepError>, signal: &dyn Fn() -> Option<Signal>) -> (Failure, Vec<f64>) {
         let target = Some("double-well".to_owned());
         let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
@@ -434,8 +436,8 @@ mod tests {
             course.note()
         };
         assert_eq!(note(2.0), None);
-        let told = "note: 2 of 4 rows have no H, the first because the mass matrix is singular at t = 1.000000000";
-        assert_eq!(note(1.0).as_deref(), Some(told));
+        let expected = "note: 2 of 4 rows have no H; first reason: the mass matrix is singular at t = 1.000000000";
+        assert_eq!(note(1.0).as_deref(), Some(expected));
     }
 
     #[test]
@@ -443,7 +445,7 @@ mod tests {
         let (failure, written) = followed(1, Ok(()), &|| None);
         assert_eq!((failure.exit_status(), written), (1, vec![0.0, 0.5, 1.0, 1.5, 1.5]));
         let message = failure.to_string();
-        assert!(message.starts_with("the step does not change t in double precision any more; "), "{message}");
+        assert!(message.starts_with("the step no longer changes t in double precision; "), "{message}");
         assert!(message.ends_with("t = 1.5, q = [1.5], p = [0.0], H = 1, h = 0.5, after 4 steps"), "{message}");
     }
 
@@ -457,8 +459,10 @@ mod tests {
             };
             let (failure, written) = followed(5, Ok(()), &third_look);
             assert_eq!((failure.exit_status(), written), (status, vec![0.0, 1.0]));
-            let expected =
-                format!("interrupted by {} after 2 steps at t = 1; the output up to there is whole", signal.name);
+            let expected = format!(
+                "interrupted by {} after 2 steps at t = 1; the output up to this point is complete",
+                signal.name
+            );
             assert_eq!(failure.to_string(), expected);
         }
     }

@@ -1,8 +1,8 @@
-//! Rows as NPY, the array format of `NumPy`: float64, one row per node, row by row; beside it `FILE.npy.json`, which
-//! says what made the file and what the columns are. An entry that has no value is NaN.
+//! Rows as NPY, the array format of `NumPy`: float64, one row per node. `FILE.npy.json` beside it describes the origin
+//! of the file and its columns. A missing value is NaN.
 //!
-//! AFTER A BLOCK IS WRITTEN the head, which has a fixed room, says how many rows are in
-//! the file, whatever ends the run.
+//! AFTER A BLOCK IS WRITTEN the header, which has a fixed size, contains the number of rows in the file, even if the
+//! run ends.
 
 use super::{BLOCK, Request, Sink, energies, method};
 use crate::npy::{ROOM, head};
@@ -22,12 +22,12 @@ pub(super) struct Npy {
     columns: usize,
     /// Rows in the file.
     rows: u64,
-    /// Whole rows that are to be written.
+    /// Complete rows to be written.
     block: Vec<u8>,
 }
 
 impl Npy {
-    /// An NPY file, and the JSON file beside it.
+    /// An NPY file, and its JSON file.
     pub(super) fn create(path: &Path, request: &Request) -> Result<Self, Failure> {
         let file = File::create(path).map_err(|error| Failure::file(path, error))?;
         let mut npy =
@@ -39,14 +39,14 @@ impl Npy {
         Ok(npy)
     }
 
-    /// Writes the block, and then the number of rows into the head.
+    /// Writes the block, then the number of rows in the header.
     fn flush(&mut self) -> Result<(), Failure> {
         let width = wide(8 * self.columns);
         let end = wide(ROOM) + self.rows * width;
         let rows = self.rows + wide(self.block.len()) / width;
         let written = put(&mut self.file, end, &self.block);
         if let Err(error) = written.and_then(|()| put(&mut self.file, 0, &head(rows, self.columns))) {
-            // The head counts the rows up to here; half a row after them is cut off, or does no harm.
+            // The header counts the rows so far; a partial row after them is cut off, or is harmless.
             let _ = self.file.set_len(end);
             self.block.clear();
             return Err(Failure::file(&self.path, error));
@@ -57,18 +57,18 @@ impl Npy {
     }
 }
 
-/// A number of bytes of the memory as one of a file.
+/// A number of bytes in memory as one in a file.
 fn wide(bytes: usize) -> u64 {
     u64::try_from(bytes).unwrap_or(u64::MAX)
 }
 
-/// Writes bytes at a place of a file.
+/// Writes bytes at a position of a file.
 fn put(file: &mut File, place: u64, bytes: &[u8]) -> io::Result<()> {
     file.seek(SeekFrom::Start(place))?;
     file.write_all(bytes)
 }
 
-/// What made the file, and what is in it.
+/// The origin of the file, and its columns.
 fn description(request: &Request) -> serde_json::Value {
     let Request { system, plan, every, .. } = request;
     let parameters: serde_json::Map<String, serde_json::Value> =

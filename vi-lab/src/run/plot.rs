@@ -1,7 +1,7 @@
-//! Rows as a picture: the energies and every coordinate over time, every coordinate with its momentum, in one SVG file.
+//! Rows as a figure: energies and coordinates over time, coordinates with their momenta, in one SVG file.
 //!
-//! In: the rows that a run writes. Out: the file, when the run ends, however it ends. A long run takes bounded memory: of a function of the time the extremes of
-//! each stretch are kept, of a phase portrait every 2^k-th row, which is then drawn as dots.
+//! In: the rows of a run. Out: the file, when the run ends for any reason. Memory is bounded: functions of time keep
+//! the extremes of each stretch; a phase portrait keeps every 2^k-th row and is then drawn as dots.
 
 use super::{Request, Sink, method};
 use std::fs::File;
@@ -14,7 +14,7 @@ use vi_report::machine::{VERSION, command_line};
 use vi_report::numbers::{assigned, short};
 use vi_runs::simulation::Row;
 
-/// The most coordinates that are drawn.
+/// Maximum number of coordinates drawn.
 const MOST: usize = 24;
 /// Widths of the panels over time and of the phase portraits, in pixels; their height.
 const OVER_TIME: f64 = 620.0;
@@ -31,7 +31,7 @@ pub(super) struct Plot {
     energy: Trace,
     discrete_energy: Trace,
     coordinates: Vec<Coordinate>,
-    /// The path of two coordinates in their plane.
+    /// The trajectory of two coordinates in their plane.
     plane: Sample,
 }
 
@@ -43,7 +43,7 @@ struct Coordinate {
 }
 
 impl Plot {
-    /// An empty picture in a file of its own.
+    /// An empty figure in its own file.
     pub(super) fn create(path: &Path, request: &Request) -> Result<Self, Failure> {
         let file = File::create(path).map_err(|error| Failure::file(path, error))?;
         let Request { system, plan, .. } = request;
@@ -67,7 +67,7 @@ impl Plot {
         })
     }
 
-    /// The picture.
+    /// The figure.
     fn sheet(&self) -> Sheet {
         let mut rows = vec![self.first_row()];
         let coordinates = self.names.iter().zip(&self.coordinates);
@@ -80,7 +80,7 @@ impl Plot {
         }
     }
 
-    /// The energies, and beside them the path of two coordinates.
+    /// The energies, and beside them the trajectory of two coordinates.
     fn first_row(&self) -> Vec<Panel> {
         let energy = self.energy.points();
         let start = energy.first().map_or(0.0, |first| first.1);
@@ -122,14 +122,14 @@ fn chart(title: String, axes: [&str; 2], series: Vec<Series>) -> Chart {
     Chart { name: "plot", title, x, y, equal_aspect: false, series }
 }
 
-/// A curve in the plane; of points that do not follow each other, dots.
+/// A curve in the plane; dots if the points are not consecutive.
 fn curve(sample: &Sample) -> Series {
     let points = sample.points();
     let look = if sample.is_whole() { visible(Look::FIXED.line(), &points) } else { Look::FIXED.line().dots(1.2) };
     Series::curve("", look, points).unlabelled()
 }
 
-/// The look of a line; of one point, a dot.
+/// The style of a line; a dot for a single point.
 fn visible(look: Look, points: &[(f64, f64)]) -> Look {
     if points.len() == 1 { look.dots(3.0) } else { look }
 }

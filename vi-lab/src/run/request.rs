@@ -1,4 +1,4 @@
-//! What a run is to do: the command line over the scene over the system's defaults, every input checked.
+//! The request: command line, then scene, then defaults of the system, with every input checked.
 
 use super::Arguments;
 use super::scene::Scene;
@@ -18,30 +18,30 @@ use vi_runs::plan::{ENERGY_STAGES, Method, PhasePoint, Plan, STAGES, Shift, Star
 use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
-/// Steps of a run that is not told otherwise.
+/// Default number of steps.
 const USUAL_STEPS: u64 = 1000;
-/// Steps over which a shift is measured, at most.
+/// Maximum number of steps over which a shift is measured.
 const MEASURED_STEPS: f64 = 1e4;
 
-/// A run, ready to begin.
+/// A checked run.
 pub(crate) struct Request {
-    /// The system, with its parameters set.
+    /// The system with its parameters.
     pub(crate) system: Box<dyn System>,
     /// Integrator, step and initial state.
     pub(crate) plan: Plan,
     /// How long.
     pub(crate) length: Length,
-    /// Every so many nodes one is written.
+    /// Interval between written nodes.
     pub(crate) every: u64,
-    /// Where to.
+    /// The destination.
     pub(super) output: Output,
-    /// The picture of it, an SVG file.
+    /// The plot, an SVG file.
     pub(super) plot: Option<PathBuf>,
-    /// Whether the output may have more than a gigabyte.
+    /// Whether the output may exceed a gigabyte.
     pub(super) large_output: bool,
 }
 
-/// When a run ends.
+/// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Length {
     /// After this many steps.
@@ -62,7 +62,7 @@ impl Length {
     /// Takes one step of a run toward its end.
     ///
     /// # Errors
-    /// That of the integrator.
+    /// The error of the integrator.
     pub(crate) fn advance(self, run: &mut dyn Simulation) -> Result<(), StepError> {
         match self {
             Self::Steps(_) => run.advance(),
@@ -70,12 +70,12 @@ impl Length {
         }
     }
 
-    /// Whether the end lies before the node at which a run starts: that of --start midpoint is half a step late.
+    /// Whether the end precedes the first node: with --start midpoint that node is half a step late.
     pub(crate) fn is_before(self, run: &dyn Simulation) -> bool {
         matches!(self, Self::Until(end) if (end - run.t()) * run.h() < 0.0)
     }
 
-    /// The part of a run that is done, between 0 and 1.
+    /// The completed part of a run, between 0 and 1.
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub(crate) fn part(self, plan: &Plan, t: f64, steps: u64) -> f64 {
         match self {
@@ -84,7 +84,7 @@ impl Length {
         }
     }
 
-    /// Number of steps, were all as long as the first.
+    /// Number of steps, if all had the length of the first.
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub(crate) fn steps(self, plan: &Plan) -> f64 {
         match self {
@@ -93,12 +93,12 @@ impl Length {
         }
     }
 
-    /// The time over which a shift is measured: that of the run, or of its first steps.
+    /// The time over which a shift is measured: the whole run, or its first steps.
     pub(super) fn measured(self, plan: &Plan) -> f64 {
         self.steps(plan).clamp(1.0, MEASURED_STEPS) * plan.h
     }
 
-    /// The time at which the run ends, were all steps as long as the first.
+    /// The time of the end, if all steps had the length of the first.
     pub(crate) fn end(self, plan: &Plan) -> f64 {
         match self {
             Self::Steps(_) => plan.t + self.steps(plan) * plan.h,
@@ -107,7 +107,7 @@ impl Length {
     }
 }
 
-/// Where rows go.
+/// The destination of rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Output {
     /// As CSV to standard output.
@@ -116,12 +116,12 @@ pub(super) enum Output {
     Csv(PathBuf),
     /// To an NPY file.
     Npy(PathBuf),
-    /// Nowhere but into a plot.
+    /// Only to a plot.
     None,
 }
 
 impl Output {
-    /// The output that a path asks for.
+    /// The output for a path.
     fn at(path: &Path) -> Result<Self, Failure> {
         let shown = path.display();
         let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
@@ -133,13 +133,13 @@ impl Output {
         place::check("output", path)?;
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && matches!(output, Self::Npy(_)) => Err(Failure::Input(format!(
-                "the output `{shown}` is a pipe or a device, and the head of an NPY file is written last; write CSV there"
+                "the output `{shown}` is a pipe or a device, but the header of an NPY file is written last; write CSV instead"
             ))),
             _ => Ok(output),
         }
     }
 
-    /// Bytes that a number takes in a row: by measurement for CSV, whose numbers are as long as their digits.
+    /// Bytes of a number in a row: measured for CSV, whose numbers vary in length.
     pub(super) fn bytes_per_number(&self) -> f64 {
         match self {
             Self::Standard | Self::Csv(_) => 19.0,
@@ -149,7 +149,7 @@ impl Output {
     }
 }
 
-/// The file that --plot names.
+/// Checks the file of --plot.
 fn check_plot(path: &Path) -> Result<(), Failure> {
     if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg")) {
         return Err(Failure::Input(format!("the plot `{}` must end in .svg", path.display())));
@@ -158,32 +158,34 @@ fn check_plot(path: &Path) -> Result<(), Failure> {
 }
 
 impl Request {
-    /// The run that the arguments ask for.
+    /// The run of the arguments.
     ///
     /// # Errors
-    /// [`Failure::Input`] for the first input that is wrong.
+    /// [`Failure::Input`] for the first wrong input.
     pub(super) fn of(arguments: &Arguments) -> Result<Self, Failure> {
         match (Self::read(arguments)?, arguments.item) {
             ((request, None), None) | ((request, Some(_)), Some(_)) => Ok(request),
             ((_, None), Some(_)) => Err(Failure::Input("only a scene with [sweep] has an --item".to_owned())),
             ((_, Some(_)), None) => Err(Failure::Input(
-                "the scene has a [sweep]: `vi-lab sweep` takes all its runs, and --item K one of them".to_owned(),
+                "the scene has a [sweep]: use `vi-lab sweep` for all runs, or --item K for one".to_owned(),
             )),
         }
     }
 
-    /// The run that all runs of a sweep are like, and the sweep.
+    /// The common request of the runs of a sweep, and the sweep.
     ///
     /// # Errors
-    /// [`Failure::Input`] for the first input that is wrong, and where the scene has no sweep.
+    /// [`Failure::Input`] for the first wrong input, or if the scene has no sweep.
     pub(crate) fn with_sweep(scene: &str) -> Result<(Self, Sweep), Failure> {
         let arguments = Arguments { target: Some(scene.to_owned()), ..Arguments::default() };
         let (request, sweep) = Self::read(&arguments)?;
-        let none = || Failure::Input(format!("{scene} is no scene file with a table [sweep]; docs/cluster.md has one"));
+        let none = || {
+            Failure::Input(format!("{scene} is not a scene file with a table [sweep]; docs/cluster.md has an example"))
+        };
         Ok((request, sweep.ok_or_else(none)?))
     }
 
-    /// The run that the arguments ask for, and the sweep of the scene.
+    /// The run of the arguments, and the sweep of the scene.
     fn read(arguments: &Arguments) -> Result<(Self, Option<Sweep>), Failure> {
         let target = match &arguments.target {
             Some(target) => target.clone(),
@@ -201,7 +203,9 @@ impl Request {
         for assignment in &arguments.set {
             let (name, value) = parse_assignment(assignment)?;
             if !names.insert(name) {
-                return Err(Failure::Input(format!("the parameter `{name}` is set twice; give --set once for each")));
+                return Err(Failure::Input(format!(
+                    "the parameter `{name}` is set twice; use --set once per parameter"
+                )));
             }
             set(system.as_mut(), name, value)?;
         }
@@ -256,7 +260,7 @@ impl Request {
     }
 }
 
-/// Refuses steps by a rule for a system without one.
+/// Rejects steps by a rule for a system without one.
 fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<(), Failure> {
     let needs_none = match method {
         Method::Gauss => true,
@@ -267,13 +271,13 @@ fn check_rule(system: &dyn System, method: Method, options: &Options) -> Result<
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "{} has no rule for --method {}: add `discretize midpoint;` to it, or take --method gauss, or --method energy with --stages 2",
+        "{} has no rule for --method {}: add `discretize midpoint;` to it, or use --method gauss, or --method energy with --stages 2",
         system.name(),
         method.name()
     )))
 }
 
-/// What belongs to some methods only.
+/// Options that apply to some methods only.
 #[derive(Clone, Copy, Debug)]
 struct Options {
     start: Option<Start>,
@@ -284,7 +288,7 @@ struct Options {
 }
 
 impl Options {
-    /// Those of the command line, else of the scene, unless its method is not the one of the run: what belongs to that is no mistake.
+    /// The options of the command line, then those of the scene; a scene for another method is not a mistake.
     fn of(arguments: &Arguments, scene: &Scene) -> Self {
         let other = Scene::default();
         let scene = if arguments.method.is_none() { scene } else { &other };
@@ -299,28 +303,28 @@ impl Options {
         }
     }
 
-    /// Whether the method has all of them, and they go together.
+    /// Checks that the method has these options, and that they are compatible.
     fn check(&self, method: Method) -> Result<(), Failure> {
         let Self { start, stages, shift, fallback, dtau } = *self;
         let energy = "only energy-preserving steps have a";
         let (is_energy, is_gauss) = (method == Method::Energy, method == Method::Gauss);
         let message = match () {
             () if start.is_some() && !is_energy => {
-                format!("{energy} --start; add --method energy, or leave it out")
+                format!("{energy} --start; add --method energy, or remove it")
             }
             () if shift.is_some() && !is_energy => {
-                format!("{energy} --shift; add --method energy, or leave it out")
+                format!("{energy} --shift; add --method energy, or remove it")
             }
-            () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or leave it out"),
+            () if fallback && !is_energy => format!("{energy} --fallback; add --method energy, or remove it"),
             () if stages.is_some() && !is_energy && !is_gauss => {
-                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or leave it out"
+                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it"
                     .to_owned()
             }
             () if dtau.is_some() && !is_gauss => {
-                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or leave it out".to_owned()
+                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or remove it".to_owned()
             }
             () if start.is_some() && (stages.is_some() || shift.is_some()) => {
-                "steps with --stages or --shift start from the initial state; leave --start out".to_owned()
+                "steps with --stages or --shift start from the initial state; remove --start".to_owned()
             }
             () => return Ok(()),
         };
@@ -335,15 +339,15 @@ fn stages(method: Method, wanted: u64) -> Result<usize, Failure> {
     found.ok_or_else(|| {
         Failure::Input(match method {
             Method::Energy => format!(
-                "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: of more, rounding loses the length"
+                "energy-preserving steps have 1, 2 or 3 stages, not {wanted}: with more, rounding hides the length"
             ),
             _ => format!("Gauss steps of {wanted} stages are not built into the command; --stages may be 4 or 8"),
         })
     })
 }
 
-/// How many times a step that nobody gave is as long as the system's: of short energy-preserving ones of order 4 and 6 the energy tells
-/// no length.
+/// Ratio of the default step to that of the system. For short energy-preserving steps of order 4 and 6, rounding hides
+/// the length.
 fn usual_length(method: Method, stages: Option<usize>) -> f64 {
     match (method, stages) {
         (Method::Energy, Some(2)) => 4.0,
@@ -352,12 +356,12 @@ fn usual_length(method: Method, stages: Option<usize>) -> f64 {
     }
 }
 
-/// Makes the steps of a plan those of one length in transformed time, of which the first is as long as g says.
+/// Sets equal steps in transformed time; g determines the first step in time.
 fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Failure> {
     let Plan { t, q, v, .. } = plan.clone();
     let Some(g) = system.time_scale(&PhasePoint { t, q, v }) else {
         return Err(Failure::Input(format!(
-            "{} has no time scale; take steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+            "{} has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
             catalogue::kebab(system.name())
         )));
     };
@@ -367,12 +371,12 @@ fn scale_time(system: &dyn System, plan: &mut Plan, dtau: f64) -> Result<(), Fai
         )));
     }
     plan.dtau = Some(dtau);
-    // Where g is no scale the run says so.
+    // A run reports an invalid g.
     plan.h = if g > 0.0 && g.is_finite() { g * dtau } else { dtau };
     Ok(())
 }
 
-/// The shift that is wanted: `auto` is measured over the run, or its first part.
+/// The requested shift: `auto` is measured over the run, or its first part.
 fn shift(wanted: Wanted, length: Length, plan: &Plan) -> Result<Shift, Failure> {
     match wanted {
         Wanted::Given(shift) if !shift.is_finite() => {
@@ -395,7 +399,7 @@ fn set(system: &mut dyn System, name: &str, value: f64) -> Result<(), Failure> {
     Err(Failure::Input(format!("{} has no parameter `{name}`; {known}", catalogue::kebab(system.name()))))
 }
 
-/// `NAME=VALUE` as its parts.
+/// The parts of `NAME=VALUE`.
 fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
     let (name, value) =
         text.split_once('=').ok_or_else(|| Failure::Input(format!("`--set {text}` must have the form NAME=VALUE")))?;
@@ -405,7 +409,7 @@ fn parse_assignment(text: &str) -> Result<(&str, f64), Failure> {
     Ok((name, number(value).map_err(wrong)?))
 }
 
-/// Makes a system and a plan those of one run of a sweep.
+/// Sets a system and a plan to one run of a sweep.
 fn set_item(sweep: &Sweep, item: u64, system: &mut dyn System, plan: &mut Plan) -> Result<(), Failure> {
     let items = Items::of(sweep, system)?;
     if item >= items.count() {
@@ -416,10 +420,10 @@ fn set_item(sweep: &Sweep, item: u64, system: &mut dyn System, plan: &mut Plan) 
     Ok(())
 }
 
-/// Sizes and finiteness of the initial state, and whether its step leads to the end.
+/// Checks sizes and finiteness of the initial state, and that the step leads to the end.
 ///
 /// # Errors
-/// [`Failure::Input`] for the first input that is wrong.
+/// [`Failure::Input`] for the first wrong input.
 pub(super) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<(), Failure> {
     check_initial(system, plan)?;
     match length {
@@ -428,7 +432,7 @@ pub(super) fn check(system: &dyn System, plan: &Plan, length: Length) -> Result<
     }
 }
 
-/// Sizes and finiteness of the initial state.
+/// Checks sizes and finiteness of the initial state.
 fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
     let coordinates = system.coordinates();
     for (what, values) in [("coordinates (--q)", &plan.q), ("velocities (--v)", &plan.v)] {
@@ -455,20 +459,20 @@ fn check_initial(system: &dyn System, plan: &Plan) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Whether steps lead to an end.
+/// Checks that steps lead to the end.
 fn check_direction(plan: &Plan, until: f64) -> Result<(), Failure> {
     if (until - plan.t) * plan.h >= 0.0 {
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "steps of {} from t = {} do not lead to --until {}",
+        "steps of {} from t = {} do not reach --until {}",
         short(plan.h),
         short(plan.t),
         short(until)
     )))
 }
 
-/// Exactly one of the two, and an end that the step leads to.
+/// Exactly one of the two, with an end that the steps reach.
 fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length, Failure> {
     match (steps, until) {
         (Some(steps), None) => Ok(Length::Steps(steps)),
@@ -508,24 +512,24 @@ mod tests {
             (with(|a| a.set = vec!["k=1".into()]), "double-well has no parameter `k`; it has `m`"),
             (
                 with(|a| a.set = vec!["m=1".into(), " m =2".into()]),
-                "the parameter `m` is set twice; give --set once for each",
+                "the parameter `m` is set twice; use --set once per parameter",
             ),
             (with(|a| a.every = Some(0)), "--every must be at least 1: 1 writes every node, 10 every tenth"),
             (
                 with(|a| a.start = Some(Start::Points)),
-                "only energy-preserving steps have a --start; add --method energy, or leave it out",
+                "only energy-preserving steps have a --start; add --method energy, or remove it",
             ),
             (
                 with(|a| a.stages = Some(8)),
-                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or leave it out",
+                "only Gauss and energy-preserving steps have --stages; add --method gauss or --method energy, or remove it",
             ),
             (
                 with(|a| (a.method, a.stages) = (Some(Method::Energy), Some(4))),
-                "energy-preserving steps have 1, 2 or 3 stages, not 4: of more, rounding loses the length",
+                "energy-preserving steps have 1, 2 or 3 stages, not 4: with more, rounding hides the length",
             ),
             (
                 with(|a| (a.method, a.shift) = (Some(Method::Gauss), Some(Wanted::Auto))),
-                "only energy-preserving steps have a --shift; add --method energy, or leave it out",
+                "only energy-preserving steps have a --shift; add --method energy, or remove it",
             ),
             (
                 with(|a| (a.method, a.shift) = (Some(Method::Energy), Some(Wanted::Given(f64::INFINITY)))),
@@ -533,21 +537,21 @@ mod tests {
             ),
             (
                 with(|a| a.fallback = true),
-                "only energy-preserving steps have a --fallback; add --method energy, or leave it out",
+                "only energy-preserving steps have a --fallback; add --method energy, or remove it",
             ),
             (
                 with(|a| {
                     (a.method, a.start, a.shift) = (Some(Method::Energy), Some(Start::Points), Some(Wanted::Auto));
                 }),
-                "steps with --stages or --shift start from the initial state; leave --start out",
+                "steps with --stages or --shift start from the initial state; remove --start",
             ),
             (
                 with(|a| a.dtau = Some(0.1)),
-                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or leave it out",
+                "only Gauss steps have a step in transformed time, --dtau; add --method gauss, or remove it",
             ),
             (
                 with(|a| (a.method, a.dtau) = (Some(Method::Gauss), Some(0.1))),
-                "double-well has no time scale; take steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
+                "double-well has no time scale; use steps in time with --h, or write the clause `time_scale = …;` in its `lagrangian!`",
             ),
             (
                 with(|a| (a.method, a.stages) = (Some(Method::Gauss), Some(5))),
@@ -569,7 +573,7 @@ mod tests {
             (with(|a| a.until = Some(1.0)), "give either --steps or --until, not both"),
             (
                 with(|a| (a.steps, a.until, a.h) = (None, Some(1.0), Some(-0.1))),
-                "steps of -0.1 from t = 0 do not lead to --until 1",
+                "steps of -0.1 from t = 0 do not reach --until 1",
             ),
             (with(|a| (a.steps, a.until) = (None, Some(f64::INFINITY))), "the end (--until) must be finite, not inf"),
         ];

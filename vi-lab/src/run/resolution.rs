@@ -1,8 +1,8 @@
-//! Whether a step is large enough, and small enough, to be one in double precision.
+//! Checks that a step is neither too small nor too large for double precision.
 //!
-//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. AFTER BOTH CHECKS h² is a normal number, a
-//! step changes t at the start, and for fixed steps at the end too, and the first step changes the state, or the system
-//! is at rest.
+//! In: a [`Request`]. Out: nothing, or [`Failure::Input`] with the numbers. AFTER BOTH CHECKS h² is a normal number. A
+//! step changes t at the start, and for fixed steps at the end too. The first step changes the state, or the system is
+//! at rest.
 
 use super::request::{Length, Request};
 use core::cell::Cell;
@@ -10,7 +10,7 @@ use vi_report::failure::Failure;
 use vi_report::numbers::{about, short};
 use vi_runs::plan::{Method, Plan};
 
-/// Checks the step by itself and against the times of the run.
+/// Checks the step by itself and with respect to the times of the run.
 pub(super) fn check_times(plan: &Plan, length: Length) -> Result<(), Failure> {
     square(plan.h)?;
     time(plan.t, plan.h)?;
@@ -26,32 +26,31 @@ fn square(h: f64) -> Result<(), Failure> {
     let smallest = f64::MIN_POSITIVE.sqrt();
     let largest = f64::MAX.sqrt();
     Err(Failure::Input(format!(
-        "the step (--h) {} is out of range: its square is no normal number in double precision; give one from {} to {}",
+        "the step (--h) {} is out of range: its square is not a normal number in double precision; use a step from {} to {}",
         short(h),
         about(smallest),
         about(largest)
     )))
 }
 
-/// A step shorter than the distance of numbers near t would change t by too much, or not at all.
+/// A step below the spacing of numbers near t would change t by too much, or not at all.
 fn time(t: f64, h: f64) -> Result<(), Failure> {
     let spacing = t.abs().next_up() - t.abs();
     if h.abs() >= spacing {
         return Ok(());
     }
     Err(Failure::Input(format!(
-        "a step of h = {} is lost at t = {} in double precision, where numbers are {} apart; give a larger --h, or times \
-         nearer to zero",
+        "a step of h = {} is below rounding at t = {}, where double-precision numbers are {} apart; use a larger --h, or times \
+         closer to zero",
         short(h),
         short(t),
         about(spacing)
     )))
 }
 
-/// Checks the step against the state, by a trial: it must change q or p by more than their rounding, unless the system
-/// is at rest.
+/// Checks the step with a trial: it must change q or p by more than their rounding, unless the system is at rest.
 pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), Failure> {
-    // A run that does not start, or ends with its first step, says so itself.
+    // The run itself reports a failed start or a failed first step.
     let evaluations = Cell::new(0);
     let Ok(mut trial) = system.begin(plan, &evaluations) else { return Ok(()) };
     let before = trial.row();
@@ -65,15 +64,15 @@ pub(super) fn check_state(Request { system, plan, .. }: &Request) -> Result<(), 
     }
     let Plan { h, v, .. } = plan;
     Err(Failure::Input(format!(
-        "the first step of h = {} changes neither q = {:?} nor p = {:?} in double precision, although v = {v:?}; give a \
-         larger --h, or a start and parameters where the mass matrix is not singular",
+        "the first step of h = {} changes neither q = {:?} nor p = {:?} in double precision, although v = {v:?}; use a \
+         larger --h, or a start and parameters with a regular mass matrix",
         short(*h),
         before.q,
         before.p
     )))
 }
 
-/// Whether two vectors are the same but for less than a rounding of the largest entry.
+/// Whether two vectors differ by less than a rounding of the largest entry.
 fn is_same(before: &[f64], after: &[f64]) -> bool {
     let largest = before.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     before.iter().zip(after).all(|(one, other)| (one - other).abs() <= f64::EPSILON / 2.0 * largest)

@@ -17,7 +17,7 @@
 //! c = 0.04
 //! ```
 //!
-//! With a table `[sweep]` it is many runs: see `sweep/scene.rs`.
+//! A table `[sweep]` makes it many runs: see `sweep/scene.rs`.
 
 use super::shift::{self, Wanted};
 use crate::place;
@@ -46,7 +46,7 @@ pub(super) struct Scene {
     /// Shift of energy-preserving steps.
     #[serde(default, deserialize_with = "shift::of_scene")]
     pub(super) shift: Option<Wanted>,
-    /// Whether fixed steps are taken where there is no energy-preserving one.
+    /// Whether to take fixed steps if there is no energy-preserving one.
     pub(super) fallback: Option<bool>,
     /// Step in transformed time.
     pub(super) dtau: Option<f64>,
@@ -57,7 +57,7 @@ pub(super) struct Scene {
     pub(super) steps: Option<u64>,
     /// End of the run.
     pub(super) until: Option<f64>,
-    /// Every so many nodes one is written.
+    /// Interval between written nodes.
     #[serde(default, deserialize_with = "count_of_scene")]
     pub(super) every: Option<u64>,
     /// Initial time.
@@ -69,26 +69,26 @@ pub(super) struct Scene {
     /// Parameters by name.
     #[serde(default)]
     pub(super) parameters: BTreeMap<String, f64>,
-    /// What differs from run to run, and what is kept of each.
+    /// The quantities that vary from run to run, and the results kept.
     pub(super) sweep: Option<Sweep>,
 }
 
 impl Scene {
-    /// The scene that names a system and nothing else.
+    /// A scene with only the name of a system.
     pub(super) fn of_system(name: &str) -> Self {
         Self { system: name.to_owned(), ..Self::default() }
     }
 
-    /// The scene of a file.
+    /// The scene in a file.
     ///
     /// # Errors
-    /// [`Failure::Input`] where it cannot be read, or is not a scene.
+    /// [`Failure::Input`] if it cannot be read, or is not a scene.
     pub(super) fn read(path: &str) -> Result<Self, Failure> {
         let text = place::text(Path::new(path))?;
         Self::parse(&text).map_err(|message| Failure::Input(format!("{path}: {message}")))
     }
 
-    /// The scene of a text, or one line that says what is wrong, and where.
+    /// The scene in a text, or one line with the error and its line number.
     fn parse(text: &str) -> Result<Self, String> {
         let scene: Self = toml::from_str(text).map_err(|error| {
             let is_toml = text.parse::<toml::Table>().is_ok();
@@ -102,15 +102,13 @@ impl Scene {
             before.map_or(message.clone(), |before| format!("line {}: {message}", before.matches('\n').count() + 1))
         })?;
         if scene.system.is_empty() {
-            return Err("no system is named; add a line such as `system = \"kepler\"`".to_owned());
+            return Err("the scene names no system; add a line such as `system = \"kepler\"`".to_owned());
         }
         if scene.h.is_some() && scene.dtau.is_some() {
             return Err("give either `h` or `dtau`, not both".to_owned());
         }
         if scene.dtau.is_some() && scene.sweep.as_ref().is_some_and(|sweep| sweep.is_over("h")) {
-            return Err(
-                "the sweep goes over `h`, which steps in transformed time do not have; leave out `dtau`".to_owned()
-            );
+            return Err("the sweep varies `h`, but steps in transformed time have no `h`; remove `dtau`".to_owned());
         }
         if scene.steps.is_some() && scene.until.is_some() {
             return Err("give either `steps` or `until`, not both".to_owned());
@@ -175,13 +173,13 @@ mod tests {
             ("system = \"kepler\"\nh = 1.0\ndtau = 2.0\n", "give either `h` or `dtau`, not both"),
             (
                 "system = \"kepler\"\ndtau = 2.0\n[sweep]\nover = [{ name = \"h\", values = [0.1] }]\n",
-                "the sweep goes over `h`, which steps in transformed time do not have; leave out `dtau`",
+                "the sweep varies `h`, but steps in transformed time have no `h`; remove `dtau`",
             ),
             (
                 "system = \"kepler\"\nshift = \"much\"\n",
                 "line 2: invalid value: string \"much\", expected a number in the units of the step density, such as 4.9, or auto",
             ),
-            ("h = 1.0\n", "no system is named; add a line such as `system = \"kepler\"`"),
+            ("h = 1.0\n", "the scene names no system; add a line such as `system = \"kepler\"`"),
             (
                 "system = \"a\"\nmethod = \"euler\"\n",
                 "line 2: unknown variant `euler`, expected one of `fixed`, `suzuki-4`, `kahan-li-6`, `kahan-li-8`, `gauss`, `energy`",

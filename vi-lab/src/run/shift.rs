@@ -1,25 +1,25 @@
-//! The shift of energy-preserving steps as a user writes it: a number, or `auto`.
+//! The shift of energy-preserving steps in input: a number, or `auto`.
 //!
-//! In: text, or a value of TOML. Out: the shift, or one line that says what is allowed.
+//! In: text, or a TOML value. Out: the shift, or one line with the allowed values.
 
 use core::fmt;
 use serde::Deserializer;
 use serde::de::{self, Visitor};
 use vi_report::input::number;
 
-/// A shift that is wanted.
+/// A requested shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Wanted {
-    /// This one, in the units of the step density.
+    /// This value, in the units of the step density.
     Given(f64),
-    /// The one that fits the motion.
+    /// Measured along the motion.
     Auto,
 }
 
-/// What a shift is.
+/// The allowed values.
 const SHIFT: &str = "a number in the units of the step density, such as 4.9, or auto";
 
-/// The shift of a command line.
+/// Parses the shift on a command line.
 pub(crate) fn wanted(text: &str) -> Result<Wanted, String> {
     if text.trim() == "auto" {
         return Ok(Wanted::Auto);
@@ -27,12 +27,12 @@ pub(crate) fn wanted(text: &str) -> Result<Wanted, String> {
     number(text).map(Wanted::Given).map_err(|_| format!("write {SHIFT}"))
 }
 
-/// The shift of an entry of a scene.
+/// Parses the shift in a scene.
 pub(super) fn of_scene<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<Wanted>, D::Error> {
     entry.deserialize_any(Entry).map(Some)
 }
 
-/// Reads a shift.
+/// Parser of a shift.
 struct Entry;
 
 impl Visitor<'_> for Entry {

@@ -1,8 +1,8 @@
-//! What can be done where an energy-preserving step does not exist.
+//! Alternatives if an energy-preserving step does not exist.
 //!
-//! In: the run that ended, and its error. Out: one line that names, with their numbers, the shift with which steps exist along this motion,
-//! the step densities of other numbers of stages, and fixed steps; or, where steps are too short for their length to be told, a longer one.
-//! Nothing for an error of another kind.
+//! In: the run that ended, and its error. Out: one line with a shift for which steps exist along this motion, the step
+//! densities of other numbers of stages, and fixed steps. If rounding hides the length of short steps, a longer step.
+//! Nothing for other errors.
 
 use super::request::Request;
 use core::cell::Cell;
@@ -11,12 +11,12 @@ use vi_report::numbers::about;
 use vi_runs::plan::{ENERGY_STAGES, Method, Plan, Shift};
 use vi_runs::simulation::Row;
 
-/// Steps are tried up to 2^DOUBLINGS times as long.
+/// Maximum ratio of a tried step, as a power of 2.
 const DOUBLINGS: u32 = 10;
-/// So many have to exist.
+/// Number of steps that must exist.
 const TRIED: u64 = 20;
 
-/// The ways out of an error at a node.
+/// The alternatives after an error at a node.
 pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<String> {
     let is_missing = matches!(
         error,
@@ -31,11 +31,11 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
     let stages = request.plan.energy_stages().unwrap_or(1);
     let mut ways = Vec::new();
     if let Some(h) = longer(request, error) {
-        ways.push(format!("--h {}: of steps as short as these rounding leaves no length", about(h)));
+        ways.push(format!("--h {}: for steps as short as these, rounding hides the length", about(h)));
     }
     if let Some(shift) = shift(request, error, node) {
         let stages = request.plan.stages.map_or_else(String::new, |stages| format!("--stages {stages} "));
-        ways.push(format!("{stages}--shift {} makes steps that exist along this motion", about(shift)));
+        ways.push(format!("{stages}--shift {} gives steps along this motion", about(shift)));
     }
     let densities = request.system.step_densities(node.t, &node.q, &node.p);
     let others: Vec<String> = ENERGY_STAGES
@@ -43,19 +43,19 @@ pub(super) fn of(request: &Request, error: &StepError, node: &Row) -> Option<Str
         .zip(densities)
         .filter(|(other, _)| *other != stages)
         .filter_map(|(other, density)| density.map(|density| (other, density)))
-        // At rest all of them vanish.
+        // At rest all densities vanish.
         .filter(|(_, density)| *density != 0.0)
         .map(|(other, density)| format!("--stages {other}, D = {}", about(density)))
         .collect();
     if !others.is_empty() {
-        ways.push(format!("other orders have other step densities, here {}", others.join("; ")));
+        ways.push(format!("other orders have other step densities: {}", others.join("; ")));
     }
-    ways.push(format!("--fallback goes on with fixed steps of h = {}", about(node.h)));
-    ways.push("--method fixed and --method gauss take no others".to_owned());
+    ways.push(format!("--fallback continues with fixed steps of h = {}", about(node.h)));
+    ways.push("--method fixed and --method gauss need no step density".to_owned());
     Some(ways.join("; "))
 }
 
-/// A first step that is long enough, where the energy of shorter ones tells no length.
+/// A first step whose length exceeds the rounding of the energy.
 fn longer(Request { system, plan, .. }: &Request, error: &StepError) -> Option<f64> {
     let is_degenerate = matches!(error, StepError::DegenerateStep { .. });
     let lengths = (1..=DOUBLINGS).map(|k| plan.h * f64::from(1_u32 << k));
@@ -66,7 +66,8 @@ fn longer(Request { system, plan, .. }: &Request, error: &StepError) -> Option<f
     })
 }
 
-/// The shift that fits the motion: as `--shift auto` measures it, up to the end of the run at least, and larger than the one that failed.
+/// A shift for the motion: measured as for `--shift auto`, up to the end of the run at least, and larger than the
+/// failed one.
 fn shift(Request { system, plan, length, .. }: &Request, error: &StepError, node: &Row) -> Option<f64> {
     let time = length.measured(plan).max(node.t - plan.t);
     let stages = Some(plan.energy_stages().unwrap_or(1));

@@ -1,6 +1,7 @@
-//! One quantity over which a sweep goes, and its values, all of them finite.
+//! A quantity of a sweep with its finite values.
 //!
-//! An axis with values of its own is a direction of the grid, and has [`Axis::point`]s. A random one has none: [`Axis::draw`] returns its value in a run.
+//! An axis with given values is a dimension of the grid and has [`Axis::point`]s. For a random axis, [`Axis::draw`]
+//! returns the value in a run.
 
 use super::random::{normal, uniform};
 use super::scene::{Over, Spacing};
@@ -13,7 +14,7 @@ use vi_runs::system::System;
 /// A quantity with its values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
-    /// Its name, in the scene and as a column.
+    /// Its name in the scene and in the columns.
     pub(super) name: String,
     pub(super) quantity: Quantity,
     /// Its index among the axes, which selects its random numbers.
@@ -29,7 +30,7 @@ enum Choice {
     Random(Law, [f64; 2]),
 }
 
-/// A law of random numbers, with two parameters.
+/// A probability distribution with two parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Law {
     Uniform,
@@ -38,10 +39,10 @@ enum Law {
 }
 
 impl Axis {
-    /// The axis that a scene describes.
+    /// The axis of a scene.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the system has no such quantity, or it has no values.
+    /// [`Failure::Input`] if the system has no such quantity, or the axis has no values.
     pub(super) fn of(over: &Over, index: u64, system: &dyn System) -> Result<Self, Failure> {
         let quantity = Quantity::named(system, &over.name)?;
         let choice = Choice::of(over).and_then(|choice| choice.check().map(|()| choice));
@@ -49,7 +50,7 @@ impl Axis {
         Ok(Self { name: over.name.clone(), quantity, index, choice })
     }
 
-    /// The number of its points on the grid; `None` if it is random.
+    /// Number of its points on the grid; `None` if it is random.
     pub(super) fn points(&self) -> Option<u64> {
         match &self.choice {
             Choice::Values(values) => u64::try_from(values.len()).ok(),
@@ -78,7 +79,7 @@ impl Axis {
         }
     }
 
-    /// The value in the run whose random numbers begin with `seed`.
+    /// The value in the run with this seed.
     pub(super) fn draw(&self, seed: u64) -> f64 {
         let places = [2 * self.index, 2 * self.index + 1];
         match self.choice {
@@ -91,7 +92,7 @@ impl Axis {
 }
 
 impl Choice {
-    /// The one choice that a scene makes.
+    /// The only choice in a scene.
     fn of(over: &Over) -> Result<Self, String> {
         let Over { values, from, to, count, spacing, uniform, log_uniform, normal, .. } = over;
         let is_range = from.is_some() || to.is_some() || count.is_some() || spacing.is_some();
@@ -116,7 +117,7 @@ impl Choice {
         }
     }
 
-    /// Whether every value is a finite number.
+    /// Checks that every value is finite.
     fn check(&self) -> Result<(), String> {
         let (numbers, is_logarithmic) = match self {
             Self::Values(values) => (values.as_slice(), false),
@@ -129,7 +130,7 @@ impl Choice {
         let is_ratio = |pair: &[f64]| (pair[1] / pair[0]).is_normal() && pair[1] / pair[0] > 0.0;
         let what = match self {
             _ if is_logarithmic && !numbers.windows(2).all(is_ratio) => {
-                "goes by the logarithm: give two numbers of one sign, neither of them zero"
+                "is logarithmic: give two nonzero numbers of the same sign"
             }
             Self::Values(values) if values.is_empty() => "has no values",
             Self::Range { count: 0, .. } => "has no values: `count` must be at least 1",
@@ -142,7 +143,7 @@ impl Choice {
             Self::Random(Law::Uniform, [low, high]) | Self::Range { from: low, to: high, .. }
                 if !(high - low).is_finite() =>
             {
-                "goes over more than a number can hold"
+                "exceeds the range of double precision"
             }
             Self::Random(Law::Normal, [_, deviation]) if *deviation <= 0.0 => {
                 "must have a positive deviation, the second number of `normal`"
@@ -246,11 +247,8 @@ mod tests {
             (Over { uniform: Some(vec![0.0, 1.0, 2.0]), ..Over::default() }, "needs two numbers, not 3"),
             (range(0.0, 1.0, 0, None), "has no values: `count` must be at least 1"),
             (range(0.0, 1.0, 1, None), "goes from one value to another: `count` must be at least 2"),
-            (range(-f64::MAX, f64::MAX, 3, None), "goes over more than a number can hold"),
-            (
-                range(0.0, 1.0, 3, Some(Spacing::Log)),
-                "goes by the logarithm: give two numbers of one sign, neither of them zero",
-            ),
+            (range(-f64::MAX, f64::MAX, 3, None), "exceeds the range of double precision"),
+            (range(0.0, 1.0, 3, Some(Spacing::Log)), "is logarithmic: give two nonzero numbers of the same sign"),
             (
                 Over { uniform: Some(vec![1.0, 1.0]), ..Over::default() },
                 "must give a lower and a higher number, in this order",

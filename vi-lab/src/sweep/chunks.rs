@@ -1,8 +1,9 @@
-//! The folder `FILE.part`, which holds the chunks of a sweep until they are merged.
+//! The folder `FILE.part`, which contains the chunks of a sweep until they are merged.
 //!
-//! `sweep.json` is the [`Description`] of the sweep. `K.csv` is chunk K: a first line with the fingerprint of the description and K; the rows, each behind
-//! the name of its table, the row of a run after its rows in other tables; a last line that counts rows and failures. A process writes a chunk
-//! under a temporary name, syncs it and renames it. So a chunk that is there is whole, whichever processes wrote it.
+//! `sweep.json` is the [`Description`] of the sweep. `K.csv` is chunk K: a first line with the fingerprint of the
+//! description and K; the rows, each after the name of its table, with the row of a run after its rows in other tables;
+//! a last line with counts of rows and failures. A process writes a chunk under a temporary name, syncs it and renames
+//! it. So an existing chunk is complete, for any number of processes.
 
 use super::schema::{Column, MOST, Schema};
 use crate::place::{self, Temporary};
@@ -15,17 +16,17 @@ use vi_report::failure::Failure;
 
 const DESCRIPTION: &str = "sweep.json";
 const LOCK: &str = "lock";
-/// Bytes of an entry of a row at most, with its comma.
+/// Maximum bytes of an entry of a row, with its comma.
 const LONGEST_ENTRY: usize = 64;
 
-/// Everything that the tables of a sweep depend on.
+/// All inputs of the tables of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Description {
-    /// Names and values: version, system, method, what differs from run to run.
+    /// Names and values: version, system, method, varied quantities.
     pub(super) facts: Vec<(String, String)>,
     /// The number of runs.
     pub(super) items: u64,
-    /// Runs in each chunk but the last.
+    /// Number of runs in each chunk except the last.
     pub(super) chunk: u64,
     /// The tables; the first has a row for each run.
     pub(super) schemas: Vec<Schema>,
@@ -37,29 +38,30 @@ pub(super) struct Chunks {
     pub(super) folder: PathBuf,
     pub(super) description: Description,
     fingerprint: u64,
-    /// Locked until it is dropped.
+    /// Locked until dropped.
     _lock: Option<File>,
 }
 
-/// Takes a row, with the index of its table.
+/// Receives a row with the index of its table.
 pub(super) type Take<'a> = dyn FnMut(usize, &[f64]) -> Result<(), Failure> + 'a;
 
 impl Description {
     /// The description in a folder.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there is none, or no sweep has it.
+    /// [`Failure::Input`] if there is none, or it is invalid.
     fn read(folder: &Path) -> Result<Self, Failure> {
         let shown = folder.display();
         let text = place::text(&folder.join(DESCRIPTION));
-        let text = text.map_err(|failure| Failure::Input(format!("{shown} has no chunks of a sweep: {failure}")))?;
+        let text =
+            text.map_err(|failure| Failure::Input(format!("{shown} contains no chunks of a sweep: {failure}")))?;
         serde_json::from_str(&text).ok().filter(Self::is_possible).ok_or_else(|| {
             let what = "does not describe a sweep of this version of vi-lab";
             Failure::Input(format!("{shown}/{DESCRIPTION} {what}; remove {shown}, and run `vi-lab sweep` again"))
         })
     }
 
-    /// Whether a sweep can have this description. Names of tables become names of files.
+    /// Whether a sweep can have this description. Names of tables become file names.
     fn is_possible(&self) -> bool {
         let is_table = |schema: &Schema| {
             ["runs", "section", "series"].contains(&schema.table.as_str())
@@ -72,11 +74,11 @@ impl Description {
             && self.schemas.windows(2).all(|pair| pair[0].table < pair[1].table)
     }
 
-    /// What differs from the description that is wanted, in words.
+    /// The difference from another description, in words.
     pub(super) fn difference(&self, wanted: &Self) -> Option<String> {
         let mut pairs = self.facts.iter().zip(&wanted.facts).filter(|(here, wanted)| here != wanted);
         let fact = pairs.next().map(|((name, here), (_, wanted))| format!("its {name} is `{here}`, not `{wanted}`"));
-        fact.or_else(|| (self != wanted).then(|| "its tables are other ones".to_owned()))
+        fact.or_else(|| (self != wanted).then(|| "its tables differ".to_owned()))
     }
 
     /// Number of chunks.
@@ -84,23 +86,25 @@ impl Description {
         self.items.div_ceil(self.chunk)
     }
 
-    /// The runs of some chunks.
+    /// The runs of a range of chunks.
     pub(super) fn runs(&self, chunks: &Range<u64>) -> Range<u64> {
         let [start, end] = [chunks.start, chunks.end].map(|chunk| self.items.min(chunk * self.chunk));
         start..end
     }
 
     fn json(&self) -> String {
-        // Names, words and counts are always JSON.
+        // Serialization of names, words and counts cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 }
 
 impl Chunks {
-    /// The chunks in a folder, to add others; makes the folder if there is none. `is_alone` locks out all other processes; otherwise they may add chunks too.
+    /// The chunks in a folder, for writing; creates the folder if necessary. `is_alone` locks out all other processes;
+    /// otherwise they may add chunks too.
     ///
     /// # Errors
-    /// [`Failure::Input`] if the folder is something else or of another sweep, or is locked; [`Failure::File`] if a file cannot be read or written.
+    /// [`Failure::Input`] if the folder belongs to something else, or is locked; [`Failure::File`] if a file cannot be
+    /// read or written.
     pub(super) fn resume(folder: &Path, description: Description, is_alone: bool) -> Result<Self, Failure> {
         let shown = folder.display();
         let failed = |error| Failure::file(folder, error);
@@ -119,21 +123,21 @@ impl Chunks {
         match if is_alone { lock.try_lock() } else { lock.try_lock_shared() } {
             Ok(()) if is_alone => remove_temporaries(folder).map_err(failed)?,
             Err(TryLockError::WouldBlock) => {
-                return Err(Failure::Input(format!("another process works on {shown}; wait for it")));
+                return Err(Failure::Input(format!("another process uses {shown}; wait for it")));
             }
-            // Some file systems of clusters have no locks. Two processes then write the same chunks.
+            // Some cluster file systems have no locks. Two processes then write the same chunks.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }
         if !folder.join(DESCRIPTION).exists() {
             place::replace(&folder.join(DESCRIPTION), &description.json()).map_err(failed)?;
         } else if let Some(difference) = Description::read(folder)?.difference(&description) {
             let remedy = "remove it, or name another output";
-            return Err(Failure::Input(format!("{shown} is of another sweep: {difference}; {remedy}")));
+            return Err(Failure::Input(format!("{shown} belongs to another sweep: {difference}; {remedy}")));
         }
         Ok(Self::of(folder, description, Some(lock)))
     }
 
-    /// The chunks in a folder, to read them.
+    /// The chunks in a folder, for reading.
     ///
     /// # Errors
     /// [`Failure::Input`] if it has none.
@@ -160,7 +164,7 @@ impl Chunks {
         self.path(chunk).exists()
     }
 
-    /// Whether a chunk of this sweep is there. A file that a sweep before has left is none.
+    /// Whether a chunk of this sweep exists. A file of an earlier sweep does not count.
     pub(super) fn is_made(&self, chunk: u64) -> bool {
         let first = self.first_line(chunk);
         let mut found = vec![0; first.len()];
@@ -174,11 +178,11 @@ impl Chunks {
     /// Writes a chunk. `follow` adds the rows of a run to the tables, and returns whether it failed.
     ///
     /// # Errors
-    /// [`Failure::File`] if it cannot be written; the chunk is then not there.
+    /// [`Failure::File`] if it cannot be written; the chunk then does not exist.
     pub(super) fn write(&self, number: u64, follow: impl FnMut(u64, &mut [Vec<f64>]) -> bool) -> Result<(), Failure> {
         let path = self.path(number);
         self.try_write(&path, number, follow).map_err(|error| {
-            let advice = "the other chunks are whole; once this is mended, the same command goes on from them";
+            let advice = "the other chunks are complete; correct the error, then the same command resumes from them";
             Failure::file(path, io::Error::new(error.kind(), format!("{error}; {advice}")))
         })
     }
@@ -212,10 +216,11 @@ impl Chunks {
         temporary.finish()
     }
 
-    /// Reads a chunk: `take` gets every row. Returns how many of its runs did not reach their end.
+    /// Reads a chunk and passes every row to `take`. Returns the number of failed runs.
     ///
     /// # Errors
-    /// [`Failure::Input`] if it is not there, is of another sweep, or was changed; [`Failure::File`] if it cannot be read.
+    /// [`Failure::Input`] if it is missing, belongs to another sweep, or was changed; [`Failure::File`] if it cannot be
+    /// read.
     #[allow(clippy::cast_precision_loss, clippy::float_cmp)] // items below 2^53, which are exact
     pub(super) fn read(&self, number: u64, take: &mut Take) -> Result<u64, Failure> {
         let schemas = &self.description.schemas;
@@ -234,7 +239,7 @@ impl Chunks {
                 Failure::Input(format!("{}, line {}: {what}; {remedy}", path.display(), lines + 1))
             };
             let text = str::from_utf8(&line).ok().and_then(|line| line.strip_suffix('\n'));
-            let text = text.ok_or_else(|| wrong("the line is cut off or no text"))?;
+            let text = text.ok_or_else(|| wrong("the line is truncated or not text"))?;
             if lines == 0 {
                 if text != self.first_line(number).trim_end() {
                     return Err(wrong("this is a chunk of another sweep, or another chunk"));
@@ -247,11 +252,11 @@ impl Chunks {
                 let failures = failures.filter(|_| items.is_empty());
                 let failures = failures.ok_or_else(|| wrong("rows above are missing or added"))?;
                 let is_last = file.fill_buf().map_err(failed)?.is_empty();
-                return if is_last { Ok(failures) } else { Err(wrong("there is more after the last line")) };
+                return if is_last { Ok(failures) } else { Err(wrong("there is text after the last line")) };
             } else {
                 let (table, text) = text.split_once(',').unwrap_or_default();
                 let table = schemas.iter().position(|schema| schema.table == table);
-                let table = table.ok_or_else(|| wrong("the line begins with no table of this sweep"))?;
+                let table = table.ok_or_else(|| wrong("the line does not start with a table of this sweep"))?;
                 schemas[table].read(text, &mut row).map_err(|what| wrong(&what))?;
                 if items.is_empty() || row[0] != items.start as f64 {
                     return Err(wrong(&format!("a row of run {} cannot be here: rows are missing or added", row[0])));
@@ -264,7 +269,7 @@ impl Chunks {
     }
 }
 
-/// Removes what processes that were killed left of chunks.
+/// Removes temporary files of killed processes.
 fn remove_temporaries(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
@@ -285,7 +290,7 @@ pub(super) fn fingerprint(texts: &[&str]) -> u64 {
 mod tests {
     use super::*;
 
-    /// A folder for one test, which goes with the value.
+    /// A folder for one test, removed on drop.
     struct Place(PathBuf);
 
     impl Place {
@@ -331,7 +336,7 @@ mod tests {
         chunks.write(number, follow).unwrap_or_else(|failure| panic!("{failure}"));
     }
 
-    /// What a chunk is refused for.
+    /// The reason why a chunk is rejected.
     fn refusal(chunks: &Chunks, number: u64) -> Option<String> {
         let read = chunks.read(number, &mut |_, _| Ok(()));
         read.err().map(|failure| {
@@ -348,11 +353,11 @@ mod tests {
         let chunks = place.chunks();
         assert_eq!((chunks.description.chunks(), chunks.description.runs(&(1..3))), (3, 2..5));
         write(&chunks, 2);
-        // A folder has its name: the file cannot get it.
+        // A folder occupies its name, so the file cannot be created.
         fs::create_dir(chunks.path(1)).expect("a folder");
         let failure = chunks.write(1, follow).expect_err("no file");
         let (status, message) = (failure.exit_status(), failure.to_string());
-        let advice = "; the other chunks are whole; once this is mended, the same command goes on from them";
+        let advice = "; the other chunks are complete; correct the error, then the same command resumes from them";
         let start = format!("{}: ", chunks.path(1).display());
         assert!(status == 1 && message.starts_with(&start) && message.ends_with(advice), "{message}");
         assert_eq!([0, 1, 2].map(|number| chunks.is_made(number)), [false, false, true]);
@@ -382,7 +387,7 @@ mod tests {
         let chunks = place.chunks();
         write(&chunks, 1);
         let alone = fs::read(chunks.path(1)).expect("the chunk");
-        // The second begins and ends while the first writes.
+        // The second process starts and ends while the first one writes.
         let other = Chunks::open(&place.0).unwrap_or_else(|failure| panic!("{failure}"));
         let both = chunks.write(1, |item, tables| {
             write(&other, 1);
@@ -406,7 +411,7 @@ mod tests {
         assert_eq!((&lines[1..7], &lines[7..]), (rows.as_slice(), ["runs,3,-0.5", "# 7 rows, 1 failed"].as_slice()));
         let without = |line: usize| [&lines[..line], &lines[line + 1..]].concat().join("\n") + "\n";
         let changed = |line: usize, text: &str| whole.replacen(lines[line], text, 1);
-        let (counts, cut) = ("rows above are missing or added", "the line is cut off or no text");
+        let (counts, cut) = ("rows above are missing or added", "the line is truncated or not text");
         let misplaced = |run: u64| format!("a row of run {run} cannot be here: rows are missing or added");
         for (text, line, what) in [
             (without(0), 1, "this is a chunk of another sweep, or another chunk"),
@@ -422,12 +427,12 @@ mod tests {
             (changed(3, "runs,2,-0.5,1.0"), 4, "the row of `runs` has 3 columns instead of 2"),
             (changed(3, "runs,2,half"), 4, "`half` cannot be an entry of the column `x`"),
             (changed(3, "runs,-2,0.5"), 4, "`-2` cannot be an entry of the column `item`"),
-            (changed(3, "section,2,0.5"), 4, "the line begins with no table of this sweep"),
-            (changed(3, ""), 4, "the line begins with no table of this sweep"),
+            (changed(3, "section,2,0.5"), 4, "the line does not start with a table of this sweep"),
+            (changed(3, ""), 4, "the line does not start with a table of this sweep"),
             (changed(3, &"9".repeat(1000)), 4, cut),
             (changed(8, "# 6 rows, 1 failed"), 9, counts),
             (changed(8, "# 7 rows, 18446744073709551615 failed"), 9, counts),
-            (changed(8, "# 7 rows, 1 failed\nruns,4,-0.5"), 9, "there is more after the last line"),
+            (changed(8, "# 7 rows, 1 failed\nruns,4,-0.5"), 9, "there is text after the last line"),
         ] {
             assert!(text != whole);
             fs::write(&path, &text).expect("the chunk is written");
@@ -440,7 +445,7 @@ mod tests {
         }
         fs::write(&path, b"\xff\n").expect("the chunk is written");
         assert_eq!(refusal(&chunks, 1), Some(format!("1.csv, line 1: {cut}{REMEDY}")));
-        // What is no chunk of this sweep is refused, and made again.
+        // Files that are not chunks of this sweep are rejected and rewritten.
         fs::copy(chunks.path(0), &path).expect("a copy");
         let another = format!("1.csv, line 1: this is a chunk of another sweep, or another chunk{REMEDY}");
         assert_eq!((refusal(&chunks, 1), chunks.has(1), chunks.is_made(1)), (Some(another), true, false));
@@ -453,7 +458,7 @@ mod tests {
     fn another_sweep_and_a_process_that_must_be_alone_are_refused() {
         let place = Place::new("other");
         let refusal = |description: &Description, is_alone| place.resume(description, is_alone).err();
-        let locked = Some("another process works on FOLDER; wait for it".to_owned());
+        let locked = Some("another process uses FOLDER; wait for it".to_owned());
         let chunks = place.chunks();
         assert_eq!([true, false].map(|is_alone| refusal(&description(), is_alone)), [locked.clone(), locked.clone()]);
         drop(chunks);
@@ -463,9 +468,9 @@ mod tests {
         let mut other = description();
         other.items = 6;
         let message = |difference: &str| {
-            Some(format!("FOLDER is of another sweep: {difference}; remove it, or name another output"))
+            Some(format!("FOLDER belongs to another sweep: {difference}; remove it, or name another output"))
         };
-        assert_eq!(refusal(&other, true), message("its tables are other ones"));
+        assert_eq!(refusal(&other, true), message("its tables differ"));
         other.facts[0].1 = "Pendulum".to_owned();
         assert_eq!(refusal(&other, false), message("its system is `Kepler`, not `Pendulum`"));
     }
@@ -501,7 +506,7 @@ mod tests {
             let remedy = format!("remove {folder}, and run `vi-lab sweep` again");
             assert_eq!(message, format!("{folder}/{DESCRIPTION} {what}; {remedy}"), "{pointer} {value}");
         }
-        // Its largest claim takes neither memory nor time.
+        // The largest claim needs neither memory nor time.
         let mut most = good;
         *most.pointer_mut("/items").expect("an entry") = (MOST - 1).into();
         fs::write(&path, most.to_string()).expect("the description is written");
@@ -512,7 +517,7 @@ mod tests {
 
     #[test]
     fn fingerprints_are_those_of_fnv_1a() {
-        // Published with the function.
+        // Published test values of the function.
         assert_eq!([fingerprint(&[]), fingerprint(&["foo", "bar"])], [0xcbf2_9ce4_8422_2325, 0x8594_4171_f739_67e8]);
     }
 }

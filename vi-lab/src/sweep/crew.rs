@@ -1,7 +1,7 @@
-//! All cores at work on the chunks of a shard.
+//! Computes the chunks of a shard on all cores.
 //!
-//! The threads take one chunk after the other; the main thread waits for them and for signals. After a signal the chunks under way are lost with the
-//! process, so that no run has to look for signals.
+//! The threads take one chunk after the other; the main thread waits for them and for signals. A signal ends the
+//! process and loses unfinished chunks, so that runs need not check for signals.
 
 use super::chunks::Chunks;
 use super::study::Study;
@@ -14,10 +14,10 @@ use vi_report::failure::Failure;
 use vi_report::interrupt::Interrupt;
 use vi_report::progress::Progress;
 
-/// Time between two looks for a signal.
+/// Interval between checks for a signal.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Makes those of some chunks that are not there.
+/// Writes the missing ones among these chunks.
 ///
 /// # Errors
 /// [`Failure::Interrupted`] after a signal, [`Failure::File`] if a chunk cannot be written.
@@ -26,7 +26,7 @@ pub(super) fn work(study: Study, chunks: &Arc<Chunks>, numbers: &Range<u64>) -> 
     let (all, mut done) = (numbers.end - numbers.start, 0);
     let mut progress = Progress::new(all);
     let (sender, results) = mpsc::channel();
-    // One by one: a list of chunks would grow with the number of runs.
+    // A counter, because a list of chunks would grow with the number of runs.
     let (next, end) = (AtomicU64::new(numbers.start), numbers.end);
     let shared = Arc::clone(chunks);
     rayon::spawn_broadcast(move |_| {
@@ -53,7 +53,7 @@ pub(super) fn work(study: Study, chunks: &Arc<Chunks>, numbers: &Range<u64>) -> 
             Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }
         if let Some(signal) = interrupt.signal().filter(|_| done < all) {
-            let reached = format!("{done} of {all} chunks, from which the same command goes on");
+            let reached = format!("{done} of {all} chunks; the same command resumes from them");
             return Err(Failure::Interrupted { signal, reached });
         }
     }

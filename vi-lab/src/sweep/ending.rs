@@ -1,8 +1,8 @@
-//! How a run of a sweep ends.
+//! The end of a run in a sweep.
 
 use vi_core::StepError;
 
-/// How a run ended: an index of [`Ending::WORDS`].
+/// The end of a run: an index of [`Ending::WORDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Ending(u8);
 
@@ -25,12 +25,12 @@ impl Ending {
     ];
     pub(super) const REACHED: Self = Self(0);
     pub(super) const WRONG_INPUT: Self = Self(10);
-    /// The end is out of reach.
+    /// The steps became too short to reach the end.
     pub(super) const TOO_SHORT: Self = Self(11);
-    /// The run reached its end, but not all of its crossings could be located.
+    /// The run reached its end, but some crossings could not be located.
     pub(super) const NO_SECTION: Self = Self(12);
 
-    /// The ending by a step that fails.
+    /// The ending for a failed step.
     pub(super) fn of(error: StepError) -> Self {
         Self(match error {
             StepError::NoForwardStep { .. } | StepError::NoForwardGaussStep { .. } => 1,

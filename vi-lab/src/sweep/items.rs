@@ -1,8 +1,8 @@
-//! The runs that a sweep consists of.
+//! The runs of a sweep.
 //!
-//! In: the table `[sweep]` of a scene and its system. Out: [`Items`]: item k, k from 0 on, by its number alone. The grid is the product
-//! of all axes that have points, the last of them fastest, each point taken `samples` times: with n_1 … n_m points,
-//! `k = ((i_1 n_2 + i_2) n_3 + …) samples + sample`. A random value of item k is drawn with a seed that is drawn at place k.
+//! In: the table `[sweep]` of a scene and its system. Out: [`Items`], in which the number k, from 0, determines item k.
+//! The grid is the product of all axes with points, the last one fastest, with `samples` runs per point: for n_1 … n_m
+//! points, `k = ((i_1 n_2 + i_2) n_3 + …) samples + sample`. Random values of item k use the seed drawn at place k.
 
 use super::axis::Axis;
 use super::random::bits;
@@ -22,27 +22,29 @@ pub(crate) struct Items {
 }
 
 impl Items {
-    /// The runs that a scene asks for.
+    /// The runs of a scene.
     ///
     /// # Errors
-    /// [`Failure::Input`] for the first entry that is wrong.
+    /// [`Failure::Input`] for the first wrong entry.
     pub(crate) fn of(sweep: &Sweep, system: &dyn System) -> Result<Self, Failure> {
         let wrong = |message: &str| Err(Failure::Input(message.to_owned()));
         let axes = (0..).zip(&sweep.over).map(|(place, over)| Axis::of(over, place, system));
         let axes: Vec<Axis> = axes.collect::<Result<_, _>>()?;
         if axes.is_empty() {
-            return wrong("the sweep goes over nothing; add to `over` such as { name = \"h\", values = [0.1, 0.2] }");
+            return wrong(
+                "the sweep varies nothing; add an entry to `over`, such as { name = \"h\", values = [0.1, 0.2] }",
+            );
         }
         let repeated =
             (1..axes.len()).find(|last| axes[..*last].iter().any(|axis| axis.quantity == axes[*last].quantity));
         if let Some(axis) = repeated.and_then(|index| axes.get(index)) {
-            return Err(Failure::Input(format!("the sweep goes over `{}` twice", axis.name)));
+            return Err(Failure::Input(format!("the sweep varies `{}` twice", axis.name)));
         }
         let is_random = axes.iter().any(|axis| axis.points().is_none());
         let samples = match (is_random, sweep.samples) {
             (true, Some(samples)) if samples > 0 => samples,
             (true, _) => {
-                return wrong("the sweep has random values: say with `samples` how many, such as samples = 100");
+                return wrong("the sweep has random values: set their number, such as samples = 100");
             }
             (false, Some(_)) => return wrong("the sweep has `samples`, but no random values"),
             (false, None) => 1,
@@ -79,14 +81,14 @@ impl Items {
         values
     }
 
-    /// Gives a system and a plan the values of a run.
+    /// Sets a system and a plan to the values of a run.
     pub(crate) fn set(&self, item: u64, system: &mut dyn System, plan: &mut Plan) {
         for (axis, value) in self.axes.iter().zip(self.values(item)) {
             axis.quantity.set(value, system, plan);
         }
     }
 
-    /// In words, one for each quantity and one for the random numbers.
+    /// Descriptions of the quantities and of the random numbers.
     pub(super) fn words(&self) -> Vec<String> {
         let axes = self.axes.iter().map(Axis::to_string);
         let is_random = self.axes.iter().any(|axis| axis.points().is_none());
@@ -134,25 +136,25 @@ mod tests {
         let forward: Vec<Vec<f64>> = (0..12).map(|item| whole.values(item)).collect();
         let backward: Vec<Vec<f64>> = (0..12).rev().map(|item| whole.values(item)).collect();
         assert!(forward.iter().eq(backward.iter().rev()));
-        // By hand: the seed of item 7 is the bits at place 7 of seed 5, and v_y, the axis at place 1, draws at 2.
+        // By hand: the seed of item 7 is the bits at place 7 of seed 5, and v_y, the axis with index 1, draws at 2.
         assert_eq!(forward[7][1].to_bits(), uniform(bits(5, 7), 2).to_bits());
     }
 
     #[test]
     fn mistakes_are_named() {
         for (text, message) in [
-            ("over = []", "the sweep goes over nothing; add to `over` such as { name = \"h\", values = [0.1, 0.2] }"),
+            (
+                "over = []",
+                "the sweep varies nothing; add an entry to `over`, such as { name = \"h\", values = [0.1, 0.2] }",
+            ),
             (
                 "over = [{ name = \"z\", values = [1] }]",
-                "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h",
+                "there is no quantity `z` to vary; the quantities are x, y, v_x, v_y, mu, h",
             ),
-            (
-                "over = [{ name = \"x\", values = [1] }, { name = \"x\", values = [2] }]",
-                "the sweep goes over `x` twice",
-            ),
+            ("over = [{ name = \"x\", values = [1] }, { name = \"x\", values = [2] }]", "the sweep varies `x` twice"),
             (
                 "over = [{ name = \"x\", uniform = [0, 1] }]",
-                "the sweep has random values: say with `samples` how many, such as samples = 100",
+                "the sweep has random values: set their number, such as samples = 100",
             ),
             (
                 "over = [{ name = \"x\", uniform = [0, 1, 2] }]\nsamples = 3",

@@ -1,4 +1,4 @@
-//! What is kept of each run, and in which columns.
+//! The results kept of each run, and their columns.
 //!
 //! In: the entries `keep` and `section` of a scene. Out: a [`Kept`], and the [`Schema`]s of its tables.
 
@@ -10,28 +10,28 @@ use vi_report::numbers::short;
 use vi_runs::plan::Plan;
 use vi_runs::simulation::{Direction, Row, Section};
 
-/// Steps of a period at least, so that no crossing is missed.
+/// Minimum number of steps in a period, so that no crossing is missed.
 pub(super) const STEPS_OF_A_PERIOD: f64 = 4.0;
 
-/// What is kept.
+/// The results kept.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Kept {
     kinds: Vec<Keep>,
     pub(super) section: Option<Section>,
-    /// Whether rows have the shifted energy.
+    /// Whether rows contain the shifted energy.
     is_shifted: bool,
 }
 
 impl Kept {
-    /// What the scene asks for.
+    /// The results requested by the scene.
     ///
     /// # Errors
-    /// [`Failure::Input`] if nothing is kept, or there is no such section.
+    /// [`Failure::Input`] if there are none, or no such section.
     pub(super) fn of(sweep: &Sweep, coordinates: &[&str], plan: &Plan) -> Result<Self, Failure> {
         let section = sweep.section.as_ref().map(|cut| section(cut, coordinates, plan)).transpose();
         let section = section.map_err(|message| Failure::Input(format!("the section {message}")))?;
         if sweep.keep.is_empty() && section.is_none() {
-            return Err(Failure::Input("`keep` names nothing; leave it out to keep how each run ends".to_owned()));
+            return Err(Failure::Input("`keep` is empty; remove it to keep the end of each run".to_owned()));
         }
         Ok(Self { kinds: sweep.keep.clone(), section, is_shifted: plan.shift.is_some() })
     }
@@ -40,7 +40,7 @@ impl Kept {
         self.kinds.contains(&keep)
     }
 
-    /// The tables: one with a row for each run, then the others in the order of their names.
+    /// The tables: the one with a row per run, then the others in alphabetical order.
     pub(super) fn schemas<'a>(&self, swept: impl Iterator<Item = &'a str>, coordinates: &[&str]) -> Vec<Schema> {
         let item = || Column::count("item");
         let mut runs: Vec<Column> = core::iter::once(item()).chain(swept.map(Column::number)).collect();
@@ -61,7 +61,7 @@ impl Kept {
         let mut schemas = vec![Schema { table: "runs".to_owned(), columns: runs }];
         let nodes: Vec<Column> = core::iter::once(item()).chain(rows.into_iter().map(Column::number)).collect();
         if self.section.is_some() {
-            // A crossing is no node: it has no discrete energies and no h.
+            // A crossing is not a node: it has no discrete energies and no h.
             let columns = nodes[..nodes.len() - if self.is_shifted { 3 } else { 2 }].to_vec();
             schemas.push(Schema { table: "section".to_owned(), columns });
         }
@@ -71,7 +71,7 @@ impl Kept {
         schemas
     }
 
-    /// In words.
+    /// A description in words.
     pub(super) fn words(&self, coordinates: &[&str]) -> String {
         let kinds = self.kinds.iter().map(|keep| format!("{keep:?}").to_lowercase());
         let section = self.section.iter().map(|section| match section {
@@ -85,14 +85,14 @@ impl Kept {
     }
 }
 
-/// The section that a scene describes.
+/// The section of a scene.
 fn section(cut: &Cut, coordinates: &[&str], plan: &Plan) -> Result<Section, String> {
     let Cut { coordinate, at, direction, period } = cut;
     match (coordinate, period) {
         (Some(name), None) => {
             let place = coordinates.iter().position(|coordinate| coordinate == name);
             let index = place.ok_or_else(|| {
-                format!("is of a coordinate that there is not, `{name}`; there are {}", coordinates.join(", "))
+                format!("names the unknown coordinate `{name}`; the coordinates are {}", coordinates.join(", "))
             })?;
             let at = at.unwrap_or(0.0);
             if !at.is_finite() {

@@ -1,6 +1,6 @@
 //! Merges the chunks of a sweep into tables.
 //!
-//! The rows are in the order of the runs. So the tables are the same bytes however the sweep was divided.
+//! The rows are in the order of the runs. So the tables have the same bytes for any division of the sweep.
 
 use super::chunks::Chunks;
 use super::sink::{Format, Target};
@@ -11,20 +11,21 @@ use vi_report::failure::Failure;
 /// The command line of `vi-lab merge`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-The folders must be of one sweep, and have all its runs together. Otherwise a message names what is wrong, the exit status is 2, and nothing is written. The folders stay.")]
+The folders must belong to one sweep and together contain all its runs. Otherwise the exit status is 2, with a message, and nothing is written. The folders are not removed.")]
 pub(crate) struct Arguments {
-    /// Folders of chunks that `vi-lab sweep --shard` has written
+    /// Folders of chunks written by `vi-lab sweep --shard`
     #[arg(value_name = "FILE.part", required = true)]
     folders: Vec<PathBuf>,
-    /// File to write, .csv, .npy or .parquet; tables of series and sections go beside it
+    /// Output file, .csv, .npy or .parquet; tables of series and sections are written beside it
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 }
 
-/// Merges folders of chunks, and returns a summary.
+/// Merges folders of chunks and returns a summary.
 ///
 /// # Errors
-/// [`Failure::Input`] if they do not have all runs of one sweep, [`Failure::File`] if a file cannot be read or written.
+/// [`Failure::Input`] if they do not contain all runs of one sweep, [`Failure::File`] if a file cannot be read or
+/// written.
 pub(crate) fn merge(arguments: &Arguments) -> Result<String, Failure> {
     Format::of(&arguments.output)?;
     let folders = arguments.folders.iter().map(|folder| Chunks::open(folder)).collect::<Result<Vec<_>, _>>()?;
@@ -32,16 +33,16 @@ pub(crate) fn merge(arguments: &Arguments) -> Result<String, Failure> {
     for other in &folders {
         if let Some(difference) = other.description.difference(&first.description) {
             let [first, other] = [first, other].map(|chunks| chunks.folder.display());
-            return Err(Failure::Input(format!("{other} is of another sweep than {first}: {difference}")));
+            return Err(Failure::Input(format!("{other} belongs to another sweep than {first}: {difference}")));
         }
     }
     write(first, &folders, &arguments.output)
 }
 
-/// Writes the tables of the sweep whose chunks are in some folders, and returns a summary.
+/// Writes the tables of a sweep from its chunks and returns a summary.
 ///
 /// # Errors
-/// [`Failure::Input`] if a chunk is missing or has changed, [`Failure::File`] if a file cannot be read or written.
+/// [`Failure::Input`] if a chunk is missing or was changed, [`Failure::File`] if a file cannot be read or written.
 pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result<String, Failure> {
     let description = &first.description;
     let chunks = description.chunks();
@@ -50,7 +51,7 @@ pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result
         let runs = description.runs(&(missing..missing + 1));
         let (first, last) = (runs.start, runs.end - 1);
         return Err(Failure::Input(format!(
-            "not all runs are there: chunk {missing} of {chunks} is missing, runs {first} to {last}; `vi-lab sweep` makes it"
+            "chunk {missing} of {chunks} is missing, runs {first} to {last}; `vi-lab sweep` computes it"
         )));
     }
     let mut targets = Vec::new();
@@ -61,7 +62,7 @@ pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result
     for number in 0..chunks {
         failed += source(&number).unwrap_or(first).read(number, &mut |table, row| targets[table].write(row))?;
     }
-    // All or none: no table is replaced before all of them are on the disk.
+    // All or none: no table is replaced before all are on disk.
     let files = targets.into_iter().map(Target::finish).collect::<Result<Vec<_>, _>>()?;
     for (path, file) in files {
         file.finish().map_err(|error| Failure::file(path, error))?;
@@ -69,7 +70,7 @@ pub(super) fn write(first: &Chunks, folders: &[Chunks], output: &Path) -> Result
     Ok(summary(output, description.items, failed))
 }
 
-/// What the command prints at the end.
+/// The last line of output.
 pub(super) fn summary(path: &Path, runs: u64, failed: u64) -> String {
     let ended =
         if failed == 0 { "all reached their end".to_owned() } else { format!("{failed} did not reach their end") };

@@ -1,17 +1,18 @@
 //! `vi-lab sweep` and `vi-lab merge`: many runs of one scene, on all cores and on many machines.
 //!
-//! In: a scene with a table `[sweep]`. Out: a table with a row for each run and, if asked for, one of their nodes and one of the crossings of a section.
-//! A process makes chunks of runs, each a file that is there only when it is whole. So the same command goes on after any interruption. Run k depends on k alone, so the
-//! tables are the same bytes however the work was divided.
+//! In: a scene with a table `[sweep]`. Out: a table with a row per run and, on request, tables of nodes and of
+//! crossings of a section. A process computes chunks of runs; a chunk file exists only when complete. So the same
+//! command resumes after any interruption. The number k determines run k, so the tables have the same bytes for any
+//! division of the work.
 //!
 //! | module | what it does |
 //! |---|---|
-//! | [`scene`] | the table as it is written |
-//! | [`axis`], [`random`], [`items`] | which runs there are |
-//! | [`keep`], [`schema`], [`ending`] | what is kept of each, in which columns |
-//! | [`study`], [`outcome`] | a run becomes rows |
-//! | [`shard`], [`crew`], [`chunks`] | which chunks this process makes, its threads, their files |
-//! | [`merge`], [`sink`] | chunks become tables |
+//! | [`scene`] | the table in the scene file |
+//! | [`axis`], [`random`], [`items`] | the runs |
+//! | [`keep`], [`schema`], [`ending`] | results of each run, and their columns |
+//! | [`study`], [`outcome`] | from a run to rows |
+//! | [`shard`], [`crew`], [`chunks`] | the chunks of this process, its threads, their files |
+//! | [`merge`], [`sink`] | from chunks to tables |
 
 mod axis;
 mod chunks;
@@ -42,31 +43,32 @@ use vi_report::failure::Failure;
 /// The command line of `vi-lab sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "\
-Scene: the entries of a run, and a table [sweep]: `over`, the quantities that differ from run to run; `samples` and `seed`, if some are random; `keep`; `section`. \
-docs/cluster.md has all of them.
+Scene: the entries of a run, and a table [sweep]: `over`, the quantities that vary from run to run; `samples` and `seed` for random ones; `keep`; `section`. \
+docs/cluster.md describes them.
 
 Columns: item, the number of the run; the quantities of `over`; with keep = [\"ending\"] ending and steps; \"end\" the last node as end_t, end_ coordinates and momenta, end_H, end_E, \
-end_h; \"extremes\" min_ and max_ of the coordinates and of H over all nodes; \"energy\" error_H and error_E, the largest distances of H and E from their first values. \
+end_h; \"extremes\" min_ and max_ of the coordinates and of H over all nodes; \"energy\" error_H and error_E, the largest deviations of H and E from their first values. \
 \"series\" writes FILE.series.csv with every Nth node of each run (`every` of the scene), `section` FILE.section.csv with its crossings; both begin with the item. `vi-lab run \
-SCENE --item K` is one of the runs alone.
+SCENE --item K` computes run K only.
 
-A run that fails is recorded, and the sweep goes on. The folder FILE.part holds the chunks of runs that are finished; after any interruption the same command goes on from them. \
+A failed run is recorded, and the sweep continues. The folder FILE.part contains the chunks of finished runs; after an interruption the same command resumes from them. \
 Shards share this folder; `vi-lab merge` writes FILE from it.
 
-Exit status: 0 all runs were taken, whatever their ends; 1 a file failed; 2 the input is wrong; 130 and 143 the sweep was interrupted (SIGINT, SIGTERM).")]
+Exit status: 0 all runs were computed, including failed ones; 1 a file failed; 2 the input is wrong; 130 and 143 the sweep was interrupted (SIGINT, SIGTERM).")]
 pub(crate) struct Arguments {
     /// Scene file with a table [sweep]
     #[arg(value_name = "SCENE.toml")]
     scene: String,
-    /// File to write, .csv, .npy or .parquet
+    /// Output file, .csv, .npy or .parquet
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Makes only the chunks I of N equal shares, I from 0 on; with N alone, I is the number of the array task [default: that of a Slurm array]
+    /// Compute only the chunks of share I of N equal shares, I from 0; with only N, I is the index of the array task
+    /// [default: that of a Slurm array]
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     shard: Option<String>,
 }
 
-/// Takes the runs of a scene, and returns a summary.
+/// Runs a scene with its sweep and returns a summary.
 ///
 /// # Errors
 /// [`Failure::Input`] for wrong input, [`Failure::File`] if a file cannot be read or written, [`Failure::Interrupted`] after a signal.
@@ -87,7 +89,7 @@ pub(crate) fn sweep(arguments: &Arguments) -> Result<String, Failure> {
         return Ok(merge::summary(&folder, runs.end - runs.start, failed));
     }
     let summary = merge::write(&chunks, slice::from_ref(&*chunks), output)?;
-    // The chunks go when the tables are on the disk.
+    // Chunks are removed after the tables are on disk.
     sync_folder(output.parent().unwrap_or(output));
     fs::remove_dir_all(&folder).map_err(|error| Failure::file(&folder, error))?;
     Ok(summary)

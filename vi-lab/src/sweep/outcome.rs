@@ -1,4 +1,4 @@
-//! One run of a sweep. A run that cannot start or go on is not an error: its [`Outcome`] has an [`Ending`].
+//! One run of a sweep. A failed start or step is not an error: the [`Outcome`] has an [`Ending`].
 
 use super::ending::Ending;
 use super::keep::STEPS_OF_A_PERIOD;
@@ -9,27 +9,27 @@ use vi_runs::plan::Plan;
 use vi_runs::simulation::{Row, Section, Simulation};
 use vi_runs::system::System;
 
-/// A run that finds the lengths of its steps may take so many times more than was foreseen.
+/// Maximum ratio of steps to the predicted number, for runs that solve for their steps.
 const PATIENCE: f64 = 1000.0;
 
-/// A run to be taken.
+/// A run to be computed.
 pub(super) struct Member {
     pub(super) system: Box<dyn System>,
     pub(super) plan: Plan,
     pub(super) length: Length,
-    /// Every so many nodes one is shown.
+    /// Interval between shown nodes.
     pub(super) every: u64,
-    /// Whether the ranges of the coordinates and energies are kept.
+    /// Whether the ranges of coordinates and energies are kept.
     pub(super) is_watched: bool,
 }
 
-/// What is known of a run that was taken.
+/// The result of a run.
 pub(super) struct Outcome {
     pub(super) ending: Ending,
     pub(super) steps: u64,
     /// The last node; `None` if the run did not start.
     last: Option<Row>,
-    /// The ranges of each coordinate, of H and of E; `None` of what has no values.
+    /// The ranges of each coordinate, of H and of E; `None` without values.
     ranges: Vec<Option<Range>>,
 }
 
@@ -54,7 +54,7 @@ fn extreme(of: f64, value: f64, choose: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 impl Outcome {
-    /// Takes a run; shows its first node, every so many, and the last.
+    /// Computes a run. Shows its first node, every `every`-th, and the last.
     pub(super) fn of(member: &Member, show: &mut dyn FnMut(&dyn Simulation)) -> Self {
         let Member { system, plan, length, .. } = member;
         let mut outcome =
@@ -116,7 +116,7 @@ impl Outcome {
 
     /// Adds the last node to the ranges.
     fn watch(&mut self, run: &dyn Simulation) {
-        // H of some nodes is not known: then its range is not known either. Some nodes have no interval, and no E.
+        // Without H at some nodes its range is unknown too. Some nodes have no interval, and no E.
         let energies = [Some(run.energy().unwrap_or(f64::NAN)), run.discrete_energy()];
         let values = run.q().iter().copied().map(Some).chain(energies);
         for (range, value) in self.ranges.iter_mut().zip(values) {
@@ -126,10 +126,10 @@ impl Outcome {
         }
     }
 
-    /// Takes the run once more, to its last node, for the crossings of a section.
+    /// Repeats the run up to its last node for the crossings of a section.
     ///
     /// # Errors
-    /// Why they cannot be located.
+    /// The reason why they cannot be located.
     pub(super) fn cross(&self, member: &Member, section: &Section, take: &mut dyn FnMut(Row)) -> Result<(), StepError> {
         let Some(last) = &self.last else { return Ok(()) };
         if let Section::Period { period, .. } = section
@@ -142,7 +142,7 @@ impl Outcome {
         member.system.begin(&member.plan, &evaluations)?.cross(section, last.t, take)
     }
 
-    /// The entries of the last node, in so many columns.
+    /// The entries of the last node in `columns` columns.
     pub(super) fn end(&self, columns: usize) -> Vec<f64> {
         let entries = |row: &Row| row.entries().map(|entry| entry.unwrap_or(f64::NAN)).collect();
         self.last.as_ref().map_or_else(|| vec![f64::NAN; columns], entries)
@@ -154,7 +154,7 @@ impl Outcome {
         ranges.iter().flat_map(|range| range.map_or([f64::NAN; 2], |range| [range.low, range.high]))
     }
 
-    /// Largest distances of H and E from their first values.
+    /// Largest deviations of H and E from their first values.
     pub(super) fn errors(&self) -> impl Iterator<Item = f64> + '_ {
         let largest = |range: Range| extreme(range.high - range.first, range.first - range.low, f64::max);
         self.ranges[self.ranges.len() - 2..].iter().map(move |range| range.map_or(f64::NAN, largest))

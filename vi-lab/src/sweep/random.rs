@@ -1,8 +1,8 @@
-//! Random numbers that depend on a seed and a place alone, whatever was drawn before.
+//! Random numbers determined by a seed and a place.
 //!
-//! In: a seed and a place. Out: the number at this place of the sequence that SplitMix64 gives from the seed: a mixing of
-//! `seed + (place + 1) γ`, γ the odd number next to 2^64 over the golden ratio. Source: G. L. Steele, D. Lea, C. H. Flood, Fast
-//! splittable pseudorandom number generators, OOPSLA 2014.
+//! In: a seed and a place. Out: the number at this place of the SplitMix64 sequence of the seed: a mixing of `seed +
+//! (place + 1) γ`, where γ is the odd number next to 2^64 over the golden ratio. Source: G. L. Steele, D. Lea, C. H.
+//! Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
 
 const GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
 
@@ -14,13 +14,13 @@ pub(super) fn bits(seed: u64, place: u64) -> u64 {
     twice ^ (twice >> 31)
 }
 
-/// A number between 0 and 1, neither of them: one of 2^52 that are equally far apart.
+/// A number strictly between 0 and 1: one of 2^52 equidistant values.
 #[allow(clippy::cast_precision_loss)] // 52 bits
 pub(super) fn uniform(seed: u64, place: u64) -> f64 {
     ((bits(seed, place) >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
 }
 
-/// A number of mean 0 and variance 1, normally distributed: by Box and Muller, of the uniform ones at two places.
+/// A standard normal number, by Box and Muller, from the uniform numbers at two places.
 pub(super) fn normal(seed: u64, places: [u64; 2]) -> f64 {
     let [radius, angle] = places.map(|place| uniform(seed, place));
     (-2.0 * radius.ln()).sqrt() * (core::f64::consts::TAU * angle).cos()

@@ -1,4 +1,4 @@
-//! The table `[sweep]` of a scene, as it is written.
+//! The table `[sweep]` of a scene.
 //!
 //! ```toml
 //! [sweep]
@@ -32,7 +32,7 @@ pub(crate) struct Sweep {
 }
 
 impl Sweep {
-    /// Whether it goes over the quantity of this name.
+    /// Whether the sweep varies this quantity.
     pub(crate) fn is_over(&self, name: &str) -> bool {
         self.over.iter().any(|over| over.name == name)
     }
@@ -65,11 +65,11 @@ pub(crate) enum Spacing {
     Log,
 }
 
-/// What is kept of a run.
+/// The results kept of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Keep {
-    /// How it ended, and after how many steps.
+    /// The kind of end, and the number of steps.
     Ending,
     /// The last node.
     End,
@@ -77,11 +77,11 @@ pub(crate) enum Keep {
     Extremes,
     /// Largest errors of both energies.
     Energy,
-    /// Every so many nodes, as the scene says.
+    /// Every Nth node, as in the scene.
     Series,
 }
 
-/// A section: a coordinate passes a value, or a period of time passes.
+/// A section: a coordinate crosses a value, or a period of time passes.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cut {
@@ -91,7 +91,7 @@ pub(crate) struct Cut {
     pub(super) period: Option<f64>,
 }
 
-/// How a coordinate passes a value.
+/// The direction in which a coordinate crosses a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Passing {

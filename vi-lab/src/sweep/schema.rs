@@ -1,12 +1,12 @@
 //! The tables of a sweep: their columns, and their rows as CSV.
 //!
-//! A number is written in the fewest digits that read back to the same bits. NaN is an empty entry.
+//! A number has the fewest digits that read back to the same bits. NaN is an empty entry.
 
 use core::fmt::Write as _;
 use serde::{Deserialize, Serialize};
 use vi_report::table::csv_field;
 
-/// Counts are below this number, so that float64 holds them exactly.
+/// Counts are below this number, so that float64 represents them exactly.
 pub(super) const MOST: u64 = 1 << 53;
 
 /// The columns of a table.
@@ -24,7 +24,7 @@ pub(super) struct Column {
     pub(super) kind: Kind,
 }
 
-/// What the numbers of a column are.
+/// The kind of the numbers in a column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Kind {
     /// Numbers; NaN if there is none.
@@ -76,7 +76,7 @@ impl Schema {
     /// Reads a row that [`Self::write`] has written, without its line end.
     ///
     /// # Errors
-    /// What is wrong with the row.
+    /// The error in the row.
     pub(super) fn read(&self, text: &str, row: &mut Vec<f64>) -> Result<(), String> {
         let (columns, entries) = (self.columns.len(), text.split(',').count());
         if entries != columns {

@@ -1,6 +1,6 @@
-//! Which part of a sweep this process takes: `--shard I/N` or `--shard N`, and what the scheduler of a cluster says in the environment.
+//! The part of a sweep for this process: `--shard I/N` or `--shard N`, or the environment of a cluster scheduler.
 //!
-//! Shards are numbered from 0, as the tasks of an array are. The chunks of a shard follow each other.
+//! Shards are numbered from 0, like the tasks of an array. The chunks of a shard are consecutive.
 
 use core::ops::Range;
 use vi_report::failure::Failure;
@@ -8,28 +8,28 @@ use vi_report::failure::Failure;
 /// One of `count` parts of equal size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shard {
-    /// From 0 on.
+    /// From 0.
     pub(super) index: u64,
     pub(super) count: u64,
 }
 
-/// A number of the environment; `None` if it is not set.
+/// A number in the environment; `None` if it is not set.
 type Number<'a> = &'a dyn Fn(&str) -> Result<Option<u64>, String>;
 
 impl Shard {
-    /// All of the sweep.
+    /// The complete sweep.
     pub(super) const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// The shard that is asked for, or the one of the array task which this process is; `None` without either.
+    /// The requested shard, or the shard of this array task; `None` without either.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there is no such shard, or the environment does not say which one this is.
+    /// [`Failure::Input`] if there is no such shard, or the environment does not determine it.
     pub(super) fn of(asked: Option<&str>, variable: impl Fn(&str) -> Option<String>) -> Result<Option<Self>, Failure> {
         let number = |name: &str| {
             let Some(text) = variable(name) else { return Ok(None) };
-            let remedy = format!("write --shard I/N, or unset {name} for the whole");
+            let remedy = format!("write --shard I/N, or unset {name} to compute all");
             let number = text.trim().parse().map(Some);
-            number.map_err(|_| format!("{name} is `{text}`, which is no number of a scheduler; {remedy}"))
+            number.map_err(|_| format!("{name} is `{text}`, which is not a task number; {remedy}"))
         };
         let shard = asked.map_or_else(|| scheduled(&number), |text| parse(text, &number).map(Some));
         match shard.map_err(Failure::Input)? {
@@ -42,7 +42,7 @@ impl Shard {
         }
     }
 
-    /// The chunks of this shard, of so many.
+    /// The chunks of this shard, out of `all`.
     pub(super) fn chunks(self, all: u64) -> Range<u64> {
         let begin =
             |index: u64| u64::try_from(u128::from(all) * u128::from(index) / u128::from(self.count)).unwrap_or(all);
@@ -50,7 +50,7 @@ impl Shard {
     }
 }
 
-/// The shard of `--shard I/N`, or of `--shard N` in a task of an array.
+/// The shard of `--shard I/N`, or of `--shard N` in an array task.
 fn parse(text: &str, number: Number<'_>) -> Result<Shard, String> {
     let wrong =
         || format!("`--shard {text}` must be I/N, or N in a task of an array: two whole numbers, I from 0 to N - 1");
@@ -62,21 +62,21 @@ fn parse(text: &str, number: Number<'_>) -> Result<Shard, String> {
     let task = number("HQ_TASK_ID").transpose().or_else(|| number("SLURM_ARRAY_TASK_ID").transpose());
     let index = task.transpose()?.ok_or_else(|| {
         format!(
-            "`--shard {count}` is for a task of an array, whose number HQ_TASK_ID or SLURM_ARRAY_TASK_ID tells; \
+            "`--shard {count}` needs an array task with its number in HQ_TASK_ID or SLURM_ARRAY_TASK_ID; \
              elsewhere write --shard I/{count}"
         )
     })?;
     Ok(Shard { index, count })
 }
 
-/// The shard that a scheduler says; `None` if there is no array of tasks.
+/// The shard given by a scheduler; `None` outside an array of tasks.
 fn scheduled(number: Number<'_>) -> Result<Option<Shard>, String> {
     match number("HQ_TASK_ID")? {
         // A job that is not an array.
         Some(0) => return Ok(None),
         Some(task) => {
             return Err(format!(
-                "this is task {task} of HyperQueue, which does not say how many there are; write --shard N, and number \
+                "this is task {task} of HyperQueue, which does not report their number; write --shard N, and number \
                  the tasks from 0 to N - 1"
             ));
         }
@@ -87,7 +87,7 @@ fn scheduled(number: Number<'_>) -> Result<Option<Shard>, String> {
     };
     let first = number("SLURM_ARRAY_TASK_MIN")?.unwrap_or(0);
     let last = number("SLURM_ARRAY_TASK_MAX")?.unwrap_or(first.saturating_add(count.saturating_sub(1)));
-    // A task that is run again alone is an array of one.
+    // A single task that is run again is an array of one.
     if first > 1 || (last - first.min(last)).checked_add(1) != Some(count) || task < first {
         return Err(format!(
             "the tasks of this array are not all of 0 to N - 1; to run some of them again write --shard N, which is then \
@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(shard(Some("9"), &slurm), Ok(Some((7, 9))));
         let from_zero = [("SLURM_ARRAY_TASK_ID", 6), ("SLURM_ARRAY_TASK_COUNT", 7), ("SLURM_ARRAY_TASK_MIN", 0)];
         assert_eq!(shard(None, &from_zero), Ok(Some((6, 7))));
-        // HyperQueue inside an allocation of Slurm; a job that is no array has the task 0.
+        // HyperQueue inside an allocation of Slurm; a job that is not an array has task 0.
         assert_eq!(shard(Some("8"), &[slurm.as_slice(), &[("HQ_TASK_ID", 3)]].concat()), Ok(Some((3, 8))));
         assert_eq!(shard(None, &[("HQ_TASK_ID", 0)]), Ok(None));
     }
@@ -142,13 +142,13 @@ mod tests {
             (
                 Some("7"),
                 &[],
-                "`--shard 7` is for a task of an array, whose number HQ_TASK_ID or SLURM_ARRAY_TASK_ID tells; elsewhere \
+                "`--shard 7` needs an array task with its number in HQ_TASK_ID or SLURM_ARRAY_TASK_ID; elsewhere \
                  write --shard I/7",
             ),
             (
                 None,
                 &[("HQ_TASK_ID", 3)],
-                "this is task 3 of HyperQueue, which does not say how many there are; write --shard N, and number the tasks \
+                "this is task 3 of HyperQueue, which does not report their number; write --shard N, and number the tasks \
                  from 0 to N - 1",
             ),
             (
@@ -171,9 +171,8 @@ mod tests {
                 _ => None,
             };
             let message = Shard::of(None, variable).expect_err("no number").to_string();
-            let expected = format!(
-                "{name} is `x`, which is no number of a scheduler; write --shard I/N, or unset {name} for the whole"
-            );
+            let expected =
+                format!("{name} is `x`, which is not a task number; write --shard I/N, or unset {name} to compute all");
             assert_eq!(message, expected);
             assert!(Shard::of(Some("2/5"), variable).is_ok(), "{name}");
         }

@@ -1,4 +1,4 @@
-//! A sweep, ready to be run: what its runs have in common, what differs, and what is kept of each.
+//! A sweep ready to run: the common part of its runs, the varied quantities, and the results kept.
 
 use super::chunks::{Description, fingerprint};
 use super::ending::Ending;
@@ -12,13 +12,13 @@ use vi_report::failure::Failure;
 use vi_report::machine::VERSION;
 use vi_report::numbers::{about, assigned, short};
 
-/// Steps in a chunk: a tenth of a second of fixed steps, many times longer than the sync of a file.
+/// Steps in a chunk: a tenth of a second of fixed steps, much longer than syncing a file.
 const STEPS: f64 = 2e5;
-/// Runs in a chunk, however short.
+/// Maximum number of runs in a chunk.
 const MOST_ITEMS: u64 = 1 << 14;
-/// Chunks at least, if there are as many runs, so that all cores have work.
+/// Minimum number of chunks, if there are enough runs, so that all cores have work.
 const FEWEST_CHUNKS: u64 = 256;
-/// Bytes of the series of one run at most: they are held in memory.
+/// Maximum bytes of the series of one run, which is held in memory.
 const MOST_BYTES: f64 = 1.6e7;
 
 /// A sweep.
@@ -32,7 +32,7 @@ impl Study {
     /// The sweep of a scene.
     ///
     /// # Errors
-    /// [`Failure::Input`] for the first entry that is wrong.
+    /// [`Failure::Input`] for the first wrong entry.
     pub(super) fn read(scene: &str) -> Result<Self, Failure> {
         let (request, sweep) = Request::with_sweep(scene)?;
         let items = Items::of(&sweep, request.system.as_ref())?;
@@ -43,7 +43,7 @@ impl Study {
         Ok(study)
     }
 
-    /// Refuses a series that memory may not hold.
+    /// Rejects a series that may not fit into memory.
     #[allow(clippy::cast_precision_loss)] // an estimate
     fn check_series(&self) -> Result<(), Failure> {
         let columns = self.request.columns().len() + 1;
@@ -61,7 +61,7 @@ impl Study {
         )))
     }
 
-    /// Everything that its tables depend on.
+    /// All inputs of its tables.
     pub(super) fn description(&self) -> Description {
         let Request { system, plan, length, every, .. } = &self.request;
         let items = self.items.count();
@@ -90,7 +90,7 @@ impl Study {
         Description { facts, items, chunk, schemas }
     }
 
-    /// Takes a run, adds its rows to the tables, and returns whether it failed.
+    /// Computes a run, adds its rows to the tables, and returns whether it failed.
     #[allow(clippy::cast_precision_loss)] // items are fewer than 2^53, and so are steps
     pub(super) fn follow(&self, item: u64, tables: &mut [Vec<f64>]) -> bool {
         let number = item as f64;

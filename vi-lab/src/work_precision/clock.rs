@@ -1,6 +1,6 @@
-//! The clock: seconds that the processor spent on this thread, where the system tells them; else seconds on the wall.
+//! The clock: processor seconds of this thread if the system provides them, otherwise wall-clock seconds.
 
-/// What the clock counts, as prose.
+/// The name of the clock in prose.
 #[cfg(any(target_os = "linux", target_os = "macos"))]
 pub(super) const NAME: &str = "processor time";
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
@@ -26,7 +26,7 @@ fn now() -> f64 {
     START.elapsed().as_secs_f64()
 }
 
-/// Seconds that `work` takes; what it makes is made whether it is looked at or not.
+/// Seconds of `work`, whose result is kept from being optimized away.
 pub(super) fn seconds<R>(work: impl FnOnce() -> R) -> f64 {
     let start = now();
     core::hint::black_box(work());

@@ -1,9 +1,9 @@
-//! The energy over a long time: which methods drift.
+//! Energy errors over a long time, which show drift.
 //!
-//! In: a system, a start, the usual step, the long time. Out: per method the largest error so far of the energy, relative
-//! to that of the start. What is compared is `H(t, q, v)`: at the nodes, v being the velocity that belongs to p; for the
-//! energy-preserving integrator in the middles of its steps, which is where its rule preserves it. Where the energy is not
-//! conserved, it is compared with that of the reference at the same time.
+//! In: a system, an initial state, the default step, the long time. Out: per method the running maximum of the energy
+//! error, relative to the initial energy. The energy is `H(t, q, v)` at the nodes, with the velocity v of the momenta
+//! p. For the energy-preserving integrator it is taken at the midpoints of its steps, at which its rule preserves it.
+//! If the energy is not conserved, the error is the difference from the reference at the same time.
 
 use super::method::{Method, TOO_MANY, Task};
 use super::reference::Reference;
@@ -16,9 +16,9 @@ use vi_runs::system::System;
 
 /// Tolerances of DOP853.
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
-/// Nodes of a run at which the energy is evaluated.
+/// Number of nodes of a run at which the energy is evaluated.
 const SAMPLES: u64 = 200_000;
-/// The same where the reference has to be followed to the time of every node.
+/// The same if the reference is computed at every node.
 const REFERENCE_SAMPLES: u64 = 400;
 
 /// The energy error of one run.
@@ -32,12 +32,12 @@ pub(super) struct Drift {
     pub(super) worst: Vec<(f64, f64)>,
     /// Evaluations of the equations in a unit of time.
     pub(super) rate: f64,
-    /// Why the run ended before its time.
+    /// Why the run ended early.
     pub(super) ended: Option<Ended>,
 }
 
 impl Drift {
-    /// The power of the time by which the error grows over its last hundredfold: 0 is bounded, 1 a steady drift.
+    /// The exponent of the growth of the error with time over the last factor 100: 0 is bounded, 1 is linear drift.
     pub(super) fn growth(&self) -> Option<f64> {
         let (end, _) = self.worst.last()?;
         let late: Vec<(f64, f64)> =
@@ -51,7 +51,7 @@ impl Drift {
     }
 }
 
-/// The largest error so far, as it is seen.
+/// Running maximum of the error.
 struct Watch<'a> {
     system: &'a dyn System,
     reference: Option<&'a Reference<'a>>,
@@ -72,7 +72,7 @@ impl Watch<'_> {
             return Err(Ended::NonFinite);
         }
         self.largest = self.largest.max(error);
-        // A hundred points a decade are more than a figure can show.
+        // A hundred points per decade suffice for a figure.
         if self.worst.last().is_none_or(|(last, _)| t > last * 1.02) {
             self.worst.push((t, self.largest));
         }
@@ -80,10 +80,10 @@ impl Watch<'_> {
     }
 }
 
-/// All methods up to the time `long`: those of fixed steps at the length `h` of their parts, DOP853 at three tolerances.
+/// All methods up to the time `long`: those of fixed steps with substeps of length `h`, DOP853 with three tolerances.
 ///
 /// # Errors
-/// Where the energy of the start has no value.
+/// The initial energy has no value.
 pub(super) fn all(
     system: &dyn System,
     start: &PhasePoint,
@@ -120,7 +120,7 @@ fn run(task: &Task<'_>, plan: &Plan, evaluations: &Cell<u64>, watch: &mut Watch<
     let between = (count / samples).max(1);
     let mut run = watch.system.begin(plan, evaluations)?;
     let finds_its_step = task.method == Method::ENERGY;
-    // A given step is taken so many times, wherever rounding puts the last node.
+    // A given step is taken this number of times, independent of rounding in t.
     let end = if finds_its_step { task.end } else { f64::INFINITY };
     let most = if finds_its_step { TOO_MANY * count } else { count };
     let mut taken = 0;
@@ -136,7 +136,7 @@ fn run(task: &Task<'_>, plan: &Plan, evaluations: &Cell<u64>, watch: &mut Watch<
     if run.t() < end && finds_its_step { Err(Ended::Short(run.t())) } else { Ok(()) }
 }
 
-/// A value whose evaluations are none of the method's.
+/// A value whose evaluations do not count for the method.
 fn uncounted<R>(evaluations: &Cell<u64>, value: impl FnOnce() -> R) -> R {
     let before = evaluations.get();
     let value = value();

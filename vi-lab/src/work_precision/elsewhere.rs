@@ -1,8 +1,8 @@
-//! Runs of a program elsewhere, told by a file.
+//! Runs of an external program, from a file.
 //!
 //! In: a CSV file with the columns of the table of runs, as `benches/rivals/heyoka_runs.py` writes it. Out: runs of
-//! [`Method::Heyoka`], or [`Failure::Input`] with the line that is no such run. The file has the name of the system. That it is of the
-//! same start and time, and of the same machine, it does not say.
+//! [`Method::Heyoka`], or [`Failure::Input`] with the invalid line. The file name is the name of the system. Equality
+//! of initial state, time and machine is not checked.
 
 use super::method::Method;
 use super::study::{Point, Run};
@@ -13,26 +13,26 @@ use vi_report::failure::Failure;
 /// Names of the columns, as in the table of runs.
 const HEAD: &str = "method,setting,error,evaluations,\"seconds, least\",\"seconds, median\",ended";
 
-/// The runs of `system` that a file tells of.
+/// The runs of `system` in a file.
 ///
 /// # Errors
-/// [`Failure::Input`] where it has another name or form, or cannot be read.
+/// [`Failure::Input`] if it has another name or form, or cannot be read.
 pub(super) fn runs(path: &Path, system: &str) -> Result<Vec<Run>, Failure> {
     let shown = path.display();
     if path.file_stem().is_none_or(|stem| stem != system) {
-        return Err(Failure::Input(format!("the runs of a rival on {system} stand in {system}.csv, not in {shown}")));
+        return Err(Failure::Input(format!("name the file of the runs of {system} {system}.csv, not {shown}")));
     }
     parse(&place::text(path)?).map_err(|message| Failure::Input(format!("{shown}: {message}")))
 }
 
-/// The runs of a text, or what is wrong with which line.
+/// The runs in a text, or the error with its line.
 fn parse(text: &str) -> Result<Vec<Run>, String> {
     let mut lines = text.lines();
     if lines.next() != Some(HEAD) {
         return Err(format!("line 1: expected the columns `{HEAD}`"));
     }
     let runs: Result<Vec<Run>, String> = lines.enumerate().map(|(index, line)| run(line, index + 2)).collect();
-    runs.and_then(|runs| if runs.is_empty() { Err("it tells of no run".to_owned()) } else { Ok(runs) })
+    runs.and_then(|runs| if runs.is_empty() { Err("it contains no run".to_owned()) } else { Ok(runs) })
 }
 
 /// The run of a line.
@@ -57,11 +57,11 @@ mod tests {
     fn a_file_is_read_and_a_wrong_line_is_named() {
         let found = parse(&format!("{HEAD}\nheyoka,1e-06,4.1e-07,,1.5e-05,1.6e-05,\n")).expect("a run");
         let point = Point { error: 4.1e-7, evaluations: None, seconds: 1.5e-5, median: 1.6e-5 };
-        assert!(matches!(&found[..], [Run { method: Method::Heyoka, setting, outcome: Ok(told) }]
-            if setting.to_bits() == 1e-6_f64.to_bits() && *told == point));
+        assert!(matches!(&found[..], [Run { method: Method::Heyoka, setting, outcome: Ok(read) }]
+            if setting.to_bits() == 1e-6_f64.to_bits() && *read == point));
         for (text, expected) in [
             ("a,b\n".to_owned(), "line 1: expected the columns"),
-            (format!("{HEAD}\n"), "it tells of no run"),
+            (format!("{HEAD}\n"), "it contains no run"),
             (format!("{HEAD}\nheyoka,1e-06,NaN,,1.5e-05,1.6e-05,\n"), "line 2: expected a run such as"),
             (format!("{HEAD}\nDOP853,1e-06,1e-7,,1.5e-05,1.6e-05,\n"), "line 2: expected a run such as"),
         ] {

@@ -1,6 +1,6 @@
-//! The four figures and the tables of a comparison, each with what it says.
+//! The four figures and the tables of a comparison, with their captions.
 //!
-//! In: [`Findings`]. Out: charts and tables. Runs that lost the motion (an error over [`LOST`]) are in the table only.
+//! In: [`Findings`]. Out: charts and tables. Runs with an error over [`LOST`] appear only in the table.
 
 use super::clock;
 use super::drift::Drift;
@@ -12,7 +12,7 @@ use vi_report::table::Table;
 
 /// An error above this is no approximation of the motion.
 pub(super) const LOST: f64 = 2.0;
-/// Errors whose price is listed.
+/// Errors for which the table lists times.
 const PRICED: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
 
 impl Findings {
@@ -40,7 +40,7 @@ impl Findings {
         )
     }
 
-    /// Error against some work, all methods.
+    /// Error against some measure of work, for all methods.
     fn work(
         &self,
         name: &'static str,
@@ -66,7 +66,7 @@ impl Findings {
         Chart { name, title, x: Axis::log10(self.error_label()), y: Axis::log10(label), equal_aspect: false, series }
     }
 
-    /// Error against the step, for the methods that have one.
+    /// Error against the step, for the methods with a given step.
     pub(super) fn orders(&self, system: &str) -> Chart {
         let stepping = Method::ALL.into_iter().filter(|method| *method != Method::Rival);
         let series = stepping.map(|method| {
@@ -87,7 +87,7 @@ impl Findings {
         }
     }
 
-    /// Largest energy error so far against time.
+    /// Running maximum of the energy error against time.
     pub(super) fn energy(&self, system: &str) -> Chart {
         let series = self.drifts.iter().map(|drift| {
             let line = drift.method.look().line();
@@ -111,7 +111,7 @@ impl Findings {
         }
     }
 
-    /// The least seconds that reach an error, by method.
+    /// The least time that reaches an error, by method.
     pub(super) fn prices(&self) -> Table {
         let head = ["method", "error 1e-3", "1e-6", "1e-9", "1e-12"];
         let mut table = Table::new("prices", head);
@@ -123,13 +123,13 @@ impl Findings {
         table
     }
 
-    /// The least seconds in which a run of `method` is off by `error` at most.
+    /// The least time of a run of `method` with at most this error.
     fn price(&self, method: Method, error: f64) -> Option<f64> {
         let seconds = self.points(method).filter(|(_, point)| point.error <= error).map(|(_, point)| point.seconds);
         seconds.min_by(f64::total_cmp)
     }
 
-    /// Why no method has a price, if none has.
+    /// Why no method has a time, if none has.
     pub(super) fn uncompared(&self) -> Option<String> {
         let has_price = |method| PRICED.into_iter().any(|error| self.price(method, error).is_some());
         if self.methods().any(has_price) {
@@ -138,11 +138,10 @@ impl Findings {
         let floor = self.agreement.floor();
         Some(match self.missing() {
             _ if floor.is_nan() => {
-                "errors are relative to the largest coordinate and momentum, and one of them is zero on the whole way"
-                    .to_owned()
+                "errors are relative to the largest coordinate and momentum, and one of them is always zero".to_owned()
             }
             _ if PRICED.into_iter().all(|error| error < floor) => format!(
-                "the reference at t = {} is known to {} only; give a start of a more regular motion with --q and --v",
+                "the reference at t = {} is known to {} only; choose a more regular motion with --q and --v",
                 self.until,
                 scientific(floor)
             ),
@@ -151,7 +150,7 @@ impl Findings {
         })
     }
 
-    /// Who is the fastest, error by error, as prose.
+    /// The fastest method for each error, as prose.
     pub(super) fn winners(&self) -> String {
         let mut sentences = Vec::new();
         for error in PRICED {
@@ -159,7 +158,7 @@ impl Findings {
                 self.methods().filter_map(|method| Some((self.price(method, error)?, method))).collect();
             prices.sort_by(|(one, _), (other, _)| one.total_cmp(other));
             sentences.push(match prices.as_slice() {
-                [] => format!("No run is off by {} or less.", scientific(error)),
+                [] => format!("No run has an error of at most {}.", scientific(error)),
                 [(price, only)] => {
                     format!("Only {} reaches {}, in {}.", only.name(), scientific(error), duration(*price))
                 }
@@ -176,7 +175,7 @@ impl Findings {
         sentences.join(" ")
     }
 
-    /// Energy errors and how they grow.
+    /// Energy errors and their growth.
     pub(super) fn drift_table(&self) -> Table {
         let head = ["method", "setting", "evaluations per time", "error at the end", "grows as", "ended"];
         let mut table = Table::new("drift", head);
@@ -219,7 +218,7 @@ impl Findings {
         table
     }
 
-    /// What the figures cannot show, one sentence a method: runs that ended, and runs that lost the motion.
+    /// Runs that the figures omit, one sentence per method: runs that ended early, and runs with large errors.
     pub(super) fn missing(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         for method in self.methods() {
@@ -237,7 +236,7 @@ impl Findings {
             let lost = self.points(method).filter(|(_, point)| point.error > LOST).count();
             if lost > 0 {
                 sentences.push(format!(
-                    "{lost} of the {} runs of {} lost the motion: off by more than {LOST}.",
+                    "{lost} of the {} runs of {} have an error above {LOST}.",
                     of.len(),
                     method.name()
                 ));
@@ -252,7 +251,7 @@ impl Findings {
         sentences
     }
 
-    /// The points that the figures show.
+    /// The points in the figures.
     fn kept(&self, method: Method) -> impl Iterator<Item = (f64, Point)> + '_ {
         self.points(method).filter(|(_, point)| point.error <= LOST)
     }
@@ -266,7 +265,7 @@ fn rival(drift: &Drift) -> String {
     format!("{}, {:.0e}", drift.method.name(), drift.setting)
 }
 
-/// Seconds in the unit that suits them.
+/// Seconds in a suitable unit.
 fn duration(seconds: f64) -> String {
     match seconds {
         seconds if seconds < 1e-3 => format!("{} µs", scientific(seconds * 1e6)),
@@ -306,7 +305,7 @@ mod tests {
     #[test]
     fn errors_of_1e_12_and_1e_14_are_distinguished() {
         let figure = findings().time("test").figure();
-        // The marker of the legend is the last circle.
+        // The last circle is the marker of the legend.
         let places: Vec<f64> = figure
             .svg
             .split("<circle ")
@@ -327,7 +326,7 @@ mod tests {
             runs: found.runs.iter().filter(|run| is_kept(run)).cloned().collect(),
             ..found.clone()
         };
-        // A run that ended, and one that lost the motion.
+        // A run that ended early, and one with a large error.
         let why = without(|run| run.setting > 0.1 || run.setting < 0.05).uncompared().expect("nothing is compared");
         assert!(why.contains("ended early; at h₀ = 0.2000: no energy-preserving step leads forward"), "{why}");
         let lost = without(|run| run.setting < 0.05);
@@ -336,7 +335,7 @@ mod tests {
         assert!(why.starts_with("the reference at t = 10 is known to 0.300 only; "), "{why}");
         let rest = Agreement { composed: f64::NAN, rival: f64::NAN, ..found.agreement };
         let why = Findings { agreement: rest, ..lost }.uncompared().expect("nothing is compared");
-        assert!(why.ends_with("one of them is zero on the whole way"), "{why}");
+        assert!(why.ends_with("one of them is always zero"), "{why}");
     }
 
     #[test]
@@ -347,7 +346,7 @@ mod tests {
             [
                 "1 of the 4 runs of energy-preserving ended early; at h₀ = 0.2000: no energy-preserving step leads forward \
                  from t = 1.000000000 (last h = 1.000e-1, H − E = 0.000e0, step density D = -1.000e0).",
-                "1 of the 4 runs of energy-preserving lost the motion: off by more than 2."
+                "1 of the 4 runs of energy-preserving have an error above 2."
             ]
         );
         let runs = found.run_table().csv();

@@ -1,8 +1,8 @@
-//! The methods that are compared, and one run of each.
+//! The compared methods, and one run of each.
 //!
-//! In: a system, a point to start from, the time to reach, a [`Method`] and its setting: the length of a step, or a
-//! tolerance. Out: the state reached, or why it was not. The energy-preserving integrator stops at the first node from the
-//! end on; the others take the number of steps that is nearest.
+//! In: a system, an initial point, the end time, a [`Method`] and its setting: a step, or a tolerance. Out: the final
+//! state, or the reason why it was not reached. The energy-preserving integrator stops at the first node at or after
+//! the end; the others take the nearest number of steps.
 
 use core::cell::Cell;
 use vi_report::chart::Look;
@@ -16,11 +16,11 @@ use vi_runs::system::System;
 pub(super) enum Method {
     /// An integrator of this project.
     Own(plan::Method),
-    /// Gauss steps of so many stages.
+    /// Gauss steps with this number of stages.
     Gauss(usize),
-    /// The Runge–Kutta method of order 8 that chooses its steps by a tolerance.
+    /// The Runge–Kutta method of order 8 with adaptive steps.
     Rival,
-    /// The Taylor integrator heyoka, whose runs a file tells of: no [`Task`] is one of them.
+    /// The Taylor integrator heyoka, whose runs come from a file: it has no [`Task`].
     Heyoka,
 }
 
@@ -32,7 +32,7 @@ impl Method {
     /// The integrator that solves for its own step.
     pub(super) const ENERGY: Self = Self::Own(plan::Method::Energy);
 
-    /// All that are run here, in the order of the legends.
+    /// All methods that run here, in the order of the legends.
     pub(super) const ALL: [Self; 8] = [
         Self::FIXED,
         Self::Own(plan::Method::Suzuki4),
@@ -74,8 +74,8 @@ impl Method {
         }
     }
 
-    /// How many fixed steps one of its steps is compared with: the equations of a composition, which are solved one after the other; four a
-    /// stage of Gauss steps, which are worth their price only where they are long.
+    /// Number of fixed steps that one of its steps replaces: the substeps of a composition; four per stage of a Gauss
+    /// step, which is efficient only if it is long.
     pub(super) fn parts(self) -> usize {
         match self {
             Self::Own(method) => method.scheme().map_or(1, |scheme| scheme.weights.len()),
@@ -84,7 +84,7 @@ impl Method {
         }
     }
 
-    /// Its settings in words.
+    /// Its setting in words.
     pub(super) fn setting(self, setting: f64) -> String {
         match self {
             Self::Rival | Self::Heyoka => format!("tolerance {setting:.0e}"),
@@ -94,12 +94,12 @@ impl Method {
     }
 }
 
-/// A run of one method: from where, until when, at which setting.
+/// A run of one method: initial state, end, setting.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Task<'a> {
-    /// Where it starts.
+    /// Initial point.
     pub(super) start: &'a PhasePoint,
-    /// The time to reach.
+    /// End time.
     pub(super) end: f64,
     /// The method.
     pub(super) method: Method,
@@ -126,7 +126,7 @@ impl Task<'_> {
         count.max(1)
     }
 
-    /// The plan of a run of one of this project's integrators; none for the rival.
+    /// The plan of a run of one of this project's integrators; `None` for the rival.
     pub(super) fn plan(&self) -> Option<Plan> {
         let (method, stages) = match self.method {
             Method::Own(method) => (method, None),
@@ -136,10 +136,10 @@ impl Task<'_> {
         Some(Plan { stages, ..Plan::new(method, self.setting, self.start.clone()) })
     }
 
-    /// The state reached, with the number of evaluations added to `evaluations`.
+    /// The final state; adds the evaluations to `evaluations`.
     ///
     /// # Errors
-    /// Why the end was not reached.
+    /// The reason why the end was not reached.
     pub(super) fn reached(&self, system: &dyn System, evaluations: &Cell<u64>) -> Result<Reached, Ended> {
         let reached = if let Some(plan) = self.plan() {
             let mut run = system.begin(&plan, evaluations)?;
@@ -153,11 +153,11 @@ impl Task<'_> {
         if is_finite { Ok(reached) } else { Err(Ended::NonFinite) }
     }
 
-    /// The same run for the clock: nothing is read from its end. Evaluations are counted here too, of all methods: an addition beside
-    /// the operations of each.
+    /// The same run for timing, without its result. Evaluations are counted for all methods: one addition per
+    /// evaluation.
     ///
     /// # Errors
-    /// Why the end was not reached.
+    /// The reason why the end was not reached.
     pub(super) fn timed(&self, system: &dyn System) -> Result<(), Ended> {
         let evaluations = Cell::new(0);
         match self.plan() {
@@ -177,5 +177,5 @@ impl Task<'_> {
     }
 }
 
-/// An energy-preserving run that takes so many times the steps of its first length is given up.
+/// An energy-preserving run is stopped at this multiple of the steps of its initial length.
 pub(super) const TOO_MANY: u64 = 10;

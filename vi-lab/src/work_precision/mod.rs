@@ -1,19 +1,19 @@
-//! `vi-lab work-precision SYSTEM`: what an error costs, for every method.
+//! `vi-lab work-precision SYSTEM`: error against work, for every method.
 //!
-//! In: a system of the catalogue and a folder. Out: in the folder a page `index.html` with four figures (error against
-//! time, against evaluations, against the step; energy over a long time), each as SVG and CSV, and tables of all runs. The
-//! methods are the fixed step, its compositions of order 4, 6 and 8, Gauss steps, the energy-preserving integrator, and DOP853 of
-//! another library in the same run; and heyoka, where a file tells of its runs.
+//! In: a predefined system and a folder. Out: in the folder a page `index.html` with four figures (error against time,
+//! against evaluations, against the step; energy over a long time), each as SVG and CSV, and tables of all runs. The
+//! methods are the fixed step, its compositions of order 4, 6 and 8, Gauss methods, the energy-preserving integrator,
+//! DOP853 of another library in the same run, and heyoka from a file of its runs.
 //!
-//! | module | what it makes |
+//! | module | product |
 //! |---|---|
 //! | [`study`] | every run: error, evaluations, seconds |
 //! | [`method`] | one run of one method |
-//! | [`mod@reference`] | the motion that errors are measured against, and how well it is known |
+//! | [`mod@reference`] | the reference solution, and its accuracy |
 //! | [`drift`] | the energy over a long time |
 //! | [`clock`] | seconds |
 //! | [`elsewhere`] | the runs of heyoka, from a file |
-//! | [`figures`] | charts, tables, and what they leave out |
+//! | [`figures`] | charts, tables, and the runs that charts omit |
 
 mod clock;
 mod drift;
@@ -40,42 +40,42 @@ use vi_runs::ready::Entry;
 /// `vi-lab work-precision SYSTEM`.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A system of `vi-lab list` [default: the first system of this program's own]
+    /// A system of `vi-lab list` [default: the first system of this program]
     system: Option<String>,
     /// Folder for the page, its figures (SVG) and their data (CSV)
     #[arg(long, value_name = "DIR", default_value = "work-precision")]
     out: PathBuf,
-    /// Initial coordinates, separated by commas [default: the system's]
+    /// Initial coordinates, separated by commas [default: those of the system]
     #[arg(long, value_name = "Q,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     q: Option<Vec<f64>>,
-    /// Initial velocities, separated by commas [default: the system's]
+    /// Initial velocities, separated by commas [default: those of the system]
     #[arg(long, value_name = "V,…", value_delimiter = ',', allow_hyphen_values = true, value_parser = number)]
     v: Option<Vec<f64>>,
-    /// Runs of heyoka to show beside the others: SYSTEM.csv, as benches/rivals/heyoka_runs.py writes it
+    /// Runs of heyoka to show as well: SYSTEM.csv, as benches/rivals/heyoka_runs.py writes it
     #[arg(long, value_name = "FILE")]
     rival: Option<PathBuf>,
-    /// Fewer and shorter runs, each timed once: for a look, not for numbers
+    /// Fewer and shorter runs, each timed once: for a preview, not for numbers
     #[arg(long)]
     quick: bool,
 }
 
-/// Makes the page and its files, and returns the price of an error as text, and where the page is.
+/// Writes the page and its files; returns the table of times as text, and the path of the page.
 ///
 /// # Errors
-/// [`Failure::Input`] for a system that does not exist, whose motion cannot be followed, or on which no method can be compared, [`Failure::File`] where a file
-/// cannot be written.
+/// [`Failure::Input`] for an unknown system, a motion that cannot be computed, or if no method can be compared.
+/// [`Failure::File`] if a file cannot be written.
 pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     let machine = Machine::here();
     let entry = catalogue::with_rule(entry(arguments)?, "work-precision")?;
     let name = catalogue::kebab(entry.system.name());
-    let told = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
-    let page = Page::new(&format!("What an error costs: {name}"), entry.about);
+    let external = arguments.rival.as_deref().map(|file| elsewhere::runs(file, &name)).transpose()?;
+    let page = Page::new(&format!("Error against work: {name}"), entry.about);
     let mut report = Report::new(&arguments.out, page)?;
     let mut progress = Progress::new(study::length(&entry, arguments.quick));
     let mut found = study::findings(&entry, arguments.quick, &mut progress)
-        .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be followed: {ended}")))?;
+        .map_err(|ended| Failure::Input(format!("the motion of {name} cannot be computed: {ended}")))?;
     drop(progress);
-    found.runs.extend(told.into_iter().flatten());
+    found.runs.extend(external.into_iter().flatten());
     introduction(&mut report, &entry, &found);
     work(&mut report, &name, &found)?;
     order(&mut report, &name, &found)?;
@@ -83,22 +83,22 @@ pub(crate) fn write(arguments: &Arguments) -> Result<String, Failure> {
     report.section("Every run");
     let missing = found.missing();
     report.prose(&if missing.is_empty() {
-        "No run ended early, and none lost the motion.".to_owned()
+        "No run ended early, and none has an error above 2.".to_owned()
     } else {
-        format!("What the figures do not show. {}", escape(&missing.join(" ")))
+        format!("Runs that the figures omit. {}", escape(&missing.join(" ")))
     });
     report.table(&found.run_table(), "All runs, coarse to fine; the setting is a step, or the tolerance of DOP853.")?;
     let page = report.finish(&machine)?;
     match found.uncompared() {
         None => Ok(format!("{}\n{}", found.prices().text(), page.display())),
         Some(why) => Err(Failure::Input(format!(
-            "on {name} no run has an error to compare: {why}\n{} has all runs",
+            "{name} has no run with an error to compare: {why}\n{} has all runs",
             page.display()
         ))),
     }
 }
 
-/// The entry of the system, with the start that is asked for.
+/// The entry of the system with the requested initial state.
 fn entry(arguments: &Arguments) -> Result<Entry, Failure> {
     let entry = catalogue::named(arguments.system.as_deref())?;
     let q = arguments.q.clone().unwrap_or(entry.q);
@@ -115,12 +115,12 @@ fn entry(arguments: &Arguments) -> Result<Entry, Failure> {
 fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
     let parameters: Vec<String> =
         entry.system.parameters().iter().map(|(name, value)| format!("{name} = {value}")).collect();
-    report.section("What is compared");
+    report.section("Comparison");
     report.prose(&format!(
         "The system starts at q = {:?}, v = {:?}{}. The <i>error</i> is taken at t = {}: the largest difference of a \
-         coordinate or a momentum from the reference, relative to the largest coordinate, or momentum, on the way. The \
-         energy-preserving integrator chooses its nodes; its error is that of its first node from there on, against the \
-         reference at the time of that node.",
+         coordinate or a momentum from the reference, relative to the largest coordinate or momentum along the solution. The \
+         energy-preserving integrator chooses its nodes. Its error is taken at its first node at or after this time, relative \
+         to the reference at that node.",
         entry.q,
         entry.v,
         if parameters.is_empty() { String::new() } else { format!(", with {}", parameters.join(", ")) },
@@ -130,7 +130,7 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
     report.prose(&format!(
         "The reference is extrapolation of the modified midpoint rule, which is not in the comparison. At the end Kahan and \
          Li’s composition of order 8 with h = {} differs from it by {}, and DOP853 at a tolerance of {} by {}. Errors below \
-         the larger of the two say nothing: it is the dotted line in the figures.",
+         the larger of the two are not resolved: the dotted line in the figures.",
         agreement.h,
         scientific(agreement.composed),
         scientific(reference::TOLERANCE),
@@ -138,8 +138,8 @@ fn introduction(report: &mut Report, entry: &Entry, found: &Findings) {
     ));
     report.prose(
         "DOP853 is that of the crate <code>differential-equations</code> 0.7, with the same tolerance relative and absolute. \
-         It is given the acceleration that was generated for the system, and states on the stack. This library makes dense \
-         output in every step: 15 evaluations, of which 12 would do.",
+         It uses the generated acceleration of the system, and states on the stack. It computes dense \
+         output in every step: 15 evaluations instead of 12.",
     );
 }
 
@@ -147,25 +147,21 @@ fn work(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure
     report.section("Error against work");
     if found.methods().any(|method| method == Method::Heyoka) {
         report.prose(
-            "The runs of heyoka are those that a file tells of: of the same system, start and time if the file is right, on the clock \
-             on the wall, and on whatever machine it was made.",
+            "The runs of heyoka come from a file. Their system, start, time and machine are not checked; they are timed by wall clock.",
         );
     }
     report.figure(
         &found.time(name).figure(),
-        "Best is the lower left. Each marker is the fastest of the repetitions of a run, its whisker ends at the median. \
-         Runs of all methods take turns.",
+        "The lower left is best. Each marker is the fastest repetition of a run; its whisker ends at the median. \
+         Runs of all methods alternate.",
     )?;
     report.prose(&found.winners());
-    report.table(
-        &found.prices(),
-        "The least time of a run whose error is at most so large; none reaches it where there is a dash.",
-    )?;
+    report.table(&found.prices(), "The least time of a run with at most this error; a dash if no run reaches it.")?;
     report.figure(
         &found.evaluations(name).figure(),
         "The same runs by a measure that repeats exactly. One evaluation is one residual with its Jacobian, one \
-         residual with the gain of the step, the equations at one stage of a sweep of Gauss steps, or one acceleration: an acceleration is the cheapest of them with few degrees of freedom, and with many has \
-         a linear system to solve too.",
+         residual with the increment of the step, the equations at one stage of a Gauss iteration, or one acceleration. An acceleration is the cheapest of these for few degrees of freedom; for many it requires \
+         the solution of a linear system.",
     )
 }
 
@@ -173,31 +169,31 @@ fn order(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failur
     report.section("Order");
     report.figure(
         &found.orders(name).figure(),
-        "The number in the legend is the slope over the four finest steps whose error is below 10<sup>−2</sup> and stands \
-         30 times above the reference’s own; there is none where fewer are left. DOP853 has no given step.",
+        "The number in the legend is the slope over the four finest steps whose error is below 10<sup>−2</sup> and at least \
+         30 times that of the reference; it is absent for fewer than four. DOP853 has no given step.",
     )
 }
 
 fn energy(report: &mut Report, name: &str, found: &Findings) -> Result<(), Failure> {
     report.section("Energy over a long time");
     let compared = if found.conserved {
-        "The energy is conserved, and is compared with that of the start."
+        "The energy is conserved, and is compared with its initial value."
     } else {
-        "The energy is not conserved here, and is compared with that of the reference at the same time, over no longer a \
-         time than the reference is known for."
+        "The energy is not conserved here, and is compared with that of the reference at the same time, as long as the \
+         reference is accurate."
     };
     report.figure(
         &found.energy(name).figure(),
         &format!(
-            "Largest energy error so far, up to t = {}. {compared} Parts of composed steps have the same length on average \
-             as the fixed step. The energy is <i>H</i> at the nodes; for the energy-preserving integrator <i>H</i> in the \
-             middles of its steps, where its rule preserves it (at its nodes <i>H</i> swings by <i>h</i>²<i>D</i>/8).",
+            "Largest energy error so far, up to t = {}. {compared} Substeps of compositions have the same average length \
+             as the fixed step. The energy is <i>H</i> at the nodes; for the energy-preserving integrator <i>H</i> at the \
+             midpoints of its steps, at which its rule preserves it (at its nodes <i>H</i> deviates by <i>h</i>²<i>D</i>/8).",
             found.long
         ),
     )?;
     report.table(
         &found.drift_table(),
-        "The same in numbers. The power of t is fitted over the last hundredfold of the time: 0 is an error that stays, 1/2 \
-         that of random rounding, 1 a steady drift.",
+        "The same in numbers. The power of t is fitted over the last factor 100 in time: 0 is a bounded error, 1/2 \
+         random rounding, 1 linear drift.",
     )
 }

@@ -1,12 +1,12 @@
-//! The motion that errors are measured against.
+//! The reference solution for the errors.
 //!
-//! In: a system, a motion to start from, the time to reach. Out: a [`Reference`]: extrapolation of the modified midpoint rule
-//! ([`System::follow`]), a method that is not in the comparison, known at equidistant times and followed from there to any
-//! other; and how far the most accurate runs of two methods of the comparison are from it at the end, which says how well
-//! it is known.
+//! In: a system, an initial state, the end time. Out: a [`Reference`]: extrapolation of the modified midpoint rule
+//! ([`System::follow`]), a method outside the comparison, stored at equidistant times and continued from there to any
+//! other. Its accuracy is estimated from the most accurate runs of two compared methods at the end.
 //!
 //! ```text
-//! error = max_i max( |q_i − q_i^ref| / Q, |p_i − p_i^ref| / P )        Q, P: largest coordinate and momentum on the way
+//! error = max_i max( |q_i − q_i^ref| / Q, |p_i − p_i^ref| / P )        Q, P: largest coordinate and momentum along the
+//! solution
 //! ```
 
 use super::method::{Method, Reached, Task};
@@ -15,22 +15,22 @@ use vi_runs::plan::PhasePoint;
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
 
-/// Parts of the time at whose ends the reference is stored.
+/// Number of intervals at whose ends the reference is stored.
 const PARTS: u32 = 256;
-/// Tolerance of the run of DOP853 that confirms the reference: its tightest.
+/// Tolerance of the DOP853 run that confirms the reference.
 pub(super) const TOLERANCE: f64 = 1e-14;
 
-/// The motion that errors are measured against.
+/// The reference solution.
 pub(super) struct Reference<'a> {
     system: &'a dyn System,
     track: Vec<PhasePoint>,
-    /// Largest coordinate on the way.
+    /// Largest coordinate along the solution.
     largest_q: f64,
-    /// Largest momentum on the way.
+    /// Largest momentum along the solution.
     largest_p: f64,
 }
 
-/// How far other accurate runs are from the reference at its end, as errors.
+/// Errors of other accurate runs relative to the reference at its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Agreement {
     /// Kahan and Li's composition of order 8 at a small step.
@@ -42,17 +42,17 @@ pub(super) struct Agreement {
 }
 
 impl Agreement {
-    /// Errors below this say nothing.
+    /// Smaller errors are not resolved.
     pub(super) fn floor(&self) -> f64 {
         self.composed.max(self.rival)
     }
 }
 
 impl<'a> Reference<'a> {
-    /// Follows the motion from `start` to `end`.
+    /// Computes the motion from `start` to `end`.
     ///
     /// # Errors
-    /// That of a motion that cannot be followed.
+    /// The motion cannot be computed.
     pub(super) fn new(system: &'a dyn System, start: &PhasePoint, end: f64) -> Result<Self, Ended> {
         let mut reference = Self { system, track: vec![start.clone()], largest_q: 0.0, largest_p: 0.0 };
         let mut last = start.clone();
@@ -65,10 +65,10 @@ impl<'a> Reference<'a> {
         Ok(reference)
     }
 
-    /// The motion at `t`, at the end or a little later too.
+    /// The motion at `t`, which may lie shortly after the end.
     ///
     /// # Errors
-    /// That of a motion that cannot be followed.
+    /// The motion cannot be computed.
     pub(super) fn at(&self, t: f64) -> Result<PhasePoint, Ended> {
         let later = self.track.partition_point(|point| point.t <= t);
         let before = self.track.get(later.saturating_sub(1)).ok_or(Ended::NonFinite)?;
@@ -87,10 +87,10 @@ impl<'a> Reference<'a> {
         Ok(error_q.max(error_p))
     }
 
-    /// How far Kahan and Li's composition with the step `h`, and DOP853, are from the reference at its end.
+    /// Errors of Kahan and Li's composition with the step `h`, and of DOP853, relative to the reference at its end.
     ///
     /// # Errors
-    /// What ended one of the runs.
+    /// The reason why one of the runs ended.
     pub(super) fn agreement(&self, h: f64) -> Result<Agreement, Ended> {
         let start = self.track.first().ok_or(Ended::NonFinite)?;
         let end = self.track.last().ok_or(Ended::NonFinite)?.t;
@@ -127,7 +127,7 @@ mod tests {
         let omega = (4.0_f64 - 0.02 * 0.02).sqrt();
         let found = reference.at(40.0).expect("the end");
         let exact = (-decay * 40.0).exp() * ((omega * 40.0).cos() + decay / omega * (omega * 40.0).sin());
-        // Measured 3.4e-14; what the runs say 3.7e-14.
+        // Measured 3.4e-14; the runs estimate 3.7e-14.
         let error = (found.q[0] - exact).abs();
         assert!(error < 4e-14 && error < agreement.floor(), "{error:e}, {agreement:?}");
 
@@ -140,7 +140,7 @@ mod tests {
         let exact = [anomaly.cos() - 0.6, 0.8 * anomaly.sin()];
         let found = reference.at(20.0).expect("the end");
         let error = (found.q[0] - exact[0]).abs().max((found.q[1] - exact[1]).abs());
-        // Measured 1.4e-13; what the runs say 3.0e-13.
+        // Measured 1.4e-13; the runs estimate 3.0e-13.
         assert!(error < 2e-13 && error < agreement.floor(), "{error:e}, {agreement:?}");
     }
 }

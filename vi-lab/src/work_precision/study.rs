@@ -1,6 +1,6 @@
 //! Every method at every setting, on one system: errors, evaluations and times.
 //!
-//! In: a system, where it starts, its usual step. Out: [`Findings`]. All but the seconds is the same in every run.
+//! In: a system, its initial state, its default step. Out: [`Findings`]. Everything except the seconds is reproducible.
 
 use super::clock;
 use super::drift::{self, Drift};
@@ -14,27 +14,27 @@ use vi_runs::ready::Entry;
 use vi_runs::rival::Ended;
 use vi_runs::system::System;
 
-/// Usual steps up to the end of the runs whose errors are measured.
+/// Number of default steps in the runs for errors.
 const STEPS: f64 = 4000.0;
-/// Steps of a ladder run from so many doublings of the usual one to the [`finest`].
+/// The ladder of steps extends from this number of doublings of the default step to [`finest`].
 const COARSEST: i32 = 3;
-/// How often each run is timed.
+/// Number of timed repetitions.
 const ROUNDS: u32 = 7;
-/// Tolerances of DOP853, as powers of √10: by each its steps change by a seventh.
+/// Tolerances of DOP853, as powers of √10; each changes the steps by a seventh.
 const TOLERANCES: core::ops::RangeInclusive<i32> = -28..=-6;
 
-/// What was found.
+/// Results of the comparison.
 #[derive(Clone, Debug)]
 pub(super) struct Findings {
     /// Time at which errors are taken.
     pub(super) until: f64,
-    /// How well the reference is known there.
+    /// Accuracy of the reference there.
     pub(super) agreement: Agreement,
     /// Every run.
     pub(super) runs: Vec<Run>,
     /// Energy errors over the long time.
     pub(super) drifts: Vec<Drift>,
-    /// Whether the energy is conserved, and the long time long.
+    /// Whether the energy is conserved, so that the long time is long.
     pub(super) conserved: bool,
     /// The long time.
     pub(super) long: f64,
@@ -47,16 +47,16 @@ pub(super) struct Run {
     pub(super) method: Method,
     /// Length of its step, or its tolerance.
     pub(super) setting: f64,
-    /// What it cost and how far off it was, or why it ended.
+    /// Its cost and error, or why it ended.
     pub(super) outcome: Result<Point, Ended>,
 }
 
-/// What a run cost, and how far off it was.
+/// Cost and error of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Point {
-    /// Error of the state reached; see [`Reference`].
+    /// Error of the final state; see [`Reference`].
     pub(super) error: f64,
-    /// Evaluations of the equations; unknown of a program elsewhere.
+    /// Evaluations of the equations; unknown for an external program.
     pub(super) evaluations: Option<u64>,
     /// Seconds of the fastest repetition.
     pub(super) seconds: f64,
@@ -78,19 +78,19 @@ impl Findings {
     }
 }
 
-/// Halvings of the usual step to the finest one of a ladder: steps of many degrees of freedom take long.
+/// Number of halvings from the default step to the finest one; fewer for many degrees of freedom, whose steps are slow.
 fn finest(coordinates: usize, quick: bool) -> i32 {
     let doublings = i32::try_from(coordinates.ilog2()).unwrap_or(0);
     if quick { 1 } else { (5 - doublings).max(1) }
 }
 
-/// Rungs of a ladder from one step to half of it. Errors of Gauss steps change by up to 60 000 there: with two rungs the least time of an error would be off by
-/// two fifths.
+/// Number of steps per factor of 2 in a ladder. Errors of Gauss methods change by up to 60 000 in this interval: with
+/// two steps the least time for an error would be off by two fifths.
 fn rungs(method: Method) -> i32 {
     if matches!(method, Method::Gauss(_)) { 4 } else { 2 }
 }
 
-/// The settings of a method, coarse to fine. Methods that divide a step into parts take as much longer ones.
+/// The settings of a method, coarse to fine. Methods with substeps take longer steps.
 fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
     if method == Method::Rival {
         return TOLERANCES.rev().map(|power| 10_f64.powf(0.5 * f64::from(power))).collect();
@@ -103,11 +103,11 @@ fn settings(method: Method, until: f64, finest: i32) -> Vec<f64> {
         .collect()
 }
 
-/// The comparison of all methods on the system of an entry, from where the entry starts; with `quick`, fewer and shorter runs,
-/// each timed once.
+/// The comparison of all methods on the system of an entry, from its initial state; with `quick`, fewer and shorter
+/// runs, each timed once.
 ///
 /// # Errors
-/// What ended the reference.
+/// The reason why the reference ended.
 pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> Result<Findings, Ended> {
     let system = entry.system.as_ref();
     let start = PhasePoint { t: 0.0, q: entry.q.clone(), v: entry.v.clone() };
@@ -127,7 +127,7 @@ pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> R
     }
     time(system, &start, until, &mut runs, if quick { 1 } else { ROUNDS }, progress);
     let conserved = system.conserves_energy();
-    // A thousand times as long with one degree of freedom, and as much work with many.
+    // A thousand times as long for one degree of freedom, with equal work for many.
     let longer = match (conserved, quick) {
         (false, _) => 1,
         (true, true) => 5,
@@ -140,7 +140,7 @@ pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> R
     Ok(Findings { until, agreement, runs, drifts, conserved, long })
 }
 
-/// Runs that [`findings`] makes, for a bar.
+/// Number of runs of [`findings`], for a progress bar.
 pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
     let finest = finest(entry.q.len(), quick);
     let settings: usize = Method::ALL.into_iter().map(|method| settings(method, STEPS * entry.h, finest).len()).sum();
@@ -148,7 +148,7 @@ pub(super) fn length(entry: &Entry, quick: bool) -> u64 {
     (1 + rounds) * settings as u64 + Method::ALL.len() as u64 + 2
 }
 
-/// Error and evaluations of one run; its times are still to be taken.
+/// Error and evaluations of one run, without its times.
 fn untimed(system: &dyn System, task: &Task<'_>, reference: &Reference<'_>) -> Result<Point, Ended> {
     let evaluations = Cell::new(0);
     let state = task.reached(system, &evaluations)?;
@@ -156,7 +156,7 @@ fn untimed(system: &dyn System, task: &Task<'_>, reference: &Reference<'_>) -> R
     Ok(Point { error, evaluations: Some(evaluations.get()), seconds: f64::INFINITY, median: f64::INFINITY })
 }
 
-/// Times every run that reaches its end, in rounds: what disturbs the machine for a while then disturbs all alike.
+/// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike.
 fn time(system: &dyn System, start: &PhasePoint, end: f64, runs: &mut [Run], rounds: u32, progress: &mut Progress) {
     let mut times = vec![Vec::new(); runs.len()];
     for _ in 0..rounds {
@@ -165,7 +165,7 @@ fn time(system: &dyn System, start: &PhasePoint, end: f64, runs: &mut [Run], rou
             progress.advance_by(1);
             if run.outcome.is_ok() {
                 let task = Task { start, end, method: run.method, setting: run.setting };
-                // Once unwatched: another method's code was the last to run.
+                // A first run without timing restores caches after another method.
                 core::hint::black_box(task.timed(system).is_ok());
                 times.push(clock::seconds(|| task.timed(system)));
             }
@@ -179,8 +179,8 @@ fn time(system: &dyn System, start: &PhasePoint, end: f64, runs: &mut [Run], rou
     }
 }
 
-/// The order at which errors fall with the step: the slope over the finest steps whose error stands well above `floor`, those up to [`FITTED`] times the finest of them;
-/// none where fewer than four are.
+/// The convergence order: the slope over the finest steps whose error exceeds `floor` clearly, up to [`FITTED`] times
+/// the finest of them; `None` for fewer than four.
 pub(super) fn fitted_order(points: impl Iterator<Item = (f64, Point)>, floor: f64) -> Option<f64> {
     let clear: Vec<(f64, f64)> =
         points.map(|(h, point)| (h, point.error)).filter(|(_, error)| (30.0 * floor..1e-2).contains(error)).collect();
@@ -190,7 +190,8 @@ pub(super) fn fitted_order(points: impl Iterator<Item = (f64, Point)>, floor: f6
     (fitted.len() >= 4).then(|| order(fitted))
 }
 
-/// Steps over which an order is fitted, the longest one over the shortest: three rungs of two to a doubling, which are 2.83 but for the whole number of steps.
+/// Ratio of the longest to the shortest step in a fit: three steps of two per factor of 2, 2.83 up to rounding of the
+/// number of steps.
 const FITTED: f64 = 2.9;
 
 #[cfg(test)]
@@ -209,7 +210,7 @@ mod tests {
     fn the_fitted_orders_are_those_of_the_methods() {
         let found = quick("pendulum", &[1.0]);
         let floor = found.agreement.floor();
-        // Those of eight stages are exact at once.
+        // Gauss methods of eight stages are exact at once.
         let [fixed, four, six, eight, gauss, _, energy, _] = Method::ALL;
         let orders = [(fixed, 2.0), (four, 4.0), (six, 6.0), (eight, 8.0), (gauss, 8.0), (energy, 2.0)];
         for (method, order) in orders {
@@ -220,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_run_that_ends_says_why() {
-        // Across the barrier the energy-preserving step does not exist everywhere; the other methods go on.
+        // Across the barrier the energy-preserving step does not always exist; the other methods continue.
         let found = quick("double-well", &[1.05]);
         for run in &found.runs {
             let ended = matches!(run.outcome, Err(Ended::Step(StepError::NoForwardStep { .. })));

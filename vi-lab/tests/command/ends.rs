@@ -13,7 +13,8 @@ fn oscillator(options: &[&str]) -> Vec<Vec<f64>> {
 
 #[test]
 fn a_run_ends_at_the_time_that_is_asked_for() {
-    // Each with how far off its last coordinate may be: measured 5.7e-3, 5.7e-6, 4.3e-8, 1.6e-11, 2.0e-12, 0, 1.2e-2, 5.7e-3, 8.5e-6, 5.5e-9.
+    // Each with the error of its last coordinate: measured 5.7e-3, 5.7e-6, 4.3e-8, 1.6e-11, 2.0e-12, 0, 1.2e-2, 5.7e-3,
+    // 8.5e-6, 5.5e-9.
     for (method, tolerance) in [
         ("fixed", 6e-3),
         ("suzuki-4", 6e-6),
@@ -35,7 +36,7 @@ fn a_run_ends_at_the_time_that_is_asked_for() {
             let [.., before, last] = &rows[..] else { panic!("{method:?}: {rows:?}") };
             let end: f64 = until.parse().expect("a number");
             assert_eq!(last[0].to_bits(), end.to_bits(), "{method:?}: {last:?}");
-            // The last step is as long as is left, and no interval of the others.
+            // The last step is shortened, and its interval differs from the others.
             assert!((last[5] - (end - before[0])).abs() < 1e-15 && last[5].abs() < 0.3, "{method:?}: {last:?}");
             assert!(last[4].is_nan(), "{method:?}: {last:?}");
             let error = (last[1] - end.cos()).abs();
@@ -49,7 +50,7 @@ fn steps_that_lead_to_the_end_are_those_of_the_run() {
     for method in ["fixed", "gauss", "kahan-li-6"] {
         let until = oscillator(&["--method", method, "--h", "0.1", "--until", "1"]);
         let steps = oscillator(&["--method", method, "--h", "0.1", "--steps", "10"]);
-        // But for the time, which rounding may have taken an ulp from.
+        // Except for the time, which rounding may have changed by an ulp.
         let without_time = |rows: &[Vec<f64>]| rows.iter().map(|row| row[1..].to_vec()).collect::<Vec<_>>();
         assert_eq!(bits(&without_time(&until)), bits(&without_time(&steps)), "{method}");
         let [.., last] = &until[..] else { panic!("{until:?}") };
@@ -61,7 +62,7 @@ fn steps_that_lead_to_the_end_are_those_of_the_run() {
 fn the_last_row_is_the_end_whatever_every_says() {
     let rows = oscillator(&["--method", "gauss", "--h", "0.3", "--until", "1", "--every", "3"]);
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
-    // 0.9 is three steps, with what rounding takes from them.
+    // 0.9 is three steps up to rounding.
     assert!(times.len() == 3 && (times[1] - 0.9).abs() < 2e-16 && times[2].to_bits() == 1.0_f64.to_bits(), "{times:?}");
     // Steps in transformed time.
     let run = ["run", "kepler", "--method", "gauss", "--dtau", "0.3", "--until", "1"];
@@ -70,7 +71,7 @@ fn the_last_row_is_the_end_whatever_every_says() {
     let rows = super::rows(&csv);
     let [.., before, last] = &rows[..] else { panic!("{csv}") };
     assert_eq!(last[0].to_bits(), 1.0_f64.to_bits());
-    // By short steps in time: measured 4.4e-16.
+    // With short steps in time: measured 4.4e-16.
     let (_, csv, _) = lab(&["run", "kepler", "--method", "gauss", "--h", "0.01", "--until", "1"]);
     let exact = super::rows(&csv).pop().expect("rows");
     let error = (1..5).map(|column| (last[column] - exact[column]).abs()).fold(0.0, f64::max);
@@ -102,6 +103,6 @@ fn a_sweep_ends_its_runs_as_a_run_does() {
 fn an_end_before_the_first_node_is_refused() {
     assert_refused(&[(
         &["run", "kepler", "--method", "energy", "--h", "0.01", "--until", "0.001"],
-        "the first node, at t = 0.005, lies beyond --until",
+        "the first node, at t = 0.005, is after --until",
     )]);
 }

@@ -1,4 +1,4 @@
-//! Inputs and files that are not what they seem.
+//! Misleading inputs and files.
 
 use super::lab;
 use super::sweep::Folder;
@@ -48,7 +48,7 @@ fn what_is_read_must_be_a_file() {
     };
     let [scene, source, rival, part] = ["a.toml", "a.rs", "kepler.csv", "a.csv.part"].map(pipe);
     let output = folder.at("a.csv");
-    // Each would wait for a writer for ever.
+    // Each would wait forever for a writer.
     let cases: [(&[&str], &str); 6] = [
         (&["run", &scene], &scene),
         (&["sweep", &scene, "-o", &output], &scene),
@@ -60,7 +60,7 @@ fn what_is_read_must_be_a_file() {
     for (arguments, file) in cases {
         let (status, output, errors) = lab(arguments);
         assert_eq!((status, output.as_str()), (Some(2), ""), "{arguments:?}");
-        assert_eq!(errors, format!("error: {file} is no regular file; give the name of one\n"), "{arguments:?}");
+        assert_eq!(errors, format!("error: {file} is not a regular file; name a regular file\n"), "{arguments:?}");
     }
     // Chunks are files in a folder.
     let sweep = || lab(&["sweep", &folder.scene(), "-o", &output]);
@@ -68,23 +68,26 @@ fn what_is_read_must_be_a_file() {
     let refused = |message: String| (Some(2), String::new(), format!("error: {message}\n"));
     assert_eq!(sweep(), refused(format!("{part} is not a folder; remove it, or name another output")));
     let (status, _, errors) = merge();
-    assert!(status == Some(2) && errors.starts_with(&format!("error: {part} has no chunks of a sweep: ")), "{errors}");
+    assert!(
+        status == Some(2) && errors.starts_with(&format!("error: {part} contains no chunks of a sweep: ")),
+        "{errors}"
+    );
     fs::remove_file(&part).expect("the pipe goes");
     fs::create_dir(&part).expect("a folder");
     let lock = pipe("a.csv.part/lock");
-    assert_eq!(sweep(), refused(format!("{lock} is no regular file; give the name of one")));
+    assert_eq!(sweep(), refused(format!("{lock} is not a regular file; name a regular file")));
     fs::remove_file(lock).expect("the pipe goes");
     let heading = pipe("a.csv.part/sweep.json");
-    let no_file = format!("{heading} is no regular file; give the name of one");
+    let no_file = format!("{heading} is not a regular file; name a regular file");
     for told in [sweep(), merge()] {
-        assert_eq!(told, refused(format!("{part} has no chunks of a sweep: {no_file}")));
+        assert_eq!(told, refused(format!("{part} contains no chunks of a sweep: {no_file}")));
     }
     fs::remove_file(heading).expect("the pipe goes");
-    // The description is there after a shard without chunks.
+    // After a shard without chunks the description exists.
     let (status, _, errors) = lab(&["sweep", &folder.scene(), "-o", &output, "--shard", "0/2"]);
     assert_eq!((status, errors.as_str()), (Some(0), ""));
     let chunk = pipe("a.csv.part/0.csv");
-    assert_eq!(merge(), refused(format!("{chunk} is no regular file; give the name of one")));
+    assert_eq!(merge(), refused(format!("{chunk} is not a regular file; name a regular file")));
     let (status, _, errors) = sweep();
     assert_eq!((status, errors.as_str()), (Some(0), ""), "what is no chunk is made again");
 }

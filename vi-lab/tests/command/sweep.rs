@@ -1,4 +1,4 @@
-//! Sweeps: shards against the whole, processes that end early, what is kept of a run, wrong input, a scheduler.
+//! Sweeps: shards against the whole, interrupted processes, results of a run, wrong input, a scheduler.
 
 use super::{array, bits, lab, path, rows, send, temporary};
 use std::collections::BTreeMap;
@@ -11,13 +11,13 @@ use std::time::Duration;
 /// Names and bytes of chunks.
 type Chunks = BTreeMap<String, Vec<u8>>;
 
-/// The names of the files of a folder; none if it is not there.
+/// The names of the files in a folder; empty if it does not exist.
 fn names(folder: &Path) -> Vec<String> {
     let files = fs::read_dir(folder).into_iter().flatten().flatten();
     files.map(|file| file.file_name().into_string().expect("text")).collect()
 }
 
-/// A folder for one test, with a scene in it; it goes with the value.
+/// A folder for one test with a scene, removed on drop.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -47,7 +47,7 @@ impl Folder {
         fs::read(self.0.join(name)).expect("the file")
     }
 
-    /// Whether a file is left that stood in for another.
+    /// Whether a temporary file is left.
     fn has_temporary(&self) -> bool {
         names(&self.0).iter().any(|name| name.contains(".tmp"))
     }
@@ -64,7 +64,7 @@ impl Folder {
         String::from_utf8(self.read(name)).expect("text")
     }
 
-    /// A sweep of its scene, or of a shard of it, that succeeds.
+    /// A successful sweep of its scene, or of a shard.
     fn sweep(&self, output: &str, shard: &[&str]) -> String {
         let (scene, output) = (self.scene(), self.at(output));
         let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
@@ -72,14 +72,14 @@ impl Folder {
         said
     }
 
-    /// Whether the tables of a sweep of `MIXED` are those of one that was not divided.
+    /// Whether the tables of a sweep of `MIXED` equal those of an undivided one.
     fn is_whole(&self, name: &str, what: &str) {
         for file in ["csv", "section.csv", "series.csv", "npy", "section.npy", "series.npy", "npy.json"] {
             assert!(self.read(&format!("{name}.{file}")) == self.read(&format!("whole.{file}")), "{file} of {what}");
         }
     }
 
-    /// A merge of parts; status and what was said on standard error.
+    /// Merges parts; returns status and standard error.
     fn merge(&self, parts: &[&str], output: &str) -> (Option<i32>, String) {
         let parts: Vec<String> = parts.iter().map(|part| self.at(part)).collect();
         let output = self.at(output);
@@ -89,7 +89,7 @@ impl Folder {
         (status, errors.replace(&self.at(""), ""))
     }
 
-    /// What a sweep says that is refused.
+    /// The message of a rejected sweep.
     fn refused(&self, entries: &str, arguments: &[&str]) -> String {
         fs::write(self.scene(), format!("system = \"kepler\"\n{entries}")).expect("a scene");
         let (scene, output) = (self.scene(), self.at("refused.csv"));
@@ -105,14 +105,14 @@ impl Drop for Folder {
     }
 }
 
-/// Starts the command with one thread: the work left does not depend on the number of cores.
+/// Starts the command with one thread: the remaining work does not depend on the number of cores.
 fn start(arguments: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_vi-lab"));
     command.args(arguments).env("RAYON_NUM_THREADS", "1");
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts")
 }
 
-/// Runs that reach their end and runs that do not, with all tables: 48 of them.
+/// 48 runs, completed and failed, with all tables.
 const MIXED: &str = "
 system = \"double-well\"
 method = \"energy\"
@@ -131,7 +131,7 @@ keep = [\"ending\", \"end\", \"extremes\", \"energy\", \"series\"]
 section = { coordinate = \"q\", at = 0.75, direction = \"both\" }
 ";
 
-/// Runs of 20000 steps, each a chunk.
+/// Runs of 20000 steps, one per chunk.
 const LONG: &str = "
 system = \"double-well\"
 method = \"energy\"
@@ -140,7 +140,7 @@ steps = 20000
 over = [{ name = \"q\", from = 0.71, to = 0.75, count = 80 }]
 ";
 
-/// More runs than can be taken, 200 in a chunk.
+/// More runs than can be computed, 200 per chunk.
 const ENDLESS: &str = "
 system = \"kepler\"
 steps = 1000
@@ -167,19 +167,19 @@ fn shards_are_the_whole_byte_for_byte() {
         }
         folder.is_whole("merged", &format!("{count} shards"));
     }
-    // Machines without a common file system have folders of their own. The number of shards may change.
+    // Machines without a common file system have their own folders. The number of shards may change.
     for (output, shard) in [("a.csv", "0/3"), ("b.csv", "2/3"), ("b.csv", "1/2")] {
         folder.sweep(output, &["--shard", shard]);
     }
-    let missing = "chunk 16 of 48 is missing, runs 16 to 16; `vi-lab sweep` makes it";
-    let expected = (Some(2), format!("error: not all runs are there: {missing}\n"));
+    let missing = "chunk 16 of 48 is missing, runs 16 to 16; `vi-lab sweep` computes it";
+    let expected = (Some(2), format!("error: {missing}\n"));
     assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], "c.csv"), expected);
     folder.sweep("a.csv", &["--shard", "0/2"]);
     for output in ["c.csv", "c.npy"] {
         assert_eq!(folder.merge(&["b.csv.part", "a.csv.part"], output), (Some(0), String::new()));
     }
     folder.is_whole("c", "two folders");
-    // Without --shard the sweep makes what is missing, merges and removes the folder.
+    // Without --shard the sweep computes the missing chunks, merges and removes the folder.
     for output in ["b.csv", "b.npy"] {
         folder.sweep(output, &[]);
     }
@@ -212,7 +212,7 @@ fn an_item_is_the_run_alone_and_a_failure_is_recorded() {
         let alone = rows(&csv);
         let kept: Vec<f64> = line.split(',').skip(6).take(6).map(|entry| entry.parse().expect("a number")).collect();
         assert_eq!(bits(&[kept]), bits(&alone[alone.len() - 1..]), "{line}");
-        // Every 30th node and the last; the same rows as those of the series.
+        // Every 30th node and the last; the same rows as in the series.
         let number = f64::from(u8::try_from(item).expect("a few")).to_bits();
         let thinned: Vec<Vec<f64>> =
             series.iter().filter(|row| row[0].to_bits() == number).map(|row| row[1..].to_vec()).collect();
@@ -317,7 +317,9 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
         assert_eq!(ended.code(), status, "{errors}");
         if status.is_some() {
             assert!(
-                errors.contains(" of 80 chunks, from which the same command goes on; the output up to there is whole"),
+                errors.contains(
+                    " of 80 chunks; the same command resumes from them; the output up to this point is complete"
+                ),
                 "{errors}"
             );
         }
@@ -338,7 +340,7 @@ fn a_process_that_ends_early_loses_its_chunks_and_repeats_nothing() {
     assert!(folder.text("killed.csv") == folder.text("whole.csv") && !folder.0.join(part).exists());
 }
 
-/// Six runs of 4, 8, … 128 steps, each in a chunk that is as long as its series.
+/// Six runs of 4, 8, … 128 steps, each in a chunk of the length of its series.
 const GROWING: &str = "
 system = \"double-well\"
 until = 1.0
@@ -353,7 +355,8 @@ fn a_disk_that_is_full_keeps_the_chunks_before() {
     let folder = Folder::new("full-sweep", GROWING);
     folder.sweep("whole.csv", &["--shard", "0/1"]);
     let whole = folder.chunks("whole.csv.part");
-    // 20 blocks of 512 bytes: more than five of the chunks and the heading have, less than the last chunk and the table of the series.
+    // 20 blocks of 512 bytes: more than five of the chunks and the heading, less than the last chunk and the table of
+    // the series.
     let lengths: Vec<usize> = whole.values().map(Vec::len).collect();
     assert!(lengths[4] < 10240 && lengths[5] > 10240, "{lengths:?}");
     let limited = "trap '' XFSZ; ulimit -f 20; exec \"$0\" \"$@\"";
@@ -367,7 +370,7 @@ fn a_disk_that_is_full_keeps_the_chunks_before() {
     let part = folder.at("full.csv.part");
     let (status, errors) = run(&["sweep", &scene, "-o", &output]);
     assert_eq!((status, errors.lines().count()), (Some(1), 1), "{errors}");
-    let advice = "the other chunks are whole; once this is mended, the same command goes on from them\n";
+    let advice = "the other chunks are complete; correct the error, then the same command resumes from them\n";
     assert!(errors.starts_with(&format!("error: {part}/5.csv: ")) && errors.ends_with(advice), "{errors}");
     let kept = folder.chunks("full.csv.part");
     assert!(kept.len() == 5 && kept.iter().all(|(name, chunk)| whole[name] == *chunk));
@@ -397,7 +400,7 @@ fn a_second_process_is_refused_while_the_first_works() {
         sleep(Duration::from_millis(1));
     }
     let second = lab(&["sweep", &scene, "-o", &output]);
-    let message = format!("error: another process works on {}; wait for it\n", folder.at(part));
+    let message = format!("error: another process uses {}; wait for it\n", folder.at(part));
     assert_eq!(second, (Some(2), String::new(), message));
     let before = folder.chunks(part);
     while folder.chunks(part).len() < before.len() + 2 {
@@ -417,7 +420,7 @@ fn a_sweep_of_any_length_starts_in_bounded_memory_and_goes_on() {
         "system = \"kepler\"\nsteps = 1000\n[sweep]\nover = [{ name = \"x\", uniform = [0.9, 1.1] }]\nsamples = 1e15\n";
     let folder = Folder::new("endless", scene);
     let (scene, output, part) = (folder.scene(), folder.at("a.csv"), "a.csv.part");
-    // A bit for each of the chunks would be 300 times this limit of 2 GB.
+    // One bit per chunk would be 300 times this limit of 2 GB.
     let limited = "ulimit -v 2000000; exec \"$0\" \"$@\"";
     let mut before = Chunks::new();
     for _ in 0..2 {
@@ -434,15 +437,15 @@ fn a_sweep_of_any_length_starts_in_bounded_memory_and_goes_on() {
         let Output { status, stderr, .. } = child.wait_with_output().expect("the command ends");
         let errors = String::from_utf8(stderr).expect("text");
         assert_eq!(status.code(), Some(130), "{errors}");
-        assert!(errors.contains(" of 5000000000000 chunks, from which the same command goes on"), "{errors}");
+        assert!(errors.contains(" of 5000000000000 chunks; the same command resumes from them"), "{errors}");
         let after = folder.chunks(part);
         assert!(before.iter().all(|(name, chunk)| after[name] == *chunk));
         before = after;
     }
     let missing = (0..1000).find(|number| !before.contains_key(&format!("{number}.csv"))).expect("a chunk");
     let runs = format!("runs {} to {}", 200 * missing, 200 * missing + 199);
-    let expected = format!("chunk {missing} of 5000000000000 is missing, {runs}; `vi-lab sweep` makes it");
-    assert_eq!(folder.merge(&[part], "merged.csv"), (Some(2), format!("error: not all runs are there: {expected}\n")));
+    let expected = format!("chunk {missing} of 5000000000000 is missing, {runs}; `vi-lab sweep` computes it");
+    assert_eq!(folder.merge(&[part], "merged.csv"), (Some(2), format!("error: {expected}\n")));
 }
 
 #[test]
@@ -479,7 +482,7 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
         (good.replacen("series,7,0.025,", "series,7,zero,", 1), 2, "`zero` cannot be an entry of the column `t`"),
         (good.replacen("series,7,0.025,", "series,7,", 1), 2, "the row of `series` has 6 columns instead of 7"),
         (good.replacen("\nseries,", "\nseries,7,0.0,0.0,0.0,0.0,0.0,0.0\nseries,", 1), lines + 1, counts),
-        (good.trim_end().to_owned(), lines, "the line is cut off or no text"),
+        (good.trim_end().to_owned(), lines, "the line is truncated or not text"),
     ] {
         assert!(bad != good);
         fs::write(&path, bad).expect("the chunk is written");
@@ -489,7 +492,7 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
         assert_eq!((status, errors.replace(&folder.at(""), "")), expected, "{said}");
         assert!(!folder.0.join("a.csv").exists() && !folder.has_temporary());
     }
-    // What is no chunk of this sweep is refused, and made again. So is one that is not there.
+    // Files that are not chunks of this sweep are rejected and rewritten, as are missing ones.
     fs::write(&path, good.replacen("chunk 7", "chunk 8", 1)).expect("the chunk is written");
     let another = format!("{part}/7.csv, line 1: this is a chunk of another sweep, or another chunk; {remedy}");
     assert_eq!(folder.merge(&[part], "a.csv"), (Some(2), format!("error: {another}\n")));
@@ -515,11 +518,8 @@ fn chunks_that_do_not_belong_together_are_refused() {
     let other = format!("its sweep is {}, not {}", sweep("0.76"), sweep("0.75"));
     let remedy = "remove other.part, and run `vi-lab sweep` again";
     for (parts, message) in [
-        (vec![first, second], format!("{second} is of another sweep than {first}: {other}")),
-        (
-            vec![first],
-            "not all runs are there: chunk 0 of 10 is missing, runs 0 to 0; `vi-lab sweep` makes it".to_owned(),
-        ),
+        (vec![first, second], format!("{second} belongs to another sweep than {first}: {other}")),
+        (vec![first], "runs are missing: chunk 0 of 10 is missing, runs 0 to 0; `vi-lab sweep` computes it".to_owned()),
         (
             vec!["other.part"],
             format!("other.part/sweep.json does not describe a sweep of this version of vi-lab; {remedy}"),
@@ -528,13 +528,13 @@ fn chunks_that_do_not_belong_together_are_refused() {
         assert_eq!(folder.merge(&parts, "merged.csv"), (Some(2), format!("error: {message}\n")));
     }
     let (status, errors) = folder.merge(&["none.part"], "merged.csv");
-    let expected = "error: none.part has no chunks of a sweep: none.part/sweep.json: ";
+    let expected = "error: none.part contains no chunks of a sweep: none.part/sweep.json: ";
     assert!(status == Some(2) && errors.starts_with(expected), "{errors}");
     assert_eq!(
         folder.merge(&[first], "merged.xls"),
         (Some(2), "error: the output `merged.xls` must end in .csv, .npy or .parquet\n".to_owned())
     );
-    // Chunks of another sweep, under the right names.
+    // Chunks of another sweep with valid names.
     for number in 0..5 {
         let name = format!("{number}.csv");
         fs::copy(folder.at(&format!("{second}/{name}")), folder.at(&format!("{first}/{name}"))).expect("a copy");
@@ -546,11 +546,12 @@ fn chunks_that_do_not_belong_together_are_refused() {
     fs::write(folder.scene(), &short).expect("a scene");
     assert!(folder.sweep("a.csv", &["--shard", "0/2"]).contains("a.csv.part: 5 runs, all reached their end"));
     assert_eq!(folder.merge(&[first], "merged.csv"), (Some(0), String::new()));
-    // A sweep goes on from its own chunks only.
+    // A sweep resumes only from its own chunks.
     let part = "refused.csv.part";
     fs::rename(folder.at(second), folder.at(part)).expect("a folder");
     let over = "[sweep]\nover = [{ name = \"v_y\", values = [1.0] }]\n";
-    let message = |fact: &str| format!("{part} is of another sweep: its {fact}; remove it, or name another output");
+    let message =
+        |fact: &str| format!("{part} belongs to another sweep: its {fact}; remove it, or name another output");
     for shard in [&[][..], &["--shard", "1/2"]] {
         assert_eq!(folder.refused(over, shard), message("system is `DoubleWell`, not `Kepler`"));
     }
@@ -565,7 +566,7 @@ fn wrong_sweeps_are_one_line_and_status_2() {
     let folder = Folder::new("wrong", "");
     let over = "[sweep]\nover = [{ name = \"x\", values = [1.0] }]\n";
     for (entries, message) in [
-        ("", "scene.toml is no scene file with a table [sweep]; docs/cluster.md has one"),
+        ("", "scene.toml is not a scene file with a table [sweep]; docs/cluster.md has an example"),
         ("[sweep]\n", "scene.toml: line 2: missing field `over`"),
         (
             "[sweep]\nover = []\nkep = []\n",
@@ -573,9 +574,9 @@ fn wrong_sweeps_are_one_line_and_status_2() {
         ),
         (
             "[sweep]\nover = [{ name = \"z\", values = [1.0] }]\n",
-            "there is no quantity `z` to vary; there are x, y, v_x, v_y, mu, h",
+            "there is no quantity `z` to vary; the quantities are x, y, v_x, v_y, mu, h",
         ),
-        (&format!("{over}keep = []\n"), "`keep` names nothing; leave it out to keep how each run ends"),
+        (&format!("{over}keep = []\n"), "`keep` is empty; remove it to keep the end of each run"),
         (
             &format!("{over}section = {{ coordinate = \"z\" }}\n"),
             "the section is of a coordinate that there is not, `z`; there are x, y",
@@ -599,14 +600,14 @@ fn wrong_sweeps_are_one_line_and_status_2() {
     fs::write(folder.scene(), format!("system = \"kepler\"\n{over}")).expect("a scene");
     let scene = folder.scene();
     for (arguments, message) in [
-        (vec!["run", &scene], "the scene has a [sweep]: `vi-lab sweep` takes all its runs, and --item K one of them"),
+        (vec!["run", &scene], "the scene has a [sweep]: use `vi-lab sweep` for all runs, or --item K for one"),
         (vec!["run", &scene, "--item", "1"], "there is no --item 1: the runs are numbered from 0 to 0"),
         (vec!["run", "kepler", "--item", "1"], "only a scene with [sweep] has an --item"),
         (
             vec!["sweep", "kepler", "-o", "x.csv"],
-            "kepler is no scene file with a table [sweep]; docs/cluster.md has one",
+            "kepler is not a scene file with a table [sweep]; docs/cluster.md has an example",
         ),
-        (vec!["sweep", &scene, "-o", "no/x.csv"], "there is no folder `no` for the output `no/x.csv`; make it first"),
+        (vec!["sweep", &scene, "-o", "no/x.csv"], "there is no folder `no` for the output `no/x.csv`; create it first"),
     ] {
         assert_eq!(lab(&arguments), (Some(2), String::new(), format!("error: {message}\n")));
     }

@@ -1,30 +1,30 @@
-//! Axes: the range that shows the data, ticks at round numbers, labels.
+//! Axes: a range around the data, ticks at round numbers, labels.
 //!
-//! In: the values of all series. Out: a [`Ruler`], in whose coordinate (the value, or its log10) the figure is drawn.
+//! In: the values of all series. Out: a [`Ruler`] with the coordinate of the figure: the value, or its log10.
 
 use crate::numbers::superscript;
 
-/// What an axis shows.
+/// An axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// Text beside the axis, with the unit or the scale.
+    /// Text beside the axis with the unit or the scale.
     pub label: String,
     /// Linear or logarithmic.
     pub scale: Scale,
-    /// The range, where it is not taken from the data.
+    /// The range, if it does not follow from the data.
     pub range: Option<(f64, f64)>,
 }
 
-/// How values become lengths.
+/// The map from values to lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// In proportion.
+    /// Linear.
     Linear,
-    /// By log10; values that are not positive are left out.
+    /// By log10; omits values that are not positive.
     Log10,
 }
 
-/// An axis with its range, ready to be drawn.
+/// An axis with its range.
 #[derive(Clone, Debug)]
 pub(super) struct Ruler {
     /// Range in the coordinate drawn.
@@ -35,7 +35,7 @@ pub(super) struct Ruler {
 }
 
 impl Axis {
-    /// An axis in proportion.
+    /// A linear axis.
     pub fn linear(label: impl Into<String>) -> Self {
         Self { label: label.into(), scale: Scale::Linear, range: None }
     }
@@ -45,13 +45,13 @@ impl Axis {
         Self { label: label.into(), scale: Scale::Log10, range: None }
     }
 
-    /// The same axis over a given range of values.
+    /// The same axis with a given range of values.
     #[must_use]
     pub fn over(self, low: f64, high: f64) -> Self {
         Self { range: Some((low, high)), ..self }
     }
 
-    /// The value at a part of the given range, from 0 at its beginning to 1 at its end; of 0 to 1 where none is given.
+    /// The value at a fraction of the given range; of 0 to 1 without a range.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         let (low, high) = self.range.unwrap_or((0.0, 1.0));
@@ -61,7 +61,7 @@ impl Axis {
         }
     }
 
-    /// The coordinate in which `value` is drawn; none where it has no place.
+    /// The coordinate of `value`; `None` if it has none.
     pub(super) fn coordinate(&self, value: f64) -> Option<f64> {
         let coordinate = match self.scale {
             Scale::Linear => value,
@@ -71,7 +71,7 @@ impl Axis {
         coordinate.is_finite().then_some(coordinate)
     }
 
-    /// The ruler for these coordinates, with a margin around data but none around a given range.
+    /// The ruler for these coordinates, with a margin around data but not around a given range.
     pub(super) fn ruler(&self, coordinates: impl Iterator<Item = f64>) -> Ruler {
         let given = self.range.and_then(|(low, high)| Some((self.coordinate(low)?, self.coordinate(high)?)));
         let range = given.unwrap_or_else(|| {
@@ -93,7 +93,7 @@ impl Ruler {
         Self { range, step, scale }
     }
 
-    /// The unit in which coordinates are handed to the library, which draws no range that is shorter than 2e-16 or longer than 1e18.
+    /// The unit of the coordinates passed to the library, which draws only ranges between 2e-16 and 1e18.
     pub(super) fn unit(&self) -> f64 {
         let length = self.length();
         if (1e-9..1e9).contains(&length) { 1.0 } else { 2_f64.powi(whole(length.log2())) }
@@ -104,7 +104,7 @@ impl Ruler {
         self.range.1 - self.range.0
     }
 
-    /// The ruler of so long a range around the same middle.
+    /// The ruler with this length around the same middle.
     pub(super) fn widened_to(&self, length: f64) -> Self {
         let more = (length - self.length()) / 2.0;
         Self::over((self.range.0 - more, self.range.1 + more), self.scale)
@@ -113,7 +113,7 @@ impl Ruler {
     /// Label of the tick at `coordinate`.
     pub(super) fn tick_label(&self, coordinate: f64) -> String {
         match self.scale {
-            // Ticks of a logarithmic axis stand at whole exponents.
+            // Ticks of a logarithmic axis are at whole exponents.
             Scale::Log10 => format!("10{}", superscript(whole(coordinate))),
             Scale::Linear => self.linear_label(coordinate),
         }
@@ -161,12 +161,12 @@ fn round_step(step: f64) -> f64 {
     unit * candidates.into_iter().find(|&candidate| candidate * unit >= step * (1.0 - 1e-9)).unwrap_or(10.0)
 }
 
-/// Decimals that tell neighbouring ticks apart.
+/// Number of decimals that distinguishes adjacent ticks.
 fn decimals(step: f64) -> usize {
     usize::try_from(-whole((step * (1.0 + 1e-9)).log10().floor())).unwrap_or(0)
 }
 
-/// A whole number from a coordinate that is whole but for rounding; exponents of floating-point numbers always fit.
+/// The integer of a coordinate that is whole up to rounding; exponents of floating-point numbers always fit.
 #[allow(clippy::cast_possible_truncation)]
 fn whole(value: f64) -> i32 {
     value.round() as i32

@@ -1,6 +1,6 @@
-//! Drawing: a [`Chart`] in, its SVG and CSV out.
+//! Drawing: from a [`Chart`] to its SVG and CSV.
 //!
-//! The plot area has fixed margins, so that a coordinate's pixel is known before anything is drawn: thinning needs it.
+//! The plot area has fixed margins, so that thinning knows the pixel of a coordinate.
 
 use super::axis::Ruler;
 use super::palette::Stroke;
@@ -14,10 +14,10 @@ use std::sync::Arc;
 
 /// Margins of the plot area.
 pub(super) const MARGINS: Margins = Margins { left: 88.0, right: 216.0, top: 44.0, bottom: 60.0 };
-/// The usual plot area.
+/// The default plot area.
 const AREA: Area = Area { width: 596.0, height: 330.0 };
 
-/// Space around the plot area in pixels; the legend stands on the right.
+/// Margins around the plot area in pixels; the legend is on the right.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margins {
     pub(super) left: f64,
@@ -33,7 +33,7 @@ pub(super) struct Area {
     pub(super) height: f64,
 }
 
-/// Where a chart is drawn: its axes, its plot area, the space around it.
+/// The frame of a chart: its axes, its plot area, its margins.
 struct Place {
     x: Ruler,
     y: Ruler,
@@ -41,23 +41,23 @@ struct Place {
     margins: Margins,
 }
 
-/// A series as it is drawn: coordinates for the figure, values for the table.
+/// A series in drawn form: coordinates for the figure, values for the table.
 struct Drawn<'a> {
     series: &'a Series,
     coordinates: Vec<(f64, f64)>,
     values: Vec<(f64, f64)>,
-    /// Whisker of each point: its end as drawn, and as computed; none without whiskers.
+    /// Whisker of each point: its end in the figure and its value; empty without whiskers.
     whiskers: Vec<(f64, f64)>,
 }
 
 impl Chart {
-    /// The chart as an SVG figure, and the points that it shows as a CSV table.
+    /// The chart as an SVG figure, and the drawn points as a CSV table.
     #[must_use]
     pub fn figure(&self) -> Figure {
         self.figure_over(None)
     }
 
-    /// The same over a map, whose entries come first in the legend and whose cells leave no room for a grid.
+    /// The same over a map, whose entries come first in the legend and whose cells hide the grid.
     pub(super) fn figure_over(&self, map: Option<Vec<LegendEntry>>) -> Figure {
         let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
         let x = self.x.ruler(placed.iter().flat_map(|drawn| drawn.coordinates.iter().map(|point| point.0)));
@@ -71,8 +71,7 @@ impl Chart {
         Figure { name: self.name, svg: self.svg(&drawn, &place, map), csv: self.csv(&drawn) }
     }
 
-    /// The chart as an SVG figure with a plot area and margins of one's own. Where a unit has the same length on both axes, the shorter
-    /// range is widened.
+    /// The chart as an SVG figure with a given plot area and margins. With equal aspect the shorter range is widened.
     pub(super) fn svg_in(&self, area: Area, margins: Margins) -> String {
         let placed: Vec<Drawn<'_>> = self.series.iter().map(|series| self.place(series)).collect();
         let points = || placed.iter().flat_map(|drawn| &drawn.coordinates);
@@ -87,7 +86,7 @@ impl Chart {
         self.svg(&drawn, &Place { x, y, area, margins }, None)
     }
 
-    /// The points that have a place on the axes.
+    /// The points inside the axes.
     fn place<'a>(&self, series: &'a Series) -> Drawn<'a> {
         let both = |&(x, y): &(f64, f64)| Some((self.x.coordinate(x)?, self.y.coordinate(y)?));
         let mut drawn = Drawn { series, coordinates: Vec::new(), values: Vec::new(), whiskers: Vec::new() };
@@ -95,19 +94,19 @@ impl Chart {
             let Some(coordinates) = both(point) else { continue };
             drawn.coordinates.push(coordinates);
             drawn.values.push(*point);
-            // A whisker without a place on the axis has no length.
+            // A whisker outside the axis has no length.
             let whisker = series.whiskers.get(index);
             drawn.whiskers.extend(whisker.map(|end| (self.y.coordinate(*end).unwrap_or(coordinates.1), *end)));
         }
         drawn
     }
 
-    /// Size of the plot area where both axes have ranges.
+    /// Size of the plot area, if both axes have ranges.
     pub(super) fn fixed_area(&self) -> Area {
         self.area(&self.x.ruler(core::iter::empty()), &self.y.ruler(core::iter::empty()))
     }
 
-    /// Size of the plot area: of equal aspect, as large as the usual width and 1.5 times the usual height allow.
+    /// Size of the plot area; with equal aspect, the largest within the default width and 1.5 times the default height.
     fn area(&self, x: &Ruler, y: &Ruler) -> Area {
         if !self.equal_aspect {
             return AREA;
@@ -154,12 +153,12 @@ impl Chart {
             .with_legend_box(false);
         let mut plots: Vec<Plot> = drawn.iter().flat_map(|drawn| plots(drawn, units)).collect();
         if plots.is_empty() {
-            // The library draws no axes around nothing.
+            // The library draws no axes without data.
             let ends = [(x_range.0, y_range.0), (x_range.1, y_range.1)];
             plots.push(Plot::Line(LinePlot::new().with_data(ends).with_color("none").with_stroke_width(0.0)));
         }
         let svg = SvgBackend::new().render_scene(&render_multiple(plots, layout));
-        // Names of clipping areas are the page's: two figures of different size must not share one.
+        // Clip names are global on the page: two figures must not share one.
         svg.replace("kuva-clip-", &format!("{}-clip-", self.name))
     }
 
@@ -187,12 +186,12 @@ impl Chart {
     }
 }
 
-/// The entry of a named series: its marker, or its line.
+/// The entry of a labelled series: its marker, or its line.
 fn legend_entry(series: &Series) -> Option<LegendEntry> {
     let label = series.label.clone()?;
     let Look { colour, stroke, marker, .. } = series.look;
     let shape = marker.map_or(LegendShape::Line, |(shape, _)| LegendShape::Marker(shape));
-    // The sample is ten pixels long: patterns shorter than those of the lines.
+    // The sample is ten pixels long: its patterns are shorter than those of the lines.
     let dasharray = match stroke {
         Stroke::Solid => None,
         Stroke::Dashed => Some("4 2".to_owned()),
@@ -209,7 +208,7 @@ fn line_style(stroke: Stroke) -> LineStyle {
     }
 }
 
-/// The points of a series that its place in the figure can show.
+/// The points of a series that the figure can resolve.
 fn thinned<'a>(drawn: &Drawn<'a>, x: &Ruler, y: &Ruler, area: Area) -> Drawn<'a> {
     let pixel = |ruler: &Ruler, length: f64, c: f64| (c - ruler.range.0) / (ruler.range.1 - ruler.range.0) * length;
     let pixels: Vec<(f64, f64)> =

@@ -1,9 +1,9 @@
-//! Maps: a cell per pair of values, coloured by what happened there, under the curves of a chart.
+//! Maps: a coloured cell per pair of values, under the curves of a chart.
 //!
-//! In: a [`Chart`] whose axes have ranges, and a [`Class`] per cell. Out: [`Map::figure`], in which neighbours of one class
-//! in a row are one rectangle, and a CSV matrix: the ordinates in the first column, the abscissas in the first line,
-//! classes by number. The curves of the chart, such as a boundary that theory gives, are drawn over the cells, and listed
-//! in the comments of the CSV.
+//! In: a [`Chart`] whose axes have ranges, and a [`Class`] per cell. Out: [`Map::figure`], in which adjacent cells of a
+//! class in a row form one rectangle, and a CSV matrix: the ordinates in the first column, the abscissas in the first
+//! line, classes by number. The curves of the chart, such as a theoretical boundary, are drawn over the cells and
+//! listed in comments of the CSV.
 
 use super::draw::MARGINS;
 use super::{Axis, Chart, Figure, Look, Series};
@@ -11,10 +11,10 @@ use core::fmt::Write as _;
 use kuva::prelude::{LegendEntry, LegendShape};
 use std::collections::BTreeSet;
 
-/// What a cell can show.
+/// The result in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Class {
-    /// Place in the legend, and number in the CSV.
+    /// Position in the legend, and number in the CSV.
     pub number: u8,
     /// Entry in the legend.
     pub label: &'static str,
@@ -25,7 +25,7 @@ pub struct Class {
 /// A chart over coloured cells.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// Name, title, axes with ranges, and the curves over the cells.
+    /// Name, title, axes with ranges, and curves.
     pub chart: Chart,
     /// Cells in a row.
     pub columns: usize,
@@ -33,14 +33,14 @@ pub struct Map {
     pub cells: Vec<Class>,
 }
 
-/// Values at the middles of `count` equal parts of an axis.
+/// The midpoints of `count` equal parts of an axis.
 pub fn middles(axis: &Axis, count: usize) -> impl Iterator<Item = f64> + '_ {
     #[allow(clippy::cast_precision_loss)] // some hundred cells
     let part = move |index: usize| (index as f64 + 0.5) / count as f64;
     (0..count).map(move |index| axis.at(part(index)))
 }
 
-/// A boundary that theory gives: curves that contrast with every colour of the cells, and one entry in the legend.
+/// A theoretical boundary: curves that contrast with every cell colour, and one entry in the legend.
 #[must_use]
 pub fn boundary(label: &str, curves: Vec<Vec<(f64, f64)>>) -> Vec<Series> {
     let lines = curves.clone().into_iter().enumerate().map(|(index, points)| {
@@ -62,7 +62,7 @@ impl Map {
             dasharray: None,
         });
         let Figure { name, svg, .. } = self.chart.figure_over(Some(legend.collect()));
-        // The axes are the first lines of the figure: cells lie below them, and above the white ground.
+        // The axes are the first lines of the figure: cells come below them and above the white background.
         let svg = svg.replacen("<line ", &format!("{}<line ", self.rectangles(&classes)), 1);
         Figure { name, svg, csv: self.csv(&classes) }
     }
@@ -71,8 +71,8 @@ impl Map {
         self.cells.len() / self.columns.max(1)
     }
 
-    /// A path per class: one rectangle per run of neighbours. Neighbours share their edges to the last digit, so that no
-    /// ground shows between them.
+    /// A path per class with one rectangle per run of cells. Adjacent rectangles share their edges to the last digit,
+    /// so that the background stays hidden.
     fn rectangles(&self, classes: &BTreeSet<Class>) -> String {
         let area = self.chart.fixed_area();
         #[allow(clippy::cast_precision_loss)] // some hundred cells

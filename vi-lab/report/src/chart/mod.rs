@@ -1,9 +1,9 @@
-//! Charts: named series in, one SVG figure and one CSV table of the same points out.
+//! Charts: named series in, an SVG figure and a CSV table of the same points out.
 //!
-//! In: a [`Chart`], whose series hold the values as computed, however many. Out: [`Chart::figure`], in which a series
-//! is thinned to what its width in pixels can show (`thin`); the CSV lists exactly the points drawn.
-//! A logarithmic axis is drawn as a linear axis of log10 with labels of its own, because the library's logarithmic
-//! axes clamp in silence below 1e-10. Not done here: prose, and where files go.
+//! In: a [`Chart`], whose series contain all computed values. Out: [`Chart::figure`], in which a series is thinned to
+//! its resolution in pixels (`thin`); the CSV lists exactly the drawn points. A logarithmic axis is drawn as a linear
+//! axis of log10 with custom labels, because the logarithmic axes of the library clamp silently below 1e-10. Prose and
+//! file paths are handled elsewhere.
 
 mod axis;
 mod draw;
@@ -20,7 +20,7 @@ pub use sheet::{Panel, Sheet};
 use thin::Thinning;
 pub use trace::{Sample, Trace};
 
-/// One figure: axes and what is drawn between them.
+/// A figure: axes and series.
 #[derive(Clone, Debug)]
 pub struct Chart {
     /// Stem of the file names.
@@ -33,38 +33,38 @@ pub struct Chart {
     pub y: Axis,
     /// Whether a unit has the same length on both axes, as in a phase portrait.
     pub equal_aspect: bool,
-    /// What is drawn, the first at the back.
+    /// The series, back to front.
     pub series: Vec<Series>,
 }
 
 /// One curve or cloud of points.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Entry in the legend; none for curves of the background.
+    /// Entry in the legend; `None` for background curves.
     pub label: Option<String>,
     /// Colour, stroke and marker.
     pub look: Look,
     /// How a long series is thinned.
     thinning: Thinning,
-    /// The points, in the units of the axes, before any logarithm.
+    /// The points in the units of the axes, before any logarithm.
     pub points: Vec<(f64, f64)>,
-    /// Ordinates up to which a whisker goes from each point; empty where there are none.
+    /// Ordinates of the whisker ends of the points; empty without whiskers.
     whiskers: Vec<f64>,
 }
 
-/// A figure as files hold it.
+/// A figure in its file formats.
 #[derive(Clone, Debug)]
 pub struct Figure {
     /// Stem of the file names.
     pub name: &'static str,
     /// The figure.
     pub svg: String,
-    /// The points drawn, `series,x,y`, each as computed.
+    /// The drawn points, `series,x,y`, with computed values.
     pub csv: String,
 }
 
 impl Series {
-    /// A line through a function of the abscissa: thinned to its envelope.
+    /// A line through a function of the abscissa; thinned to its envelope.
     pub fn line(label: impl Into<String>, look: Look, points: Vec<(f64, f64)>) -> Self {
         Self { label: Some(label.into()), look, thinning: Thinning::Envelope, points, whiskers: Vec::new() }
     }
@@ -79,13 +79,13 @@ impl Series {
         Self { label: Some(label.into()), look, thinning: Thinning::Curve, points, whiskers: Vec::new() }
     }
 
-    /// A curve of the background, without an entry in the legend.
+    /// A background curve without an entry in the legend.
     #[must_use]
     pub fn background(points: Vec<(f64, f64)>) -> Self {
         Self { label: None, look: Look::BACKGROUND, thinning: Thinning::Curve, points, whiskers: Vec::new() }
     }
 
-    /// The same series with a whisker at each point, up or down to the ordinate given for it.
+    /// The same series with a whisker from each point to the given ordinate.
     #[must_use]
     pub fn with_whiskers(self, whiskers: Vec<f64>) -> Self {
         Self { whiskers, ..self }

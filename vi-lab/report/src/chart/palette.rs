@@ -1,4 +1,4 @@
-//! Colours of Okabe and Ito, which colour-blind readers tell apart, with a stroke and a marker for each meaning.
+//! The palette of Okabe and Ito, distinguishable for colour-blind readers, with a stroke and a marker for each meaning.
 //!
 //! A method keeps its look in every figure. Source: Okabe and Ito, *Color universal design* (2008).
 
@@ -33,24 +33,24 @@ impl Look {
     pub const ENERGY: Self = Self::of("#D55E00", MarkerShape::Circle);
     /// The fixed-step integrator.
     pub const FIXED: Self = Self::of("#0072B2", MarkerShape::Square);
-    /// Gauss steps of few stages, and of many.
+    /// Gauss methods of few stages, and of many.
     pub const GAUSS: [Self; 2] = [
         Self { stroke: Stroke::Dashed, ..Self::of("#56B4E9", MarkerShape::Plus) },
         Self { width: 2.6, ..Self::of("#56B4E9", MarkerShape::Circle) },
     ];
-    /// A method of other makers.
+    /// A method of another library.
     pub const RIVAL: Self = Self::of("#000000", MarkerShape::Cross);
-    /// A program of other makers.
+    /// An external program.
     pub const ELSEWHERE: Self = Self { stroke: Stroke::Dashed, ..Self::of("#000000", MarkerShape::Square) };
-    /// The exact solution, or a law.
+    /// The exact solution, or a theoretical law.
     pub const EXACT: Self = Self { colour: "#333333", width: 1.4, stroke: Stroke::Dashed, marker: None };
-    /// Below [`Look::EXACT`] where the ground is coloured.
+    /// Outline of [`Look::EXACT`] on a coloured background.
     pub const HALO: Self = Self { colour: "#FFFFFF", width: 4.0, stroke: Stroke::Solid, marker: None };
-    /// What a published number says.
+    /// A published number.
     pub const PUBLISHED: Self = Self { colour: "#777777", width: 1.4, stroke: Stroke::Dotted, marker: None };
-    /// Level sets and the like.
+    /// Level sets and similar curves.
     pub const BACKGROUND: Self = Self { colour: "#C9CED6", width: 1.0, stroke: Stroke::Solid, marker: None };
-    /// Further series, in this order.
+    /// Further series in order.
     pub const OTHERS: [Self; 4] = [
         Self::of("#009E73", MarkerShape::Triangle),
         Self::of("#CC79A7", MarkerShape::Diamond),

@@ -1,16 +1,16 @@
-//! Sheets: charts side by side and below each other in one SVG.
+//! Sheets: charts in rows and columns of one SVG.
 //!
-//! In: a title, and rows of [`Panel`]s, each a chart of a given size. Out: [`Sheet::svg`], as wide as the widest row, which holds the SVG of
-//! every chart as an element of its own.
+//! In: a title, and rows of [`Panel`]s, each a chart of a given size. Out: [`Sheet::svg`], as wide as the widest row,
+//! with the SVG of every chart as a nested element.
 
 use super::Chart;
 use super::draw::{Area, Margins};
 use crate::html::escape;
 use core::fmt::Write as _;
 
-/// Height of the lines above the charts, in pixels.
+/// Height of the text above the charts, in pixels.
 const HEAD: f64 = 64.0;
-/// Letters of a line above the charts, for each pixel of its width: more would run over the edge.
+/// Characters of the text per pixel of width; longer text would overflow.
 const LETTERS_PER_PIXEL: f64 = 0.12;
 /// Space on the right of a chart without a legend, and with one.
 const RIGHT: [f64; 2] = [16.0, 96.0];
@@ -20,11 +20,11 @@ const TOP: [f64; 2] = [12.0, 40.0];
 /// Charts on one sheet.
 #[derive(Clone, Debug)]
 pub struct Sheet {
-    /// What is shown.
+    /// The subject.
     pub title: String,
-    /// The line below; one that is too long is cut.
+    /// The line below the title; truncated if too long.
     pub subtitle: String,
-    /// What made it, for readers of the file.
+    /// The origin of the file.
     pub description: String,
     /// The charts.
     pub rows: Vec<Vec<Panel>>,
@@ -35,9 +35,9 @@ pub struct Sheet {
 pub struct Panel {
     /// The chart; its name is not used.
     pub chart: Chart,
-    /// Size in pixels, with all around the plot area.
+    /// Width in pixels, including margins.
     pub width: f64,
-    /// As above.
+    /// Height in pixels, including margins.
     pub height: f64,
 }
 
@@ -61,7 +61,7 @@ impl Sheet {
         for (number, row) in self.rows.iter().enumerate() {
             let mut x = 0.0;
             for (column, panel) in row.iter().enumerate() {
-                // Names of clipping areas are the file's.
+                // Clip names are global in the file.
                 let clip = format!("panel-{number}-{column}-clip-");
                 let chart = panel.svg().replace(&format!("{}-clip-", panel.chart.name), &clip);
                 let _ = writeln!(svg, "{}", chart.replacen("<svg ", &format!("<svg x=\"{x}\" y=\"{y}\" "), 1));
@@ -88,7 +88,7 @@ impl Panel {
     }
 }
 
-/// A line that fits into so many pixels.
+/// A line truncated to this width in pixels.
 fn cut(line: &str, width: f64) -> String {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some hundred letters
     let most = (width * LETTERS_PER_PIXEL) as usize;

@@ -1,18 +1,18 @@
-//! Thinning: a million points in, what a figure of some hundred pixels can show out.
+//! Thinning: reduces a million points to the resolution of a figure.
 //!
-//! Every point that is left is one of the points given, in the given order, and the same input always leaves the same
-//! points. AFTER THIS a line has at most four points per column of pixels, a cloud at most one per cell.
+//! The result is a subset of the points in their order, and deterministic. AFTER THIS a line has at most four points
+//! per pixel column, a scatter plot at most one per cell.
 
 use std::collections::BTreeSet;
 
-/// What must survive.
+/// The feature to preserve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Thinning {
     /// A function of the abscissa: first, lowest, highest and last point of each column.
     Envelope,
-    /// A curve in the plane: points closer than half a pixel to the last one kept are dropped.
+    /// A curve in the plane: drops points closer than half a pixel to the last kept one.
     Curve,
-    /// A cloud: one point per cell of two pixels.
+    /// A scatter plot: one point per cell of two pixels.
     Cells,
 }
 
@@ -33,7 +33,7 @@ fn column(x: f64) -> i32 {
     x.floor() as i32
 }
 
-/// First, lowest, highest and last point of every run of points in one column.
+/// First, lowest, highest and last point of each run of points in one column.
 fn envelope(points: &[(f64, f64)]) -> Vec<usize> {
     let mut kept = Vec::new();
     let mut runs = points.iter().enumerate().peekable();
@@ -55,7 +55,7 @@ fn envelope(points: &[(f64, f64)]) -> Vec<usize> {
     kept
 }
 
-/// Points at least half a pixel from the last one kept; the end is always kept.
+/// Points at least half a pixel from the last kept one; the end is always kept.
 fn curve(points: &[(f64, f64)]) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     let mut last: Option<(f64, f64)> = None;

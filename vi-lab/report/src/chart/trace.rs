@@ -1,24 +1,24 @@
-//! Recording a run of any length in bounded memory, for a figure of some hundred pixels.
+//! Records a run of any length in bounded memory, for a figure.
 //!
-//! In: the points of a run one after the other. Out: [`Trace::points`], of a function of the time, with the extremes of every stretch; and
-//! [`Sample::points`], of a curve in the plane, every 2^k-th of its points. Both give all points of a run that is short. Every point that they give is
-//! one of those that were put in, in their order, and the same run always leaves the same ones.
+//! In: the points of a run in order. Out: [`Trace::points`], a function of time with the extremes of every stretch; and
+//! [`Sample::points`], every 2^k-th point of a curve in the plane. Both return all points of a short run. The result is
+//! a subset of the points in their order, and deterministic.
 
-/// The most stretches of a trace: two for each column of a wide figure.
+/// Maximum number of stretches of a trace: two per column of a wide figure.
 const STRETCHES: usize = 2048;
-/// The most points of a sample.
+/// Maximum number of points of a sample.
 const POINTS: usize = 2048;
 
-/// A function of the time: of each stretch of points the first, the lowest, the highest and the last.
+/// A function of time: the first, lowest, highest and last point of each stretch.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    /// Stretches of `1 << doublings` points each, but the last.
+    /// Stretches of `1 << doublings` points each, except the last.
     stretches: Vec<Stretch>,
     doublings: u32,
     count: u64,
 }
 
-/// Points that follow each other.
+/// Consecutive points.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     first: Point,
@@ -27,7 +27,7 @@ struct Stretch {
     last: Point,
 }
 
-/// A point and its number.
+/// A point with its index.
 #[derive(Clone, Copy, Debug)]
 struct Point {
     number: u64,
@@ -39,7 +39,7 @@ impl Stretch {
         Self { first: point, low: point, high: point, last: point }
     }
 
-    /// Both stretches as one.
+    /// Merges two stretches.
     fn joined(self, next: Self) -> Self {
         Self {
             first: self.first,
@@ -61,14 +61,14 @@ impl Trace {
             _ => self.stretches.push(next),
         }
         if self.stretches.len() > STRETCHES {
-            // The number of points is a multiple of a stretch, plus one: pairs are whole but for the last.
+            // The number of points is a multiple of a stretch plus one: all pairs except the last are complete.
             let pair = |pair: &[Stretch]| pair.iter().copied().reduce(Stretch::joined);
             self.stretches = self.stretches.chunks(2).filter_map(pair).collect();
             self.doublings += 1;
         }
     }
 
-    /// The points that are left.
+    /// The kept points.
     #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {
         let mut points = Vec::new();
@@ -108,13 +108,13 @@ impl Sample {
         }
     }
 
-    /// Whether these are all points that were put in.
+    /// Whether the sample contains all points.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.doublings == 0
     }
 
-    /// The points that are left.
+    /// The kept points.
     #[must_use]
     pub fn points(&self) -> Vec<(f64, f64)> {
         self.points.clone()
@@ -144,7 +144,7 @@ mod tests {
         let mut trace = Trace::default();
         let mut sample = Sample::default();
         for i in 0..count {
-            // A swing with one spike of a single point up, and one down.
+            // An oscillation with one upward and one downward spike of a single point.
             let height = match i {
                 4711 => 9.0,
                 777_777 => -9.0,
@@ -158,7 +158,7 @@ mod tests {
         assert!(points.is_sorted_by(|one, other| one.0 < other.0));
         assert_eq!((points[0], points[points.len() - 1].0), ((0.0, 0.0), f64::from(count - 1)));
         assert!(points.contains(&(4711.0, 9.0)) && points.contains(&(777_777.0, -9.0)));
-        // 2¹⁸ points in a stretch and more would be too many: of each 512 points the swing is seen.
+        // Stretches of 2¹⁸ points would hide the oscillation; with 512 points it is visible.
         for window in points.windows(5) {
             assert!(window[4].0 - window[0].0 <= 2.0 * 512.0, "{window:?}");
         }

@@ -1,4 +1,4 @@
-//! A page and the files beside it, written as they grow.
+//! A page and the files beside it.
 
 use super::Page;
 use crate::chart::Figure;
@@ -8,7 +8,7 @@ use crate::table::Table;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The page under construction, and the folder of its files.
+/// The page under construction, and its folder.
 #[derive(Debug)]
 pub struct Report {
     folder: PathBuf,
@@ -16,10 +16,10 @@ pub struct Report {
 }
 
 impl Report {
-    /// An empty page in a folder, which is made if need be.
+    /// An empty page in a folder, which is created if necessary.
     ///
     /// # Errors
-    /// [`Failure::File`] where the folder cannot be made; so for all files below.
+    /// [`Failure::File`] if the folder cannot be created; the same for all files below.
     pub fn new(folder: &Path, page: Page) -> Result<Self, Failure> {
         fs::create_dir_all(folder).map_err(|error| Failure::file(folder, error))?;
         Ok(Self { folder: folder.to_owned(), page })
@@ -40,7 +40,7 @@ impl Report {
         self.page.formula(mathml);
     }
 
-    /// A figure with its caption; its files are written at once.
+    /// Adds a figure with its caption and writes its files.
     ///
     /// # Errors
     /// [`Failure::File`].
@@ -50,7 +50,7 @@ impl Report {
         self.write(&format!("{}.csv", figure.name), &figure.csv)
     }
 
-    /// A table with its caption; its file is written at once.
+    /// Adds a table with its caption and writes its file.
     ///
     /// # Errors
     /// [`Failure::File`].
@@ -59,7 +59,7 @@ impl Report {
         self.write(&format!("{}.csv", table.name), &table.csv())
     }
 
-    /// Writes the page, and returns where it is.
+    /// Writes the page and returns its path.
     ///
     /// # Errors
     /// [`Failure::File`].

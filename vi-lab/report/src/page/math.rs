@@ -1,6 +1,6 @@
-//! Formulas as `MathML`, put together from small elements.
+//! Formulas as `MathML`, built from small elements.
 
-/// A formula on a line of its own.
+/// A displayed formula.
 #[must_use]
 pub fn display(elements: &str) -> String {
     format!("<math display=\"block\"><mrow>{elements}</mrow></math>")
@@ -54,7 +54,7 @@ pub fn sqrt(inside: &str) -> String {
     format!("<msqrt>{inside}</msqrt>")
 }
 
-/// Elements as one.
+/// Combines elements.
 #[must_use]
 pub fn row(elements: &[String]) -> String {
     format!("<mrow>{}</mrow>", elements.concat())

@@ -1,7 +1,7 @@
 //! The page: one self-contained HTML file with figures, formulas, tables and prose.
 //!
-//! In: sections in order. Out: a page that names nothing outside itself: figures inline as SVG, formulas as MathML,
-//! the style in its head. Prose is HTML, as written in the source; everything computed is escaped.
+//! In: sections in order. Out: a page without external references: figures inline as SVG, formulas as MathML, the style
+//! in its head. Prose is HTML from the source; computed text is escaped.
 
 mod folder;
 pub mod math;
@@ -26,14 +26,14 @@ pub struct Page {
 }
 
 impl Page {
-    /// A page with a title and a line below it.
+    /// A page with a title and a subtitle.
     #[must_use]
     pub fn new(title: &str, subtitle: &str) -> Self {
         let body = format!("<header><h1>{}</h1>\n<p class=\"subtitle\">{subtitle}</p></header>\n", escape(title));
         Self { title: title.to_owned(), body, contents: String::new(), sections: 0, figures: 0, tables: 0 }
     }
 
-    /// Starts a section, and enters it into the table of contents.
+    /// Starts a section and adds it to the table of contents.
     pub fn section(&mut self, heading: &str) {
         self.sections += 1;
         let number = self.sections;
@@ -47,12 +47,12 @@ impl Page {
         let _ = writeln!(self.body, "<p>{html}</p>");
     }
 
-    /// A formula of its own line, from the elements of [`math`].
+    /// A displayed formula, from the elements of [`math`].
     pub fn formula(&mut self, mathml: &str) {
         let _ = writeln!(self.body, "<div class=\"formula\">{}</div>", math::display(mathml));
     }
 
-    /// A figure, and below it what it shows.
+    /// A figure with its caption below.
     pub fn figure(&mut self, figure: &Figure, caption: &str) {
         self.figures += 1;
         let number = self.figures;
@@ -65,7 +65,7 @@ impl Page {
         );
     }
 
-    /// A table, and above it what it lists.
+    /// A table with its caption above.
     pub fn table(&mut self, table: &Table, caption: &str) {
         self.tables += 1;
         let number = self.tables;
@@ -78,7 +78,7 @@ impl Page {
         );
     }
 
-    /// The finished page, with the machine and the versions that made it in the footer.
+    /// The finished page with the machine and the versions in its footer.
     #[must_use]
     pub fn html(&self, machine: &Machine) -> String {
         format!(

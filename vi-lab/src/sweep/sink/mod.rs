@@ -1,7 +1,8 @@
 //! Tables as files: CSV, NPY, and Parquet if the command is built with it.
 //!
-//! CSV has the facts of the sweep as comments. NPY has float64, words as indices of a list in a JSON file beside it. If writing fails, the file that was there before stays: rows
-//! go to a temporary file, which replaces it when it is whole.
+//! CSV contains the facts of the sweep as comments. NPY contains float64; words are indices of a list in a JSON file
+//! beside it. Rows go to a temporary file, which replaces the target when complete. After a failed write the previous
+//! file remains.
 
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -16,7 +17,7 @@ use std::io::{self, BufWriter, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use vi_report::failure::Failure;
 
-/// How a table is written.
+/// The format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Csv,
@@ -25,7 +26,7 @@ pub(super) enum Format {
     Parquet,
 }
 
-/// A table that is being written.
+/// A table during writing.
 pub(super) struct Target<'a> {
     path: PathBuf,
     description: &'a Description,
@@ -44,10 +45,10 @@ enum Sink {
 }
 
 impl Format {
-    /// The format of a path at which a file can be made.
+    /// The format for a path at which a file can be created.
     ///
     /// # Errors
-    /// [`Failure::Input`] if there is no such format, or no file can be there.
+    /// [`Failure::Input`] if there is no such format, or no file can be created.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         let shown = path.display();
         let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
@@ -77,7 +78,7 @@ impl<'a> Target<'a> {
     /// A new table: `study.csv` for the runs, `study.series.csv` beside it for their series.
     ///
     /// # Errors
-    /// [`Failure::File`] if it cannot be made.
+    /// [`Failure::File`] if it cannot be created.
     pub(super) fn create(output: &Path, description: &'a Description, schema: &'a Schema) -> Result<Self, Failure> {
         let extension = output.extension().unwrap_or_default().to_string_lossy();
         let beside_it = || output.with_extension(format!("{}.{extension}", schema.table));
@@ -94,7 +95,7 @@ impl<'a> Target<'a> {
                     Sink::Csv(buffer)
                 }
                 Format::Npy => {
-                    // The number of rows is known at the end. Every head has the same length.
+                    // The number of rows is known at the end. Every header has the same length.
                     buffer.write_all(&npy::head(0, schema.columns.len()))?;
                     Sink::Npy(buffer, 0)
                 }
@@ -128,7 +129,7 @@ impl<'a> Target<'a> {
         written.map_err(|error| Failure::file(&self.path, error))
     }
 
-    /// Completes the file, which [`Temporary::finish`] then puts in its place.
+    /// Completes the file, which [`Temporary::finish`] then moves to its target.
     ///
     /// # Errors
     /// [`Failure::File`] if it cannot be written.
@@ -156,7 +157,7 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The text beside an NPY file: facts, columns, and the words of columns that have some.
+/// The JSON of an NPY file: facts, columns, and the words of word columns.
 fn legend(description: &Description, schema: &Schema) -> String {
     let facts: Map<String, Value> = description.facts.iter().map(|(name, fact)| (name.clone(), json!(fact))).collect();
     let columns: Vec<&str> = schema.columns.iter().map(|column| column.name.as_str()).collect();

@@ -1,4 +1,4 @@
-//! A table as Parquet: numbers as doubles, counts as integers, words as text; facts are key and value of the file.
+//! A table as Parquet: numbers as doubles, counts as integers, words as text; the facts are file metadata.
 
 use super::super::chunks::Description;
 use super::super::schema::{Column, Kind, Schema, word};
@@ -13,14 +13,14 @@ use std::fs::File;
 use std::io;
 use std::sync::Arc;
 
-/// Rows in a group, but for the last.
+/// Number of rows in a group, except the last.
 const GROUP: usize = 1 << 14;
 
 /// A Parquet file.
 pub(super) struct Parquet {
     writer: SerializedFileWriter<File>,
     columns: Vec<Column>,
-    /// Rows that are to be written.
+    /// Rows to be written.
     rows: Vec<f64>,
 }
 
@@ -62,10 +62,10 @@ impl Parquet {
         Ok(())
     }
 
-    /// Adds a row. Groups have one size, so that the file does not depend on how the sweep was divided.
+    /// Adds a row. Groups have equal size, so that the file does not depend on the division of the sweep.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// The error of the file system.
     pub(super) fn write(&mut self, row: &[f64]) -> io::Result<()> {
         self.rows.extend(row);
         if self.rows.len() >= GROUP * self.columns.len() {
@@ -74,10 +74,10 @@ impl Parquet {
         Ok(())
     }
 
-    /// Writes the rest, and returns the file.
+    /// Writes the rest and returns the file.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// The error of the file system.
     pub(super) fn finish(mut self) -> io::Result<File> {
         self.flush()?;
         Ok(self.writer.into_inner()?)
