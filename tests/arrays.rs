@@ -1,5 +1,5 @@
-//! The systems made of arrays against what is known of them: the chain's force and frequencies by hand, the N-pendulum
-//! of two links against the double pendulum, order 2, and the energy of both integrators.
+//! Systems with arrays against known results: force and frequencies of the chain by hand, the N-pendulum of two links
+//! against the double pendulum, order 2, and the energy of both integrators.
 
 use crate::support::exact::Motion;
 use vi_core::stepping::EnergyStepping;
@@ -37,7 +37,7 @@ fn two_links_are_the_double_pendulum() {
     let double = DoublePendulum { m1: 1.3, m2: 1.3, l1: 0.8, l2: 0.8, g: 9.81 };
     let (q, v) = ([0.9, -0.4], [0.3, 1.1]);
     let (one, other) = (fixed(two, q, v, 0.005, 400), fixed(double, q, v, 0.005, 400));
-    // Measured: 2.0e-15: the masses and lengths of the two make coefficients that are rounded differently.
+    // Measured: 2.0e-15. The masses and lengths of the two systems give coefficients with different rounding.
     let difference = (one.q - other.q).amax().max((one.p - other.p).amax());
     println!("after 400 steps off by {difference:e}");
     assert!(difference <= 3e-15, "{difference:e}");
@@ -76,19 +76,19 @@ fn linear_modes_keep_their_shape_and_frequency() {
     let chain = FpuChain { m: 1.0, k: 1.0, alpha: 0.0, beta: 0.0 };
     for j in [1, 5, 16] {
         let omega = 2.0 * (core::f64::consts::PI * f64::from(j) / 34.0).sin();
-        // The midpoint rule turns a mode by the angle 2 atan(ω h/2) in a step.
+        // The midpoint rule rotates a mode by the angle 2 atan(ω h/2) in a step.
         let (h, steps) = (0.1, 100);
         let angle = f64::from(steps) * 2.0 * (omega * h / 2.0).atan();
         let q = mode(j, 1.0);
         let state = fixed(chain, q.into(), [0.0; N], h, 100);
         let difference = (state.q - q * angle.cos()).amax().max((state.p + q * (omega * angle.sin())).amax());
         println!("mode {j}: off by {difference:e}");
-        // Measured: 8.0e-15, of the highest mode.
+        // Measured: 8.0e-15, for the highest mode.
         assert!(difference <= 2e-14, "mode {j}: {difference:e}");
     }
 }
 
-/// Errors against an accurate motion fall by 4 with every halving of the step.
+/// Checks that errors against an accurate motion fall by 4 per halving of the step.
 fn order<const N: usize, S: EnergyStepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N], h: f64, steps: usize) {
     let mut time = 0.0;
     (0..steps).for_each(|_| time += h);
@@ -113,7 +113,7 @@ fn both_are_of_order_two() {
     order(pendulum, [0.5, 0.3, -0.2, 0.1], [0.1, -0.2, 0.3, 0.2], 0.004, 250);
 }
 
-/// Swing of the fixed-step energy and of the energy-preserving one, over `steps` steps.
+/// Energy deviation of the fixed-step and the energy-preserving integrator over `steps` steps.
 fn energies<const N: usize, S: EnergyStepping<N> + Copy>(
     system: S,
     q: [f64; N],
@@ -144,9 +144,9 @@ fn energies<const N: usize, S: EnergyStepping<N> + Copy>(
 fn energy_swings_with_fixed_steps_and_stays_with_energy_preserving_ones() {
     let chain = FpuChain { m: 1.4, k: 0.9, alpha: 0.3, beta: 0.7 };
     let [swing, error] = energies(chain, mode(1, 1.0).into(), [0.0; N], 0.1, 5000);
-    // Measured: 4.5e-5 and 1.9e-15, of an energy of 0.04.
+    // Measured: 4.5e-5 and 1.9e-15, for an energy of 0.04.
     assert!((4e-5..5e-5).contains(&swing) && error <= 4e-15, "{swing:e}, {error:e}");
-    // Close to the lowest mode, where a step exists all the time.
+    // Close to the lowest mode, for which steps always exist.
     let pendulum = NPendulum { m: 1.2, l: 0.9, g: 9.81 };
     let [swing, error] = energies(pendulum, [0.6, 0.4, 0.2, 0.1], [0.0; 4], 0.005, 4000);
     // Measured:

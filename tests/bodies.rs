@@ -1,4 +1,4 @@
-//! Bodies that attract one another: the outer solar system against other programs, and three bodies on a figure of eight.
+//! Bodies with mutual attraction: the outer solar system against other programs, and three bodies on a figure of eight.
 
 use crate::support::reference::{file, number, vector};
 use serde_json::Value;
@@ -34,12 +34,13 @@ fn the_outer_solar_system_is_where_other_programs_have_it() {
     assert!(run.by_ref().take(200).all(|step| step.is_ok()));
     let [q, v] = off(&run, &reference["taylor"]);
     println!("20 000 days: q off by {q:.1e}, v by {v:.1e}");
-    // Measured: 6.3e-14 of 41 AU and 8.3e-17.
+    // Measured: 6.3e-14, at 41 AU, and 8.3e-17.
     assert!(q < 1e-13 && v < 2e-16, "{q:e}, {v:e}");
     assert!(run.by_ref().take(4800).all(|step| step.is_ok()));
     let [q, v] = off(&run, &reference["published"]);
     println!("500 000 days: q off by {q:.1e}, v by {v:.1e}");
-    // Measured: 2.5e-12 and 4.1e-15; Taylor series of 40 digits are off from what was published by 1.9e-12 and 3.2e-15.
+    // Measured: 2.5e-12 and 4.1e-15. Taylor series with 40 digits differ from the published values by 1.9e-12 and
+    // 3.2e-15.
     assert!(q < 5e-12 && v < 8e-15, "{q:e}, {v:e}");
 }
 
@@ -69,14 +70,14 @@ fn the_outer_solar_system_keeps_energy_momentum_and_angular_momentum() {
 
 #[test]
 fn three_bodies_follow_one_another_on_the_figure_of_eight() {
-    // C. Simó's start and period.
+    // Initial state and period by C. Simó.
     const PERIOD: f64 = 6.325_913_982_926_21;
     let system = ThreeBody::default();
     let [x, y] = [0.970_004_356_697_34, 0.243_087_531_535_83];
     let [u, w] = [0.466_203_685_720_52, 0.432_365_730_460_51];
     let start = State::at(&system, 0.0, [x, -x, 0.0, -y, y, 0.0], [u, u, -2.0 * u, w, w, -2.0 * w]);
     let mut run = system.at_state(start).integrate(Gauss::<8>, PERIOD / 60.0).expect("a valid start");
-    // After a third of the period each body is where the one two places on, then one, then itself, began.
+    // After a third of the period each body is at the initial position of another one; after a full period at its own.
     for ahead in [2, 1, 0] {
         let state = run.by_ref().take(20).last().expect("a step").expect("a step");
         let began = |of: SVector<f64, 6>| SVector::<f64, 6>::from_fn(|i, _| of[i / 3 * 3 + (i + ahead) % 3]);

@@ -1,4 +1,4 @@
-//! The checks, called by hand on every system with parameters away from 1: what they measure.
+//! The checks, called by hand on every system with parameters away from 1, and the values that they measure.
 
 use crate::support::scenes::{Scene, each_system};
 use vi_core::check::{self, EnergyChecked, Place, Report};
@@ -20,15 +20,15 @@ fn reports<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) ->
     results.into_iter().flatten().map(|result| result.unwrap_or_else(|failure| panic!("{failure}"))).collect()
 }
 
-/// What each check may measure here: twice its largest number, rounded up. The checks themselves allow more, for systems
-/// that are less tame.
+/// Limit for each check here: twice its largest measured value, rounded up. The checks themselves allow more, for less
+/// regular systems.
 fn allowed(check: &str) -> f64 {
     match check {
-        // In bounds of rounding. Measured: 0.30.
+        // In units of the rounding bound. Measured: 0.30.
         "derivatives" | "slots" | "steps" | "energy equations" | "symplecticity" | "reversibility" | "energy" => 0.6,
         // Slopes. Measured: 5.0e-4 and 2.5e-3.
         "order" | "step law" => 5e-3,
-        // Bit for bit, momenta of cyclic coordinates.
+        // Momenta of cyclic coordinates, bit for bit.
         _ => 0.0,
     }
 }

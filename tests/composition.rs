@@ -1,4 +1,5 @@
-//! Compositions: against 50-digit references, of their order by slope, and unstable where damping meets negative substeps.
+//! Compositions: against 50-digit references, their order by slope, and their instability for damping with negative
+//! substeps.
 
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number, steps, vector};
@@ -40,8 +41,8 @@ fn the_references_are_followed() {
     references::<2, _>("double_pendulum", DoublePendulum::default());
 }
 
-/// The slope of the error over a ladder of steps: `count` of them from each of four equally spaced times to the next. The
-/// error is taken over all four, as at a single time its first term may be about to change sign.
+/// The slope of the error over a ladder of steps, `count` of them between each two of four equally spaced times. The
+/// maximum over the four times is used, since at a single time the leading term may be about to change sign.
 fn order<const N: usize, S: FixedStepping<N> + Copy>(
     system: S,
     scheme: Composition,
@@ -64,7 +65,7 @@ fn order<const N: usize, S: FixedStepping<N> + Copy>(
         let h = (ends[0].t - start.t) / f64::from(count);
         (h, error(h, count))
     });
-    // Measured with shorter steps: of rounding, that of the accurate motion included, 1.1e-14 is left.
+    // Measured with shorter steps: 1.1e-14 remains as rounding, including that of the accurate motion.
     let slope = slope(&format!("{} of {}", scheme.name, S::NAME), &points, 5e-13);
     assert!((slope - f64::from(scheme.order)).abs() <= 0.05, "{} of {}: order {slope}", scheme.name, S::NAME);
 }
@@ -77,9 +78,8 @@ fn motion<const N: usize, S: FixedStepping<N>>(system: &S, q: [f64; N], v: [f64;
 
 #[test]
 fn the_orders_are_reached() {
-    // Forced, time-dependent, not separable. Steps are as long as leave the next term of the error aside, and as short
-    // as leave rounding aside. The pendulum's links start side by side: bent, its errors of order 8 begin where rounding
-    // does.
+    // Forced, time-dependent, not separable. The steps are short enough for the leading term and long enough to exceed
+    // rounding. The links of the pendulum start parallel: for bent links the errors of order 8 begin at rounding.
     let duffing = HardDuffing { alpha: 1.2, beta: 0.7, c: 0.2, amplitude: 0.5, omega: 1.3 };
     let parametric = ParametricPendulum { epsilon: 0.4, omega: 1.7 };
     let double = DoublePendulum { m1: 1.2, m2: 0.7, l1: 1.1, l2: 0.8, g: 2.0 };
@@ -102,7 +102,7 @@ fn the_orders_are_reached() {
     }
 }
 
-/// The speed that is left after 60 whole steps of `a = −c v`, started with speed 1.
+/// The speed after 60 steps of `a = −c v`, from speed 1.
 fn speed(scheme: Composition, ch: f64) -> Result<f64, StepError> {
     let system = DampedOscillator { m: 1.0, k: 0.0, c: ch };
     let start = State::at(&system, 0.0, [0.0], [1.0]);
@@ -112,8 +112,9 @@ fn speed(scheme: Composition, ch: f64) -> Result<f64, StepError> {
 
 #[test]
 fn negative_substeps_feed_on_damping() {
-    // Each substep multiplies the speed by (1 − γ c h/2)/(1 + γ c h/2): above the bound up to the pole at c h = 2/|γ|, and
-    // for some way beyond. Kahan and Li's of order 8 is unstable from 3.2993 on, close to its pole at 3.3030.
+    // Each substep multiplies the speed by (1 − γ c h/2)/(1 + γ c h/2): above the bound up to the pole at c h = 2/|γ|
+    // and somewhat beyond. Kahan and Li's composition of order 8 is unstable from 3.2993 on, close to its pole at
+    // 3.3030.
     for (scheme, lower, upper) in [
         (Composition::TRIPLE_JUMP_4, 1.11, 1.15),
         (Composition::SUZUKI_4, 3.00, 3.04),
@@ -128,7 +129,7 @@ fn negative_substeps_feed_on_damping() {
 
 #[test]
 fn a_failing_substep_leaves_the_state_before_the_whole_step() {
-    // Through the centre: Kepler's momentum equation has no solution there.
+    // Through the centre the momentum equation of Kepler's problem has no solution.
     let system = Kepler::default();
     let start = State::at(&system, 0.0, [1e-3, 0.0], [0.0, 0.1]);
     let mut run = system.at_state(start).integrate(Composition::SUZUKI_4, 0.5).expect("a valid start");

@@ -1,11 +1,11 @@
-//! What each system says of itself: name, coordinates, and what the generator found out about it.
+//! The metadata of each system: name, coordinates, and the findings of the generator.
 
 use crate::support::scenes::{self, Scene};
 use vi_core::Lagrangian;
 use vi_core::lagrangian::Parameters;
 use vi_systems::HardDuffing;
 
-/// What is found of a system.
+/// The findings about a system.
 #[derive(Debug, PartialEq)]
 struct Found {
     name: &'static str,

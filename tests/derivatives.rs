@@ -1,7 +1,7 @@
-//! Each generated derivative against dual numbers, which differentiate operation by operation and know no symbols;
-//! and each generated L and f against the formula written by hand.
+//! Each generated derivative against dual numbers, which differentiate every operation numerically; and each generated
+//! L and f against the formula written by hand.
 //!
-//! States, intervals and parameters are drawn, parameters away from 1, so that no term hides behind another.
+//! States, intervals and parameters are random, with parameters away from 1, so that each term contributes.
 
 use crate::support::Sequence;
 use vi_core::check::{self, EnergyChecked, Place};
@@ -15,10 +15,10 @@ use vi_systems as systems;
 
 /// Draws for each system.
 const DRAWS: usize = 20;
-/// Relative to the largest number that meets in a comparison. Measured: 1.7e-15.
+/// Relative to the largest number in a comparison. Measured: 1.7e-15.
 const TOLERANCE: f64 = 4e-15;
 
-/// Compares two numbers, relative to a scale, and remembers the largest difference.
+/// Compares two numbers relative to a scale, and records the largest difference.
 struct Comparison {
     name: &'static str,
     worst: f64,
@@ -71,7 +71,7 @@ fn unit<const N: usize>(index: usize) -> SVector<f64, N> {
     SVector::from_fn(|row, _| f64::from(u8::from(row == index)))
 }
 
-/// ∂L/∂q along the motion (1, v, a): value and rate, by second-order dual numbers; and the same of ∂L/∂t.
+/// ∂L/∂q and ∂L/∂t along the motion (1, v, a), with their rates, by second-order dual numbers.
 fn gradient_and_rate<const N: usize>(
     system: &impl Lagrangian<N, DD>,
     (t, q, v, a): (f64, &SVector<f64, N>, &SVector<f64, N>, &SVector<f64, N>),
@@ -112,7 +112,7 @@ fn check_continuous<const N: usize>(
     check.equal("step density", system.step_density(t, q, v).expect("regular"), density, scale);
 }
 
-/// D1…D4 against L_d, and what the midpoint rule says of the discrete force.
+/// D1…D4 against L_d, and the discrete force against the midpoint rule.
 fn check_slots<const N: usize>(
     system: &impl DiscreteLagrangian<N>,
     dual: &impl DiscreteLagrangian<N, D>,
@@ -157,7 +157,7 @@ fn check_step<const N: usize>(
     let combined = energy - v.dot(&row);
     let scale = rounding.energy_residual + v.amax() * rounding.residual.amax();
     check.equal("energy residual", found.energy_residual, combined, scale);
-    // A row is a sum that loses at least half an ulp of itself.
+    // A row is a sum, with a rounding of at least half an ulp of itself.
     assert!(rounding.energy_residual >= 0.5 * found.energy_residual.abs());
     assert!((0..N).all(|i| rounding.residual[i] >= 0.5 * found.momentum.residual[i].abs()));
 
@@ -204,18 +204,18 @@ fn check_step<const N: usize>(
     check.equal("E1", system.discrete_energy(node, h, v), end, scale);
 }
 
-/// The checks that a system carries say the same of it, about any state.
+/// The generated checks of a system pass, at any state.
 fn passes_its_checks<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, check: &mut Comparison) {
     let checks = [check::derivatives, check::slots, check::steps, check::energy_equations];
     for report in checks.map(|check| check(system, place)) {
         let report = report.unwrap_or_else(|failure| panic!("{failure}, at {place:?}"));
-        // In bounds of rounding. Measured: 0.44.
+        // In units of the rounding bound. Measured: 0.44.
         assert!(report.worst <= 0.9, "{report}");
         check.checked = check.checked.max(report.worst);
     }
 }
 
-/// All of it, for one system with drawn parameters.
+/// All comparisons for one system with random parameters.
 macro_rules! derivatives {
     ($test:ident, $system:ident, $n:literal, |$s:ident, $t:ident, $q:ident, $v:ident| $lagrangian:expr, $force:expr) => {
         #[test]
@@ -230,7 +230,7 @@ macro_rules! derivatives {
                 let (dual, second) = ($s.convert::<D>(), $s.convert::<DD>());
                 let ($t, h) = (draw.within(-1.0, 2.0), draw.within(0.05, 0.4));
                 let mut vector = |low, high| SVector::<f64, $n>::from_fn(|_, _| draw.within(low, high));
-                // Away from the poles of polar angles and the centre of Kepler's problem.
+                // Away from the poles of polar angles and from the centre of Kepler's problem.
                 let ($q, $v, p) = (vector(0.4, 1.4), vector(-1.2, 1.3), vector(-1.0, 1.0));
                 check.equal("L by hand", $s.lagrangian($t, &$q, &$v), $lagrangian, 10.0);
                 let force: [f64; $n] = $force;
@@ -351,7 +351,7 @@ derivatives!(
     NPendulum,
     4,
     |s, t, q, v| {
-        // Every mass where it is and as it moves, in the plane.
+        // Position and velocity of every mass in the plane.
         let (mut height, mut velocity, mut sum) = (0.0, [0.0, 0.0], 0.0);
         for i in 0..4 {
             height -= s.l * q[i].cos();

@@ -1,4 +1,4 @@
-//! Events against exact times, by every method: where they are, which come together, how searches join, and what cannot leave.
+//! Events against exact times, with every method: times, simultaneous events, consecutive searches, invalid functions.
 
 use core::f64::consts::{FRAC_PI_6, PI, TAU};
 use vi_core::collocation::TimeScale;
@@ -69,7 +69,7 @@ impl<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize> AnyRun<N> for Run
 
 type Runs<const N: usize> = Vec<(&'static str, Box<dyn AnyRun<N>>)>;
 
-/// What all methods ask of a system.
+/// The requirements of all methods on a system.
 trait System<const N: usize>:
     TimeScale<N> + Convertible<N> + FixedStepping<N> + EnergyStepping<N> + Copy + 'static
 {
@@ -79,7 +79,7 @@ impl<const N: usize, S> System<N> for S where
 {
 }
 
-/// Runs of all methods from a state; backwards those that go backwards.
+/// Runs of all methods from a state; backward runs for the methods that support them.
 fn runs<S: System<N>, const N: usize>(system: S, t: f64, [q, v]: [[f64; N]; 2], h: f64) -> Runs<N> {
     let start = State::at(&system, t, q, v);
     let mut runs: Runs<N> = vec![
@@ -103,12 +103,12 @@ fn runs<S: System<N>, const N: usize>(system: S, t: f64, [q, v]: [[f64; N]; 2], 
     runs
 }
 
-/// The events of a crossing: index and whether rising.
+/// The events of a crossing: index, and whether rising.
 fn met<const N: usize>(crossing: &Crossing<N>) -> Vec<(usize, bool)> {
     crossing.events.iter().map(|&Met { event, is_rising }| (event, is_rising)).collect()
 }
 
-/// Reflects the velocities of the events that were met, with a restitution; all masses are 1.
+/// Reflects the velocities at the events of a crossing, with a restitution; all masses are 1.
 fn reflect<const N: usize>(run: &mut dyn AnyRun<N>, crossing: &Crossing<N>, restitution: f64) {
     let mut state = crossing.state;
     for met in &crossing.events {
@@ -134,7 +134,7 @@ fn levels_of_a_free_motion_on_nodes_and_between() {
                     let error = (crossing.state.t - (t + level)).abs();
                     // Measured 1.1e-16 at 0 and −1, 8.9e-16 at 7.3, 0 at 1e9.
                     assert!(error <= tolerance, "{name}, {h}, {t}: {error:e}");
-                    // The level is not passed yet, and it is by the next length.
+                    // The level is not crossed yet; it is at the next representable length.
                     let left = (level - crossing.state.q[0]) * way;
                     assert!((0.0..3e-16).contains(&left), "{name}, {h}, {t}: {left:e}");
                     seen += 1;
@@ -150,12 +150,13 @@ fn impacts_at_exact_times() {
     let ball = Ball::default();
     let fall = 2.0_f64.sqrt();
     let floor = [Event::falling(|s| s.q[0])];
-    // Restitution 0.6: 50 impacts that crowd up to 4 √2; without loss they come every √8.
+    // Restitution 0.6: 50 impacts that accumulate at 4 √2; without loss an impact every √8.
     let mut worst = 0.0_f64;
     for (restitution, impacts) in [(0.6, 50), (1.0, 50)] {
         for (name, mut run) in runs(ball, 0.0, [[1.0], [0.0]], 0.05) {
             let (mut exact, mut flight) = (fall, 2.0 * fall);
-            // Steps in transformed time carry the energy of the first flight, which hides those of flights 1e-8 as fast.
+            // Steps in transformed time carry the energy of the first flight, which hides the energy of flights 1e-8 as
+            // fast.
             let impacts = if name == "ScaledGauss 4" && restitution < 1.0 { 25 } else { impacts };
             for _ in 0..impacts {
                 let crossing = run.go(&floor, 1000.0).expect("the run goes on").expect("an impact");
@@ -172,7 +173,7 @@ fn impacts_at_exact_times() {
     assert!(worst < 2e-15, "{worst:e}");
 }
 
-/// Impacts until the search ends; where the ball then is, and how the search ended.
+/// Impacts until the search ends; returns the final position of the ball and the end of the search.
 fn bounced(
     run: &mut dyn AnyRun<1>,
     events: &[Event<1>],
@@ -201,8 +202,9 @@ fn a_ball_that_comes_to_rest_is_a_typed_error() {
                     panic!("{name}, {floor}, {restitution}: {end:?}")
                 };
                 assert_eq!((event, t.to_bits()), (0, state.t.to_bits()));
-                // t = √2 (1 + 2 e/(1 − e)). Measured 2.1e-14 after 149 impacts, each of which rounds the time. Where q rounds to 1e-16 no flight is seen that is
-                // lower: 3.7e-7 of time. Without speed a ball falls once more, from a rounding of the length: 1.4e-9.
+                // t = √2 (1 + 2 e/(1 − e)). Measured 2.1e-14 after 149 impacts, each of which rounds the time. If q
+                // rounds to 1e-16, lower flights are invisible: 3.7e-7 of time. A ball without speed falls once more,
+                // from a rounding of the length: 1.4e-9.
                 let exact = 2.0_f64.sqrt() * (1.0 + 2.0 * restitution / (1.0 - restitution));
                 let tolerance = if floor == 0.0 && restitution > 1e-8 { 1e-13 } else { 8e-7 };
                 assert!((t - exact).abs() < tolerance, "{name}, {floor}, {restitution}: {t} {exact}");
@@ -235,12 +237,12 @@ fn a_state_at_rest_on_the_floor_is_a_typed_error_and_names_its_event() {
 
 #[test]
 fn a_ball_at_the_floor_is_told_from_one_that_passes() {
-    // Moving down from 1e-17 at t = 0: a length of 1e-17 leads to the floor. Measured 2.4e-15 of it.
+    // Moving down from 1e-17 at t = 0: a length of 1e-17 reaches the floor. Measured relative error 2.4e-15.
     for z in [1e-17, 1e-14, 1e-10] {
         for (name, mut run) in runs(Ball::default(), 0.0, [[z], [-1.0]], 0.5) {
             let hit = run.go(&[Event::falling(|s| s.q[0])], 1.0).expect("the run goes on").expect("an impact");
             assert!((hit.length - z).abs() < 3e-15 * z + z * z, "{name}, {z}: {}", hit.length);
-            // Not reflected, it falls on, and the event is not met again.
+            // Without reflection it continues to fall, and the event does not repeat.
             assert_eq!(run.go(&[Event::falling(|s| s.q[0])], 1.0), Ok(None), "{name}, {z}");
         }
     }
@@ -254,7 +256,7 @@ fn a_ball_at_the_floor_is_told_from_one_that_passes() {
     }
 }
 
-/// Two balls until t = 20: how often each was met, and where they are.
+/// Two balls until t = 20: number of impacts of each, and final positions.
 fn landings(run: &mut dyn AnyRun<2>, bounce: bool) -> ([usize; 2], SVector<f64, 2>) {
     let events = [Event::falling(|s| s.q[0]), Event::falling(|s| s.q[1])];
     let mut counts = [0, 0];
@@ -288,7 +290,7 @@ fn balls_that_land_together_or_nearly_so() {
             let found = run.every(&events, 20.0);
             let together: Vec<_> = found.iter().flat_map(met).collect();
             assert_eq!(together, [(0, false), (1, false)], "{name}, {gap:e}");
-            // One instant is a rounding of the time: 3e-16 of 1.4.
+            // Simultaneous up to a rounding of the time: 3e-16 of 1.4.
             assert_eq!(found.len(), if gap > 1e-14 { 2 } else { found.len().min(2) }, "{name}, {gap:e}");
             assert!(gap > 0.0 || found.len() == 1, "{name}: {found:?}");
         }
@@ -319,12 +321,12 @@ fn a_point_runs_into_corners() {
                 reflect(&mut *run, &crossing, 1.0);
                 assert!(run.now().q.amax() <= 1.0 + 3e-16, "{name}: {:?}", run.now());
             }
-            // Passages of a wall every 2/|v| from the first one on.
+            // Crossings of a wall every 2/|v| after the first one.
             let exact = [0, 1].map(|i| (0.5 * (v[i] * 20.0 + start[i] + 1.0)).floor());
             assert_eq!(counts.map(f64::to_bits), exact.map(f64::to_bits), "{name}, {v:?}: {counts:?}");
         }
     }
-    // The first corner is one instant.
+    // The first corner is one event time.
     for (name, mut run) in runs(free, 0.0, [[0.0, 0.0], [1.0, 1.0]], 0.3) {
         let first = run.go(&walls(), 60.0).expect("the run goes on").expect("a corner");
         assert_eq!(met(&first), [(0, false), (1, false)], "{name}");
@@ -393,16 +395,16 @@ fn assert_times(found: &[(f64, bool)], exact: &[(f64, bool)], tolerance: f64) {
 #[test]
 fn functions_that_are_zero_over_a_stretch() {
     let [first, second] = [FRAC_PI_6, 5.0 * FRAC_PI_6];
-    // Measured 2.2e-16, and 1e-15 after a turn.
+    // Measured 2.2e-16, and 1e-15 after a period.
     let falls = [(first, false), (second, true), (TAU + first, false)];
     assert_times(&changes_of_sine(|x| -(x - 0.5).max(0.0)), &falls, 3e-15);
-    // From zero to above zero: no change.
+    // From zero to positive: no change of sign.
     assert_times(&changes_of_sine(|x| (x - 0.5).max(0.0)), &[], 0.0);
-    // Below, zero between ±0.5, above.
+    // Negative, zero between ±0.5, positive.
     let through = |x: f64| (x - 0.5).max(0.0) + (x + 0.5).min(0.0);
     assert_times(&changes_of_sine(through), &[(PI + first, false), (PI + second, true)], 3e-15);
     assert_times(&changes_of_sine(|x| -((x - 0.5).max(0.0) + (x + 0.5).min(0.0))), &falls, 3e-15);
-    // Steps of a staircase.
+    // Jumps of a staircase.
     assert_times(
         &changes_of_sine(|x| (4.0 * x).floor() - 1.5),
         &[(first, true), (second, false), (TAU + first, true)],
@@ -426,7 +428,7 @@ fn what_only_touches_zero_is_no_event() {
     ] {
         assert_times(&changes_of_sine(g), &[], 0.0);
     }
-    // The turning point on a node, and a seam on it.
+    // The turning point at a node, and a boundary of two searches there.
     for (name, mut run) in runs(Ball::default(), -1.0, [[0.0], [1.0]], 0.25) {
         let events = [Event::crossing(|s| s.q[0] - 0.5)];
         assert!(run.every(&events, 0.0).is_empty() && run.every(&events, 1.0).is_empty(), "{name}");
@@ -435,7 +437,7 @@ fn what_only_touches_zero_is_no_event() {
 
 #[test]
 fn pairs_of_roots_that_lie_close() {
-    // z = 1/2 − t²/2 passes 1/2 − d²/2 at ±d.
+    // z = 1/2 − t²/2 crosses 1/2 − d²/2 at ±d.
     for d in [0.1, 1e-3, 1e-5, 1e-6] {
         for h in [0.25, 0.37] {
             for (_, mut run) in runs(Ball::default(), -1.0, [[0.0], [1.0]], h) {
@@ -452,7 +454,7 @@ fn pairs_of_roots_that_lie_close() {
 
 #[test]
 fn functions_of_velocities() {
-    // The highest point, a speed at a node, and a speed between.
+    // The highest point, a velocity at a node, and a velocity between nodes.
     for h in [0.25, 0.3] {
         for (name, mut run) in runs(Ball::default(), 0.0, [[0.0], [1.0]], h) {
             let events = [
@@ -469,7 +471,7 @@ fn functions_of_velocities() {
             }
         }
     }
-    // From rest: the start is no event, and each turning point is one.
+    // From rest: the start is not an event; each turning point is one.
     let spring = Spring::default();
     let mut run = spring.at(0.0, [1.0], [0.0]).integrate(Gauss::<8>, 0.3).expect("valid");
     for turn in 1..50 {
@@ -503,7 +505,7 @@ fn a_function_that_is_not_finite_is_a_typed_error_where_it_is_met() {
         matches!(end, Err(StepError::NonFinite { quantity: "function of an event", .. }))
     };
     for (name, mut run) in runs(Ball::default(), 0.0, [[1.0], [0.0]], 0.4) {
-        // The logarithm ends at the floor, in the step in which the ball meets it; the level before is met first.
+        // The logarithm is undefined below the floor, in the step with the impact; the level above is crossed first.
         let events = [Event::falling(|s| s.q[0].ln() + 9.0), Event::falling(|s| s.q[0] - 1e-2)];
         let first = run.go(&events, 9.0).expect("an event before").expect("an event");
         assert_eq!(met(&first), [(1, false)], "{name}");
@@ -513,7 +515,7 @@ fn a_function_that_is_not_finite_is_a_typed_error_where_it_is_met() {
     }
     for (name, mut run) in runs(Ball::default(), 0.0, [[1.0], [0.0]], 0.4) {
         assert!(lost(&run.go(&[Event::falling(|_| f64::NAN)], 9.0)), "{name}");
-        // Beyond the end of a search it is not looked at.
+        // The search does not look beyond its end.
         let end = [Event::falling(|s| (1.0 - s.t).sqrt() - 1e-3)];
         let hit = run.go(&end, 1.0).expect("finite up to there").expect("an event");
         assert!((hit.state.t - (1.0 - 1e-6)).abs() < 1e-15, "{name}: {}", hit.state.t);
@@ -531,7 +533,7 @@ fn backwards_in_time_and_far_from_zero() {
                     let hit = run.go(&floor, t + 100.0 * way).expect("the run goes on").expect("an impact");
                     let exact = 2.0_f64.sqrt() * f64::from(2 * impact + 1);
                     let error = (hit.state.t - t) * way - exact;
-                    // A state has one number of time: at 1e9 each impact rounds it.
+                    // A state has one number for the time: at 1e9 each impact rounds it.
                     assert!(error.abs() < tolerance * f64::from(impact + 1), "{name}, {t}: {error:e}");
                     assert!((0.0..1e-14).contains(&hit.state.q[0]), "{name}, {t}: {:e}", hit.state.q[0]);
                     reflect(&mut *run, &hit, 1.0);
@@ -585,7 +587,7 @@ fn one_event_an_array_a_list_and_references() {
     assert_eq!((hit.is_of(0), hit.is_of(1), hit.direction(0)), (true, false, Some(false)));
 }
 
-/// Asserts that the event of one step is the last length before its function changes its sign.
+/// Asserts that the event of one step is the last length before its function changes sign.
 fn assert_last_before<M: Method<S, 1>, S: Lagrangian<1> + Copy>(start: &Run<M, S, 1>, level: f64) {
     let event = Event::crossing(move |s| s.q[0] - level);
     let hit = start.clone().next_event(event, start.t() + 2.0).expect("the run goes on").expect("an event");
@@ -613,7 +615,7 @@ fn an_event_is_the_last_length_before_the_change() {
 
 #[test]
 fn roots_between_samples_are_met_beside_an_event_there() {
-    // A dip of the width 0.01 in a plane: samples of a step of 0.5 miss it.
+    // A dip of width 0.01 in a constant function: the samples of a step of 0.5 miss it.
     let dip = |x: f64| (x - 0.505).abs().min(0.02) - 0.005;
     for (name, mut run) in runs(Ball { g: 0.0 }, 0.0, [[0.0], [1.0]], 1.0) {
         let events = [Event::crossing(move |s| dip(s.q[0])), Event::crossing(|s| s.q[0] - 0.505)];
@@ -670,7 +672,7 @@ fn searches_cut_at_random_seams_find_what_one_search_finds() {
         let mut cut = Vec::new();
         let mut pieces = run();
         let mut seams: Vec<f64> = (0..7).map(|_| 10.0 * uniform(&mut seed)).collect();
-        // Some seams at events, to the bit and beside them.
+        // Some search boundaries at events, exactly and nearby.
         for crossing in whole.iter().step_by(3) {
             seams.push(crossing.state.t + (8.0 * uniform(&mut seed) - 4.0).round() * f64::EPSILON * crossing.state.t);
         }
@@ -700,7 +702,7 @@ fn searches_cut_at_nodes_find_the_same_bits() {
         let (q, v) = ([uniform(&mut seed)], [uniform(&mut seed)]);
         let h = if trial % 2 == 0 { 0.5 } else { 0.125 };
         let mut cuts = runs(spring, 0.0, [q, v], h);
-        // The others have no nodes at multiples of h, or at its sums of substeps only up to a rounding.
+        // Other methods have no nodes at multiples of h, or only up to rounding of their substeps.
         cuts.truncate(5);
         cuts.remove(1);
         let mut wholes = runs(spring, 0.0, [q, v], h);

@@ -1,4 +1,4 @@
-//! States and parameters at the ends of what numbers can tell: each gives a step, or an error that names what is wrong.
+//! States and parameters at the limits of double precision: each gives a step, or an error that names the cause.
 
 use vi_core::collocation::Collocation;
 use vi_core::stepping::{Convertible, EnergyStepping};
@@ -23,7 +23,7 @@ fn a_step_that_is_subnormal_is_refused() {
 
 #[test]
 fn without_a_mass_there_is_no_step() {
-    // A pendulum of no length has no mass matrix, whether it moves or rests.
+    // A pendulum of zero length has a singular mass matrix, moving or at rest.
     let system = Pendulum { l: 0.0, ..Pendulum::default() };
     for v in [0.0, 1.0] {
         let start = State { t: 0.0, q: SVector::from([0.3]), p: SVector::from([0.0]) };
@@ -57,7 +57,7 @@ slopeless! {
     Angle(x, y): atan2(x, y);
 }
 
-/// Asserts that whatever is asked at the origin is not finite there: no shorter step helps.
+/// Asserts that every function is not finite at the origin, so that no shorter step helps.
 fn loses_its_slope<S, const N: usize>(system: S)
 where
     S: Collocation<N> + Convertible<N> + EnergyStepping<N> + core::fmt::Debug,
@@ -94,7 +94,7 @@ fn a_step_density_that_is_lost_is_told() {
 
 #[test]
 fn what_is_below_an_ulp_is_not_lost() {
-    // An ulp of q is 16384: for ten million steps the particle stands still, and then it has moved.
+    // An ulp of q is 16384: the particle stays for ten million steps, and then moves.
     let system = Free { m: 1.5 };
     let (q, v, h) = (1e20_f64, 1.0_f64, 0.01_f64);
     let mut run = system.at(0.0, [q], [v]).integrate(FixedStep, h).expect("a start");
@@ -105,13 +105,13 @@ fn what_is_below_an_ulp_is_not_lost() {
         run.step().expect("a step");
     }
     assert_eq!(run.state().q[0].to_bits(), q.to_bits());
-    // A thousand products were rounded, and as many sums of them.
+    // The rounding of a thousand products and sums.
     let low = run.node().q_low[0];
     assert!((low - 10.0_f64).abs() < 1e-11, "{low}");
 }
 
 lagrangian! {
-    /// Nothing acts.
+    /// A free particle.
     struct Free {
         param m = 1.0;
         coord x;
@@ -121,7 +121,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Two masses that pull at each other: in the units √m x and √n y the motion is the same for all of them.
+    /// Two attracting masses: in the units √m x and √n y all such systems have the same motion.
     struct Unequal {
         param m = 1.0, n = 1.0, k = 1.3;
         coord x, y;
@@ -132,7 +132,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A mass that is nearly nothing where x is small.
+    /// A mass that nearly vanishes for small x.
     struct Thin {
         coord x;
         L = exp(-30 / x) * dot(x)^2 / 2 - exp(-30 / x) * x;
@@ -140,7 +140,7 @@ lagrangian! {
     }
 }
 
-/// Where fixed steps from the same place in these units lead, in these units.
+/// The end of fixed steps from the same state in these units, in these units.
 fn reached(m: f64, n: f64) -> SVector<f64, 2> {
     let system = Unequal { m, n, ..Unequal::default() };
     let units = SVector::from([m.sqrt(), n.sqrt()]);
@@ -160,7 +160,7 @@ fn masses_of_any_units_make_a_regular_system() {
         // Measured: 2.2e-16.
         assert!(off < 1e-14, "{m:e}, {n:e}: {off:e}");
     }
-    // The mass of e^(−30/x) drops out but for its slope: a = −1 − 30/x − 15 v²/x², whatever it is; from x = 1/20 it is e^−600.
+    // The mass e^(−30/x) cancels except for its slope: a = −1 − 30/x − 15 v²/x². At x = 1/20 it is e^−600.
     for x in [1.0, 0.05] {
         let system = Thin::default();
         let mut run = system.at(0.0, [x], [0.0]).integrate(FixedStep, 1e-7).expect("a regular system");
@@ -169,13 +169,13 @@ fn masses_of_any_units_make_a_regular_system() {
         }
         let (t, v) = (run.state().t, run.v()[0]);
         let wanted = -(1.0 + 30.0 / x) * (t - 0.5e-7);
-        // Measured: 1.2e-4, where v²/x² adds its part.
+        // Measured: 1.2e-4, from the term v²/x².
         assert!((v / wanted - 1.0).abs() < 2e-4, "{v:e}, {wanted:e}");
     }
 }
 
 lagrangian! {
-    /// A ball on an elastic floor (Hertz): in free flight the root of the depth is that of zero.
+    /// A ball on an elastic floor (Hertz): in free flight the root has the argument zero.
     struct Hertz {
         param m = 1.0, g = 1.0, k = 1e4;
         coord x;
@@ -202,7 +202,7 @@ fn the_root_of_zero_is_no_obstacle() {
 }
 
 lagrangian! {
-    /// Between two walls that are logarithms: their forces are finite beyond them.
+    /// Between two logarithmic walls: their forces are finite beyond them.
     struct Walls {
         coord x;
         L = dot(x)^2 / 2 + 1e-3 * ln(x) + 1e-3 * ln(1 - x);
@@ -234,7 +234,7 @@ fn where_the_forces_are_finite_and_the_energy_is_not_no_energy_is_told() {
     let stored: Checkpoint<_, 1> = serde_json::from_str(&text).expect("finite numbers");
     assert!(Run::restart(system, EnergyPreserving, stored).is_ok());
 
-    // Fixed steps need forces only, and go on; their energy is not told.
+    // Fixed steps need forces only and continue; their energy is undefined.
     let mut run = system.at(0.0, [0.99], [1.0]).integrate(FixedStep, 0.05).expect("a start");
     run.step().expect("a step");
     assert!(run.state().q[0] > 1.0 && run.discrete_energy().is_none());
@@ -255,7 +255,7 @@ lagrangian! {
 fn a_slope_that_is_no_number_is_not_a_singular_mass() {
     let system = Drag::default();
     assert!(system.at(0.0, [1.0], [0.1]).integrate(FixedStep, 0.01).is_ok());
-    // At rest there is a velocity, but no step.
+    // At rest a velocity exists, but no step.
     let mut at_rest = system.at(0.0, [1.0], [0.0]).integrate(FixedStep, 0.01).expect("a velocity");
     let step = at_rest.step();
     assert!(matches!(step, Err(StepError::NonFinite { .. })), "{step:?}");

@@ -1,13 +1,13 @@
-//! The flow of every system at `(t, q, p)`: the velocity with these momenta, and the rates of p and E, against differences along the
-//! motion, whose acceleration is another function.
+//! The flow of every system at `(t, q, p)`: the velocity for these momenta, and the rates of p and E, against
+//! differences along the motion, which uses the separate acceleration function.
 
 use crate::support::Sequence;
 use crate::support::scenes::{Scene, each_system};
 use vi_core::{Lagrangian, SVector, State, StepError, lagrangian};
 
-/// States that are drawn about each scene.
+/// Random states near each scene.
 const DRAWS: u32 = 20;
-/// Time over which motions are differenced.
+/// Time span of the difference quotients.
 const TIME: f64 = 1e-4;
 
 #[allow(clippy::needless_pass_by_value, reason = "as the other tests of each scene")]
@@ -47,7 +47,7 @@ fn flow<const N: usize, S: Lagrangian<N>>(scene: Scene<S, N>) {
 each_system!(flow);
 
 lagrangian! {
-    /// A particle near the speed of light, whose momentum is not linear in the velocity.
+    /// A particle near the speed of light: its momentum is not linear in the velocity.
     struct Relativistic {
         param m = 1.3, c = 1.0, k = 0.7;
         coord x, y;

@@ -1,4 +1,4 @@
-//! Every form that the Jacobian A can have, stepped as it is and as the dense matrix that it stands for.
+//! Every form of the Jacobian A, stepped with its structure and as a dense matrix.
 
 use crate::support;
 use core::any::type_name;
@@ -14,7 +14,7 @@ use vi_core::{
 use vi_systems::FpuChain;
 
 lagrangian! {
-    /// A chain of five between no walls, turning in a field that friction of its springs breaks.
+    /// A free chain of five, rotating in a field that the friction of its springs breaks.
     struct Chain {
         const N = 5;
         param m = 1.3, k = 2.1, c = 0.02;
@@ -38,7 +38,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A beam that bends: each place feels the two on each side.
+    /// A beam that bends: each node interacts with two on each side.
     struct Beam {
         const N = 10;
         param m = 0.7, stiffness = 1.9;
@@ -51,7 +51,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Two double pendula, their angles not side by side, and two single ones.
+    /// Two double pendula with non-adjacent angles, and two single pendula.
     struct Pendula {
         param l = 0.8, g = 2.3;
         coord u, v, w, x, y, z;
@@ -64,7 +64,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Springs between any two.
+    /// Springs between all pairs.
     struct Cluster {
         const N = 5;
         param m = 0.9, k = 0.6;
@@ -76,7 +76,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Oscillators that do not feel each other.
+    /// Decoupled oscillators.
     struct Alone {
         const N = 5;
         param m = 1.1, k = 0.8;
@@ -87,7 +87,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A tridiagonal mass matrix with next to nothing on its diagonal, which is regular and needs pivots from elsewhere.
+    /// A tridiagonal mass matrix with a nearly zero diagonal; it is regular and needs pivoting.
     struct Swapping {
         const N = 4;
         param k = 1.2, corner = 0.0;
@@ -110,7 +110,7 @@ impl<const N: usize, S: DiscreteLagrangian<N>> DiscreteLagrangian<N> for Dense<S
     forward! { [N f64 S] self => &self.0; [] slots }
 }
 
-/// The momentum equation with its Jacobian's zeros.
+/// The momentum equation with explicit zeros in its Jacobian.
 fn dense<const N: usize>(equation: MomentumEquation<N, f64, impl Matrix<N, f64>>) -> MomentumEquation<N> {
     MomentumEquation { residual: equation.residual, jacobian: equation.jacobian.dense() }
 }
@@ -175,7 +175,7 @@ impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
 
 const STEPS: usize = 200;
 
-/// Where an integrator is after each of some steps, and the iterations of all.
+/// The states of an integrator after each step, and its total iterations.
 struct Course<const N: usize> {
     states: Vec<State<N>>,
     iterations: u32,
@@ -199,9 +199,9 @@ fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N
     [fixed, preserving]
 }
 
-/// Steps a system and its dense twin, where everything is of order 1: how far they come apart, and the iterations of each;
-/// of fixed steps, of energy-preserving ones. Energy-preserving steps come further apart: their lengths are what the energy
-/// gives by a small difference.
+/// Steps a system of order 1 and its dense twin; returns the differences and the iterations for fixed and
+/// energy-preserving steps. Energy-preserving steps differ more, because their lengths follow from small energy
+/// differences.
 fn apart<const N: usize, S: EnergyStepping<N>>(system: S, h: f64, form: &str) -> [(f64, u32, u32); 2] {
     let name = type_name::<S::Jacobian>();
     assert!(name.contains(form), "{}: {name} is not {form}", S::NAME);
@@ -235,8 +235,8 @@ fn every_form_steps_as_the_dense_matrix_does() {
     for [fixed, preserving] in all {
         // Measured: 2.3e-15 and 7.3e-13 at most.
         assert!(fixed.0 <= 3e-15 && preserving.0 <= 1e-12, "{fixed:?}, {preserving:?}");
-        // Newton's iteration finds its root by a wrong matrix, too, though not as fast. Measured: 18 more of 424,
-        // where other roundings leave a step above the floor once.
+        // Newton iteration converges with a wrong matrix too, but more slowly. Measured: 18 more of 424 iterations, in
+        // steps that other roundings leave above the floor once.
         for (_, own, dense) in [fixed, preserving] {
             assert!(own.abs_diff(dense) * 16 <= dense, "{own} iterations for {dense}");
         }
@@ -247,7 +247,8 @@ fn every_form_steps_as_the_dense_matrix_does() {
 fn pivots_that_are_lost_are_replaced() {
     for corner in [0.0, 1e-14, 1e-16, 1e-17, 1e-20, 1e-100, 1e-300] {
         let [fixed, preserving] = apart(Swapping { k: 1.2, corner }, 0.02, "Tridiagonal<4");
-        // Measured: 1.1e-16 and 4.1e-13 at most, in twice as many iterations: prediction does not pivot, so each step is searched.
+        // Measured: 1.1e-16 and 4.1e-13 at most, with twice as many iterations: the prediction does not pivot, so each
+        // step iterates.
         assert!(fixed.0 <= 2e-16 && preserving.0 <= 5e-13, "corner {corner:e}: {fixed:?}, {preserving:?}");
     }
 }

@@ -1,4 +1,5 @@
-//! What all integrators share: states at times and on grids, events, inputs, other states; against closed forms and runs that begin anew.
+//! Features of all integrators: output at given times, events, inputs, changed states; against closed forms and
+//! restarted runs.
 
 use core::f64::consts::{PI, TAU};
 use vi_core::run::{Crossing, DenseOutput, Event, Met};
@@ -9,7 +10,7 @@ use vi_core::{
 use vi_systems::{DoubleWell, HarmonicOscillator, HenonHeiles, Kepler, Pendulum};
 
 lagrangian! {
-    /// A body on a spring, pushed by a force that is held between steps.
+    /// A body on a spring with a force that is constant between steps.
     struct Pushed {
         param m = 1.7, k = 2.3, u = 0.0;
         coord x;
@@ -38,14 +39,14 @@ fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
     (a.q - b.q).norm() + (a.p - b.p).norm()
 }
 
-/// The state at t by many steps that end there, of a run that is given anew for each number of them.
+/// The state at t from runs with different numbers of steps.
 fn ends_at<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(mut run: Run<M, S, N>, t: f64) -> State<N> {
     let state = run.until(t).expect("the run goes on");
     assert_eq!(state.t.to_bits(), t.to_bits());
     assert_eq!(state, run.state());
-    // A run that is there goes nowhere.
+    // A run that is already there does not move.
     assert_eq!(run.until(t), Ok(state));
-    // And it goes on with its own step.
+    // It continues with its own step.
     let h = run.h();
     let next = run.step().expect("the run goes on").t - t;
     assert!(next / h > 0.3 && next / h < 3.0, "{next} after {h}");
@@ -64,7 +65,7 @@ fn a_run_ends_exactly_at_a_time() {
             ends_at(kepler.at_state(start).integrate(Gauss::<2>, h).expect("valid"), 7.3),
         ]
     };
-    // The last step is shorter, and the order is that of the method all the same.
+    // The last step is shorter, and the order of the method remains.
     let coarse = runs(0.1);
     let fine = runs(0.05);
     for (index, order) in [2.0, 4.0, 4.0].into_iter().enumerate() {
@@ -92,7 +93,7 @@ fn runs_to_multiples_of_a_step_take_plain_steps() {
             let state = plain.step().expect("solvable");
             if step % 30 == 0 {
                 let reached = asked.until(f64::from(step) * h).expect("solvable");
-                // By a rounding of the time the last step may be another: 1.8e-15.
+                // Rounding of the time may change the last step: 1.8e-15.
                 assert!(distance(&reached, &state) < 1e-14, "{h}, {step}: {}", distance(&reached, &state));
             }
         }
@@ -106,7 +107,7 @@ fn backwards_and_forwards_again() {
     let end = kepler.at_state(start).integrate(Gauss::<6>, 0.1).expect("valid").until(5.03).expect("solvable");
     let back = kepler.at_state(end).integrate(Gauss::<6>, -0.1).expect("valid").until(0.0).expect("solvable");
     assert_eq!(back.t.to_bits(), 0.0_f64.to_bits());
-    // 1.6e-15: the steps are others, and both are at the accuracy of numbers.
+    // 1.6e-15: the steps differ, and both are accurate to rounding.
     assert!(distance(&back, &start) < 1e-14, "{}", distance(&back, &start));
 }
 
@@ -129,7 +130,7 @@ fn times_behind_or_beyond_all_are_typed_errors() {
     assert!(run.step().is_ok(), "the run goes on");
 }
 
-/// States on a grid are as accurate as nodes, and the run takes the steps that it would have taken.
+/// Checks that states at given times are as accurate as nodes and leave the steps of the run unchanged.
 fn is_undisturbed<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run<M, S, N>) {
     let mut asked = run.clone();
     let mut plain = run.clone();
@@ -139,14 +140,14 @@ fn is_undisturbed<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run:
     for (state, t) in states.iter().zip(&times) {
         assert_eq!(state.t.to_bits(), t.to_bits());
     }
-    // The last node that is not beyond.
+    // The last node not beyond.
     let end = asked.t();
     assert!(end <= times[40] && times[40] - end < 2.0 * asked.h());
     while plain.t() < end {
         plain.step().expect("solvable");
     }
     assert_eq!((plain.state(), *plain.node()), (asked.state(), *asked.node()));
-    // Each state is that of a run to its time.
+    // Each state equals that of a run to its time.
     for (state, t) in states.iter().zip(&times).skip(1).step_by(7) {
         let alone = run.clone().until(*t).expect("solvable");
         assert_eq!((alone.q, alone.p), (state.q, state.p));
@@ -167,7 +168,7 @@ fn a_grid_leaves_the_run_as_it_is() {
     is_undisturbed(&energy);
 }
 
-/// The largest error of a path over the first step of a run, with that of its derivative.
+/// The largest error of dense output over the first step of a run, and of its derivative.
 fn path_error<M: Method<S, 2>, S: Lagrangian<2> + Copy>(
     mut run: Run<M, S, 2>,
     exact: &Run<Gauss<10>, Kepler, 2>,
@@ -197,7 +198,8 @@ fn paths_have_their_order_and_end_at_the_nodes() {
     let start = planet(0.4);
     let exact = kepler.at_state(start).integrate(Gauss::<10>, 0.05).expect("valid");
     let slope = |error: &dyn Fn(f64) -> f64| (error(0.1) / error(0.05)).log2();
-    // Of S stages: of order S + 1 over one step, its velocity too; of cubics that of the step, 3. Measured: 3.988, 4.976, 3.016.
+    // With S stages: order S + 1 over one step, also for the velocity; for cubics order 3. Measured: 3.988, 4.976,
+    // 3.016.
     let three = slope(&|h| path_error(kepler.at_state(start).integrate(Gauss::<3>, h).expect("valid"), &exact));
     let four = slope(&|h| path_error(kepler.at_state(start).integrate(Gauss::<4>, h).expect("valid"), &exact));
     let cubic = slope(&|h| path_error(kepler.at_state(start).integrate(FixedStep, h).expect("valid"), &exact));
@@ -270,7 +272,7 @@ fn two_events_in_a_step_and_one_that_only_touches() {
         let found = times(Event::crossing(move |s| s.q[0] - level));
         assert_eq!(found.len(), expected.len(), "{level}: {found:?}");
         for (t, exact) in found.iter().zip(&expected) {
-            // Where the level is nearly touched, a rounding of x is many of t: 1.8e-15 at 0.9, 7.2e-15 at 0.999, 1.7e-13, 2.2e-11.
+            // Near tangency, a rounding of x is a large error in t: 1.8e-15 at 0.9, 7.2e-15 at 0.999, 1.7e-13, 2.2e-11.
             assert!((t - exact).abs() < 6e-16 / (1.0 - level * level).sqrt() + 2e-15, "{level}: {t} {exact}");
         }
         let rising = times(Event::rising(move |s| s.q[0] - level));
@@ -278,7 +280,7 @@ fn two_events_in_a_step_and_one_that_only_touches() {
         assert_eq!(rising.len() + falling.len(), found.len());
         assert!(rising.iter().zip(&falling).all(|(up, down)| down < up), "it falls first");
     }
-    // What is not reached, or only touched, is no event.
+    // A level that is not reached, or only touched, is not an event.
     assert!(times(Event::crossing(|s| s.q[0] - (1.0 + 1e-9))).is_empty());
 }
 
@@ -307,13 +309,13 @@ fn a_run_that_stops_at_an_event_goes_on_from_it() {
         let crossing = run.next_event(&events, 1e4).expect("solvable").expect("there is one");
         assert_eq!(crossing.state, run.state());
         let exact = (f64::from(half) + 0.5) * PI;
-        // Each one once: 1.2e-13, of 628.
+        // Each event once: 1.2e-13, of 628.
         assert!((run.t() - exact).abs() < 5e-13, "{half}: {} {exact}", run.t());
     }
     let start = run.t();
     assert_eq!(run.next_event(&events, start + 1.0), Ok(None));
     assert_eq!(run.t().to_bits(), (start + 1.0).to_bits());
-    // A run that begins at a zero leaves it.
+    // A run that starts at a zero leaves it.
     let start = State::at(&oscillator, 0.0, [0.0], [1.0]);
     let mut run = oscillator.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let first = run.next_event(&events, 10.0).expect("solvable").expect("there is one");
@@ -345,7 +347,7 @@ fn a_section_of_henon_and_heiles() {
     };
     let coarse = section(0.5);
     let fine = section(0.21);
-    // The start is no event; every further one is, with either step.
+    // The start is not an event; later ones are, with either step.
     assert_eq!((coarse.len(), fine.len()), (fine.len(), coarse.len()));
     assert!(coarse.len() > 40, "{}", coarse.len());
     for (a, b) in coarse.iter().zip(&fine) {
@@ -357,7 +359,7 @@ fn a_section_of_henon_and_heiles() {
     }
 }
 
-/// Goes on to the next impact, turns the momentum round, and returns the time.
+/// Advances to the next impact, reverses the momentum, and returns the time.
 fn bounce<M: Method<S, 1>, S: Lagrangian<1> + Copy>(run: &mut Run<M, S, 1>) -> f64 {
     let hit = run.until_falling(|s| s.q[0], 100.0).expect("solvable").expect("it falls");
     run.set_state(State { p: -hit.state.p, ..hit.state }).expect("valid");
@@ -404,7 +406,7 @@ fn changed_parameters_are_those_of_a_new_run() {
     let fixed = |system: Pushed, state| system.at_state(state).integrate(FixedStep, 0.1).expect("valid");
     let composed = |system: Pushed, state| system.at_state(state).integrate(Composition::SUZUKI_4, 0.1).expect("valid");
     let gauss = |system: Pushed, state| system.at_state(state).integrate(Gauss::<4>, 0.1).expect("valid");
-    // 1.0e-15, 1.0e-15, 9.5e-16: the residuals of two guesses, and what sums carry below an ulp.
+    // 1.0e-15, 1.0e-15, 9.5e-16: from the residuals of two guesses, and from carried low parts.
     let errors = [
         difference(fixed(system, start), fixed),
         difference(composed(system, start), composed),
@@ -428,7 +430,7 @@ fn of_the_last_step_is_said_what_the_new_parameters_make_of_it() {
     let (m, k, u) = (1.9, 3.1, -0.4);
     let change = |system: &mut Pushed| (system.m, system.k, system.u) = (m, k, u);
     fixed.set_parameters(change).and_then(|()| gauss.set_parameters(change)).expect("regular");
-    // By hand: E1 = H at the middle of the step and the second half of the work, H at the node, v = p/m there.
+    // By hand: E1 = H at the midpoint plus the second half of the work; H at the node with v = p/m.
     let energy = |x: f64, v: f64| m * v * v / 2.0 + k * x * x / 2.0 + x.powi(4) / 5.0;
     let (x0, x1) = (before.q[0], after.q[0]);
     let path = fixed.dense_output(&before).expect("regular");
@@ -445,7 +447,7 @@ fn of_the_last_step_is_said_what_the_new_parameters_make_of_it() {
     // Measured 6.7e-17.
     assert!(errors.iter().all(|error| error.abs() < 1e-15), "{errors:?}");
     assert_eq!((gauss.discrete_energy(), gauss.slots().is_none()), (None, true));
-    // Coordinates and momenta are what they were, and the next step is known again.
+    // Coordinates and momenta are unchanged, and the next step is predicted again.
     assert_eq!((fixed.state(), gauss.state()), (after, gauss_after));
     gauss.step().expect("solvable");
     assert!(gauss.discrete_energy().is_some() && gauss.slots().is_some());
@@ -472,13 +474,13 @@ fn the_energy_that_a_change_brings_is_accounted_for() {
         assert!(error.abs() < 1e-15, "{step}: {error}");
     }
     assert!(brought > 1e-3, "{brought}");
-    // H follows the energy that is kept.
+    // H follows the preserved energy.
     let difference = run.energy().expect("regular") - run.node().energy;
     // 7.0e-5.
     assert!(difference.abs() < 1e-4, "{difference}");
 }
 
-/// Asserts that a run refuses parameters and states with which nothing moves, and goes on.
+/// Asserts that a run rejects invalid parameters and states, and continues.
 fn refuses<M: Method<Pushed, 1>>(mut run: Run<M, Pushed, 1>) {
     run.step().expect("solvable");
     let state = run.state();
@@ -588,7 +590,7 @@ fn many_events_of_a_step_come_in_their_order_and_each_once() {
     }
 }
 
-/// Times of the events of a function, met one by one and in one search; largest |g| there.
+/// Times of the events of a function, from single searches and from one search; largest |g| there.
 fn met<M: Method<S, 1>, S: Lagrangian<1> + Copy>(
     run: &Run<M, S, 1>,
     wanted: &Event<1>,
@@ -658,7 +660,7 @@ fn an_event_at_the_end_of_a_search_is_met_once() {
     assert_eq!(seen, 21);
 }
 
-/// The position after an eighth, the length of the step to the next event, and the velocity there.
+/// The position after an eighth, the step to the next event, and the velocity there.
 fn later<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, wanted: &Event<1>) -> [f64; 3] {
     let start = run.state();
     let state = run.clone().until(start.t + 0.125).expect("the run goes on");
@@ -672,7 +674,7 @@ fn later<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, wanted
 
 #[test]
 fn far_from_zero_a_rounding_of_the_time_is_many_steps() {
-    // At 1e15 times lie 0.125 apart.
+    // At 1e15 the spacing of times is 0.125.
     let oscillator = HarmonicOscillator::default();
     let h = 1e-3;
     let near = State::at(&oscillator, 0.0, [1.0], [0.0]);

@@ -1,6 +1,6 @@
-//! States at which a factor of a product is zero and another one infinite: roots that start at a point, and drags at rest.
+//! States at which one factor of a product is zero and another infinite: roots that start at a point, and drag at rest.
 //!
-//! The product is zero in the limit, or the step ends in a typed error.
+//! The product tends to zero, or the step returns a typed error.
 
 use vi_core::collocation::Collocation;
 use vi_core::derivatives::{Covector, Differentiable, Objective, Tangent, Variation, gradient};
@@ -14,7 +14,7 @@ use vi_core::{
 use vi_ensemble::Ensemble;
 
 lagrangian! {
-    /// A ball above a floor whose potential is a root: its curvature is infinite at z = 0 from below.
+    /// A ball above a floor with a root potential: its curvature is infinite at z = 0 from below.
     struct Ball {
         coord z;
         let d = (abs(z) - z) / 2;
@@ -35,7 +35,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A floor that pushes by the root of the depth.
+    /// A floor with a force proportional to the root of the depth.
     struct Cushion {
         param k = 30.0;
         coord z;
@@ -46,7 +46,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A floor with waves: the depth is no multiple of a coordinate.
+    /// A wavy floor: the depth is not a multiple of a coordinate.
     struct Waves {
         param a = 0.1;
         coord x, z;
@@ -71,7 +71,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A drag by a power of the speed, unlike along the axes.
+    /// Drag with a power of the speed, different along the axes.
     struct Unlike {
         param a = 1.0, b = 4.0, n = 0.5;
         coord x, y;
@@ -84,7 +84,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A force of constant strength towards a point: it has no limit there.
+    /// A force of constant magnitude towards a point, at which it has no limit.
     struct Towards {
         coord x, y;
         L = (dot(x)^2 + dot(y)^2) / 2 - hypot(x, y);
@@ -92,7 +92,7 @@ lagrangian! {
     }
 }
 
-/// Takes steps until a time; how many of them end where `is_there` says, and the largest distance of the energy from the first.
+/// Steps to a time; counts the steps that satisfy `is_there`, and returns the largest energy deviation.
 fn followed<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(
     mut run: Run<M, S, N>,
     until: f64,
@@ -179,7 +179,7 @@ fn a_ball_bounces() {
     let floor = bounces(Floor::default(), [1.0], 1e-3, |q| q[0] < 0.3);
     let waves =
         bounces(Waves::default(), [0.1, 1.0], 1e-3, |q| q[1] - 0.1 * (3.0 * q[0]).sin() - q[0].cos() / 9.0 < 0.0);
-    // Energy-preserving steps end at contacts, and fixed steps go on: where is a matter of roundings.
+    // Energy-preserving steps end at contacts and fixed steps continue; roundings decide where.
     for (found, most) in [
         // Measured: 1.42e-3, 8.8e-4, 7.1e-4, 8.2e-4.
         (ball, [1.5e-3, 9e-4, 8e-4, 2e-3]),
@@ -201,7 +201,7 @@ fn the_curvature_of_the_floor_is_that_of_the_formula() {
     let wanted = -100.0 * 0.75 / 0.2_f64.sqrt();
     // Measured: 0.
     assert!((at(0.1) / wanted - 1.0).abs() < 1e-15, "{:e}", at(0.1));
-    // At the floor itself it is infinite on one side: no step begins there.
+    // At the floor itself it is infinite on one side: no step starts there.
     assert!(!at(0.3).is_finite(), "{:e}", at(0.3));
     let floor = State { t: 0.0, q: [0.3].into(), p: [0.0].into() };
     let step = system.at_state(floor).integrate(FixedStep, 0.01).expect("a velocity").step();
@@ -224,11 +224,11 @@ fn a_drag_at_rest_has_no_slope() {
         let across = half * x * y / speed;
         let wanted = [1.0 + half * (speed + x * x / speed), across, across, 1.0 + half * (speed + y * y / speed)];
         for (found, wanted) in found.iter().zip(wanted) {
-            // Measured: 2.3e-16 of it.
+            // Measured: relative error 2.3e-16.
             assert!((found - wanted).abs() <= 3e-16 * wanted.abs(), "{found:e}, {wanted:e} at {x:e}, {y:e}");
         }
     }
-    // Where the squares underflow the product is below 1e-160.
+    // If the squares underflow, the product is below 1e-160.
     assert_eq!(jacobian(0.3, [1e-170, 1e-170]), SMatrix::<f64, 2, 2>::identity());
 }
 
@@ -272,7 +272,7 @@ fn a_fall_from_rest_is_the_closed_form() {
     let off = (state.p[1] + (state.t * root).tanh() / root).abs();
     // Measured: 3.7e-6.
     assert!(off < 4e-6, "{off:e}");
-    // As in lanes.
+    // As in vector lanes.
     let mut alone = system.at(0.0, [0.0, 0.0], [0.0, 0.0]).integrate(FixedStep, 0.01).expect("a velocity");
     let mut ensemble = Ensemble::new(vec![system; 9], vec![alone.state(); 9], 0.01).expect("valid starts");
     ensemble.run(200);
@@ -282,7 +282,7 @@ fn a_fall_from_rest_is_the_closed_form() {
     for result in ensemble.results() {
         let state = result.unwrap_or_else(|ended| panic!("{}", ended.error));
         let apart = (state.q - alone.state().q).amax().max((state.p - alone.state().p).amax());
-        // Measured: 0; a processor that adds products in one instruction rounds less.
+        // Measured: 0; with fused multiply-add the rounding is smaller.
         assert!(apart < 1e-13, "{apart:e}");
     }
 }
@@ -295,8 +295,8 @@ fn exponents_and_coefficients_that_are_parameters_are_tested_at_run_time() {
         for _ in 0..1000 {
             run.step().expect("a step");
         }
-        // The end of the fall: 1 = a^n v^(2n + 1).
-        // Measured: 1.1e-6, where it is slower.
+        // The terminal speed: 1 = a^n v^(2n + 1).
+        // Measured: 1.1e-6, for the slower convergence.
         assert!((run.v()[0] - 1.0).abs() < 2e-6, "{:e}", run.v()[0]);
     }
     for system in [
@@ -319,7 +319,7 @@ fn what_has_no_limit_is_a_typed_error() {
     assert!(!system.momentum_equation(&Node::new(start, 0.0), 0.01, &[0.0; 2].into()).residual[0].is_finite());
     let gauss = system.at_state(start).integrate(Gauss::<4>, 0.01).expect("a velocity").step();
     assert!(gauss.is_err(), "{gauss:?}");
-    // Right beside it there is a step.
+    // At a state nearby a step exists.
     let beside = State { q: [1e-9, 0.0].into(), ..start };
     assert!(system.at_state(beside).integrate(FixedStep, 1e-6).expect("a velocity").step().is_ok());
 }
@@ -336,7 +336,7 @@ impl<M: Method<S, 1>, S> Objective<M, S, 1> for Height {
     }
 }
 
-/// Variations after 60 steps.
+/// Tangent vectors after 60 steps.
 fn varied<M, S>(run: Run<M, S, 1>, variations: Vec<Variation<1>>) -> Vec<[f64; 2]>
 where
     M: Differentiable<S, 1>,
@@ -373,7 +373,7 @@ fn derivatives_of_a_free_fall_are_those_of_the_parabola() {
     // Measured: 3.4e-16.
     assert!((gradient.start.q[0] - 1.0).abs() < 1e-15 && (gradient.start.p[0] - 0.6).abs() < 1e-15, "{gradient:?}");
     assert_eq!(gradient.parameters, vec![vec![0.0; 3]; 60]);
-    // A second variation: of a parabola there is none.
+    // Second derivatives of a parabola do not exist.
     let mut run = run;
     let before = *run.node();
     run.step().expect("a step");

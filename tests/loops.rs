@@ -1,9 +1,9 @@
-//! A system so large that its functions are loops: the checks of the declaration, which know nothing of loops.
+//! A system large enough for loops in its functions: the generated checks, which are independent of loops.
 
 use vi_core::lagrangian;
 
 lagrangian! {
-    /// Pendula in a row that lean on their neighbours, all but the first one driven and slowed.
+    /// Coupled pendula in a row, all except the first driven and damped.
     struct Row {
         const N = 40;
         param m = 1.2, k = 0.7;

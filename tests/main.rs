@@ -1,5 +1,5 @@
-//! The tests across crates that take few steps, one program, compiled without optimization: what they share, generated steppers above all,
-//! is compiled once. Those that take many are `long`.
+//! The tests across crates with few steps as one program, compiled without optimization, so that shared code (above all
+//! generated steppers) compiles once. Tests with many steps are in `long`.
 
 mod arrays;
 mod bodies;

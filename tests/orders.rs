@@ -1,8 +1,8 @@
-//! Both integrators are of order 2 on every system, forced and time-dependent ones included.
+//! Both integrators have order 2 on every system, including forced and time-dependent ones.
 //!
-//! Each node is compared with an accurate motion at the time of that node: the time of the energy-preserving
-//! integrator is part of its solution. The order is the slope of log(error) over log(h), fitted over a ladder of
-//! steps; points near the round-off plateau are dropped, and at least three have to be left.
+//! Each node is compared with an accurate motion at its own time, because time is part of the solution of the
+//! energy-preserving integrator. The order is the slope of log(error) over log(h), fitted over a ladder of steps.
+//! Points near the rounding plateau are dropped; at least three must remain.
 
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number};
@@ -12,13 +12,13 @@ use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, Run, Starts, State, StepError};
 use vi_systems::{DoublePendulum, HardDuffing, Kepler, Pendulum};
 
-/// Steps over the time of a run: powers of two times this number of the scene's own steps.
+/// Number of steps of a run: powers of two times the steps of the scene.
 const STEPS: u32 = 60;
-/// Halvings of the scene's step: the ladder.
+/// Halvings of the step of the scene: the ladder.
 const LADDER: core::ops::RangeInclusive<i32> = 1..=6;
-/// Errors of fixed steps below this are dropped. Their plateau: 1e-14.
+/// Smaller errors of fixed steps are dropped. Their plateau: 1e-14.
 const FIXED_PLATEAU: f64 = 1e-11;
-/// Errors of energy-preserving steps below this are dropped. Their plateau: 1e-10.
+/// Smaller errors of energy-preserving steps are dropped. Their plateau: 1e-10.
 const ENERGY_PRESERVING_PLATEAU: f64 = 1e-8;
 
 /// The largest difference in coordinates and momenta.
@@ -27,7 +27,7 @@ fn difference<const N: usize>(system: &impl Lagrangian<N>, state: &State<N>, exa
     (state.q - exact.q).amax().max((state.p - p).amax())
 }
 
-/// Slopes lie this close to 2. Measured: 4e-4 with fixed steps, 9.0e-3 with energy-preserving ones.
+/// Tolerance of the slopes around 2. Measured: 4e-4 with fixed steps, 9.0e-3 with energy-preserving ones.
 const FROM_TWO: f64 = 0.02;
 
 fn fixed_step<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {

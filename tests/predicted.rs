@@ -1,6 +1,6 @@
-//! Steps that are predicted are those that are searched: to rounding, on every kind of equation.
+//! Predicted steps equal iterated ones to rounding, for every kind of equation.
 //!
-//! The same run by Newton's iteration from the last velocity, which goes on down to the rounding floor.
+//! The comparison run uses Newton iteration from the last velocity down to the rounding floor.
 
 use vi_core::node::Node;
 use vi_core::stepping::FixedStepping;
@@ -11,7 +11,7 @@ use vi_systems::{
 };
 
 lagrangian! {
-    /// With a mass that changes: the equation is linear in v, with another matrix in every step, and the gain is not.
+    /// With a varying mass: the equation is linear in v with a new matrix in every step; the increment is not linear.
     struct Breathing {
         param m = 1.3, r = 0.2, k = 2.1;
         coord x;
@@ -21,7 +21,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Neither separable nor free of friction.
+    /// Neither separable nor frictionless.
     struct Surface {
         param m = 1.2, g = 2.0, c = 0.3;
         coord x, y;
@@ -35,7 +35,7 @@ lagrangian! {
 
 const STEPS: usize = 2000;
 
-/// How far both runs come apart, and the part of the steps that were predicted by so many iterations.
+/// The difference of both runs, and the fraction of steps predicted with this number of iterations.
 fn apart<const N: usize, S: FixedStepping<N>>(
     system: S,
     (q, v): ([f64; N], [f64; N]),
@@ -71,8 +71,8 @@ fn by_one_newton_step() {
         apart(Surface::default(), ([0.5, 0.4], [0.3, 0.2]), 0.02, 1),
     ];
     for (off, predicted) in all {
-        // Measured: 3.5e-14 at most, Kepler: roundings of p add up along the orbit; else 6.1e-15;
-        // and 0.88 at least.
+        // Measured: 3.5e-14 at most, for Kepler, since roundings of p accumulate along the orbit; otherwise 6.1e-15;
+        // and at least 0.88.
         assert!(off <= 5e-14 && predicted > 0.85, "{off:e}, {predicted}");
     }
 }

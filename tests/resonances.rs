@@ -1,21 +1,23 @@
-//! Nonlinear resonances of the fixed step, where the linear problem is stable: V = x²/2 + a x³/3 + b x⁴/4.
+//! Nonlinear resonances of the fixed step in the linearly stable range: V = x²/2 + a x³/3 + b x⁴/4.
 //!
-//! A third of a turn a step (Verlet at h = √3, the midpoint rule at 2 √3): the smallest quadratic force drives the motion away.
+//! A third of a period per step (Verlet at h = √3, the midpoint rule at 2 √3): any quadratic force makes the motion
+//! unstable.
 //!
-//! A quarter of a turn (Verlet at h = √2, the midpoint rule at 2): it depends on the forces. With g = a x² + b x³ Verlet's step is
-//! `x_(k+1) + x_(k−1) = −2 g(x_k)`, and four of them move (u, w) = (x_(k−1), x_k) along
+//! A quarter of a period (Verlet at h = √2, the midpoint rule at 2): it depends on the forces. With g = a x² + b x³
+//! Verlet's step is `x_(k+1) + x_(k−1) = −2 g(x_k)`, and four of them move (u, w) = (x_(k−1), x_k) along
 //!
 //! ```text
 //! H = b (u⁴ + w⁴) − 4 a² u² w²       up to higher orders; it bounds the motion unless 0 ≤ b ≤ 2 a²
 //! ```
 //!
-//! The midpoint rule's is the same in x + p, with a/4 for a and (b − a²)/8 for b: bounded unless a² ≤ b ≤ 2 a².
+//! The Hamiltonian of the midpoint rule is the same in x + p, with a/4 for a and (b − a²)/8 for b: bounded unless a² ≤
+//! b ≤ 2 a².
 
 use vi_core::stepping::FixedStepping;
 use vi_core::{FixedStep, Starts, State, lagrangian};
 
 lagrangian! {
-    /// Oscillator with a quadratic and a cubic force, by the trapezoidal rule.
+    /// Oscillator with a quadratic and a cubic force and the trapezoidal rule.
     struct Explicit {
         param a = 1.0, b = 0.0;
         coord x;
@@ -25,7 +27,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// The same by the midpoint rule.
+    /// The same with the midpoint rule.
     struct Implicit {
         param a = 1.0, b = 0.0;
         coord x;
@@ -34,7 +36,7 @@ lagrangian! {
     }
 }
 
-/// The largest amplitude over 3000 steps of length h from x at rest, up to 1, or to where no step is left.
+/// The largest amplitude over 3000 steps of length h from x at rest, up to 1, or until no step exists.
 fn amplitude<S: FixedStepping<1> + Copy>(system: S, h: f64, x: f64) -> f64 {
     let start = State::at(&system, 0.0, [x], [0.0]);
     let run = system.at_state(start).integrate(FixedStep, h).expect("a valid start");
@@ -63,7 +65,7 @@ fn a_third_of_a_turn_a_step_drives_the_motion_away() {
 #[test]
 fn a_quarter_of_a_turn_a_step_drives_the_motion_away_where_its_forces_leave_it_unbounded() {
     let a = 1.3;
-    // From x = 0.1: the largest amplitude at the resonance, and 3 % beside it, for b in units of a².
+    // From x = 0.1: the largest amplitude at the resonance and 3 % away from it, for b in units of a².
     let grown = |b: f64| {
         let explicit = Explicit { a, b: b * a * a };
         let implicit = Implicit { a, b: b * a * a };

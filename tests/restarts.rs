@@ -1,11 +1,11 @@
-//! A run that is stored and resumed goes on bit for bit, for every way in which steps are taken; and only as what it was.
+//! A stored and resumed run continues bit for bit, for every kind of step, and only with the same system.
 
 use vi_core::stepping::FixedStepping;
 use vi_core::{EnergyPreserving, FixedStep, Run, Starts, State, StepError, lagrangian, run::Checkpoint};
 use vi_systems::{DampedOscillator, DoubleWell, HarmonicOscillator, Kepler};
 
 lagrangian! {
-    /// Linear, and too long for one matrix: the inverse of A is taken once.
+    /// Linear, and too large for one matrix: the inverse of A is computed once.
     struct Springs {
         param m = 1.2, k = 1.7;
         coord q[6];
@@ -15,7 +15,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// By the trapezoidal rule a step is explicit.
+    /// With the trapezoidal rule a step is explicit.
     struct Explicit {
         param k = 1.4;
         coord x;
@@ -24,7 +24,7 @@ lagrangian! {
     }
 }
 
-/// Restarts after each of `steps` steps: the next steps must be those of the run that goes on.
+/// Restarts after each of `steps` steps: the next steps must equal those of the uninterrupted run.
 fn resumes<const N: usize, S: FixedStepping<N>>(system: S, (q, v): ([f64; N], [f64; N]), h: f64, steps: u32) {
     let mut whole = system.at(0.3, q, v).integrate(FixedStep, h).expect("a start");
     let mut resumed = whole.clone();
@@ -41,7 +41,7 @@ fn resumes<const N: usize, S: FixedStepping<N>>(system: S, (q, v): ([f64; N], [f
 
 #[test]
 fn every_way_of_stepping_resumes_bit_for_bit() {
-    // A step of 10 is far beyond the period: what is solved by one matrix in one step must be in the next.
+    // A step of 10 is far beyond the period: a step solved by one matrix must be followed by one too.
     for h in [0.01, 1.0, 10.0, -3.0] {
         resumes(HarmonicOscillator { m: 1.3, k: 0.7 }, ([0.7], [0.3]), h, 500);
         resumes(DampedOscillator::default(), ([0.7], [0.3]), h, 200);

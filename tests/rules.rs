@@ -1,5 +1,5 @@
-//! A system that is declared with several rules takes by each of them, bit for bit, the steps of the same system declared with that
-//! rule alone; and whatever takes steps takes them by any of its rules.
+//! A system with several rules takes with each of them, bit for bit, the steps of the same system with that rule only.
+//! Every user of steps can use any of its rules.
 
 use vi_core::lagrangian::{Lagrangian, Parameters};
 use vi_core::rules::{By, Midpoint, Trapezoidal};
@@ -13,7 +13,7 @@ use vi_core::{
 macro_rules! surface {
     ($($name:ident by $($rule:ident),+;)+) => {$(
         lagrangian! {
-            /// A particle on a surface, driven and slowed: not separable, and not autonomous.
+            /// A driven and damped particle on a surface: not separable, and not autonomous.
             struct $name {
                 param m = 1.2, g = 2.0, c = 0.3;
                 coord x, y;
@@ -39,7 +39,7 @@ surface! {
 macro_rules! chain {
     ($($name:ident by $($rule:ident),+;)+) => {$(
         lagrangian! {
-            /// Masses on springs that stiffen, one of them heavier than the others.
+            /// Masses on stiffening springs, one of them heavier than the others.
             struct $name {
                 const N = 24;
                 param m = 1.2, k = 0.7;
@@ -57,11 +57,11 @@ chain! {
     ChainOfTrapezoidal by trapezoidal;
 }
 
-/// Where the surface is left from.
+/// The initial state on the surface.
 const PLACE: ([f64; 2], [f64; 2]) = ([0.7, -0.4], [0.5, 0.9]);
 
-/// The states of steps, told bit by bit.
-fn told<const N: usize>(steps: impl Iterator<Item = Result<State<N>, StepError>>) -> Vec<String> {
+/// The states of steps as bits.
+fn bits<const N: usize>(steps: impl Iterator<Item = Result<State<N>, StepError>>) -> Vec<String> {
     steps.map(|state| format!("{:?}", state.expect("a step"))).collect()
 }
 
@@ -71,8 +71,8 @@ where
     S: FixedStepping<N> + DiscreteLagrangian<N>,
 {
     let start = State::at(&system, 0.3, q, v);
-    let mut all = told(system.at_state(start).integrate(FixedStep, h).expect("a start").take(200));
-    all.extend(told(system.at_state(start).integrate(Composition::SUZUKI_4, h).expect("a start").take(20)));
+    let mut all = bits(system.at_state(start).integrate(FixedStep, h).expect("a start").take(200));
+    all.extend(bits(system.at_state(start).integrate(Composition::SUZUKI_4, h).expect("a start").take(20)));
     let (q0, v0) = (SVector::from(q), SVector::from(v));
     let interval = Interval { t0: 0.3, q0, t1: 0.3 + h, q1: q0 + v0 * h };
     let numbers = [
@@ -139,7 +139,7 @@ fn a_checkpoint_is_of_one_rule() {
     }
     let own = surface.at(0.3, q, v).integrate(FixedStep, 0.02).expect("a start").checkpoint();
     assert!(Run::restart(system, FixedStep, own.clone()).is_err());
-    // A checkpoint that was stored before rules had names is of the system's own.
+    // A checkpoint from before rules had names belongs to the default rule.
     let text = serde_json::to_string(&own).expect("numbers").replace("\"rule\":null,", "");
     assert!(!text.contains("rule"), "{text}");
     let stored: Checkpoint<_, 2> = serde_json::from_str(&text).expect("the same numbers");

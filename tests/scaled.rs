@@ -1,4 +1,4 @@
-//! Gauss steps in scaled time: against references, by their order, by what they keep, and where they fail.
+//! Gauss steps in transformed time: against references, order, preserved quantities, failures.
 
 use crate::support::assert_order_of;
 use crate::support::reference::{file, number, steps, vector};
@@ -12,7 +12,7 @@ use vi_core::{Called, Gauss, InTransformedTime, Lagrangian, Run, SVector, Starts
 use vi_systems::Kepler;
 
 lagrangian! {
-    /// Kepler's problem, its time scaled by the distance.
+    /// Kepler's problem with the distance as time scale.
     struct ByDistance {
         coord x, y;
         let r = sqrt(x^2 + y^2);
@@ -23,7 +23,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Force, time, varying mass and damping at once, and a time scale of time and place.
+    /// Force, time dependence, varying mass and damping together, and a time scale that depends on time and position.
     struct Everything {
         param a = 1.0, c = 0.1, w = 1.0, b = 0.5;
         coord x, y;
@@ -36,7 +36,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A free particle whose time stands still at x = 1: with k = 0 all of a sudden.
+    /// A free particle whose time scale vanishes at x = 1: with k = 0 abruptly.
     struct Wall {
         param k = 1;
         coord x;
@@ -47,7 +47,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A spring so stiff that sweeps do not contract, and a slow one.
+    /// A spring too stiff for fixed-point iteration, and a soft one.
     struct Stiff {
         param k = 1e6;
         coord x, y;
@@ -60,11 +60,11 @@ lagrangian! {
 /// Parameters other than the defaults.
 const EVERYTHING: Everything = Everything { a: 1.4, c: 0.15, w: 1.3, b: 0.7 };
 
-/// What a step in scaled time asks of a system.
+/// The requirements of a step in transformed time on a system.
 trait System<const N: usize>: TimeScale<N> + Convertible<N> + FixedStepping<N> + Copy {}
 impl<const N: usize, S: TimeScale<N> + Convertible<N> + FixedStepping<N> + Copy> System<N> for S {}
 
-/// The runs of the reference, of Hamilton's equations of K = g (H − E).
+/// The runs of the reference, with Hamilton's equations of K = g (H − E).
 fn follows<const S: usize>(case: &Value) {
     let state = State::at(&EVERYTHING, number(&case["t0"]), vector(&case["q0"]), vector(&case["v0"]));
     let mut run = EVERYTHING
@@ -125,7 +125,7 @@ fn a_scaled_point_is_the_point_and_its_derivatives() {
     assert_eq!((plain.g, plain.g_dq[0], plain.g_dt), (1.0, 0.0, 0.0));
 }
 
-/// The error at the times that steps of a ladder reach, against plain steps of 16 stages to the same times.
+/// The error at the times of the nodes of a ladder, against plain steps of 16 stages to the same times.
 fn order<const S: usize>(longest: f64, tolerance: f64) {
     let state = State::at(&EVERYTHING, 0.2, [0.4, -0.3], [0.2, 0.7]);
     let points: Vec<(f64, f64)> = [4_u32, 6, 8, 12, 16]
@@ -153,12 +153,12 @@ fn the_order_is_twice_the_number_of_stages() {
     order::<4>(0.4, 0.05);
 }
 
-/// The start in the pericentre of an orbit with a = 1 and e = 0.9.
+/// The pericentre of an orbit with a = 1 and e = 0.9.
 fn eccentric(system: &impl System<2>) -> State<2> {
     State::at(system, 0.0, [0.1, 0.0], [0.0, 19.0_f64.sqrt()])
 }
 
-/// The period in scaled time of an orbit with a = 1 and g = r^power: dt = r du, u the eccentric anomaly.
+/// The period in transformed time of an orbit with a = 1 and g = r^power: dt = r du, with the eccentric anomaly u.
 fn scaled_period(power: f64) -> f64 {
     let count = 4096;
     let anomalies = (0..count).map(|k| 2.0 * PI * f64::from(k) / f64::from(count));
@@ -180,7 +180,7 @@ fn few_steps_follow_an_eccentric_orbit() {
     let by_rate = |n: f64| scaled_period(1.5) / n;
     let kepler = Kepler::default();
     let distance = ByDistance::default();
-    // Steps per period 15, 30, 60, 120. The period itself is rounded: what is left is 4.4e-13.
+    // Steps per period 15, 30, 60, 120. The period itself is rounded: 4.4e-13 remains.
     let found = [
         (three_periods::<4>(distance, by_distance(15.0)), 1.7e-4),
         (three_periods::<4>(distance, by_distance(30.0)), 2.0e-7),
@@ -196,7 +196,7 @@ fn few_steps_follow_an_eccentric_orbit() {
         println!("off by {error:.2e}");
         assert!(error > 0.0 && error <= limit, "off by {error:e}, limit {limit:e}");
     }
-    // Plain steps, 120 in a period.
+    // Plain steps, 120 per period.
     let end = 6.0 * PI;
     let mut plain = kepler.at_state(eccentric(&kepler)).integrate(Gauss::<4>, end / 360.0).expect("a valid start");
     let reached = plain.by_ref().take(360).last().expect("steps").expect("a step");
@@ -282,7 +282,7 @@ fn states_at_times_are_those_of_plain_steps() {
         // Measured: 1.4e-13, the error of six stages.
         assert!(state.t.to_bits() == t.to_bits() && off < 2e-13, "t = {t}: {off:e}");
     }
-    // Backwards, and by steps that are longer than those of the run.
+    // Backward, and with steps longer than those of the run.
     let mut back =
         EVERYTHING.at_state(states[4]).integrate(Gauss::<8>.in_transformed_time(), -0.1).expect("a valid start");
     back.step_of(-0.9).expect("a long step");
@@ -350,7 +350,7 @@ fn a_run_goes_on_with_other_parameters_and_from_other_states() {
 #[test]
 fn stiff_steps_are_solved_by_newton() {
     let system = Stiff::default();
-    // At rest in the stiff direction, so that what is left of it says how well steps are solved.
+    // At rest in the stiff direction, so that its remaining motion measures the accuracy of the solution.
     let start = State::at(&system, 0.0, [0.0, 1.0], [0.0, 0.0]);
     let mut run = system.at_state(start).integrate(Gauss::<4>.in_transformed_time(), 0.2).expect("a valid start");
     let reached = run.by_ref().take(50).last().expect("steps").expect("a step");
@@ -365,11 +365,12 @@ fn stiff_steps_are_solved_by_newton() {
         let state = run.step().unwrap_or_else(|error| panic!("{error}"));
         assert!(state.q[0].abs() < 1.1e-3 && run.iterations() > 0);
     }
-    // The run knows that it is stiff: sweeps were tried at the steps 1, 3, 6, 11, 20 and 37, and then not for 32.
+    // The run knows that it is stiff: fixed-point iteration was tried at the steps 1, 3, 6, 11, 20 and 37, and then not
+    // for 32.
     assert!(format!("{:?}", run.checkpoint()).contains("next: 64"), "{:?}", run.checkpoint());
 }
 
-/// The error of a run, and that the run still has its last state and keeps the error.
+/// The error of a run, and that the run retains its last state and the error.
 fn ends<const N: usize, const S: usize>(mut run: Run<InTransformedTime<Gauss<S>>, impl System<N>, N>) -> StepError {
     for _ in 0..10_000 {
         let before = run.state();
@@ -410,7 +411,7 @@ fn a_system_without_a_time_scale_is_refused() {
     let system = Called(vi_systems::Pendulum::default());
     let error = system.at(0.0, [1.0], [0.0]).integrate(Gauss::<2>.in_transformed_time(), 0.1).expect_err("no g");
     assert_eq!(error, StepError::NoTimeScale { system: "Pendulum" });
-    // And one with a time scale steps as it does when its functions are no calls.
+    // A run with a time scale takes the same steps if its functions are inlined.
     let kepler = Kepler::default();
     let start = eccentric(&kepler);
     let mut runs = (

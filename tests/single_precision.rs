@@ -7,7 +7,7 @@ use vi_systems::{HardDuffing, Kepler};
 
 const STEPS: usize = 200;
 
-/// Both integrators after some steps, and the largest change of the energy of the energy-preserving one, in roundings of 1.
+/// Both integrators after some steps, and the largest energy change of the energy-preserving one, in roundings of 1.
 struct Runs<const N: usize> {
     fixed: State<N>,
     energy_preserving: State<N>,
@@ -50,7 +50,7 @@ fn kepler() {
     // Measured: 6.0e-6, and 2.3e-4: the step length is a second-order quantity.
     let [fixed, energy_preserving] = differences(&single, &double);
     assert!(fixed <= 8e-6 && energy_preserving <= 4e-4, "{fixed:e}, {energy_preserving:e}");
-    // Measured: 3 and 5, where v²/2 and μ/r are 2.4.
+    // Measured: 3 and 5, for v²/2 and μ/r of 2.4.
     assert!(
         single.energy_error <= 8.0 && double.energy_error <= 12.0,
         "{} {}",
@@ -64,7 +64,7 @@ fn hard_duffing() {
     let (system, q, v) = (HardDuffing { beta: 0.8, ..HardDuffing::default() }, [1.0], [0.2]);
     let double = runs::<1, f64, _>(system, q, v);
     let single = runs::<1, f32, _>(system.convert::<f32>(), q, v);
-    // Measured: 5.6e-7, 2.5e-4 (8.2e-5 with the terms in another order: a walk of roundings).
+    // Measured: 5.6e-7, 2.5e-4 (8.2e-5 with another order of terms: a random walk of roundings).
     let [fixed, energy_preserving] = differences(&single, &double);
     assert!(fixed <= 2e-6 && energy_preserving <= 1e-3, "{fixed:e}, {energy_preserving:e}");
 }

@@ -1,5 +1,5 @@
-//! The step law of the energy-preserving integrator: `h D^(1/3)` is constant up to O(h²) without force,
-//! `h √D` exactly for the damped oscillator. D is the density of the continuous system at the middle of the step.
+//! The step law of the energy-preserving integrator: `h D^(1/3)` is constant up to O(h²) without force, `h √D` exactly
+//! for the damped oscillator. D is the density of the continuous system at the midpoint of the step.
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
 use vi_core::stepping::EnergyStepping;
@@ -36,7 +36,7 @@ fn law<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
         // Measured: 0.073, 0.012 and 0.27, the same for every h0.
         assert!(each.iter().all(|deviation| *deviation > 1e-2), "{}: {each:?}", S::NAME);
     } else if S::NAME == "HarmonicOscillator" {
-        // D is constant along the discrete motion too. Measured: 6.4e-13 to 7.0e-11, growing with 1/h as rounding does.
+        // D is also constant along the discrete motion. Measured: 6.4e-13 to 7.0e-11, growing with 1/h by rounding.
         assert!(each.iter().all(|deviation| *deviation <= 2e-10), "{}: {each:?}", S::NAME);
     } else {
         for pair in each.windows(2) {

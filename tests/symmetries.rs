@@ -1,4 +1,4 @@
-//! What the fixed step is as a map: its own inverse under h → −h, and symplectic where there is no force.
+//! The fixed step as a map: its own inverse under h → −h, and symplectic without force.
 
 use crate::support::scenes::{Scene, damped_oscillator, each_system};
 use vi_core::stepping::FixedStepping;
@@ -10,7 +10,7 @@ fn after<const N: usize, S: FixedStepping<N> + Copy>(system: S, start: State<N>,
     run.take(steps).last().expect("a step").unwrap_or_else(|error| panic!("{}: {error}", S::NAME))
 }
 
-/// The midpoint rule and its forces are symmetric in the two ends, so damping is run backwards as well.
+/// The midpoint rule and its forces are symmetric in both ends, so damped systems are reversed too.
 fn reversible<const N: usize, S: FixedStepping<N> + Copy>(scene: Scene<S, N>) {
     const STEPS: usize = 100;
     let Scene { system, q, v, h, .. } = scene;
@@ -51,7 +51,8 @@ fn defect<const N: usize>(columns: &[Vec<f64>]) -> f64 {
     each.fold(0.0, |worst, (i, j)| f64::max(worst, (product(&columns[i], &columns[j]) - wanted(i, j)).abs()))
 }
 
-/// Without force the map of one step is symplectic. The forces of all forced systems damp, and the same check sees it.
+/// Without force the map of one step is symplectic. The forces of all forced systems damp, and the same check detects
+/// it.
 fn symplectic<const N: usize, S: FixedStepping<N> + Copy>(scene: Scene<S, N>) {
     let Scene { system, q, v, h, .. } = scene;
     let defect = defect::<N>(&derivative(system, State::at(&system, 0.2, q, v), 4.0 * h));
@@ -60,7 +61,7 @@ fn symplectic<const N: usize, S: FixedStepping<N> + Copy>(scene: Scene<S, N>) {
         // Measured: 1.5e-2 to 4.7e-2.
         assert!(defect > 1e-2, "{}: {defect:e}", S::NAME);
     } else {
-        // Measured: 2.7e-12 for Kepler's problem, where the differences are least accurate, else at most 2.7e-13.
+        // Measured: 2.7e-12 for Kepler's problem, whose differences are least accurate, otherwise at most 2.7e-13.
         assert!(defect <= 1e-11, "{}: {defect:e}", S::NAME);
     }
 }

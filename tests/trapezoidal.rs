@@ -1,5 +1,5 @@
-//! The trapezoidal rule: Störmer–Verlet where L is separable, order 2 elsewhere, slots against dual numbers; and the
-//! midpoint rule written out, which is the named one bit for bit.
+//! The trapezoidal rule: Störmer–Verlet for separable L, order 2 otherwise, slots against dual numbers; and the
+//! written-out midpoint rule, which equals the named one bit for bit.
 
 use crate::support::exact::Motion;
 use vi_core::real::Dual;
@@ -9,7 +9,7 @@ use vi_core::{DiscreteLagrangian, FixedStep, Interval, Run, SVector, Starts, Sta
 type D = Dual<f64>;
 
 lagrangian! {
-    /// Separable, in two dimensions, with a force that depends on the time.
+    /// Separable, two-dimensional, with a time-dependent force.
     struct Separable {
         param m = 1.3, k = 2.1, s = 0.7;
         coord x, y;
@@ -20,7 +20,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Neither separable nor free of friction: a particle on a surface, driven and slowed.
+    /// Neither separable nor frictionless: a driven and damped particle on a surface.
     struct Surface {
         param m = 1.2, g = 2.0, c = 0.3;
         coord x, y;
@@ -89,7 +89,7 @@ fn it_is_verlet_for_a_separable_lagrangian() {
     assert!(worst <= 4e-15 && spent == 1, "{worst:e}, {spent}");
 }
 
-/// Errors against an accurate motion fall by 4 with every halving of the step.
+/// Checks that errors against an accurate motion fall by 4 per halving of the step.
 fn order<const N: usize, S: FixedStepping<N> + Copy>(system: S, q: [f64; N], v: [f64; N]) {
     let exact = Motion::new(0.0, q, v).at(&system, 2.0);
     let momentum = system.momentum(2.0, &exact.q, &exact.v);
@@ -114,7 +114,7 @@ fn it_is_of_order_two() {
     order(Surface::default(), [0.8, 0.5], [0.3, -0.6]);
 }
 
-/// Differences relative to what they are taken of, and how many of the numbers were other than zero.
+/// Relative differences, and the number of nonzero values.
 #[derive(Default)]
 struct Comparison {
     worst: f64,
@@ -124,7 +124,7 @@ struct Comparison {
 impl Comparison {
     fn equal(&mut self, what: &str, found: f64, wanted: f64) {
         let difference = (found - wanted).abs() / wanted.abs().max(1.0);
-        // Measured: 6.8e-16, where terms of D1 cancel.
+        // Measured: 6.8e-16, from cancelling terms of D1.
         assert!(difference <= 2e-15, "{what}: {found:e}, wanted {wanted:e}");
         self.worst = self.worst.max(difference);
         self.nonzero += usize::from(wanted != 0.0);

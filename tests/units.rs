@@ -1,10 +1,11 @@
-//! Units do not matter: a system in metres and radians, in masses of 1 and 1e-12, moves as the same one does in like units.
+//! Invariance under units: a system in metres and radians, with masses of 1 and 1e-12, moves like the same system in
+//! equal units.
 
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, FixedStep, SVector, Starts, State, StepError, lagrangian};
 
-/// A system of angles u and angular velocities w, in the coordinates q = u, and in q with u_i = 2^(25 i (−1)^i) q_i: masses of
-/// 1 to 1e-75. Powers of two round nothing.
+/// A system of angles u and angular velocities w, in the coordinates q = u, and in q with u_i = 2^(25 i (−1)^i) q_i:
+/// masses of 1 to 1e-75. Powers of two do not round.
 macro_rules! in_two_units {
     ($plain:ident, $in_units:ident, $n:literal, $($clauses:tt)*) => {
         lagrangian! {
@@ -37,7 +38,7 @@ in_two_units!(Row, RowInUnits, 6,
     L = sum(i in 0..6, w[i]^2 / 2 + cos(u[i])) + sum(i in 1..6, w[i] * w[i - 1] * cos(u[i] - u[i - 1])) / 5;
 );
 
-// All meet all, and what drives one from the other makes the matrix unsymmetric: it is dense.
+// All pairs interact, and nonreciprocal forces make the matrix unsymmetric: it is dense.
 in_two_units!(Net, NetInUnits, 5,
     L = sum(i in 0..5, w[i]^2 + cos(u[i])) + sum(i in 0..5, sum(j in 0..i, w[i] * w[j] * cos(u[i] - u[j]))) / 4;
     dissipation = (w[0] * u[1] - w[4] * u[2])^2;
@@ -49,7 +50,7 @@ in_two_units!(Three, ThreeInUnits, 3,
     L = sum(i in 0..3, w[i]^2 / 2 + cos(u[i])) + (w[0] * w[1] * cos(u[0] - u[1]) + w[2] * w[0] * u[1]) / 3;
 );
 
-/// Where a system is in like units: 0.3, 0.5, … with the velocities 0.7, 0.5, ….
+/// The initial state in equal units: 0.3, 0.5, … with the velocities 0.7, 0.5, ….
 fn start<const N: usize>(unit: impl Fn(usize) -> f64) -> [SVector<f64, N>; 2] {
     let angle = |i: usize| 0.3 + 0.2 * f64::from(u8::try_from(i).expect("few coordinates"));
     [SVector::from_fn(|i, _| angle(i) / unit(i)), SVector::from_fn(|i, _| (1.0 - angle(i)) / unit(i))]
@@ -115,7 +116,7 @@ fn trajectories_are_the_same_in_any_units() {
         energy_preserving(Three::default(), ThreeInUnits::default()),
     ];
     println!("{fixed:?} {energy_preserving:?}");
-    // Measured: 2.2e-16; 2.1e-12, since the rounding of the energy becomes one of the step's length.
+    // Measured: 2.2e-16; 2.1e-12 for energy-preserving steps, since the rounding of the energy affects the length.
     for (apart, tolerance) in
         fixed.map(|apart| (apart, 5e-16)).into_iter().chain(energy_preserving.map(|apart| (apart, 5e-12)))
     {

@@ -1,4 +1,4 @@
-//! Derivatives of motions where numbers are extreme: slopes without a bound, and coordinates in units that are far apart.
+//! Sensitivities for extreme numbers: unbounded slopes, and coordinates in very different units.
 
 use nalgebra::{DMatrix, SMatrix};
 use vi_core::derivatives::{Covector, Differentiable, Lyapunov, Objective, Tangent, Variation, gradient};
@@ -8,7 +8,7 @@ use vi_core::{
 };
 
 lagrangian! {
-    /// A force that is zero at x = 0, where its slope has no bound.
+    /// A force that is zero at x = 0 with an unbounded slope.
     struct Kink {
         param k = 1.0;
         coord x;
@@ -43,7 +43,7 @@ fn a_slope_without_a_bound_is_told() {
 }
 
 lagrangian! {
-    /// A mass on a hilltop, whose variations grow without end, and a brake.
+    /// A mass on a hilltop, whose tangent vectors grow without bound, and a brake.
     struct Hill {
         param k = 1.0, c = 0.0;
         coord x;
@@ -53,17 +53,17 @@ lagrangian! {
     }
 }
 
-/// Whether an error tells that a number of this name is not finite.
+/// Whether an error reports a non-finite number with this name.
 fn is_not_finite<T>(outcome: &Result<T, StepError>, name: &str) -> bool {
     matches!(outcome, Err(StepError::NonFinite { quantity, .. }) if quantity.contains(name))
 }
 
-/// Whether an error tells, with this word, why a step from the time `t` has no derivative.
+/// Whether an error reports, with this word, why a step from the time `t` has no derivative.
 fn has_none(outcome: &Result<(), StepError>, t: f64, word: &str) -> bool {
     matches!(outcome, Err(StepError::NoDerivative { t: at, because }) if at.total_cmp(&t).is_eq() && because.contains(word))
 }
 
-/// Only the last step of a run is differentiated, and only by the parameters that its system has.
+/// Only the last step of a run is differentiated, and only with respect to existing parameters.
 fn differentiates_its_last_step<M: Differentiable<Hill, 1>>(mut run: Run<M, Hill, 1>) {
     let start = *run.node();
     let states = Variation::of_state;
@@ -77,13 +77,13 @@ fn differentiates_its_last_step<M: Differentiable<Hill, 1>>(mut run: Run<M, Hill
     let many = Variation { parameters: vec![0.0; 3], ..Variation::zero() };
     assert!(has_none(&run.vary(&after, &mut [many]), after.t, "more parameters"));
     run.vary(&after, &mut states()).expect("the last step");
-    // The last step had other parameters: its derivative by the new ones would be wrong.
+    // The last step had other parameters: its derivative with respect to the new ones would be wrong.
     run.set_parameters(|hill| hill.k *= 2.0).expect("regular");
     assert!(has_none(&run.vary(&after, &mut states()), after.t, "before the parameters change"), "other parameters");
     let changed = *run.node();
     run.step().expect("solvable");
     run.vary(&changed, &mut states()).expect("the last step, with the new parameters");
-    // The last step ends at a given time, to which it is equal but for rounding.
+    // The last step ends at a given time, up to rounding.
     let before = *run.node();
     run.until(before.t + 1.25 * run.h()).expect("solvable");
     assert!(has_none(&run.vary(&before, &mut states()), before.t, "last"), "two steps");
@@ -115,7 +115,7 @@ fn only_the_last_step_is_differentiated() {
     let mut changed = run.clone();
     changed.set_parameters(|hill| hill.k *= 2.0).expect("regular");
     assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
-    // A run that is stored then knows it too.
+    // A stored run also knows this.
     let changed = Run::restart(*changed.system(), FixedStep, changed.checkpoint()).expect("its own system");
     assert!(has_none(&second(&changed, &one), 0.7, "before the parameters change"));
     run.step().expect("solvable");
@@ -151,7 +151,7 @@ fn names_and_indices_that_do_not_exist_are_told() {
     assert!(matches!(misspelt, Err(StepError::UnknownParameter { system: "Hill", .. })), "{misspelt:?}");
 }
 
-/// Wants the gradient with respect to a parameter that does not exist, and to one that does.
+/// Requests the gradient with respect to one missing and one existing parameter.
 struct Misspelt;
 
 impl<M: Method<S, 1>, S> Objective<M, S, 1> for Misspelt {
@@ -165,7 +165,7 @@ impl<M: Method<S, 1>, S> Objective<M, S, 1> for Misspelt {
 }
 
 lagrangian! {
-    /// A force whose slope has no bound at x = 0, where it is not zero.
+    /// A force with an unbounded slope at x = 0, at which it is not zero.
     struct Root {
         coord x;
         L = dot(x)^2 / 2;
@@ -180,12 +180,12 @@ fn a_start_where_the_slope_of_a_force_has_no_bound_is_told() {
     let mut run = Root::default().at_state(start).integrate(FixedStep, 0.1).expect("the velocity is known");
     let failure = run.step();
     assert!(is_not_finite(&failure, "derivative of the momentum equation"), "{failure:?}");
-    // Away from there it is a step like any other.
+    // Away from x = 0 it is an ordinary step.
     let start = State { p: SVector::from([0.1]), ..start };
     Root::default().at_state(start).integrate(FixedStep, 0.1).expect("valid").step().expect("solvable");
 }
 
-/// The last coordinate after so many steps, by this weight.
+/// The last coordinate after this number of steps, times this weight.
 struct Weighted(u64, f64);
 
 impl<M: Method<S, 1>, S> Objective<M, S, 1> for Weighted {
@@ -197,7 +197,7 @@ impl<M: Method<S, 1>, S> Objective<M, S, 1> for Weighted {
 
 #[test]
 fn what_grows_beyond_the_range_of_numbers_is_told() {
-    // cosh(t) of 700 and more is beyond them.
+    // cosh(t) overflows for 700 and more.
     let top = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([0.0]) };
     let fixed = Hill::default().at_state(top).integrate(FixedStep, 0.5).expect("valid");
     let gauss = Hill::default().at_state(top).integrate(Gauss::<4>, 0.5).expect("valid");
@@ -216,7 +216,7 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
     assert!(is_not_finite(&run.second_variation(&before, &huge, &huge), "variation"));
     let large = Variation { q: SVector::from([1e154]), parameters: vec![1e154], ..Variation::zero() };
     assert!(is_not_finite(&run.second_variation(&before, &large, &large), "variation"));
-    // What goes in is no number.
+    // The input is not a number.
     let none = Variation { q: SVector::from([f64::NAN]), ..Variation::zero() };
     assert!(is_not_finite(&Tangent::new(fixed, vec![none.clone()]).step(), "variation"));
     assert!(is_not_finite(&Tangent::new(gauss, vec![none]).step(), "variation"));
@@ -224,24 +224,24 @@ fn what_grows_beyond_the_range_of_numbers_is_told() {
 
 #[test]
 fn an_exponent_without_a_bound_is_told() {
-    // The step ends at rest from everywhere, c h = 2: nothing is left of one direction.
+    // With c h = 2 every step ends at rest: one direction collapses.
     let start = State { t: 0.0, q: SVector::from([0.0]), p: SVector::from([1.0]) };
     let run = Hill { k: 0.0, c: 20.0 }.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let mut exponents = Lyapunov::new(run, 2).expect("two");
     let failure = exponents.advance(3);
     assert!(is_not_finite(&failure, "Lyapunov exponent"), "{failure:?}");
     assert!(exponents.exponents().iter().all(|exponent| exponent.is_nan()), "{:?}", exponents.exponents());
-    // Backwards in time they are those of the motion backwards, the largest first: λ² − c λ − k = 0.
+    // Backward in time they are the exponents of the reversed motion, largest first: λ² − c λ − k = 0.
     let start = State { t: 0.0, q: SVector::from([1e-9]), p: SVector::from([0.0]) };
     let run = Hill { k: 1.0, c: 0.5 }.at_state(start).integrate(Gauss::<4>, -0.1).expect("valid");
     let mut backwards = Lyapunov::new(run, 2).expect("two");
     backwards.advance(200).expect("no step fails");
     let [largest, smallest] = backwards.exponents()[..] else { panic!("two exponents") };
     let root = (0.25_f64 * 0.25 + 1.0).sqrt();
-    // Measured 1.3e-2, a term of order 1/t; their sum to rounding.
+    // Measured 1.3e-2, a term of order 1/t; their sum is accurate to rounding.
     assert!((largest - 0.25 - root).abs() < 0.02 && (smallest - 0.25 + root).abs() < 0.02, "{largest} {smallest}");
     assert!((largest + smallest - 0.5).abs() < 1e-12, "{largest} {smallest}");
-    // One direction alone loses length once, and keeps it then.
+    // A single direction shrinks once, and then keeps its length.
     let run = Hill { k: 0.0, c: 20.0 }.at_state(start).integrate(FixedStep, 0.1).expect("valid");
     let mut largest = Lyapunov::new(run, 1).expect("one");
     largest.advance(1000).expect("a length is left");
@@ -249,7 +249,7 @@ fn an_exponent_without_a_bound_is_told() {
 }
 
 lagrangian! {
-    /// Two coupled oscillators, the second in the unit 1/u.
+    /// Two coupled oscillators, the second in units of 1/u.
     struct Units {
         param u = 1.0, c = 0.3, b = 0.2;
         coord x, y;
@@ -258,7 +258,7 @@ lagrangian! {
     }
 }
 
-/// The tangent map over some steps, in units in which both oscillators are alike.
+/// The tangent map over some steps, in units with equal oscillators.
 fn map<const STAGES: usize>(u: f64, c: f64) -> SMatrix<f64, 4, 4> {
     let system = Units { u, c, ..Units::default() };
     let start = State::at(&system, 0.0, [0.5, -0.3 / u], [0.2, 0.4 / u]);
@@ -289,7 +289,7 @@ fn derivatives_do_not_depend_on_units() {
             assert!(worst < 1e-14, "u = {u:e}, c = {c:e}: {errors:?}");
         }
     }
-    // They are derivatives of something that moves.
+    // They are derivatives of a moving system.
     let moved = DMatrix::from_iterator(4, 4, map::<4>(1.0, 0.3).iter().copied()) - DMatrix::identity(4, 4);
     assert!(moved.amax() > 0.1);
 }

@@ -1,4 +1,4 @@
-//! Variations of steps and runs: against dual numbers of a step that is solved in them, differences, symplecticity, and published exponents.
+//! Sensitivities of steps and runs: against dual numbers, differences, symplecticity, and published exponents.
 
 use crate::gauss::Everything;
 use nalgebra::{DMatrix, DVector};
@@ -33,7 +33,7 @@ fn tangent_map<M: Differentiable<S, N>, S: Lagrangian<N> + Copy, const N: usize>
     (tangent.run().clone(), DMatrix::from_columns(&columns))
 }
 
-/// How far a map is from a symplectic one, relative to its square.
+/// Distance of a map from a symplectic one, relative to its square.
 fn defect(map: &DMatrix<f64>) -> f64 {
     let n = map.nrows() / 2;
     let form = DMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
@@ -58,7 +58,7 @@ where
     defect(&fixed).max(defect(&gauss)).max(defect(&composed))
 }
 
-/// Positions of a chain, none like its neighbour.
+/// Positions of a chain without regularity.
 const BENT: [f64; 16] = [0.3, -0.2, 0.5, 0.1, 0.7, -0.4, 0.2, 0.6, -0.1, 0.4, -0.3, 0.8, 0.0, -0.5, 0.35, 0.15];
 
 #[test]
@@ -80,7 +80,7 @@ fn tangent_maps_are_symplectic() {
     assert!(defects.into_iter().all(|defect| defect < 1e-14), "{defects:?}");
 }
 
-/// The node after a step that is solved in dual numbers from the start: no implicit function theorem.
+/// The node after a step solved in dual numbers from the start, without the implicit function theorem.
 fn solved_in_duals<S: FixedStepping<N, Dual<f64>>, const N: usize>(
     system: &S,
     node: &mut Node<N, Dual<f64>>,
@@ -145,7 +145,7 @@ impl<const N: usize> ToDual<N> for Node<N> {
     }
 }
 
-/// The largest difference between variations and central differences of third order, relative to their size.
+/// The largest difference between tangent vectors and central differences of third order, relative to their size.
 fn differs<M, S, const N: usize>(
     begin: impl Fn(&SVector<f64, N>, &SVector<f64, N>, f64) -> Run<M, S, N>,
     steps: usize,
@@ -215,7 +215,7 @@ fn variations_are_those_of_differences() {
             "m",
         ),
     ];
-    // 2.0e-11, and 1.8e-9 of the double well: what the differences lack.
+    // 2.0e-11, and 1.8e-9 for the double well: the error of the differences.
     assert!(errors.into_iter().all(|error| error < 4e-9), "{errors:?}");
 }
 
@@ -249,7 +249,7 @@ fn an_energy_preserving_step_varies_in_its_length() {
             }
             (run.state(), run.node().energy)
         };
-        // The length follows from a small difference: only short distances are linear.
+        // The length follows from a small difference: only small perturbations are linear.
         let s = 2e-6;
         let [(a, ea), (b, eb), (c, ec), (d, ed)] = [s, -s, 2.0 * s, -2.0 * s].map(shift);
         let richardson = |a: f64, b: f64, c: f64, d: f64| (8.0 * (a - b) - (c - d)) / (12.0 * s);
@@ -308,7 +308,7 @@ fn second_variations_are_differences_of_first_ones() {
     assert!(worst < 1e-12 && largest > 0.1, "{worst} {largest}");
 }
 
-/// The squares of the distances from a course, at every node.
+/// The squared distances from a trajectory, at every node.
 struct Course;
 
 impl<M: Method<Everything, 2>> Objective<M, Everything, 2> for Course {
@@ -338,7 +338,7 @@ fn adjoint_and_tangent_agree() {
     fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
         let mut all: Vec<_> = [1, 5, 1000].map(|kept| gradient(run, steps, kept, &Course).expect("solvable")).into();
         let found = all.pop().expect("three");
-        // However many runs are kept.
+        // For any number of stored runs.
         assert!(all.iter().all(|other| *other == found));
         let mut variations = Variation::of_state();
         variations
@@ -394,7 +394,8 @@ impl<M: Method<S, 1>, S> Objective<M, S, 1> for Squares {
 
 #[test]
 fn the_time_of_an_autonomous_run_is_carried_back() {
-    /// The largest difference of the gradient from variations that are carried along, and the derivative by the time of the start.
+    /// The largest difference between the gradient and propagated tangent vectors, and the derivative with respect to
+    /// the initial time.
     fn worst<M, S>(run: &Run<M, S, 1>, steps: u64) -> (f64, f64)
     where
         M: Differentiable<S, 1>,
@@ -426,7 +427,7 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
     let fixed = worst(&well.at_state(start).integrate(FixedStep, 0.05).expect("valid"), 20);
     let gauss = worst(&well.at_state(start).integrate(Gauss::<4>, 0.1).expect("valid"), 20);
     let energy = EnergyPreserving::from_midpoint(well, 0.5, [1.2], [0.3], 0.1).expect("valid");
-    // The length of a step answers an energy by as much as 1/h²: few and long ones.
+    // The length of a step changes with the energy by as much as 1/h²: a few long steps.
     let energy = worst(&energy, 6);
     println!("off by {:.1e}, {:.1e}, {:.1e}", fixed.0, gauss.0, energy.0);
     // Σ 2 t_k at times from 0.5 to 1.5, in steps of 0.05.
@@ -439,7 +440,8 @@ fn the_time_of_an_autonomous_run_is_carried_back() {
 
 #[test]
 fn exponents_of_a_saddle() {
-    // An inverted pendulum at rest leaves its place as exp(ω t), and a run of Gauss steps as the stable root of its rule.
+    // An inverted pendulum at rest leaves its position as exp(ω t), and a Gauss run with the stability function of its
+    // method.
     let pendulum = Pendulum { m: 1.3, l: 0.5, g: 4.5 };
     let top = State::at(&pendulum, 0.0, [core::f64::consts::PI], [0.0]);
     let run = pendulum.at_state(State { p: SVector::zeros(), ..top }).integrate(Gauss::<6>, 0.1).expect("valid");
@@ -450,12 +452,12 @@ fn exponents_of_a_saddle() {
         let exponents = lyapunov.exponents();
         *part = [exponents[0], exponents[1]].map(|exponent| exponent * lyapunov.run().t());
     }
-    // ω = 3. What the first direction lacked is gone after four units of time: 3.4e-13.
+    // ω = 3. The component of the other directions has decayed after four units of time: 3.4e-13.
     let rates = [0, 1].map(|k| (growth[1][k] - growth[0][k]) / 4.0);
     assert!((rates[0] - 3.0).abs() < 1e-12 && (rates[1] + 3.0).abs() < 1e-12, "{rates:?}");
 }
 
-/// The largest exponent from two motions, whose distance is made small again after every step.
+/// The largest exponent from two motions whose distance is rescaled after every step.
 fn separated<M: Method<S, N>, S: Lagrangian<N> + Copy, const N: usize>(run: &Run<M, S, N>, steps: u32) -> f64 {
     const NEAR: f64 = 1e-7;
     let mut run = run.clone();
@@ -505,7 +507,7 @@ fn exponents_of_chaotic_motion() {
     for (found, other) in [(driven[0], of_driven), (galaxy[0], of_galaxy), (swinging[0], of_swinging)] {
         assert!(found > 0.05 && (found / other - 1.0).abs() < 1e-2, "{found} {other}");
     }
-    // Volumes shrink by damping, at the rate c, or are kept; and exponents come in pairs.
+    // Damping contracts volumes at the rate c; otherwise they are preserved. Exponents come in pairs.
     assert!((driven.iter().sum::<f64>() + duffing.c).abs() < 1e-9, "{driven:?}");
     for pairs in [galaxy, swinging] {
         assert!((pairs[0] + pairs[3]).abs() + (pairs[1] + pairs[2]).abs() < 1e-2, "{pairs:?}");
@@ -513,7 +515,7 @@ fn exponents_of_chaotic_motion() {
     }
 }
 
-/// The coordinate after some steps, whose parameter a is an input of each step.
+/// The coordinate after some steps, with the parameter a as an input of each step.
 struct Driven {
     inputs: [f64; 12],
 }
@@ -561,7 +563,7 @@ fn gradients_of_inputs_that_bring_energy() {
             assert!(difference.abs() > 1e-6, "step {step} changes nothing");
             worst = worst.max((found.parameters[step][0] - difference).abs() / difference.abs());
         }
-        // The start: another state brings the energy H, whatever is kept.
+        // The start: another state has the energy H, for any preserved quantity.
         let start = run.state();
         let value = |dp: f64| {
             let mut run = run.clone();
@@ -576,13 +578,13 @@ fn gradients_of_inputs_that_bring_energy() {
     let start = State::at(&system, 0.1, [0.6, -0.4], [0.3, 0.5]);
     let kept = EnergyPreserving::from_midpoint(system, 0.1, [0.6, -0.4], [0.3, 0.5], 0.05).expect("valid");
     let errors = [worst(&system.at_state(start).integrate(FixedStep, 0.1).expect("valid")), worst(&kept)];
-    // 5.2e-9 and 1.8e-8: what the differences lack.
+    // 5.2e-9 and 1.8e-8: the error of the differences.
     assert!(errors.into_iter().all(|error| error < 1e-7), "{errors:?}");
 }
 
 #[test]
 fn exponents_of_steps_that_find_their_length_are_those_of_the_tangent_map() {
-    // Where time and force act, a direction is that of the time and of the energy too.
+    // With time dependence and force, a direction includes time and energy.
     let run =
         EnergyPreserving::from_midpoint(Everything::default(), 0.1, [0.6, -0.4], [0.3, 0.5], 0.02).expect("valid");
     let mut lyapunov = Lyapunov::new(run.clone(), 4).expect("all");

@@ -1,4 +1,4 @@
-//! Energy-preserving steps of order 2s: their density, their order, what they keep, where they exist, the shift, and where they fail.
+//! Energy-preserving steps of order 2s: density, order, preserved quantities, existence, shift, failures.
 
 use crate::gauss::{Everything, System};
 use crate::support::assert_order_of;
@@ -38,7 +38,7 @@ fn begin<const N: usize, const S: usize, Y: System<N>>(
     system.at(0.2, q, v).integrate(EnergyPreservingGauss, h).expect("a valid start")
 }
 
-/// What H at a state is a sum of: its rounding by running error analysis, in roundings of 1.
+/// Rounding bound of H at a state from running error analysis, in units of ε.
 fn size_of_energy<const N: usize>(system: &impl System<N>, state: &State<N>) -> f64 {
     let q = state.q.map(Rounded::nearest);
     let v = state.velocity(system).expect("a velocity").map(Rounded::nearest);
@@ -102,12 +102,12 @@ fn step_densities_of_one_degree_of_freedom_have_a_closed_form() {
     }
 }
 
-/// With one stage it is the density that is emitted.
+/// With one stage it equals the emitted density.
 fn emitted<const N: usize>(Scene { system, q, v, .. }: Scene<impl System<N> + EnergyStepping<N>, N>) {
     let state = State::at(&system, 0.2, q, v);
     let found = step_density::<_, N, 1>(&system, &state).expect("a density");
     let exact = system.step_density(0.2, &q.into(), &v.into()).expect("a density");
-    // Measured: 1.7e-14, of a chain.
+    // Measured: 1.7e-14, for a chain.
     assert!((found / exact - 1.0).abs() < 5e-14, "{}: {found}, not {exact}", name_of(&system));
 }
 
@@ -117,7 +117,7 @@ mod one_stage_has_the_emitted_density {
     each_system!(super::emitted);
 }
 
-/// The density that a short step tells is that of its middle.
+/// The density that follows from a short step equals the density at its midpoint.
 fn told<const N: usize, const S: usize>(system: impl System<N>, (q, v): ([f64; N], [f64; N]), h: f64) -> f64 {
     let mut run = begin::<N, S, _>(system, (q, v), h);
     let before = run.state();
@@ -136,7 +136,7 @@ fn a_step_tells_its_density() {
     let Scene { system, q, v, .. } = scenes::hard_duffing();
     let everything = (Everything::default(), ([0.6, 0.9], [0.4, -0.3]));
     let well = (DoubleWell { m: 1.3 }, ([0.8], [0.1]));
-    // How many times less the deviation is with half the step.
+    // Ratio of the deviations for half the step.
     let cases = [
         told::<1, 1>(system, (q, v), 0.02) / told::<1, 1>(system, (q, v), 0.01),
         told::<1, 2>(system, (q, v), 0.1) / told::<1, 2>(system, (q, v), 0.05),
@@ -151,7 +151,7 @@ fn a_step_tells_its_density() {
 
 // Order.
 
-/// The slope of the error of S stages over a ladder of first steps, at the nodes that the steps reach.
+/// The slope of the error of S stages over a ladder of first steps, at the nodes of the steps.
 fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longest: f64, shift: f64) {
     let span = 8.0 * longest;
     let points: Vec<(f64, f64)> = [1.0, 1.3, 1.7, 2.2, 2.9, 3.7]
@@ -182,7 +182,7 @@ fn the_order_is_twice_the_number_of_stages() {
     order::<2, 3>(&scenes::kepler(), 0.08, 0.0);
     order::<2, 2>(&scenes::spherical_pendulum(), 0.03, 0.0);
     order::<2, 3>(&scenes::henon_heiles(), 0.2, 0.0);
-    // Forced, and depending on the time; with the shift where D_3 changes its sign.
+    // Forced and time-dependent; with a shift, since D_3 changes sign.
     order::<1, 2>(&scenes::hard_duffing(), 0.1, 0.0);
     order::<1, 2>(&scenes::hard_duffing(), 0.1, 150.0);
     order::<1, 3>(&scenes::hard_duffing(), 0.2, 2e3);
@@ -231,7 +231,8 @@ fn tableau<const S: usize>() -> ([f64; S], [f64; S], [[f64; S]; S]) {
     )
 }
 
-/// The step of length h from a state by the formulas alone, its stages by plain repetition: q1, p1, E0 and E1.
+/// The step of length h from a state by the formulas, with simple fixed-point iteration of the stages: q1, p1, E0 and
+/// E1.
 fn by_the_formulas<const N: usize, const S: usize>(
     system: &impl System<N>,
     State { t, q, p }: State<N>,
@@ -259,7 +260,7 @@ fn by_the_formulas<const N: usize, const S: usize>(
     (end, energies)
 }
 
-/// Every step of a run against the formulas: the nodes that it reaches, the energy that it starts and ends with.
+/// Checks every step of a run against the formulas: its nodes, its initial and final energy.
 fn satisfies<const N: usize, const S: usize>(system: impl System<N>, start: ([f64; N], [f64; N]), h: f64, shift: f64) {
     let mut run = begin::<N, S, _>(system, start, h).with_shift(shift).expect("a shift");
     let mut worst = [0.0_f64; 3];
@@ -285,7 +286,7 @@ fn satisfies<const N: usize, const S: usize>(system: impl System<N>, start: ([f6
         worst[1],
         worst[2]
     );
-    // Measured: 2.5e-14, of small momenta, and 9.8e-16.
+    // Measured: 2.5e-14, for small momenta, and 9.8e-16.
     assert!(worst[0] < 4e-14 && worst[1] < 4e-15 && worst[2] < 4e-15, "{}: {worst:?}", name_of(&system));
 }
 
@@ -323,13 +324,14 @@ fn one_stage_is_the_midpoint_rule_with_its_energy() {
         worst = worst.max((one.q - other.q).amax()).max((one.p - other.p).amax()).max((one.t - other.t).abs());
     }
     println!("one stage: off by {worst:.1e}, last step {}", gauss.h());
-    // The length of a step is known to 1e-12 of itself. Measured: 2.2e-11.
+    // The length of a step has a relative accuracy of 1e-12. Measured: 2.2e-11.
     assert!(worst < 1e-10, "{worst:e}");
 }
 
-// What is kept.
+// Preserved quantities.
 
-/// The largest deviation of the discrete energy of so many steps from the first one, by stages solved for anew, relative to the largest size of its terms on the way.
+/// The largest deviation of the discrete energy from its first value, with recomputed stages, relative to the largest
+/// size of its terms.
 fn energy_of_many<const N: usize, const S: usize>(
     system: impl System<N>,
     start: ([f64; N], [f64; N]),
@@ -384,7 +386,8 @@ fn momenta_of_cyclic_coordinates_are_kept_bit_for_bit() {
 
 // The step law.
 
-/// The largest deviation of `h (D_s + D_*)^(1/(2s+1))` from its first value, D_s in the middle of each step, over the time `span`.
+/// The largest deviation of `h (D_s + D_*)^(1/(2s+1))` from its first value, with D_s at the midpoint of each step,
+/// over the time `span`.
 fn law<const N: usize, const S: usize>(
     system: impl System<N>,
     start: ([f64; N], [f64; N]),
@@ -425,7 +428,7 @@ fn the_step_law_holds_up_to_the_square_of_the_step() {
         law::<1, 2>(pendulum.0, pendulum.1, 0.04, 0.0, 5.0) / law::<1, 2>(pendulum.0, pendulum.1, 0.02, 0.0, 5.0),
         law::<1, 2>(pendulum.0, pendulum.1, 0.04, 1e4, 5.0) / law::<1, 2>(pendulum.0, pendulum.1, 0.02, 1e4, 5.0),
     ];
-    // Of a system that depends on the time too.
+    // For a time-dependent system too.
     let timed = scenes::parametric_pendulum();
     let timed = [0.2, 0.1].map(|h| law::<1, 2>(timed.system, (timed.q, timed.v), h, 5.0, 20.0));
     let orders = [orders[0], orders[1], orders[2], orders[3], orders[4], timed[0] / timed[1]];
@@ -464,9 +467,9 @@ fn steps_of_the_damped_oscillator_grow_and_end() {
     grows::<3>(0.1);
 }
 
-// Where steps exist.
+// Existence of steps.
 
-/// Whether a run from rest, or from its pericentre, goes on over the time `span`; else its error.
+/// Runs from rest, or from the pericentre, over the time `span`; returns the error if it ends.
 fn runs<const N: usize, const S: usize>(
     system: impl System<N>,
     start: ([f64; N], [f64; N]),
@@ -490,7 +493,7 @@ fn threshold(name: &str, limit: f64, run: impl Fn(f64) -> Result<(), StepError>)
     assert!(matches!(error, StepError::NoForwardGaussStep { .. } | StepError::StepRatio { .. }), "{name}: {error}");
 }
 
-/// Where the density of a motion changes its sign first, as an amplitude grows from one value to another.
+/// The amplitude, within an interval, at which the density of a motion first changes sign.
 fn vanishing<const N: usize, const S: usize, Y: System<N>>(
     motion: impl Fn(f64) -> (Y, State<N>),
     [mut low, mut high]: [f64; 2],
@@ -560,8 +563,8 @@ fn steps_of_two_stages_exist_above_the_barrier() {
 
 // The shift.
 
-/// A run whose density changes its sign, with twice the largest density of a first stretch: it goes on over the time `span`, its E' is
-/// kept, and H swings by as much as the lengths of the steps say.
+/// A run whose density changes sign, with twice the largest density of a first part as the shift. It continues over the
+/// time `span`, preserves E', and the deviation of H follows the lengths of its steps.
 fn shifted<const N: usize, const S: usize, Y: System<N>>(
     system: Y,
     start: ([f64; N], [f64; N]),
@@ -586,7 +589,7 @@ fn shifted<const N: usize, const S: usize, Y: System<N>>(
         let mut same = system.at_state(before).integrate(Gauss::<S>, run.h()).expect("a valid start");
         same.step().expect("a step");
         let energy = same.discrete_energy().expect("an energy");
-        // Of a system that depends on the time E' changes by the work that the integrator says.
+        // For a time-dependent system E' changes by the work of the integrator.
         if <Y as Lagrangian<N>>::AUTONOMOUS {
             assert_eq!(run.shifted_energy().to_bits(), kept.to_bits());
         }
@@ -626,8 +629,8 @@ fn with_a_shift_steps_exist_where_the_density_changes_its_sign() {
     let parametric = ParametricPendulum::default();
     let kepler = Kepler { mu: 1.0 };
     let orbit = ([0.1, 0.0], [0.0, 19.0_f64.sqrt()]);
-    // Periods, about: 4.4 above the barrier, 8.4 and 16.2 of the swings, 2.9 of a rotation, 2π of the orbit. The double pendulum is chaotic: what
-    // it meets in four units of time is not the largest of ten.
+    // Approximate periods: 4.4 above the barrier, 8.4 and 16.2 for librations, 2.9 for a rotation, 2π for the orbit.
+    // The double pendulum is chaotic: its maximum over four units of time is not that over ten.
     shifted::<1, 1, _>(well, ([1.1], [0.0]), 0.02, [6.0, 60.0]);
     shifted::<1, 3, _>(well, ([1.005], [0.0]), 0.06, [12.0, 80.0]);
     shifted::<1, 2, _>(pendulum, ([2.0], [0.0]), 0.05, [8.4, 84.0]);
@@ -654,7 +657,7 @@ fn a_large_shift_is_the_fixed_step() {
     }
     let off = (run.state().q - fixed.state().q).amax().max((run.h() / 0.03 - 1.0).abs());
     println!("off by {off:.1e}");
-    // The densities are 20 or so. Measured: 5.5e-6.
+    // The densities are about 20. Measured: 5.5e-6.
     assert!(off < 2e-5 && off > 1e-9, "{off:e}");
 }
 
@@ -692,7 +695,7 @@ fn a_density_that_changes_its_sign_is_a_typed_error_and_nothing_is_lost() {
     let message = error.to_string();
     assert!(message.contains(&format!("`with_shift({:.3e})`", 2.0 * largest)), "{message}");
     assert!(message.contains("s = 2") && message.contains("Fallback::FixedSteps"), "{message}");
-    // What it says to do works.
+    // Its advice works.
     let mut run = begin::<1, 2, _>(system, ([2.0], [0.0]), 0.05).with_shift(2.0 * largest).expect("a shift");
     while run.state().t < t + 1.0 {
         run.step().expect("a step with the shift");
@@ -701,7 +704,7 @@ fn a_density_that_changes_its_sign_is_a_typed_error_and_nothing_is_lost() {
 
 #[test]
 fn a_step_of_no_length_is_degenerate() {
-    // Of free motion every length would do; of short steps the energy tells none.
+    // In free motion every length is valid; for short steps rounding hides the energy difference.
     let system = HarmonicOscillator { m: 1.0, k: 1e-9 };
     let error = begin::<1, 2, _>(system, ([0.0], [1.0]), 0.1).step().expect_err("no length");
     assert!(matches!(error, StepError::DegenerateStep { .. }), "{error}");
@@ -709,7 +712,7 @@ fn a_step_of_no_length_is_degenerate() {
     let error = begin::<1, 2, _>(well, ([0.8], [0.0]), 5e-4).step().expect_err("no length");
     assert!(matches!(error, StepError::DegenerateStep { .. }), "{error}");
     assert!(begin::<1, 2, _>(well, ([0.8], [0.0]), 1e-2).step().is_ok());
-    // With a shift the length is told.
+    // With a shift the length is determined.
     assert!(begin::<1, 2, _>(system, ([0.0], [1.0]), 0.1).with_shift(1.0).expect("a shift").step().is_ok());
 }
 
@@ -748,7 +751,7 @@ fn an_energy_far_from_that_of_the_state_has_no_step_near() {
     assert!((near.h() / 0.04 - 1.0).abs() < 0.05, "h = {}", near.h());
     let error = begin(0.008, energy).and_then(|mut run| run.step()).expect_err("too far");
     assert!(matches!(error, StepError::StepRatio { .. }), "{error}");
-    // Beyond H no step at all.
+    // Beyond H there is no step.
     let error = begin(0.04, total + 1e-3).and_then(|mut run| run.step()).expect_err("no step");
     assert!(matches!(error, StepError::NoForwardGaussStep { .. }), "{error}");
 }
@@ -794,7 +797,7 @@ fn with_the_fallback_a_run_goes_on_and_its_energy_comes_back() {
 
 // Restarts.
 
-/// Restarts after each step: the next steps must be those of the run that goes on, up to its error.
+/// Restarts after each step: the next steps must equal those of the uninterrupted run, up to its error.
 fn resumes<Y: System<N>, const N: usize, const S: usize>(mut whole: Run<EnergyPreservingGauss<S>, Y, N>, count: u32) {
     let system = *whole.system();
     let mut resumed = whole.clone();
@@ -827,7 +830,7 @@ fn a_run_that_is_stored_goes_on_bit_for_bit() {
     assert!(matches!(error, Err(StepError::OtherSystem { parameter: Some("g"), .. })));
 }
 
-// As one integrator among others.
+// As one of several integrators.
 
 #[test]
 fn states_at_times_are_those_of_the_motion_and_the_energy_stays() {
@@ -877,7 +880,7 @@ fn parameters_whose_energy_is_beyond_the_numbers_change_nothing() {
     let mut run = begin::<1, 2, _>(Pendulum { m: 1.0, l: 1.0, g: 1.0 }, ([0.1], [0.0]), 0.1);
     run.set_parameters(|system| system.g = 1.7e308).expect("H = −m g l cos θ is finite");
     let before = format!("{run:?}");
-    // So is this one, but not by how much it differs.
+    // So is this one, but not by the difference.
     let error = run.set_parameters(|system| system.g = -1.7e308).expect_err("too much energy");
     assert!(matches!(error, StepError::NonFinite { quantity: "energy", .. }), "{error}");
     assert_eq!(format!("{run:?}"), before);

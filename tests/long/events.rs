@@ -1,4 +1,4 @@
-//! Events in runs of many steps: impacts by the ten thousand, and random functions against their signs along the exact motion.
+//! Events in long runs: ten thousand impacts, and random functions against their signs along the exact motion.
 
 use core::f64::consts::SQRT_2;
 use vi_core::run::{Event, Moment};
@@ -15,7 +15,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Two bodies that fall, or without g fly freely.
+    /// Two bodies in free fall, or in free flight without g.
     struct Bodies {
         param g = 1.0;
         coord x, y;
@@ -41,7 +41,7 @@ fn uniform(seed: &mut u64) -> f64 {
     number / 9_007_199_254_740_992.0
 }
 
-/// The largest error of the time of many impacts, by its own size.
+/// The largest relative error of the times of many impacts.
 fn worst_of_impacts<M: Method<S, 1>, S: Lagrangian<1> + Copy>(mut run: Run<M, S, 1>, floor: f64, impacts: u32) -> f64 {
     let event = Event::falling(move |s| s.q[0] - floor);
     let mut worst = 0.0_f64;
@@ -76,7 +76,7 @@ fn a_point_in_a_box_stays_in_it() {
     let mut seed = 5;
     let mut seen = 0;
     for trial in 0..40 {
-        // Some run into corners again and again.
+        // Some repeatedly run into corners.
         let side = |seed: &mut u64| f64::from(trial % 4) * 0.25 + 2.0 * uniform(seed);
         let v = if trial % 2 == 0 { [1.0, 1.0] } else { [uniform(&mut seed), side(&mut seed)] };
         let walls = [
@@ -172,6 +172,6 @@ fn random_functions_change_their_sign_where_events_say() {
         // Signs alternate.
         assert!(found.windows(2).all(|pair| pair[0].direction(0) != pair[1].direction(0)), "{found:?}");
     }
-    // Measured 2.8e-15, and every change was found.
+    // Measured 2.8e-15; every change of sign was found.
     assert!(worst < 6e-15 && seen > 3000 && missed == 0, "{worst:e}, {seen} found, {missed} missed");
 }

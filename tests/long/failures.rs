@@ -1,7 +1,7 @@
-//! Where the methods end, row by row of the table of `docs/mathematics.md`: each in the typed error, within one step of
-//! the place that is stated. Steps are counted from 1; the one named is the one that fails.
+//! The ends of the methods, row by row of the table in `docs/mathematics.md`: each with its typed error, within one
+//! step of the stated place. Steps are counted from 1; the number is that of the failed step.
 //!
-//! The places belong to the paper's start for the double well and the oscillator, to the midpoint start for the others.
+//! The double well and the oscillator use the paper's start, the others the midpoint start.
 
 use crate::support::ending::{self, Ending};
 use crate::support::exact::Motion;
@@ -12,7 +12,7 @@ use vi_systems::{
     Pendulum,
 };
 
-/// Steps after which a run counts as one that does not end.
+/// Number of steps after which a run counts as endless.
 const ENDLESS: usize = 100_000;
 
 fn from_midpoint<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h0: f64) -> Ending {
@@ -26,8 +26,8 @@ fn from_points<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: 
     ending::energy_preserving(run, ENDLESS)
 }
 
-/// The run ended for want of a step, with the time and the length of the last good one in the error. Towards the end
-/// each step is three times the last: whether the next one exists beyond the factor is a matter of rounding.
+/// Asserts that no step existed, with time and length of the last good step in the error. Towards the end each step is
+/// three times the last: rounding decides whether one more exists within the factor.
 fn assert_no_step(what: &str, end: &Ending) {
     println!("{what}: step {}, t = {:.4}, {:?}", end.steps + 1, end.t, end.error);
     match end.error {
@@ -40,13 +40,13 @@ fn assert_no_step(what: &str, end: &Ending) {
     }
 }
 
-/// The step that fails is the one named, or a neighbour of it.
+/// Asserts that the failed step is the given one or a neighbour.
 fn assert_step(what: &str, end: &Ending, step: usize) {
     assert_no_step(what, end);
     assert!((end.steps + 1).abs_diff(step) <= 1, "{what}: {} instead of {step}", end.steps + 1);
 }
 
-/// The time named is within one step of the last good node.
+/// Asserts that the given time is within one step of the last good node.
 fn assert_time(what: &str, end: &Ending, t: f64) {
     assert_no_step(what, end);
     assert!((end.t - t).abs() <= end.h, "{what}: {} instead of {t}", end.t);
@@ -62,7 +62,7 @@ fn the_double_well_above_the_barrier() {
     for (q0, step) in [(1.0001, 151), (1.001, 145), (1.05, 114), (1.2, 88), (1.5, 66)] {
         let end = from_points(DoubleWell::default(), [q0], [0.0], 0.01);
         assert_step(&format!("q0 = {q0}"), &end, step);
-        // D is positive up to here, and so is H − E.
+        // D is positive up to here, as is H − E.
         assert!(matches!(end.error, Some(StepError::NoForwardStep { excess, .. }) if excess > 0.0), "{end:?}");
     }
 }
@@ -99,7 +99,7 @@ fn kepler_ends_with_the_eccentricity() {
     let (q, v) = pericentre(0.8);
     assert_step("e = 0.8", &from_midpoint(Kepler::default(), q, v, 0.0035), 37);
     assert_step("e = 0.8, paper's start", &from_points(Kepler::default(), q, v, 0.0035), 37);
-    // From e = √(5/8) on D is negative at some point of the orbit, and the run ends before half a turn, for every h0.
+    // From e = √(5/8) on D is negative at some point of the orbit, and the run ends before half a period, for every h0.
     for e in [0.7907, 0.8, 0.9, 0.95] {
         let (q, v) = pericentre(e);
         for h0 in [1e-3, 1e-4] {
@@ -159,7 +159,8 @@ fn negative_damping_runs_with_shorter_and_shorter_steps() {
             let step = run.detailed_step().unwrap_or_else(|error| panic!("zeta = {zeta}: {error}"));
             assert!(step.h > 0.0 && step.t > t);
         }
-        // h = h0 e^{ζ ω t}, with ω = 2, but for the oscillation of √D by ζ. Measured: off by 3e-4, 1e-3, 5e-3.
+        // h = h0 e^{ζ ω t}, with ω = 2, up to the oscillation of √D of relative size ζ. Measured: off by 3e-4, 1e-3,
+        // 5e-3.
         let stretch = run.h() / 0.01 / (2.0 * zeta * run.state().t).exp();
         println!("zeta = {zeta}: t = {:.2}, h/h0 = {:.4}, by the law {stretch:.5}", run.state().t, run.h() / 0.01);
         assert!((stretch - 1.0).abs() < 0.01, "zeta = {zeta}: {stretch}");
@@ -168,7 +169,7 @@ fn negative_damping_runs_with_shorter_and_shorter_steps() {
 
 #[test]
 fn nothing_determines_the_step_where_the_density_vanishes() {
-    // At rest in an equilibrium every length would do.
+    // At rest in an equilibrium every length is valid.
     let run = EnergyPreserving::from_midpoint(HarmonicOscillator::default(), 0.0, [0.0], [0.0], 0.1);
     let end = ending::energy_preserving(run.expect("a valid start"), 10);
     assert!(matches!(end.error, Some(StepError::DegenerateStep { .. })) && end.steps == 0, "{end:?}");
@@ -178,7 +179,7 @@ fn nothing_determines_the_step_where_the_density_vanishes() {
 }
 
 lagrangian! {
-    /// The harmonic oscillator by another rule: the phase of x = cos φ, v = −sin φ is the time.
+    /// The harmonic oscillator with another rule: the phase of x = cos φ, v = −sin φ is the time.
     pub(crate) struct TrapezoidalOscillator {
         coord x;
         L = dot(x)^2 / 2 - x^2 / 2;
@@ -188,8 +189,9 @@ lagrangian! {
 
 #[test]
 fn the_step_density_of_the_trapezoidal_rule_changes_its_sign_in_every_swing() {
-    // For this rule H − E = (h²/8)(x² − 2 v²) on the oscillator: it vanishes at tan² = 1/2 of the phase, twice a swing. So the rule
-    // has no energy-preserving step, and the compiler says so (`vi-macros/tests/compile_fail`).
+    // For this rule H − E = (h²/8)(x² − 2 v²) on the oscillator: it vanishes at the phase tan² = 1/2, in every
+    // oscillation. So the rule has no energy-preserving step, and the compiler reports this
+    // (`vi-macros/tests/compile_fail`).
     let (system, h) = (TrapezoidalOscillator::default(), 1e-3);
     for phase in [0.3, 0.6, 0.64, 1.2, 2.5, 2.53, 3.0] {
         let (x, v) = (f64::cos(phase), -f64::sin(phase));
@@ -204,7 +206,7 @@ fn the_step_density_of_the_trapezoidal_rule_changes_its_sign_in_every_swing() {
         assert!((excess - wanted).abs() <= 1e-9, "phase {phase}: {excess:e} instead of {wanted:e}");
         assert!(excess * wanted > 0.0, "phase {phase}: {excess:e} instead of {wanted:e}");
     }
-    // Fixed steps of this rule know no such limit.
+    // Fixed steps with this rule have no such limit.
     let state = State::at(&system, 0.0, [1.0], [0.0]);
     let run = system.at_state(state).integrate(FixedStep, 0.1).expect("a valid start");
     assert_eq!(ending::fixed(run, ENDLESS), None);

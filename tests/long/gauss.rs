@@ -1,4 +1,4 @@
-//! Gauss steps: against references, by their order, by what they keep, where they are stiff, and where they fail.
+//! Gauss steps: against references, order, preserved quantities, stiffness, failures.
 
 use crate::gauss_stiff;
 use crate::support::assert_order_of;
@@ -14,7 +14,7 @@ use vi_systems::{
 };
 
 lagrangian! {
-    /// A particle in a magnetic field that changes in space: velocities enter L linearly.
+    /// A particle in a nonuniform magnetic field: L is linear in some velocities.
     struct Magnetic {
         coord x, y;
         L = (dot(x)^2 + dot(y)^2) / 2 - (y + y^3 / 4) * dot(x) - (x^2 + 2 * y^2) / 20;
@@ -23,7 +23,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A relativistic particle on a spring: the momentum is no linear function of the velocity.
+    /// A relativistic particle on a spring: the momentum is not linear in the velocity.
     struct Relativistic {
         param c = 1.7, k = 1.3;
         coord x;
@@ -33,7 +33,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Force, time, varying mass and damping at once.
+    /// Force, time dependence, varying mass and damping together.
     pub(crate) struct Everything {
         param a = 1.4, c = 0.15, w = 1.3;
         coord x, y;
@@ -44,11 +44,11 @@ lagrangian! {
     }
 }
 
-/// What a Gauss step asks of a system.
+/// The requirements of a Gauss step on a system.
 pub(crate) trait System<const N: usize>: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy {}
 impl<const N: usize, S: Collocation<N> + Convertible<N> + FixedStepping<N> + Copy> System<N> for S {}
 
-/// The run after so many steps of a reference, against it: nodes, and the discrete energy of the last interval.
+/// Compares a run with a reference: nodes, and the discrete energy of the last interval.
 fn follows<const N: usize, const S: usize>(name: &str, system: impl System<N>, case: &Value, limits: [f64; 3]) {
     let state = State::at(&system, 0.0, vector(&case["q0"]), vector(&case["v0"]));
     let mut run = system.at_state(state).integrate(Gauss::<S>, number(&case["h"])).expect("a valid start");
@@ -68,7 +68,7 @@ fn follows<const N: usize, const S: usize>(name: &str, system: impl System<N>, c
         let worst = (0..N).map(|i| relative(state.q[i], q[i]).max(relative(state.p[i], p[i]))).fold(0.0, f64::max);
         println!("{name}, {S} stages, step {step}: off by {worst:.1e}, energy by {energy:.1e}");
         assert!(worst <= limit, "{name}, {S} stages, step {step}: off by {worst:e}");
-        // The energy of an interval is a sum of terms that cancel. Measured: 2.6e-15.
+        // The energy of an interval is a sum of cancelling terms. Measured: 2.6e-15.
         assert!(energy <= 1e-14, "{name}, {S} stages, step {step}: energy off by {energy:e}");
     }
 }
@@ -99,7 +99,7 @@ fn steps_are_those_of_the_references() {
 fn order<const N: usize, const S: usize>(scene: &Scene<impl System<N>, N>, longest: f64, tolerance: f64) {
     let start = Motion::new(0.2, scene.q, scene.v);
     let quarter = 2.0 * longest;
-    // At four times, since an error that changes its sign is small where it does.
+    // At four times, since an error that changes sign is small nearby.
     let exact: Vec<Motion<N>> = (1..=4).map(|k| start.at(&scene.system, start.t + f64::from(k) * quarter)).collect();
     let points: Vec<(f64, f64)> = [2_u32, 3, 4, 5, 6, 7, 8]
         .into_iter()
@@ -124,14 +124,14 @@ fn name_of<const N: usize, S: Lagrangian<N>>(_: &S) -> &'static str {
     S::NAME
 }
 
-/// Orders 2, 4 and 6, the steps so long that rounding is far.
+/// Orders 2, 4 and 6, with steps long enough to exceed rounding.
 fn low_orders<const N: usize>(scene: &Scene<impl System<N>, N>, h: [f64; 3]) {
     order::<N, 1>(scene, h[0], 0.03);
     order::<N, 2>(scene, h[1], 0.03);
     order::<N, 3>(scene, h[2], 0.03);
 }
 
-/// Orders 8, 10 and 12: between steps that are far from small and the rounding of the motion there is little room.
+/// Orders 8, 10 and 12: the range between asymptotic steps and rounding is narrow.
 fn high_orders<const N: usize>(scene: &Scene<impl System<N>, N>, h: [f64; 3]) {
     order::<N, 4>(scene, h[0], 0.05);
     order::<N, 5>(scene, h[1], 0.1);
@@ -156,7 +156,7 @@ fn the_order_is_twice_the_number_of_stages() {
     low_orders(&relativistic, [0.05, 0.2, 0.4]);
 }
 
-/// A Gauss step of one stage is a step of the midpoint rule.
+/// A Gauss step of one stage equals a step of the midpoint rule.
 fn one_stage<const N: usize>(Scene { system, q, v, h, .. }: Scene<impl System<N>, N>) {
     let state = State::at(&system, 0.2, q, v);
     let mut midpoint = system.at_state(state).integrate(FixedStep, h).expect("a valid start");
@@ -178,7 +178,7 @@ mod one_stage_is_the_midpoint_rule {
     each_system!(super::one_stage);
 }
 
-/// Backwards the steps lead where they came from.
+/// Backward steps return to the start.
 fn there_and_back<const N: usize>(Scene { system, q, v, h, .. }: Scene<impl System<N>, N>) {
     let state = State::at(&system, 0.2, q, v);
     let there = system.at_state(state).integrate(Gauss::<3>, h).expect("a valid start").take(40).last();
@@ -223,14 +223,14 @@ fn angular_momentum_of_a_million_steps() {
     assert!(worst / start < 1e-13, "{worst:e}");
 }
 
-/// The largest relative error of the energy over so many periods, and its mean over the last tenth.
+/// The largest relative energy error over a number of periods, and its mean over the last tenth.
 fn energy_error<const N: usize>(system: impl System<N>, state: State<N>, h: f64, count: u32) -> (f64, f64) {
     let mut run = system.at_state(state).integrate(Gauss::<8>, h).expect("a valid start");
     let exact = state.energy(&system).expect("an energy");
     let (mut worst, mut mean, mut counted) = (0.0_f64, 0.0, 0.0);
     for step in 0..count {
         let state = run.step().expect("a step");
-        // Every tenth: the energy takes as long as the step.
+        // Every tenth node: the energy costs as much as the step.
         if step % 10 == 0 {
             let error = state.energy(&system).expect("an energy") / exact - 1.0;
             worst = worst.max(error.abs());
@@ -253,7 +253,7 @@ fn energy_of_a_hundred_thousand_periods() {
         energy_error(kepler, State::at(&kepler, 0.0, [0.4, 0.0], [0.0, 2.0]), core::f64::consts::TAU / 40.0, 4_000_000);
     for (name, (worst, mean)) in [("pendulum", swing), ("Kepler", orbit)] {
         println!("{name}: energy off by {worst:.1e}, by {mean:.1e} in the last tenth");
-        // Roundings of the forces walk at random. Measured: 7.3e-14 and 1.1e-13.
+        // Roundings of the forces walk randomly. Measured: 7.3e-14 and 1.1e-13.
         assert!(worst <= 3e-13, "{name}: {worst:e}");
     }
 }
@@ -302,12 +302,12 @@ fn angles_beyond_the_fast_sine_are_solved_too() {
     let (near, far) = (run(0.0), run(turns));
     let off = (far.q[0] - turns - near.q[0]).abs().max((far.p - near.p).amax());
     println!("off by {off:.1e}");
-    // A quarter of a million radians is rounded to 3e-11. Measured: 1.1e-9.
+    // A quarter of a million radians rounds to 3e-11. Measured: 1.1e-9.
     assert!(off < 5e-9, "{off:e}");
 }
 
 lagrangian! {
-    /// Two masses that can hardly move against each other: velocities are small differences of what momenta give them.
+    /// Two masses with a nearly rigid coupling: velocities are small differences of contributions of the momenta.
     struct Coupled {
         coord x, y;
         L = (dot(x)^2 + dot(y)^2)/2 + 0.99*cos(x*y/10)*dot(x)*dot(y) - x^2/2 - y^2;
@@ -315,8 +315,8 @@ lagrangian! {
     }
 }
 
-/// Mean sweeps, and how often the second velocity passes zero.
-fn sweeps(system: impl System<2>, q: [f64; 2], h: f64) -> (f64, u32) {
+/// Mean iterations, and the number of zeros of the second velocity.
+fn iterations(system: impl System<2>, q: [f64; 2], h: f64) -> (f64, u32) {
     let mut run = system.at(0.0, q, [0.0, 0.0]).integrate(Gauss::<8>, h).expect("a start");
     let mut sweeps = 0;
     let mut turns = 0;
@@ -333,14 +333,14 @@ fn sweeps(system: impl System<2>, q: [f64; 2], h: f64) -> (f64, u32) {
     (mean, turns)
 }
 
-/// A velocity is a sum of terms, and where it is less than they are their rounding is in it: no sweep makes that less. Where its own rounding was asked for, it
-/// took 4.25 and 8.6 sweeps.
+/// A velocity is a sum of larger terms, whose rounding no iteration reduces. A criterion relative to the velocity
+/// itself took 4.25 and 8.6 iterations.
 #[test]
-fn velocities_whose_terms_cancel_take_no_further_sweeps() {
-    let (mean, turns) = sweeps(DoublePendulum { g: 1.0, ..DoublePendulum::default() }, [1.2, 0.5], 0.05);
+fn velocities_whose_terms_cancel_take_no_further_iterations() {
+    let (mean, turns) = iterations(DoublePendulum { g: 1.0, ..DoublePendulum::default() }, [1.2, 0.5], 0.05);
     // Measured: 4.02.
     assert!(turns > 100 && mean < 4.1, "{mean} sweeps, {turns} turns");
-    let (mean, turns) = sweeps(Coupled::default(), [0.5, 0.3], 0.02);
+    let (mean, turns) = iterations(Coupled::default(), [0.5, 0.3], 0.02);
     // Measured: 2.98.
     assert!(turns > 10 && mean < 3.1, "{mean} sweeps, {turns} turns");
 }
@@ -377,7 +377,7 @@ fn what_is_not_finite_is_named() {
     }
 }
 
-/// Restarts after each step: the next steps must be those of the run that goes on.
+/// Restarts after each step: the next steps must equal those of the uninterrupted run.
 fn resumes<const N: usize, const S: usize>(system: impl System<N>, (q, v): ([f64; N], [f64; N]), h: f64, count: u32) {
     let mut whole = system.at(0.3, q, v).integrate(Gauss::<S>, h).expect("a start");
     let mut resumed = whole.clone();
@@ -422,7 +422,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Damped and driven, wherever it is.
+    /// Damped and driven at every position.
     struct Anywhere {
         coord x;
         L = dot(x)^2 / 2;
@@ -432,7 +432,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A wall that is far too steep for long steps.
+    /// A wall too steep for long steps.
     struct Wall {
         coord x;
         L = dot(x)^2 / 2 - exp(-50 * x) - x;
@@ -488,7 +488,7 @@ fn a_step_that_newton_does_not_solve_is_an_error() {
     let mut run = system.at(0.0, [1.0], [-1.0]).integrate(Gauss::<1>, 1.0).expect("a valid start");
     for _ in 0..5 {
         match run.step() {
-            // p1 − p0 = h F in the middle, and L_v there is the mean of both.
+            // p1 − p0 = h F at the midpoint, and L_v there is the mean of both.
             Ok(state) => assert!(state.p[0].abs() < 100.0, "{state:?}"),
             Err(error) => return assert!(matches!(error, StepError::StagesUnsettled { .. }), "{error}"),
         }

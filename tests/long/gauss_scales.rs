@@ -1,10 +1,10 @@
-//! Stages whose numbers change by orders of magnitude from one sweep to the next, and numbers at the end of their range: a step is a
+//! Stages that change by orders of magnitude between iterations, and numbers at the end of their range: a step is a
 //! solution or an error.
 
 use vi_core::{Gauss, SVector, Starts, State, StepError, lagrangian};
 
 lagrangian! {
-    /// A mass that is nearly singular where x + y = 0: the first sweep there leads to velocities of 1e16.
+    /// A nearly singular mass at x + y = 0: the first iteration there gives velocities of 1e16.
     struct Narrow {
         param d = 1e-14;
         coord x, y;
@@ -15,7 +15,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A mass on a spring in polar coordinates: near r = 0 its angle has hardly a mass.
+    /// A mass on a spring in polar coordinates: near r = 0 its angle has nearly no mass.
     struct Polar {
         coord r, a;
         L = (dot(r)^2 + r^2 * dot(a)^2) / 2 - 20 * (r - 1)^2 + 3 * r * cos(a);
@@ -62,7 +62,7 @@ fn velocities_that_begin_far_too_large_are_solved_for() {
     println!("off by {off:.1e}");
     // Measured: 0.
     assert!(off < 1e-20, "{off:e}");
-    // Here no sweep and no Newton's iteration settles: a step would be off by its own length.
+    // Neither the fixed-point nor the Newton iteration converges here: a step would be wrong by its own length.
     let lost = [
         first::<_, 2, 2>(Narrow { d: 1e-4 }, [1e-3, -1e-3], [0.0, 1e-3], 10.0),
         first::<_, 2, 2>(
@@ -79,10 +79,10 @@ fn velocities_that_begin_far_too_large_are_solved_for() {
 
 #[test]
 fn stages_beyond_the_range_of_numbers_are_no_solution() {
-    // The first sweep leads beyond 1e308, where the pole has no force: standing still would solve the sums of the step.
+    // The first iteration exceeds 1e308, where the pole has no force: standing still would solve the sums of the step.
     let outcome = first::<_, 1, 3>(Pole::default(), [1e-150], [1e-3], 1e-3);
     assert!(matches!(outcome, Err(StepError::StagesUnsettled { .. })), "{outcome:?}");
-    // The force at the node is beyond it already: no shorter step helps.
+    // The force at the node overflows already: no shorter step helps.
     for x in [1e-160, 0.0] {
         let outcome = first::<_, 1, 1>(Pole::default(), [x], [0.0], 1e-3);
         assert!(matches!(outcome, Err(StepError::NonFinite { .. })), "{outcome:?}");
@@ -101,7 +101,7 @@ fn stages_that_leave_the_range_of_numbers_change_without_end() {
     assert!(change.is_infinite() && contraction.is_infinite(), "{change} {contraction}");
 }
 
-/// The largest part of a coordinate or momentum by which a linear step from small numbers differs from that from large ones.
+/// The largest relative difference between a linear step from small numbers and one from large numbers.
 fn off<const STAGES: usize>(scale: f64) -> f64 {
     let [q, v] = [[0.7, -0.4], [0.3, 0.9]];
     let large = first::<_, 2, STAGES>(Pair::default(), q, v, 0.3).expect("a step");

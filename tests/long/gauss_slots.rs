@@ -1,4 +1,4 @@
-//! The slots of a Gauss step: what they say of its ends, and that they are the derivatives of its discrete Lagrangian.
+//! The slots of a Gauss step: they give the state at its ends, and are the derivatives of its discrete Lagrangian.
 
 use crate::gauss::{Everything, System};
 use vi_core::gauss::Slots;
@@ -16,7 +16,7 @@ lagrangian! {
     }
 }
 
-/// What the slots say of the ends of each step, against the nodes, and the sum of the slots of time against the power along the step.
+/// Compares the slots of each step with its nodes, and the sum of the time slots with the power along the step.
 fn end_at_the_nodes<const N: usize, const S: usize>(name: &str, system: impl System<N>, q: [f64; N], v: [f64; N]) {
     let start = State::at(&system, 0.3, q, v);
     let mut run = system.at_state(start).integrate(Gauss::<S>, 0.05).expect("a valid start");
@@ -30,7 +30,7 @@ fn end_at_the_nodes<const N: usize, const S: usize>(name: &str, system: impl Sys
         worst[0] = momenta.iter().map(SVector::amax).fold(worst[0], f64::max);
         let energy = run.discrete_energy().expect("a step was taken");
         worst[1] = worst[1].max((-slots.d3_ld - slots.gd_plus - energy).abs());
-        // E0 of the interval, which is H where the step begins but for the error of the method.
+        // E0 of the interval equals H at its start up to the error of the method.
         let excess = slots.d1_ld + slots.gd_minus - before.energy(&system).expect("an energy");
         assert!(excess.abs() < 0.05, "{name}: E0 − H = {excess:e}");
     }
@@ -50,7 +50,7 @@ fn slots_say_what_the_nodes_are() {
     end_at_the_nodes::<2, 4>("double pendulum", DoublePendulum::default(), [1.2, 0.5], [0.0, 0.3]);
 }
 
-/// The slots of the step from (t0, q0) to (t1, q1): its momentum p0 by Newton's iteration from a near one.
+/// The slots of the step from (t0, q0) to (t1, q1), with its momentum p0 from Newton iteration.
 fn between<const S: usize>(system: impl System<2>, ends: &[[f64; 3]; 2], near: SVector<f64, 2>) -> Slots<2> {
     let [[t, x, y], [end, x1, y1]] = *ends;
     let step = |p: SVector<f64, 2>| {
@@ -74,7 +74,7 @@ fn between<const S: usize>(system: impl System<2>, ends: &[[f64; 3]; 2], near: S
     slots
 }
 
-/// The slots against central differences of L_d by each of its arguments, of fourth order.
+/// The slots against central differences of L_d with respect to each argument, of fourth order.
 fn are_derivatives<const S: usize>(system: impl System<2>) {
     let start = State::at(&system, 0.3, [0.4, -0.3], [0.2, 0.7]);
     let h = 0.4;

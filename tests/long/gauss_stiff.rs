@@ -1,9 +1,9 @@
-//! Gauss steps far beyond the reach of sweeps: Newton's iteration solves them, or they are errors.
+//! Gauss steps too stiff for fixed-point iteration: Newton iteration solves them, or they return errors.
 
 use vi_core::{Gauss, Starts, State, StepError, lagrangian};
 use vi_systems::{DampedOscillator, DoublePendulum, FpuChain};
 
-/// The step of S stages on a linear system is a rational function of its matrix: the diagonal Padé approximant of exp.
+/// On a linear system the step of S stages is a rational function of its matrix: the diagonal Padé approximant of exp.
 fn pade<const S: usize>(matrix: vi_core::nalgebra::SMatrix<f64, 2, 2>) -> vi_core::nalgebra::SMatrix<f64, 2, 2> {
     let identity = vi_core::nalgebra::SMatrix::<f64, 2, 2>::identity();
     let (mut above, mut below) = (identity, identity);
@@ -31,7 +31,7 @@ fn linear<const S: usize>(c: f64, h: f64) {
         let exact = step * before;
         worst = worst.max((state.q[0] - exact[0]).abs().max((state.p[0] - exact[1]).abs()) / before.amax());
     }
-    // Relative to the node before. The matrices of stiff steps have large entries that cancel.
+    // Relative to the previous node. The matrices of stiff steps have large entries that cancel.
     let scale = 1.0 + (k / m).sqrt() * h.abs() + c / m * h.abs();
     println!("c = {c}, h = {h}, {S} stages: off by {worst:.1e}, stiffness {scale:.1e}");
     assert!(worst < 3e-14 * scale, "c = {c}, h = {h}, {S} stages: {worst:e}");
@@ -47,13 +47,13 @@ fn a_linear_step_is_the_rational_function_of_its_order_however_stiff() {
             linear::<6>(c, h);
         }
     }
-    // Of high degree in a matrix like this the rational function itself loses its digits.
+    // At high degree the rational function itself loses its digits for such a matrix.
     linear::<1>(400.0, 30.0);
     linear::<2>(400.0, 30.0);
 }
 
 lagrangian! {
-    /// Five damped oscillators, each three times as stiff as the one before, in coordinates that mix them.
+    /// Five damped oscillators, each three times as stiff as the previous one, in mixed coordinates.
     struct Mixed {
         const N = 5;
         param m = 1.2, k = 3.4, c = 0.3;
@@ -66,7 +66,7 @@ lagrangian! {
     }
 }
 
-/// The largest distance of the steps of five mixed oscillators from those of each by itself, in parts of its energy.
+/// The largest difference of the steps of five mixed oscillators from those of single ones, relative to the energy.
 fn mixed<const S: usize>(h: f64) {
     let system = Mixed::default();
     let Mixed { m, k, c } = system;
@@ -111,7 +111,7 @@ pub(crate) fn lowest_mode() -> ([f64; 16], [f64; 16]) {
     (core::array::from_fn(|i| (place(i) * core::f64::consts::PI / 17.0).sin()), [0.0; 16])
 }
 
-/// What the slots of steps far beyond the reach of sweeps leave of the momenta of their ends.
+/// The residual of the slots at the end momenta, for very stiff steps.
 fn chain<const S: usize>(h: f64) {
     let system = FpuChain::default();
     let (q, v) = lowest_mode();
@@ -136,7 +136,7 @@ fn chain<const S: usize>(h: f64) {
 fn steps_of_a_chain_are_solved_where_its_fastest_modes_turn_twice() {
     chain::<4>(3.2);
     chain::<8>(3.2);
-    // The polynomials of the last step lead to where the cubic springs break.
+    // Extrapolation of the last step leads to where the cubic springs fail.
     chain::<12>(4.0);
     chain::<8>(6.4);
 }
@@ -159,7 +159,8 @@ fn stages_that_went_astray_are_not_taken_for_rounding() {
             }
         }
         println!("h = {h}: energy off by {worst:.1e} until t = {}", run.state().t);
-        // Measured: 6.1e-2, with h = 0.7. Far from the node the sine of an angle may be anything, and so may what stages leave.
+        // Measured: 6.1e-2, with h = 0.7. Far from the node the sine of an angle is arbitrary, and so is the residual
+        // of the stages.
         assert!(worst < 0.1, "h = {h}: {worst:e}");
     }
 }

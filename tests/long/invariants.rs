@@ -1,5 +1,5 @@
-//! What stays: the energy of the energy-preserving integrator, momenta of cyclic coordinates, angular momentum; and the
-//! sizes of what does not, against the table of `docs/mathematics.md`. Runs of a million steps.
+//! Preserved quantities: the energy of the energy-preserving integrator, momenta of cyclic coordinates, angular
+//! momentum; and the errors of other quantities against the table of `docs/mathematics.md`. Runs of a million steps.
 
 use crate::support::exact::Motion;
 use crate::support::reference::{file, number, vector};
@@ -12,7 +12,7 @@ use vi_systems::{DampedOscillator, DoubleWell, Kepler};
 
 const MILLION: u32 = 1_000_000;
 
-/// A case of the double well: q0, h0, then max |E − E1| of fixed steps and h_max/h0, as they are stated.
+/// A case of the double well: q0, h0, and the stated max |E − E1| of fixed steps and h_max/h0.
 struct Case {
     q0: f64,
     h0: f64,
@@ -51,7 +51,7 @@ fn the_papers_start_is_that_of_the_reference() {
     for Case { q0, h0, .. } in CASES {
         let run = papers_start(DoubleWell::default(), [q0], [0.0], h0);
         let initial = &reference_run(q0, h0)["initial"];
-        // A rounding of q1 is one of p1 divided by h0.
+        // A rounding of q1 is a rounding of p1 divided by h0.
         let errors = [
             run.state().t - number(&initial["t1"]),
             run.state().q[0] - number(&initial["q1"]),
@@ -144,7 +144,7 @@ fn kepler_keeps_its_angular_momentum_for_a_million_steps() {
     assert!(fixed <= 3e-15 && energy_preserving <= 5e-15, "{fixed:e}, {energy_preserving:e}");
 }
 
-/// The momentum `index` keeps every bit; the others, and its coordinate, move.
+/// The momentum `index` keeps every bit; the others, and its coordinate, change.
 fn keeps_every_bit<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>, index: usize) {
     const STEPS: RangeInclusive<u32> = 1..=200_000;
     let Scene { system, q, v, h, .. } = scene;

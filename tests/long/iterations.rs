@@ -1,4 +1,4 @@
-//! The effort of a step, and that it is the forward one: long runs of every system.
+//! The iterations of a step, and that it is the forward solution, in long runs of every system.
 
 use crate::support::scenes::{Scene, each_system};
 use vi_core::stepping::EnergyStepping;
@@ -6,7 +6,7 @@ use vi_core::{EnergyPreserving, FixedStep, Starts, State};
 
 const STEPS: u32 = 100_000;
 
-/// Mean Newton iterations that a step may cost.
+/// Maximum mean Newton iterations per step.
 const LIMIT: f64 = 2.8;
 
 /// Over the time in which steps exist. Measured: 1.01 (harmonic oscillator) to 2.55 (hard Duffing oscillator).
@@ -18,7 +18,8 @@ fn energy_preserving<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S
         let before = run.state();
         let step = run.detailed_step().unwrap_or_else(|error| panic!("{}: {error}", S::NAME));
         (steps, iterations) = (steps + 1, iterations + step.iterations);
-        // The spurious root leads back to the middle of the last interval; past a change of sign of D lies another one.
+        // The spurious root returns to the midpoint of the last interval; beyond a sign change of D there is another
+        // one.
         assert!(step.h > 0.0 && step.t > before.t && step.midpoint.0 > middle, "{}: {step:?}", S::NAME);
         assert!(step.density * sign > 0.0, "{}: {step:?}", S::NAME);
         middle = step.midpoint.0;
@@ -39,7 +40,7 @@ fn fixed<const N: usize, S: EnergyStepping<N> + Copy>(scene: Scene<S, N>) {
     }
     let mean = f64::from(iterations) / f64::from(STEPS);
     println!("{}: {mean:.2} iterations over {STEPS} fixed steps", S::NAME);
-    // Next to none where the step is one matrix, and one where A is constant.
+    // Nearly none if the step is one matrix; one if A is constant.
     assert!(mean <= LIMIT && (mean > 0.5 || S::CLOSED_FORM && mean < 1e-3), "{}: {mean}", S::NAME);
     assert!(!S::CONSTANT_JACOBIAN || mean < 1.001, "{}: {mean}", S::NAME);
 }

@@ -1,9 +1,10 @@
-//! Energies that Gauss steps keep: far from the origin, under a shift that is too large, over long runs, and at the ends of what numbers can tell.
+//! Energies preserved by Gauss steps: far from the origin, with an excessive shift, over long runs, and at the limits
+//! of double precision.
 
 use vi_core::{EnergyPreservingGauss, Gauss, Run, Starts, State, StepError, lagrangian};
 use vi_systems::{DoublePendulum, HarmonicOscillator, Kepler, Pendulum};
 
-/// The sine of an angle of thousands of turns is known to the ulp of the angle, and so is the energy.
+/// The sine of an angle of thousands of turns is accurate to the ulp of the angle, and so is the energy.
 #[test]
 fn a_pendulum_turns_for_a_hundred_thousand_steps() {
     let system = Pendulum { m: 1.0, l: 1.0, g: 1.0 };
@@ -19,11 +20,11 @@ fn a_pendulum_turns_for_a_hundred_thousand_steps() {
     assert_eq!(run.shifted_energy().to_bits(), energy.to_bits());
     let turned = run.state().q[0];
     println!("{turned:.0} rad, residual up to {worst:.2}");
-    // Without the rounding of the angle the run ended at 4115 rad. Measured: 11039 rad; 4.0, where a step is accepted at 4.
+    // Ignoring the rounding of the angle the run ended at 4115 rad. Measured: 11039 rad; 4.0, the acceptance limit.
     assert!(turned > 1e4 && worst <= 4.0 && worst > 0.1, "{turned} rad, {worst}");
 }
 
-/// The start of an orbit of eccentricity 0.99, near the centre, with a step that is twenty times what it can have.
+/// An orbit of eccentricity 0.99 near the centre, with a step twenty times too long.
 fn grazing() -> (Kepler, State<2>, f64) {
     let system = Kepler::default();
     (system, State::at(&system, 0.0, [0.01, 0.0], [0.0, 14.106_735_979_665_885]), 0.02)
@@ -44,7 +45,7 @@ fn a_shift_that_outweighs_the_energy_is_refused() {
     let shorter = refused(
         begin(h).and_then(|run| run.with_shift_from(6.0)).expect_err("the shift is measured along right steps"),
     );
-    // What it advises goes on, and H stays what it is. Measured: off by 5.2e-2.
+    // Its advice works, and H stays constant. Measured: off by 5.2e-2.
     let mut run = begin(shorter).and_then(|run| run.with_shift_from(6.0)).expect("a shorter step");
     let mut off = 0.0_f64;
     while run.t() < 2.0 {
@@ -53,14 +54,14 @@ fn a_shift_that_outweighs_the_energy_is_refused() {
     }
     println!("steps of {shorter:.1e}: H off by {off:.1e}");
     assert!(off < 0.1 && off > 1e-6, "{off:e}");
-    // A shift that is given is refused as soon as the motion has shown how large its energies are.
+    // A given shift is rejected once the motion has shown the size of its energies.
     let mut given = begin(h).and_then(|run| run.with_shift(6e8)).expect("a start");
     let error = (0..4).find_map(|_| given.step().err()).expect("no step");
     refused(error);
     assert_eq!(given.step().expect_err("the same error"), error);
 }
 
-/// What sweeps leave of the stages after every step has a sign, and the energy drifts by it.
+/// The residual of the stages after every step has a sign, which makes the energy drift.
 #[test]
 fn a_varying_mass_leaves_no_drift() {
     let system = DoublePendulum { g: 9.81, ..DoublePendulum::default() };
@@ -79,11 +80,11 @@ fn a_varying_mass_leaves_no_drift() {
     let [x, y, xx, xy] = sums;
     let slope = (n * xy - x * y) / (n * xx - x * x);
     println!("drift {slope:.2e} a step");
-    // Measured: 3.2e-18; 2.4e-17 where a sixteenth of a rounding of the velocities counted as one.
+    // Measured: 3.2e-18; 2.4e-17 with a threshold of a sixteenth of a rounding of the velocities.
     assert!(slope.abs() < 7e-18 && slope != 0.0, "{slope:e}");
 }
 
-/// `C h^2s` underflows, and a density by it would not be a number.
+/// `C h^2s` underflows, and a density from it would be NaN.
 #[test]
 fn a_step_without_a_power_is_refused() {
     fn begin<const S: usize>(h: f64) -> Result<Run<EnergyPreservingGauss<S>, HarmonicOscillator, 1>, StepError> {
@@ -107,7 +108,7 @@ fn a_step_without_a_power_is_refused() {
 }
 
 lagrangian! {
-    /// Time goes slower and slower.
+    /// A time scale that decreases without end.
     struct Stalling {
         param a = 1.0;
         coord x;
@@ -127,7 +128,7 @@ fn a_time_that_stands_still_is_an_error() {
     assert!(error.to_string().contains("too small for the time to go on"), "{error}");
     assert_eq!(run.state(), start);
     assert_eq!(run.step().expect_err("the same error"), error);
-    // What advances in the low part of the time is a step.
+    // Progress in the low part of the time is a step.
     let start = State::at(&system, 1.0, [6.5], [0.0]);
     let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), 1e-3).expect("a start");
     for _ in 0..1000 {
@@ -145,7 +146,7 @@ lagrangian! {
     }
 }
 
-/// K = g (H − E) is kept, and H is not where g nearly vanishes: the motion would come back from there as from a wall, and H with it.
+/// K = g (H − E) is preserved, but not H if g nearly vanishes: the motion would return as from a wall, and H with it.
 #[test]
 fn a_time_scale_that_nearly_vanishes_is_no_wall() {
     for (d, dtau) in [(0.0, 0.1), (0.0, 0.01), (1e-7, 0.1)] {
@@ -154,12 +155,12 @@ fn a_time_scale_that_nearly_vanishes_is_no_wall() {
         let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), dtau).expect("a start");
         let error = (0..1_000_000).find_map(|_| run.step().err()).expect("no way through");
         assert!(matches!(error, StepError::TimeScale { g, .. } if g > 0.0), "{d:e}, {dtau}: {error:?}");
-        // Until then it is the right motion.
+        // Until then the motion is correct.
         let state = run.state();
         assert!(state.t < core::f64::consts::FRAC_PI_2 + 0.02, "{state:?}");
         assert!((state.q[0] - state.t.cos()).abs() < 1e-2, "{state:?}");
     }
-    // Less near the steps lead through.
+    // Farther away the steps pass.
     let system = Near { d: 0.05 };
     let start = State::at(&system, 0.0, [1.0], [0.0]);
     let mut run = system.at_state(start).integrate(Gauss::<2>.in_transformed_time(), 0.02).expect("a start");
@@ -178,7 +179,7 @@ lagrangian! {
     }
 }
 
-/// A constant added to V changes no step: a start from rest may have the energy zero.
+/// A constant added to V changes no step: a start from rest may have zero energy.
 #[test]
 fn a_shift_does_not_depend_on_the_constant_of_the_potential() {
     for angle in [0.1, 1.0, 2.5] {

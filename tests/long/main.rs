@@ -1,4 +1,4 @@
-//! The tests across crates that take many steps, one program, compiled with optimization.
+//! The tests across crates with many steps as one program, compiled with optimization.
 
 mod derivatives_at_the_edge;
 mod derivatives_of_runs;

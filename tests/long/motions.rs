@@ -1,5 +1,5 @@
-//! Systems and motions that came out wrong elsewhere, as reports to other programs tell: against values of scipy's DOP853 at a tolerance of 1e-14, of the
-//! program itself, or by hand. The systems are those of [`Called`], built sooner.
+//! Systems and motions that other programs computed wrongly, according to their issue reports: against DOP853 of scipy
+//! with tolerance 1e-14, the other program, or a hand calculation. The systems are [`Called`], which compiles faster.
 
 use vi_core::derivatives::{Tangent, Variation};
 use vi_core::stepping::FixedStepping;
@@ -7,7 +7,7 @@ use vi_core::{
     Called, Composition, FixedStep, Gauss, Lagrangian, Method, Run, SVector, Starts, State, StepError, lagrangian,
 };
 
-/// Asserts where a run is, and returns how far off: the largest difference of a coordinate or a velocity.
+/// Asserts the state of a run, and returns the largest difference of a coordinate or a velocity.
 fn off<const N: usize, M: Method<S, N>, S: Lagrangian<N> + Copy>(
     mut run: Run<M, S, N>,
     t: f64,
@@ -19,7 +19,7 @@ fn off<const N: usize, M: Method<S, N>, S: Lagrangian<N> + Copy>(
     (end.q - SVector::from(q)).amax().max((velocity - SVector::from(v)).amax())
 }
 
-/// The run of a system by Gauss steps of order 16.
+/// The run of a system with Gauss steps of order 16.
 macro_rules! gauss {
     ($system:expr, $q:expr, $v:expr, $h:expr) => {{
         let system = $system;
@@ -28,7 +28,7 @@ macro_rules! gauss {
 }
 
 lagrangian! {
-    /// A mass that depends on the place (Mathews and Lakshmanan).
+    /// A position-dependent mass (Mathews and Lakshmanan).
     struct Mathews {
         param ω = 1.0, λ = 1.0;
         coord q;
@@ -38,7 +38,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// L with a term linear in the velocity, of no effect but on the momentum.
+    /// L with a term linear in the velocity, which affects only the momentum.
     struct Perturbed {
         param ω = 0.5, ε = 0.5, δ = pi / 3;
         coord q;
@@ -49,7 +49,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A pendulum whose pivot is driven along the horizontal.
+    /// A pendulum with a horizontally driven pivot.
     struct Driven {
         param M = 0.1, b = 0.2, a = 0.3, om = 0.4, g = 0.5;
         coord x;
@@ -60,7 +60,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Dust about the sun, braked by its light (Poynting and Robertson).
+    /// Dust around the sun, braked by its light (Poynting and Robertson).
     struct Dust {
         param mu = 39.478758435, beta = 0.1153812, c = 63241.3;
         coord x, y;
@@ -99,7 +99,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A pendulum on a cart that is pushed and braked.
+    /// A pendulum on a cart with drive and brake.
     struct Cart {
         param M = 10.0, m = 1.0, l = 1.0, g = 9.8, c = 0.01;
         coord x, θ;
@@ -150,17 +150,17 @@ fn motions_of_other_programs_are_followed() {
             [0.064_015_530_794_006_67, 0.174_301_134_813_067_36],
         ),
     ];
-    // Measured 3.6e-15, 1.3e-15, 5.1e-15, 5.0e-15, 4.0e-14, 1.05e-12: the reference is an approximation too.
+    // Measured 3.6e-15, 1.3e-15, 5.1e-15, 5.0e-15, 4.0e-14, 1.05e-12: the reference is approximate too.
     let tolerances = [1e-14, 5e-15, 2e-14, 2e-14, 1e-13, 3e-12];
     assert!(errors.iter().zip(tolerances).all(|(error, tolerance)| *error < tolerance), "{errors:?}");
     let dust = [[0.276_043_081_936_918_84, -0.858_884_866_231_848_3], [5.750_744_757_654_875, 3.052_021_626_838_209]];
     let error = off(gauss!(Dust::default(), [0.8, 0.0], [0.0, 7.237_781_280_778_617], 0.02), 20.0, dust[0], dust[1]);
-    // Measured 1.6e-10, and by steps in scaled time the same: it is the error of the reference.
+    // Measured 1.6e-10, also with steps in transformed time: the error of the reference.
     assert!(error < 2e-10, "{error:e}");
 }
 
 lagrangian! {
-    /// A hub with four masses on springs along its spokes, as a test of heyoka has it.
+    /// A hub with four masses on springs along its spokes, from a test of heyoka.
     struct Wheel {
         const N = 4;
         param k = 5.0, fc = 0.1, m0 = 10.0, m = 0.05, a = 1.0;
@@ -209,7 +209,7 @@ fn a_wheel_moves_as_sympy_has_it() {
 }
 
 lagrangian! {
-    /// Two links, by two rules.
+    /// Two links, with two rules.
     struct Arm {
         param m1 = 1.5, m2 = 0.8, l1 = 0.9, c1 = 0.4, c2 = 0.35, I1 = 0.1, I2 = 0.05, g = 9.81;
         coord a, b;
@@ -245,7 +245,7 @@ fn an_arm_is_that_of_the_textbook() {
         [-1.385_076_614_680_379_5, 0.206_547_715_385_197_34],
         [2.614_895_454_471_694, 8.301_133_086_138_856],
     );
-    // The acrobot of a collection of games, at a step at which its own integrator gains energy.
+    // The acrobot of a collection of games, at a step for which its own integrator increases the energy.
     let acrobot = Arm { m1: 1.0, m2: 1.0, l1: 1.0, c1: 0.5, c2: 0.5, I1: 1.0, I2: 1.0, g: 9.8 };
     let start = State::at(&acrobot, 0.0, [-1.0, 0.5], [0.1, 0.0]);
     let steps = acrobot.at_state(start).integrate(Gauss::<8>, 0.2).expect("valid").take(500);
@@ -255,7 +255,7 @@ fn an_arm_is_that_of_the_textbook() {
 }
 
 lagrangian! {
-    /// Two links of masses that may be far apart.
+    /// Two links with very different masses.
     struct Double {
         param m1 = 40.0, m2 = 40.0, l1 = 200.0, l2 = 200.0, g = 1.0;
         coord a, b;
@@ -273,7 +273,7 @@ fn double_pendulums_gain_no_energy() {
         [0.009_584_573_638_737_67, -0.008_393_444_811_862_563],
     );
     let first = off(gauss!(drawn, [1.0, 0.0], [0.0, 0.0], 2.0), 60.0, end.0, end.1);
-    // One short link and one long one, far up.
+    // One short link and one long link, near the top.
     let short = Double { m1: 1.0, m2: 1.0, l1: 0.02, l2: 0.5, g: 9.81 };
     let end = ([-2.498_713_066_097_63, -0.732_882_713_666_877_6], [0.957_380_760_233_732_6, 7.714_102_019_703_501_5]);
     let second = off(gauss!(short, [2.0, -2.5], [0.0, 0.0], 0.01), 0.5, end.0, end.1);
@@ -285,7 +285,7 @@ fn double_pendulums_gain_no_energy() {
             let steps = system.at_state(start).integrate(FixedStep, h).expect("valid").take(20_000);
             energy_error(system, steps, start.energy(&system).expect("regular"))
         });
-    // Measured 1.5e-14, and 1.4e-10 of a motion that parts from its neighbours.
+    // Measured 1.5e-14, and 1.4e-10 for a motion that diverges from its neighbours.
     assert!(first < 3e-14 && second < 2e-10, "{first:e} {second:e}");
     // Measured 8.0e-4, 5.9e-4, 2.3e-8.
     let bounds = [1e-3, 7e-4, 3e-8];
@@ -293,7 +293,7 @@ fn double_pendulums_gain_no_energy() {
 }
 
 lagrangian! {
-    /// An oscillator that is damped, however much.
+    /// An oscillator with any damping.
     struct Damped {
         param m = 1.0, k = 1.0, c = 0.1;
         coord x;
@@ -305,7 +305,7 @@ lagrangian! {
 
 #[test]
 fn damping_of_many_turns_a_step_is_no_obstacle() {
-    // c h = 100 and 1000, where explicit steps explode: x falls as exp(−t k/c).
+    // c h = 100 and 1000, for which explicit steps diverge: x falls as exp(−t k/c).
     let damped = Damped { m: 1.0, k: 1e4, c: 1e4 };
     let start = State::at(&damped, 0.0, [1.0], [0.0]);
     let fixed = |t: f64| {
@@ -341,7 +341,7 @@ fn each_force_counts_in_its_coordinate() {
 }
 
 lagrangian! {
-    /// An oscillator that is pushed by an input until it is switched off.
+    /// An oscillator with an input that is switched off.
     struct Pushed {
         param u = 1.0;
         coord x;
@@ -352,7 +352,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// The same, the switch at t = 5 in the formula.
+    /// The same, with the switch at t = 5 in the formula.
     struct Switched {
         coord x;
         L = dot(x)^2 / 2 - x^2 / 2;
@@ -389,7 +389,7 @@ fn inputs_that_switch_where_a_step_ends_cost_no_order() {
             [-0.232_002_936_762_605_78],
         ),
     ];
-    // Where no step ends at the switch order 1 is left.
+    // If no step ends at the switch, order 1 remains.
     let start = State::at(&Switched::default(), 0.0, [0.0], [0.0]);
     let missed = Switched::default().at_state(start).integrate(FixedStep, 0.0037).and_then(|mut run| run.until(12.0));
     let missed = (missed.expect("solvable").q[0] - end.0[0]).abs();
@@ -422,7 +422,7 @@ lagrangian! {
 
 #[test]
 fn the_variation_with_respect_to_a_power_is_finite_or_told() {
-    // From x = 0, where the derivative of x^n with respect to n is 0 · ∞ but for its limit.
+    // From x = 0, at which the derivative of x^n with respect to n is 0 · ∞ with a limit.
     let start = State::at(&Power::default(), 0.0, [0.0], [1.0]);
     let run = Power::default().at_state(start).integrate(Gauss::<4>, 0.1).expect("valid");
     let mut tangent = Tangent::new(run, vec![Variation::of_parameter::<Power>("n").expect("a parameter")]);
@@ -435,7 +435,7 @@ fn the_variation_with_respect_to_a_power_is_finite_or_told() {
         let Variation { q, p, .. } = &tangent.variations()[0];
         assert!(q[0].is_finite() && p[0].is_finite());
     }
-    // Where x is negative x^n has a value, but no derivative with respect to n.
+    // For negative x, x^n has a value but no derivative with respect to n.
     assert!(tangent.run().state().t > 2.0, "the motion comes back to x = 0");
     assert!(matches!(told, Some(StepError::NonFinite { .. })), "{told:?}");
 }

@@ -1,7 +1,7 @@
-//! Whatever the numbers: a step or a typed error, never a panic, a value that is not a number, or an iteration without end.
+//! Any numbers give a step or a typed error, and never a panic, NaN, or an endless iteration.
 //!
-//! States, steps and parameters are drawn over many magnitudes, with zeros, infinities and values that are no numbers
-//! among them. The sequence is fixed.
+//! States, steps and parameters are random over many magnitudes, including zeros, infinities and NaN. The sequence is
+//! fixed.
 
 use crate::support::Sequence;
 use crate::support::ending::{self, assert_typed};
@@ -14,7 +14,7 @@ use vi_core::{EnergyPreserving, Fallback, FixedStep, SVector, Starts, State, Ste
 const DRAWS: usize = 1500;
 const STEPS: usize = 5;
 
-/// A number that no one should give, and everyone does.
+/// An unreasonable number.
 fn wild(draw: &mut Sequence) -> f64 {
     let sign = if draw.next() < 0.5 { -1.0 } else { 1.0 };
     match draw.next() {
@@ -28,7 +28,7 @@ fn wild(draw: &mut Sequence) -> f64 {
     }
 }
 
-/// One draw: which quantities are wild, and what they are.
+/// One draw: the extreme quantities and their values.
 struct Drawn<S, const N: usize> {
     system: S,
     t: f64,
@@ -41,14 +41,14 @@ fn drawn<const N: usize, S: EnergyStepping<N> + Parameters + Copy>(
     scene: &Scene<S, N>,
     draw: &mut Sequence,
 ) -> Drawn<S, N> {
-    // Each quantity is wild in three draws of ten; otherwise it stays near the scene, where steps exist.
+    // Each quantity is extreme in three draws of ten; otherwise it stays near the scene, where steps exist.
     let is_wild: [bool; 5] = core::array::from_fn(|_| draw.next() < 0.3);
     let mut vector = |near: [f64; N], is_wild: bool| {
         SVector::from_fn(|index: usize, _| if is_wild { wild(draw) } else { near[index] * draw.within(0.5, 1.5) })
     };
     let (q, v) = (vector(scene.q, is_wild[0]), vector(scene.v, is_wild[1]));
     let t = if is_wild[2] { wild(draw) } else { draw.within(-1.0, 1.0) };
-    // From 1e-9 to 1e3, or anything.
+    // From 1e-9 to 1e3, or any number.
     let h = if is_wild[3] { wild(draw) } else { 10_f64.powf(draw.within(-9.0, 3.0)) };
     let mut system = scene.system;
     for name in S::PARAMETERS {
@@ -59,7 +59,7 @@ fn drawn<const N: usize, S: EnergyStepping<N> + Parameters + Copy>(
     Drawn { system, t, q, v, h }
 }
 
-/// How often each outcome was met.
+/// Frequency of each outcome.
 #[derive(Debug, Default)]
 struct Tally {
     refused: usize,

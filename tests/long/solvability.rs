@@ -1,4 +1,4 @@
-//! Where a fixed step of the midpoint rule exists, and where it is the only one.
+//! Existence and uniqueness of a fixed step of the midpoint rule.
 
 use crate::support::Sequence;
 use crate::support::ending;
@@ -46,7 +46,7 @@ fn a_step_of_kepler_exists_up_to_its_bound() {
     assert!((500..1500).contains(&taken), "{taken} of 1500 steps exist");
 }
 
-/// Roots v of the momentum equation, counted by the changes of sign of its residual.
+/// Number of roots v of the momentum equation, from sign changes of its residual.
 fn roots<S: FixedStepping<1>>(system: &S, node: &Node<1>, h: f64) -> usize {
     let residual = |v: f64| system.momentum_equation(node, h, &SVector::from([v])).residual[0];
     let values: Vec<f64> = (0..=40_000).map(|index| residual(-10.0 + 5e-4 * f64::from(index))).collect();
@@ -57,7 +57,7 @@ fn roots<S: FixedStepping<1>>(system: &S, node: &Node<1>, h: f64) -> usize {
 fn most_roots<S: FixedStepping<1>>(system: &S, top: f64, h: f64) -> usize {
     let mut draw = Sequence::new(5);
     let each = (0..300).map(|_| {
-        // From here the step with velocity v leads over the top, where V_q = 0: it solves the equation but for 1e-3.
+        // From here the step with velocity v crosses the top, where V_q = 0: it solves the equation to 1e-3.
         let v = draw.within(-1.0, 1.0);
         let q = top - h * v / 2.0 + draw.within(-1e-3, 1e-3);
         roots(system, &Node::new(State::at(system, 0.0, [q], [v]), 0.0), h)

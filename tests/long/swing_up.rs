@@ -1,4 +1,4 @@
-//! The optimal swing-up of `examples`: its gradient against differences of runs, and its optimum against what stands beside it.
+//! The optimal swing-up of `examples`: its gradient against differences of runs, and its optimum against nearby inputs.
 
 use crate::support::Sequence;
 use example::{STEPS, SwingUp, TOLERANCE, solved};
@@ -7,7 +7,7 @@ use example::{STEPS, SwingUp, TOLERANCE, solved};
 #[allow(dead_code, reason = "its `main` is the example's")]
 mod example;
 
-/// Unit vectors that look random.
+/// Pseudo-random unit vectors.
 fn directions() -> impl Iterator<Item = Vec<f64>> {
     let mut draw = Sequence::new(1);
     (0..10).map(move |_| {
@@ -21,7 +21,7 @@ fn moved(forces: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
     forces.iter().zip(direction).map(|(force, along)| force + by * along).collect()
 }
 
-/// The derivative of what is minimised along a direction, by differences of runs.
+/// The derivative of the cost along a direction, from differences of runs.
 fn difference(problem: &SwingUp, forces: &[f64], direction: &[f64]) -> f64 {
     let value = |by| problem.value(&moved(forces, direction, by)).expect("a run");
     (value(1e-6) - value(-1e-6)) / 2e-6

@@ -1,9 +1,9 @@
-//! Lagrangians that are not defined at rest: the velocity that belongs to a momentum is searched where it can be.
+//! Lagrangians that are undefined at rest: the velocity of a momentum is searched in their domain.
 
 use vi_core::{EnergyPreserving, FixedStep, Gauss, Starts, State, StepError, lagrangian};
 
 lagrangian! {
-    /// Predators and prey of Volterra: X and Y are the integrals of their numbers.
+    /// Predators and prey of Volterra: X and Y are the integrals of the populations.
     struct Volterra {
         param a = 1.1, b = 0.4, c = 0.4, d = 0.1;
         coord X, Y;
@@ -30,7 +30,7 @@ lagrangian! {
     }
 }
 
-/// `X' = n, n' = n (a − b m)`, `m' = m (d n − c)`, by Runge and Kutta's method with steps so short that it is exact to 1e-12.
+/// `X' = n, n' = n (a − b m)`, `m' = m (d n − c)`, with a Runge–Kutta method and steps short enough for 1e-12.
 fn numbers(system: &Volterra, [mut n, mut m]: [f64; 2], time: f64) -> [f64; 2] {
     let rate = |n: f64, m: f64| [n * (system.a - system.b * m), m * (system.d * n - system.c)];
     let steps = 40_000;
@@ -49,7 +49,7 @@ fn numbers(system: &Volterra, [mut n, mut m]: [f64; 2], time: f64) -> [f64; 2] {
 #[test]
 fn predators_and_prey_live_on() {
     let system = Volterra::default();
-    // The second start is below 1/e, where Newton's iteration from p leaves the domain of the logarithm.
+    // The second start is below 1/e, from which Newton iteration leaves the domain of the logarithm.
     for v in [[10.0, 5.0], [0.3, 0.3], [1e-3, 2e-6]] {
         let start = State::at(&system, 0.0, [0.0, 0.0], v);
         let again = start.velocity(&system).expect("a velocity");
@@ -63,7 +63,7 @@ fn predators_and_prey_live_on() {
         let found = run.velocity().expect("a velocity");
         let wanted = numbers(&system, v, 10.05);
         for (found, wanted) in found.iter().zip(wanted) {
-            // Measured: 2e-12, of the reference.
+            // Measured: 2e-12, the error of the reference.
             assert!((found - wanted).abs() <= 1e-10 * wanted, "{v:?}: {found} {wanted}");
         }
         let mut fixed = system.at_state(start).integrate(FixedStep, 1e-3).expect("a start");
@@ -73,7 +73,7 @@ fn predators_and_prey_live_on() {
             crate::support::ending::assert_typed(error);
         }
     }
-    // A long run, through small and large numbers: its energy stays.
+    // A long run through small and large numbers preserves its energy.
     let start = State::at(&system, 0.0, [0.0, 0.0], [10.0, 5.0]);
     let energy = start.energy(&system).expect("an energy");
     let mut run = system.at_state(start).integrate(Gauss::<8>, 0.1).expect("a start");
@@ -96,12 +96,12 @@ fn a_power_of_the_velocity_has_one() {
         let found = start.velocity(&system).expect("a velocity")[0];
         assert!((found - v).abs() <= 1e-14 * v, "{v}: {found}");
     }
-    // No velocity has a momentum below zero.
+    // No velocity has a negative momentum.
     let start = State { t: 0.0, q: [0.1].into(), p: [-0.5].into() };
     assert!(start.velocity(&system).is_err());
 }
 
-/// `p = −1/v²` belongs to v and to −v: no momentum says which.
+/// `p = −1/v²` belongs to v and to −v: the momentum does not determine the sign.
 #[test]
 fn two_velocities_of_one_momentum_are_an_error() {
     let system = Inverse::default();
@@ -141,7 +141,7 @@ lagrangian! {
     }
 }
 
-/// Two branches of one coordinate beside another that has one, and two branches of one sign.
+/// Two branches of one coordinate next to one with a single branch, and two branches with the same sign.
 #[test]
 fn two_branches_among_others_are_an_error() {
     for v in [[-0.5, 0.3], [1e-3, 0.3], [0.5, 2.0]] {

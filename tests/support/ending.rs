@@ -1,4 +1,4 @@
-//! How runs end: the steps that were taken, and the error that ended them.
+//! The ends of runs: the steps taken, and the error.
 
 use vi_core::stepping::{EnergyStepping, FixedStepping};
 use vi_core::{EnergyPreserving, FixedStep, Run, State, Step, StepError};
@@ -12,11 +12,11 @@ pub(crate) struct Ending {
     pub(crate) t: f64,
     /// Length of the last good step.
     pub(crate) h: f64,
-    /// What ended the run; none where the limit did.
+    /// The error; `None` if the limit ended the run.
     pub(crate) error: Option<StepError>,
 }
 
-/// Runs to the first error, at most `limit` steps, and checks each step: finite, forward, not the last one backwards.
+/// Runs to the first error, at most `limit` steps, and checks each step: finite, forward, not the reversed last one.
 /// After the error the state stays and the error repeats.
 pub(crate) fn energy_preserving<const N: usize, S: EnergyStepping<N>>(
     mut run: Run<EnergyPreserving, S, N>,
@@ -69,10 +69,10 @@ pub(crate) fn fixed<const N: usize, S: FixedStepping<N>>(
     None
 }
 
-/// Largest residual, in roundings of its terms, that a solved equation may leave.
+/// Maximum residual of a solved equation, in roundings of its terms.
 const RESIDUAL: f64 = 256.0;
 
-/// Every number of a step is finite, it leads forward, and it solves the equations.
+/// Asserts that a step is finite and forward, and solves its equations.
 fn assert_step<const N: usize>(name: &str, step: &Step<N>) {
     let (t, q, v) = step.midpoint;
     let scalars = [step.t, step.energy, step.h, step.density, step.residual, t];
@@ -82,7 +82,7 @@ fn assert_step<const N: usize>(name: &str, step: &Step<N>) {
     assert!(step.h > 0.0 && step.residual <= RESIDUAL, "{name}: {step:?}");
 }
 
-/// Every number of an error is one. Only what the caller gave may be anything.
+/// Asserts that an error contains only numbers that are not NaN, except for the caller's own.
 pub(crate) fn assert_typed(error: StepError) {
     let numbers = match error {
         StepError::InvalidInput { .. } => vec![],
@@ -97,7 +97,7 @@ pub(crate) fn assert_typed(error: StepError) {
             vec![t, h, excess, density, shift, largest]
         }
         StepError::ShiftTooLarge { t, h, shift, part, size, shorter } => vec![t, h, shift, part, size, shorter],
-        // Stages that went beyond all numbers say so by infinite ones.
+        // Overflowing stages report infinite numbers.
         StepError::StagesUnsettled { t, h, .. } | StepError::TimeScale { t, g: h } => vec![t, h],
         StepError::Singular { t, .. } | StepError::NonFinite { t, .. } | StepError::Ambiguous { t } => vec![t],
         other => panic!("an error that this test does not know: {other:?}"),

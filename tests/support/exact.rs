@@ -1,10 +1,10 @@
-//! Accurate motion, as the checks compute it, here with its failures as panics.
+//! Accurate motion, as the checks compute it, with panics as failures.
 
 use core::ops::Deref;
 use vi_core::check;
 use vi_core::{Lagrangian, SVector};
 
-/// Where a motion is: time, coordinates, velocities.
+/// A state of a motion: time, coordinates, velocities.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion<const N: usize>(check::Motion<N>);
 

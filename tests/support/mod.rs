@@ -1,6 +1,6 @@
-//! What the tests of several files share, of two programs.
+//! Helpers shared by the tests of two programs.
 #![allow(dead_code, reason = "each program uses a part")]
-// Step numbers and drawn mantissas are far below 2^53.
+// Step numbers and random mantissas are far below 2^53.
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)]
 
 pub(crate) mod ending;
@@ -9,7 +9,7 @@ pub(crate) mod reference;
 pub(crate) mod scenes;
 pub(crate) mod twice;
 
-/// The next entry of a fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
+/// The next entry of a fixed pseudo-random sequence in (0, 1): a linear congruence (Knuth, MMIX).
 pub(crate) struct Sequence(u64);
 
 impl Sequence {
@@ -28,7 +28,7 @@ impl Sequence {
     }
 }
 
-/// Slope of the line through (log h, log error), by least squares, points at the rounding plateau dropped.
+/// Least-squares slope of (log h, log error), without points at the rounding plateau.
 pub(crate) fn slope(name: &str, points: &[(f64, f64)], plateau: f64) -> f64 {
     let kept: Vec<(f64, f64)> =
         points.iter().filter(|(_, error)| *error > plateau).map(|(h, error)| (h.ln(), error.ln())).collect();
@@ -46,8 +46,8 @@ pub(crate) fn slope(name: &str, points: &[(f64, f64)], plateau: f64) -> f64 {
     slope
 }
 
-/// The error of steps of so many stages falls with an order of twice their number, up to a part of it. What it is measured against is good to
-/// 1e-14.
+/// Checks that the error of steps with `stages` stages has twice that order, within a tolerance. The reference is
+/// accurate to 1e-14.
 pub(crate) fn assert_order_of(stages: usize, name: &str, points: &[(f64, f64)], tolerance: f64) {
     let slope = slope(&format!("{name}, {stages} stages"), points, 1e-13);
     let expected = f64::from(2 * u32::try_from(stages).expect("a few stages"));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// The contents of a file of `tests/reference`.
 pub(crate) fn file(name: &str) -> Value {
-    // The root's tests stand in `tests`, the others in `tests/long`.
+    // The tests of the root are in `tests`, the others in `tests/long`.
     let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("tests/reference"));
     let path = folders.map(|folder| folder.join(name)).find(|path| path.exists());
     let path = path.unwrap_or_else(|| panic!("there is no tests/reference/{name}"));
@@ -35,7 +35,7 @@ pub(crate) fn vector<const N: usize>(value: &Value) -> [f64; N] {
     }
 }
 
-/// The entries of a list with the number of steps that each is reached after.
+/// The entries of a list, each with its number of steps.
 pub(crate) fn steps(list: &Value) -> Vec<(u32, &Value)> {
     let count = |entry: &Value| entry.get("step").or_else(|| entry.get("steps_after_start")).and_then(Value::as_u64);
     let list = list.as_array().expect("a list of steps");

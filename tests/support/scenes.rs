@@ -1,8 +1,8 @@
-//! Every system with parameters away from 1 and a motion on which both integrators run.
+//! Every system with parameters away from 1, and a motion that both integrators can compute.
 
 use vi_systems as systems;
 
-/// A system, where its motion starts, and how long the energy-preserving integrator can follow it.
+/// A system, its initial state, and the time over which the energy-preserving integrator runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scene<S, const N: usize> {
     pub(crate) system: S,
@@ -79,7 +79,7 @@ pub(crate) fn charged_particle() -> Scene<systems::ChargedParticle, 3> {
     Scene { system, q: [0.2, 0.1, 0.5], v: [0.7, 0.4, 0.1], h: 0.05, span: f64::INFINITY }
 }
 
-/// One test for every system: `check` is called with its scene.
+/// One test for every system: `check` gets its scene.
 macro_rules! each_system {
     ($check:path) => {
         $crate::support::scenes::each_system! { $check:

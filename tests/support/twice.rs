@@ -1,7 +1,8 @@
-//! Numbers of twice the digits: sums of two `f64`, good to 1e-27 of their terms.
+//! Double-double numbers: sums of two `f64`, accurate to 1e-27 of their terms.
 //!
-//! In: a formula generic over [`Real`]. Out: its value with an error that is nothing beside a rounding of `f64`. Source of sum, product and
-//! quotient: Hida, Li, Bailey, *Quad-double arithmetic*. The crate `twofloat` was tried: `1/3` and `exp` have `f64`'s digits there.
+//! In: a formula generic over [`Real`]. Out: its value with an error far below a rounding of `f64`. Source of sum,
+//! product and quotient: Hida, Li, Bailey, *Quad-double arithmetic*. The crate `twofloat` computes `1/3` and `exp` to
+//! `f64` accuracy only.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use vi_core::real::Real;
@@ -13,7 +14,7 @@ pub(crate) struct Twice {
     low: f64,
 }
 
-/// `a + b` and what its rounding loses.
+/// `a + b` and its rounding error.
 fn two_sum(a: f64, b: f64) -> Twice {
     let high = a + b;
     let of_b = high - a;
@@ -42,7 +43,7 @@ impl Twice {
         sum
     }
 
-    /// `e^x − 1`, to all digits for small x.
+    /// `e^x − 1`, with all digits for small x.
     fn exp_m1(self) -> Self {
         if self.high.abs() > 0.4 {
             return self.exp() - Self::real(1.0);
@@ -265,7 +266,7 @@ fn functions_have_their_digits() {
         ];
         for (name, found, wanted, size) in pairs {
             let error = ((found - wanted) / size).to_f64().abs();
-            // Measured: 3e-28, of `cosh² − sinh²` at 40.3: `exp` has squared its error.
+            // Measured: 3e-28, for `cosh² − sinh²` at 40.3: `exp` squares its error.
             assert!(error <= 1e-27, "{name} of {x:?}: {found:?}, not {wanted:?}: {error:e}");
         }
         let near = Twice::real(x.high);

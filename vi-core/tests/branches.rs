@@ -1,4 +1,4 @@
-//! Which root of the momentum equation a fixed step takes, where there are several: beyond `h = 2/√(−V''_min/m)`, 2 for the
+//! The root that a fixed step takes if the momentum equation has several: beyond `h = 2/√(−V''_min/m)`, 2 for the
 //! double well.
 
 use crate::systems::{DoubleWell, UnitMass};
@@ -8,8 +8,8 @@ use vi_core::{Connected, FixedStep, SVector, Starts, State, StepError};
 
 const SYSTEM: UnitMass<DoubleWell> = UnitMass(DoubleWell);
 
-/// The branch from h = 0 in 2000 parts, by Newton's iteration; `None` where its derivative loses its sign, and the branch
-/// ends.
+/// The branch from h = 0 in 2000 parts, by Newton iteration; `None` if its derivative changes sign, which ends the
+/// branch.
 fn branch(state: State<1>, h: f64) -> Option<f64> {
     let node = Node::new(state, 0.0);
     let mut v = state.p[0];
@@ -34,7 +34,7 @@ fn branch(state: State<1>, h: f64) -> Option<f64> {
     Some(v)
 }
 
-/// States of no pattern: 20 steps from each of 60 starts.
+/// Irregular states: 20 steps from each of 60 starts.
 macro_rules! each_step {
     ($h:expr, $method:expr, $see:expr) => {{
         #[allow(unused_mut)] // some of them count
@@ -90,9 +90,9 @@ fn beyond_the_bound_the_connected_root_is_taken_or_none() {
             }
         });
         println!("h = {h}: {same} steps the same, {ended} branches end, {different} differ");
-        // Measured: at most 1 differs, where two branches all but meet.
+        // Measured: at most 1 differs, at nearly touching branches.
         assert!(same > 800 && ended > 0 && different <= 2, "h = {h}: {same}, {ended}, {different}");
-        // The nearest root is another one here and there.
+        // The nearest root is occasionally another one.
         let mut others = 0;
         each_step!(h, FixedStep, |before: State<1>, step: Result<f64, StepError>| {
             others += u32::from(!matches!((step, branch(before, h)), (Ok(v), Some(w)) if (v - w).abs() < 1e-6));

@@ -1,22 +1,22 @@
-//! A run that is stored and resumed goes on bit for bit; and what holds over very long runs.
+//! A stored and resumed run continues bit for bit; and properties of very long runs.
 
 use crate::systems::{DoubleWell, ForcedDuffing, Kepler, Steppable, UnitMass};
 use vi_core::energy_preserving::course::Lengths;
 use vi_core::run::Checkpoint;
 use vi_core::{EnergyPreserving, Fallback, FixedStep, Run, Starts, State, Step, StepError};
 
-/// Through the text of a file and back.
+/// A round trip through a text file.
 fn through_json<C: serde::Serialize + serde::de::DeserializeOwned>(checkpoint: &C) -> C {
     let text = serde_json::to_string(checkpoint).unwrap_or_else(|error| panic!("{error}"));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// Every bit of a step, the signs of zeros included.
+/// Every bit of a step, including signs of zeros.
 fn bits<const N: usize>(step: Result<Step<N>, StepError>) -> String {
     format!("{step:?}")
 }
 
-/// `first` steps, stored, and `second` more are the same steps as without the interruption.
+/// Checks that `first` steps, a checkpoint and `second` more steps equal the uninterrupted run.
 fn assert_resumes<const N: usize, P: Steppable<N> + Clone>(
     start: &Run<EnergyPreserving, UnitMass<P>, N>,
     first: u32,
@@ -138,8 +138,8 @@ fn a_checkpoint_that_no_run_has_left_is_refused() {
 
 #[test]
 fn time_does_not_drift() {
-    // After k steps t + t_low is k h to the rounding of t_low alone: for 10⁹ steps of 0.01, t is the nearest number to 10⁷
-    // and not off by the 1e-2 or so that a plain sum loses.
+    // After k steps t + t_low is k h to the rounding of t_low only: for 10⁹ steps of 0.01, t is the nearest number to
+    // 10⁷, while a plain sum is off by about 1e-2.
     let h = 0.01;
     let mut run = UnitMass(DoubleWell)
         .at_state(State { t: 0.0, q: [0.74].into(), p: [0.0].into() })
@@ -151,13 +151,13 @@ fn time_does_not_drift() {
         plain += h;
     }
     let exact = f64::from(steps) * h;
-    // The product rounds; its own error by a fused multiplication.
+    // The product rounds; a fused multiplication gives its error.
     let exact_low = f64::from(steps).mul_add(h, -exact);
     let drift = (run.node().t - exact) + (run.node().t_low - exact_low);
     println!("drift {drift:e}, of a plain sum {:e}", plain - exact);
     // Measured: 0, and -1.4e-5 for the plain sum.
     assert!(drift.abs() <= 1e-18 && (plain - exact).abs() > 1e-5, "{drift:e}");
-    // Energy after 10⁷ steps: it oscillates as on the first ones.
+    // The energy after 10⁷ steps oscillates as in the first ones.
     let energy = run.discrete_energy().unwrap_or(f64::NAN);
     assert!(
         (energy - vi_core::Lagrangian::energy(&UnitMass(DoubleWell), 0.0, &[0.74].into(), &[0.0].into())).abs() < 1e-6

@@ -1,5 +1,5 @@
-//! Each check passes for a right system, and each can fail: for a system spoiled in one function, as a wrong generator
-//! would print it, for a place that proves nothing, and for a system that it is not about.
+//! Each check passes for a correct system, and fails for a system with one wrong function, for a state that proves
+//! nothing, and for a system to which it does not apply.
 
 use crate::spoiled::{Fault, Spoiled};
 use vi_core::check::{self, CheckFailure, Checked, Place, Report};
@@ -29,7 +29,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A chain, by an explicit rule; only one mass is moved, and one pushed.
+    /// A chain with an explicit rule; only one mass moves, and one is driven.
     struct FPUTChain {
         const N = 4;
         param alpha = 0.25, c = 0.1;
@@ -44,7 +44,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// The midpoint rule, written out: it is recognised.
+    /// The written-out midpoint rule, which is recognised.
     struct WrittenMidpoint {
         coord x;
         L = dot(x)^2 / 2 - x^4 / 4;
@@ -54,7 +54,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A rule of order one, which is not symmetric: derivatives, slots, steps, order 1 and symplecticity are checked.
+    /// A nonsymmetric rule of order one: derivatives, slots, steps, order 1 and symplecticity are checked.
     struct SymplecticEuler {
         coord x;
         L = dot(x)^2 / 2 - x^4 / 4;
@@ -93,14 +93,14 @@ const PENDULUM: Place<2> = Place {
 const DUFFING: Place<1> =
     Place { t: 0.2, q: vi_core::SVector::<f64, 1>::new(1.1), v: vi_core::SVector::<f64, 1>::new(0.2), h: 0.05 };
 
-/// A check, as it is called by hand.
+/// A check, called by hand.
 type Check<S, const N: usize> = fn(&S, &Place<N>) -> Result<Report, CheckFailure>;
 
 fn second_order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     check::order(system, place, 2)
 }
 
-/// The check passes for the right system, and fails for the spoiled one by numbers of which the failure speaks.
+/// Asserts that the check passes for the correct system and fails for the wrong one with numbers in its message.
 fn trips<const N: usize, S: Checked<N>>(system: S, place: &Place<N>, fault: Fault, check: Check<Spoiled<S>, N>) {
     let right = check(&Spoiled { system, fault: Fault::None }, place);
     let report = right.unwrap_or_else(|failure| panic!("{failure}"));
@@ -120,7 +120,7 @@ fn wrong_derivatives_are_seen() {
         trips(SphericalPendulum::default(), &PENDULUM, fault, check::derivatives);
         trips(Duffing::default(), &DUFFING, fault, check::derivatives);
     }
-    // That of the last coordinate of the spherical pendulum is zero: it is cyclic.
+    // The one of the last coordinate of the spherical pendulum is zero: it is cyclic.
     trips(Duffing::default(), &DUFFING, Fault::PointDerivatives, check::derivatives);
 }
 
@@ -150,7 +150,7 @@ fn wrong_steps_are_seen() {
         trips(Duffing::default(), &DUFFING, fault, check::steps);
     }
     trips(Duffing::default(), &DUFFING, Fault::Residual, check::steps);
-    // That of the last coordinate of the spherical pendulum is zero: it is cyclic.
+    // The one of the last coordinate of the spherical pendulum is zero: it is cyclic.
     trips(Duffing::default(), &DUFFING, Fault::MomentumDerivatives, check::steps);
 }
 
@@ -206,7 +206,7 @@ fn what_is_not_kept_is_seen() {
     trips(SphericalPendulum::default(), &PENDULUM, Fault::StepDensity, check::step_law);
 }
 
-/// A failure that says that nothing was proved, or that nothing was to be proved.
+/// Asserts a failure that reports that there was nothing to prove, or that nothing was proved.
 fn refused(result: Result<Report, CheckFailure>, why: &str) {
     let failure = result.expect_err("a check that passes without proof");
     println!("{failure}");
@@ -215,7 +215,7 @@ fn refused(result: Result<Report, CheckFailure>, why: &str) {
 }
 
 lagrangian! {
-    /// No force at all: steps of any rule are exact.
+    /// No force: steps of any rule are exact.
     struct FreeParticle {
         param m = 2;
         coord x;
@@ -248,7 +248,7 @@ fn what_proves_nothing_does_not_pass() {
     refused(check::momenta(&duffing, &DUFFING), "no coordinate is cyclic");
     refused(check::symplecticity(&duffing, &DUFFING), "a force does not keep");
     refused(check::step_law(&duffing, &DUFFING), "systems without a force");
-    // The lowest point has no azimuth: its mass matrix is singular, and that is said.
+    // The lowest point has no azimuth: the failure reports its singular mass matrix.
     let failure = check::derivatives(&pendulum, &bottom).expect_err("a singular mass matrix");
     assert!(matches!(failure, CheckFailure::Step { .. }), "{failure}");
     assert!(std::error::Error::source(&failure).is_some());

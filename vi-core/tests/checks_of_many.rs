@@ -1,23 +1,23 @@
-//! The checks know their rounding: over steps from 1e-5, and 1e-5 of the largest sensible one, up to that, right systems of
-//! many kinds and units pass each, and spoiled ones fail each by numbers. Where rounding hides what a check is about, it
-//! says so.
+//! The checks account for rounding. Correct systems of many kinds and units pass each check over steps from 1e-5, and
+//! from 1e-5 of the largest sensible step, up to that; wrong systems fail each with numbers. If rounding hides the
+//! property, the check reports that.
 
 use crate::many;
 use crate::many::Case;
 use crate::spoiled::{Fault, Spoiled};
 use vi_core::check::{self, CheckFailure, Checked, EnergyChecked, Place, Report};
 
-/// Places that are drawn about each.
+/// Number of random states near each place.
 const DRAWS: u32 = 20;
 
-/// A check, as it is called by hand.
+/// A check, called by hand.
 type Check<S, const N: usize> = fn(&S, &Place<N>) -> Result<Report, CheckFailure>;
 
 fn second_order<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     check::order(system, place, 2)
 }
 
-/// A check, with faults that it has to see.
+/// A check with the faults that it must detect.
 type Seen<S, const N: usize> = (Check<S, N>, Vec<Fault>);
 
 /// The checks that apply to fixed steps.
@@ -50,7 +50,7 @@ fn of_energy_steps<const N: usize, S: EnergyChecked<N>>() -> Vec<Seen<S, N>> {
     all
 }
 
-/// Each check passes for the right system, and fails for each spoiled one by numbers, whatever the step.
+/// Each check passes for the correct system and fails for each wrong one with numbers, for every step.
 #[allow(clippy::needless_pass_by_value, reason = "as the other tests of each case")]
 fn seen_at_each_step<const N: usize, S: Checked<N>>(case: Case<S, N>, checks: Vec<Seen<Spoiled<S>, N>>) {
     let system = case.system;
@@ -72,7 +72,7 @@ mod at_their_places {
     super::many::each_case!(super::seen_at_each_step, super::of_energy_steps, super::of_fixed_steps);
 }
 
-/// A fixed sequence in (0, 1) that looks random: a linear congruence (Knuth, MMIX).
+/// A fixed pseudo-random sequence in (0, 1): a linear congruence (Knuth, MMIX).
 fn sequence() -> impl FnMut() -> f64 {
     let mut state = 1_u64;
     move || {
@@ -81,8 +81,8 @@ fn sequence() -> impl FnMut() -> f64 {
     }
 }
 
-/// No check fails by numbers for a right system about its place, with steps up to twice the largest sensible one. What is
-/// allowed: a motion or a step that does not exist from there, and a law below rounding.
+/// No check fails with numbers for a correct system near its place, with steps up to twice the largest sensible one.
+/// Allowed are: a missing motion or step, and a law below rounding.
 #[allow(clippy::needless_pass_by_value, reason = "as the other tests of each case")]
 fn not_red_at_others<const N: usize, S: Checked<N>>(case: Case<S, N>, checks: Vec<Seen<Spoiled<S>, N>>) {
     let Case { system, place } = case;
@@ -107,7 +107,7 @@ mod about_their_places {
     super::many::each_case!(super::not_red_at_others, super::of_energy_steps, super::of_fixed_steps);
 }
 
-/// Of the energy of a slow particle nearly all is that of its rest: what is left has six digits.
+/// The energy of a slow particle is nearly all rest energy: the remainder has six digits.
 #[test]
 fn what_rounding_hides_is_said() {
     let Case { system, place, .. } = many::relativistic();

@@ -1,4 +1,4 @@
-//! The systems written by hand: their equations against the slot derivatives, their derivatives against differences.
+//! The handwritten systems: equations against slot derivatives, derivatives against differences.
 
 use crate::systems::{DampedOscillator, ForcedDuffing, Kepler, PumpedPendulum, Steppable, UnitMass};
 use vi_core::node::Node;
@@ -17,7 +17,7 @@ fn largest_difference<const N: usize, P: Steppable<N>>(
     let node = Node::new(State { t: 0.4, q: q.into(), p: p.into() }, energy);
     let v = SVector::from(v);
     let at = |h: f64, v: SVector<f64, N>| system.extended_system(&node, h, &v);
-    // The energy row, un-combined.
+    // The energy row without combination.
     let e = |h: f64, v: SVector<f64, N>| at(h, v).energy_residual + v.dot(&at(h, v).momentum.residual);
     let r = |h: f64, v: SVector<f64, N>| at(h, v).momentum.residual;
     let here = at(h, v);
@@ -70,7 +70,7 @@ fn hand_written_equations_are_those_of_the_rule() {
 
 #[test]
 fn the_schur_complement_is_the_step_density() {
-    // In the limit h → 0, at the momentum that belongs to v: D = −4 (energy_dh − energy_dv·∂r/∂h).
+    // In the limit h → 0, at the momentum of v: D = −4 (energy_dh − energy_dv·∂r/∂h).
     let (system, t, q, v) = (UnitMass(Kepler { mu: 1.0 }), 0.0, SVector::from([0.7, -0.5]), SVector::from([-0.4, 0.9]));
     let node = Node::new(State::at(&system, t, q, v), 0.0);
     let equations = system.extended_system(&node, 0.0, &v);

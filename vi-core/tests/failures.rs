@@ -1,5 +1,4 @@
-//! Where there is no step: a typed error, the last good state, the same error again. Never a value that is not a number,
-//! never a hang.
+//! If there is no step: a typed error, the last good state, the same error again; never NaN, never an endless loop.
 
 use crate::systems::{DoubleWell, FreeParticle, Kepler, UnitMass, point_after};
 use vi_core::{EnergyPreserving, FixedStep, Run, SVector, Starts, State, Step, StepError};
@@ -101,7 +100,7 @@ fn a_length_that_nothing_determines_is_an_error() {
     let mut run = EnergyPreserving::from_midpoint(UnitMass(FreeParticle), 0.0_f64, [0.0], [1.0], 0.1)
         .unwrap_or_else(|error| panic!("{error}"));
     assert!(matches!(run.step(), Err(StepError::DegenerateStep { .. })));
-    // At rest in the middle of the well.
+    // At rest at the bottom of the well.
     let mut run = EnergyPreserving::from_midpoint(UnitMass(DoubleWell), 0.0_f64, [0.0], [0.0], 0.1)
         .unwrap_or_else(|error| panic!("{error}"));
     assert!(matches!(run.step(), Err(StepError::DegenerateStep { .. })));
@@ -109,7 +108,7 @@ fn a_length_that_nothing_determines_is_an_error() {
 
 #[test]
 fn a_state_without_room_for_a_step_has_none() {
-    // H = E: the last node lies on the level of its own energy, and the step would have no length.
+    // H = E: the last node has the energy of the interval, and the step would have zero length.
     let system = UnitMass(DoubleWell);
     let state = State::at(&system, 0.0_f64, [0.74], [0.1]);
     let energy = vi_core::Lagrangian::energy(&system, 0.0, &state.q, &SVector::from([0.1]));
@@ -120,7 +119,7 @@ fn a_state_without_room_for_a_step_has_none() {
 
 #[test]
 fn a_step_beyond_the_factor_is_named_with_its_length() {
-    // As if the last step had been ten times as long as the energy allows.
+    // As if the last step had been ten times longer than the energy allows.
     let system = UnitMass(DoubleWell);
     let mut short = EnergyPreserving::from_midpoint(&system, 0.0_f64, [0.74], [0.0], 0.01)
         .unwrap_or_else(|error| panic!("{error}"));
@@ -132,7 +131,7 @@ fn a_step_beyond_the_factor_is_named_with_its_length() {
     assert!(previous.to_bits() == 0.05_f64.to_bits() && (found / h - 1.0).abs() < 1e-8, "{found} {h}");
 }
 
-/// Numbers that no one should give, and everyone does.
+/// Unreasonable numbers.
 const STRANGE: [f64; 12] = [
     f64::NAN,
     f64::INFINITY,
@@ -179,10 +178,10 @@ fn strange_numbers_give_typed_errors_and_never_not_a_number() {
     }
 }
 
-/// What went wrong is named, and every number in it is one.
+/// Asserts that the error names the cause, and that every number in it is valid.
 fn assert_typed(error: StepError) {
     let numbers = match error {
-        // The value given may be anything.
+        // The caller's value may be anything.
         StepError::InvalidInput { .. } => vec![],
         StepError::NoForwardStep { t, h, excess, density } => vec![t, h, excess, density],
         StepError::DegenerateStep { t, h, density } => vec![t, h, density],

@@ -1,5 +1,5 @@
-//! Where no energy-preserving step exists, or none within the bounds: fixed steps until one does, counted, with the energy
-//! they cost.
+//! If no energy-preserving step exists, or none within the bounds: fixed steps until one does, with their number and
+//! the energy change.
 
 use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass};
 use vi_core::method::Switches;
@@ -12,11 +12,11 @@ fn kepler(e: f64, h0: f64) -> Run<EnergyPreserving, UnitMass<Kepler>, 2> {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a run to the time `end` shows.
+/// Results of a run to the time `end`.
 #[derive(Debug)]
 struct Course {
     steps: u64,
-    /// Largest |H − E1| in the middles of the intervals: of all, and of the energy-preserving ones.
+    /// Largest |H − E1| at the midpoints of the intervals: of all, and of the energy-preserving ones.
     energy_error: f64,
     preserved_error: f64,
     switches: Switches,
@@ -34,7 +34,7 @@ fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, Un
             StepKind::FixedStep => fixed_steps += 1,
             _ => preserved_error = preserved_error.max(error),
         }
-        // Autonomous and unforced: the discrete energy is H in the middle, whatever the method.
+        // Autonomous and unforced: the discrete energy is H at the midpoint, for every method.
         assert!(
             (step.energy - e1).abs() <= error + 1e-12
                 && step.energy.to_bits() == integrator.last_step().energy.to_bits()
@@ -47,9 +47,9 @@ fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, Un
 
 #[test]
 fn kepler_of_any_eccentricity_keeps_its_energy_over_ten_orbits() {
-    // Fixed steps and seeding anew, without the energy of before, reach 1.3e-4, 2.7e-4 and 7.1e-4 with 23 000 to 41 000
-    // steps. Measured: 1.2e-5 with 21 601 steps, 5.7e-5 with 28 958, 6.7e-4 with 42 058. Where each phase of fixed steps ends is a
-    // matter of rounding near the pericentre: other roundings made it 21 984, 27 320 and 41 067 steps.
+    // Fixed steps and a new start without the previous energy give 1.3e-4, 2.7e-4 and 7.1e-4 with 23 000 to 41 000
+    // steps. Measured: 1.2e-5 with 21 601 steps, 5.7e-5 with 28 958, 6.7e-4 with 42 058. Rounding near the pericentre
+    // decides the end of each phase of fixed steps: other roundings gave 21 984, 27 320 and 41 067 steps.
     let cases =
         [(0.85, 2.6e-4, 1.0, 2e-5, 23_000), (0.90, 2.4e-4, 1.0, 1e-4, 30_000), (0.95, 2.25e-4, 1.6e-3, 7.1e-4, 44_000)];
     for (e, h0, h_max, bound, steps) in cases {
@@ -57,7 +57,7 @@ fn kepler_of_any_eccentricity_keeps_its_energy_over_ten_orbits() {
         let run = run(integrator.unwrap_or_else(|error| panic!("{error}")), 20.0 * core::f64::consts::PI);
         println!("e = {e}: {run:?}");
         assert!(run.energy_error <= bound && run.steps <= steps, "e = {e}: {run:?}");
-        // Every return finds a step of the energy of before. Measured: 1.1e-14 where v²/2 and 1/r are 20.
+        // Every return finds a step with the previous energy. Measured: 1.1e-14 for v²/2 and 1/r of 20.
         assert!(run.preserved_error <= 3e-14, "e = {e}: {run:?}");
         let Switches { count, returns, reseeds, energy_cost, .. } = run.switches;
         assert!(count == 10 && returns >= 9 && reseeds == 0 && energy_cost == 0.0, "e = {e}: {run:?}");
@@ -103,7 +103,7 @@ fn a_bound_cures_the_step_that_runs_away() {
     };
     assert!(matches!(error, StepError::StepBounds { t, found, h_max, .. } if (t - 80.5).abs() < 1.0 && found > h_max));
     assert_eq!(bounded.step(), Err(error));
-    // With it, fixed steps of the bound to any time.
+    // With it, fixed steps of the bound continue to any time.
     let integrator = damped().with_step_bounds(0.0, 0.05).map(|bounded| bounded.with_fallback(Fallback::FixedSteps));
     let mut integrator = integrator.unwrap_or_else(|error| panic!("{error}"));
     let (mut last, mut crossings) = (0.0, 0_u32);
@@ -113,15 +113,15 @@ fn a_bound_cures_the_step_that_runs_away() {
         crossings += u32::from(last * step.q[0] < 0.0);
         last = step.q[0];
     }
-    // It still swings at ω = 2 (t = 1000: 636.6 half turns), e^{−20} = 2e-9 wide.
+    // It still oscillates at ω = 2 (t = 1000: 636.6 half periods) with the amplitude e^{−20} = 2e-9.
     assert!((635..=638).contains(&crossings) && last.abs() < 3e-9, "{crossings}, {last:e}");
-    // Near the bound D sways with the phase by ζ: there the method may change a few times. Measured: 1.
+    // Near the bound D oscillates by the relative size ζ, so the method may change a few times. Measured: 1.
     assert!(integrator.switches().count <= 10, "{:?}", integrator.switches());
 }
 
 #[test]
 fn the_shortest_step_bounds_the_effort() {
-    // Kepler e = 0.6 asks for h from 0.01 to 0.08; the pericentre is passed with fixed steps of 0.02.
+    // Kepler e = 0.6 needs h from 0.01 to 0.08; fixed steps of 0.02 pass the pericentre.
     let integrator = kepler(0.6, 0.01).with_step_bounds(0.02, 1.0);
     let integrator = integrator.unwrap_or_else(|error| panic!("{error}")).with_fallback(Fallback::FixedSteps);
     let mut shortest = f64::INFINITY;
@@ -146,7 +146,7 @@ fn bounds_must_be_bounds() {
 
 #[test]
 fn the_length_of_the_next_step_is_predicted() {
-    // By the step law; and nothing is predicted where D is about to change its sign.
+    // From the step law; nothing is predicted if D is about to change sign.
     let mut integrator = kepler(0.6, 0.005);
     integrator.detailed_step().unwrap_or_else(|error| panic!("{error}"));
     let mut worst = 0.0_f64;

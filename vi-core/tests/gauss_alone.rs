@@ -1,4 +1,4 @@
-//! A system without a rule: every method that needs none, with the steps of the same system with a rule.
+//! A system without a rule: every method that needs none takes the same steps as with a rule.
 
 use vi_core::collocation::TimeScale;
 use vi_core::derivatives::{Tangent, Variation};
@@ -25,7 +25,7 @@ systems! {
     time_scale = r^(3/2);
 }
 
-/// Bits of a run: states, and how they vary with the start and the parameter.
+/// Bits of a run: states, and their derivatives with respect to the start and the parameter.
 fn bits<S: TimeScale<2> + Convertible<2> + Copy>(system: S) -> Result<Vec<u64>, StepError> {
     let start = State::at(&system, 0.0, [0.4, 0.0], [0.0, 2.0]);
     let mut numbers = Vec::new();

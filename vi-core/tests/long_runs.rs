@@ -1,4 +1,4 @@
-//! What holds over long runs: the energy, the step law, the effort.
+//! Long runs: energy, step law, iterations.
 
 use crate::systems::{DampedOscillator, DoubleWell, Kepler, Steppable, UnitMass, point_after};
 use vi_core::condition::Condition;
@@ -14,9 +14,9 @@ fn double_well(q0: f64, h0: f64) -> Run<EnergyPreserving, UnitMass<DoubleWell>, 
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What a run shows.
+/// Results of a run.
 struct Course {
-    /// Largest |E − E1|, E from the middle of the interval.
+    /// Largest |E − E1|, with E at the midpoint of the interval.
     energy_error: f64,
     /// Largest h/h0.
     stretch: f64,
@@ -52,7 +52,7 @@ fn kepler_keeps_its_energy() {
     let v0 = [0.0, 2.0]; // e = 0.6 from the pericentre: E = −1/2
     let start = EnergyPreserving::from_midpoint(UnitMass(Kepler { mu: 1.0 }), 0.0, [0.4, 0.0], v0, 0.01);
     let run = run(start.unwrap_or_else(|error| panic!("{error}")), 100_000);
-    // Measured: 1.6e-15 where v²/2 and 1/r are 2.5, and 2.6 iterations.
+    // Measured: 1.6e-15 for v²/2 and 1/r of 2.5, and 2.6 iterations.
     assert!(run.energy_error <= 4e-15, "{:e}", run.energy_error);
     assert!(run.iterations <= 5.0, "{}", run.iterations);
 }
@@ -120,7 +120,7 @@ fn steps_of_the_damped_oscillator_grow_until_there_is_none() {
                 Err(error) => break error,
             }
         };
-        // Towards the end every step is three times the last: which of the two errors comes first is a matter of rounding.
+        // Towards the end every step is three times the last: rounding decides which of the two errors occurs.
         let ended = matches!(error, StepError::NoForwardStep { .. } | StepError::StepRatio { .. });
         assert!(ended, "{zeta}: {error:?}");
         // Measured: 49989, 10001, 4996.
@@ -143,9 +143,11 @@ fn single_precision_runs_as_well() {
         worst = worst.max((system.energy(t, &q, &v) - energy).abs());
         fixed.step().unwrap_or_else(|error| panic!("{error}"));
     }
-    // Measured: 1.3e-7. Solved to half a rounding, the energy at the middle has the roundings of the momentum rows besides.
+    // Measured: 1.3e-7. Solved to half a rounding, the energy at the midpoint also has the roundings of the momentum
+    // rows.
     assert!(worst < 2e-7, "{worst:e}");
-    // Started on H, not on E: the discrete energy is h² D/8 = 6.2e-6 below it, but for its oscillation of 7e-7. Measured: 5.6e-6.
+    // Started from H, not E: the discrete energy is h² D/8 = 6.2e-6 below it, up to its oscillation of 7e-7. Measured:
+    // 5.6e-6.
     let bias = energy - fixed.discrete_energy().unwrap_or(f32::NAN);
     assert!((bias - 6.2e-6).abs() < 1e-6, "{bias:e}");
 }

@@ -1,4 +1,4 @@
-//! The tests of the run time with systems by hand, one program: what they share is compiled once.
+//! The run-time tests with handwritten systems as one program, so that shared code compiles once.
 
 mod branches;
 mod checkpoints;

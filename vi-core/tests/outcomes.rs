@@ -1,4 +1,4 @@
-//! What the errors say, and that it is so: looked up independently of the solver.
+//! The contents of errors, verified independently of the solver.
 
 use crate::systems::{DampedOscillator, Kepler, Steppable, UnitMass};
 use vi_core::error::Residuals;
@@ -33,8 +33,8 @@ fn curve<const N: usize, P: Steppable<N>>(
 
 #[test]
 fn where_kepler_ends_short_of_the_limit_there_is_no_root() {
-    // D > 0 all along the orbit of e = 0.785, but at h0 = 0.0035 the last steps before its minimum are so long that the
-    // nodes stray, and some orbit has no step through it: not the solver's doing. With h0 ≤ 0.002 it runs.
+    // D > 0 along the orbit of e = 0.785. At h0 = 0.0035 the last steps before its minimum are so long that the nodes
+    // deviate, and some orbit has no step: this is not the solver's fault. With h0 ≤ 0.002 it runs.
     let e: f64 = 0.785;
     let system = UnitMass(Kepler { mu: 1.0 });
     let v0 = [0.0, ((1.0 + e) / (1.0 - e)).sqrt()];
@@ -63,7 +63,7 @@ fn a_root_far_beyond_the_factor_is_found_at_any_frequency() {
     let error = last_error(&mut run);
     let StepError::StepRatio { previous, found, .. } = error else { panic!("{error}") };
     assert!(found > 3.0 * previous, "{error}");
-    // φ changes its sign there. Measured: 2.9e6 roundings on either side.
+    // φ changes sign there. Measured: 2.9e6 roundings on either side.
     let (mut v, node) = (run.v(), *run.node());
     let (before, after) = (curve(&system, &node, found * 0.999, &mut v), curve(&system, &node, found * 1.001, &mut v));
     assert!(before > 1e6 && after < -1e6, "{before:e}, {after:e}");
@@ -85,7 +85,7 @@ fn an_iteration_that_does_not_converge_shows_its_residuals() {
 }
 
 lagrangian! {
-    /// A bead that is driven to the end of its wire, beyond which the potential has no value.
+    /// A bead driven to the end of its wire, beyond which the potential is undefined.
     pub(crate) struct Wire {
         coord x;
         L = dot(x)^2 / 2 + sqrt(1 - x);
@@ -149,7 +149,7 @@ fn an_error_ends_in_what_to_do() {
 }
 
 lagrangian! {
-    /// A mass whose momentum is at most 1, however fast it is.
+    /// A mass whose momentum is at most 1 at any speed.
     pub(crate) struct Bounded {
         coord x;
         L = ln(1 + dot(x)^2);

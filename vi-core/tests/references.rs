@@ -30,7 +30,7 @@ fn vector<const N: usize>(value: &Value) -> SVector<f64, N> {
     }
 }
 
-/// The entry of a list of references that stands after 1000 steps.
+/// The entry of a list of references for 1000 steps.
 fn thousandth(list: &Value) -> &Value {
     let is_it = |entry: &&Value| [&entry["step"], &entry["steps_after_start"]].iter().any(|n| n.as_u64() == Some(1000));
     list.as_array().and_then(|list| list.iter().find(is_it)).unwrap_or_else(|| panic!("no step 1000"))
@@ -62,7 +62,7 @@ fn differences<const N: usize, P: Steppable<N>>(
     (difference(&fixed.state(), thousandth(&case["fixed"])), difference(&adaptive.state(), expected))
 }
 
-/// From the paper's start: p1 and E1 as the reference gives them.
+/// From the paper's start: p1 and E1 of the reference.
 fn from_paper<P: Steppable<1>>(system: &UnitMass<P>, case: &Value) -> (f64, f64) {
     let initial = &case["initial"];
     let start = State { t: number(&initial["t1"]), q: vector(&initial["q1"]), p: vector(&initial["p1"]) };
@@ -71,7 +71,7 @@ fn from_paper<P: Steppable<1>>(system: &UnitMass<P>, case: &Value) -> (f64, f64)
     differences(system, case, start, adaptive.unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// From the state at t0: the fixed step from there, the other from its midpoint start.
+/// From the state at t0: the fixed step from there, the other integrator from its midpoint start.
 fn from_midpoint<const N: usize, P: Steppable<N>>(system: &UnitMass<P>, case: &Value) -> (f64, f64) {
     let (t0, q0, v0) = (number(&case["t0"]), vector(&case["q0"]), vector(&case["v0"]));
     let adaptive = EnergyPreserving::from_midpoint(system, t0, q0, v0, number(&case["h0"]));

@@ -1,4 +1,4 @@
-//! An ensemble against each of its trajectories alone: as [`FixedStep`] takes it, and converged in every step.
+//! An ensemble against each of its trajectories alone: with [`FixedStep`], and converged in every step.
 
 use std::collections::BTreeSet;
 use vi_core::node::Node;
@@ -26,7 +26,7 @@ fn outcomes<S: Batch<N>, const N: usize>(
     Ok(ensemble.results().collect())
 }
 
-/// The state after `steps` steps of which each is solved by Newton's iteration from the last velocity: nothing is extrapolated.
+/// The state after `steps` steps, each solved by Newton iteration from the last velocity without extrapolation.
 fn converged<S: Batch<N>, const N: usize>(
     &(system, start): &Start<S, N>,
     h: f64,
@@ -46,7 +46,7 @@ fn distance<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
 }
 
 /// The largest differences after `steps` steps: of all trajectories from the fixed step, and of every fifth from the
-/// converged one, which takes long.
+/// slower converged one.
 fn differences<S: Batch<N>, const N: usize>(starts: &[Start<S, N>], h: f64, steps: u32) -> Result<[f64; 2], StepError> {
     let mut worst = [0.0_f64; 2];
     for (i, (start, outcome)) in starts.iter().zip(outcomes(starts, h, u64::from(steps))?).enumerate() {
@@ -66,7 +66,7 @@ fn differences<S: Batch<N>, const N: usize>(starts: &[Start<S, N>], h: f64, step
 }
 
 lagrangian! {
-    /// Two wells, by two rules.
+    /// Two wells, with two rules.
     struct Wells {
         param m = 1.0;
         coord x;
@@ -75,7 +75,7 @@ lagrangian! {
     }
 }
 
-/// `count` numbers from `from` to `to`, both included.
+/// `count` numbers from `from` to `to`, inclusive.
 fn spread(count: u32, from: f64, to: f64) -> impl Iterator<Item = f64> {
     (0..count).map(move |i| from + (to - from) * f64::from(i) / f64::from(count - 1))
 }
@@ -115,8 +115,8 @@ fn every_trajectory_is_that_of_the_fixed_step() -> Result<(), StepError> {
         ("charged particle", differences(&particles, 0.01, 1000)?),
         ("two wells by the trapezoidal rule", differences(&verlet, 0.01, 1000)?),
     ] {
-        // Measured: at most 1.1e-15 from the fixed step, Kepler's, and 7.4e-15 from the converged one, the double pendulum's: what
-        // that leaves of its equations is not carried.
+        // Measured: at most 1.1e-15 from the fixed step, for Kepler, and 7.4e-15 from the converged one, for the double
+        // pendulum: the converged one does not carry its residuals.
         assert!(alone < 2e-15 && converged < 1e-14, "{name}: {alone:e}, {converged:e}");
         same &= alone == 0.0 || converged == 0.0;
     }
@@ -146,7 +146,7 @@ fn neighbours_and_threads_change_no_bit() -> Result<(), Box<dyn std::error::Erro
 fn a_trajectory_that_ends_ends_alone() -> Result<(), StepError> {
     let kepler = Kepler::default();
     let circle = State::at(&kepler, 0.0, [1.0, 0.0], [0.0, 1.0]);
-    // At the sun, and where there is no number.
+    // At the sun, and at NaN.
     let bad = [State::at(&kepler, 0.0, [0.0, 0.0], [0.0, 0.0]), State { q: [f64::NAN, 0.0].into(), ..circle }];
     let starts: Vec<_> = (0..100).map(|i| (kepler, if i % 10 == 3 { bad[i / 10 % 2] } else { circle })).collect();
     let good = outcomes(&[(kepler, circle)], 0.01, 300)?;
@@ -177,7 +177,7 @@ lagrangian! {
 #[test]
 fn sudden_motions_are_those_of_the_fixed_step() -> Result<(), StepError> {
     let wall = |k| Wall { k };
-    // Steps of 0.03 are so long for the wall that motions part by an order of magnitude at each bounce.
+    // Steps of 0.03 are so long for the wall that motions diverge by an order of magnitude per bounce.
     for (h, steps) in [(0.01, 5000), (0.0317, 200)] {
         let starts: Vec<_> =
             spread(70, 40.0, 60.0).map(|k| (wall(k), State::at(&wall(k), 0.0, [1.0], [0.0]))).collect();
@@ -189,7 +189,7 @@ fn sudden_motions_are_those_of_the_fixed_step() -> Result<(), StepError> {
 }
 
 lagrangian! {
-    /// A wall that moves: what matters is the time, to the last digit.
+    /// A moving wall: the time matters to the last digit.
     pub struct MovingWall {
         param a = 0.5, w = 3.0;
         coord x;
@@ -210,7 +210,7 @@ fn late_times_are_those_of_the_fixed_step() -> Result<(), StepError> {
     Ok(())
 }
 
-/// Bit for bit, where each ends and how.
+/// Checks each end, bit for bit.
 fn is_that_of_the_fixed_step<S: Batch<N>, const N: usize>(starts: &[Start<S, N>], h: f64) -> Result<usize, StepError> {
     let (systems, states) = starts.iter().copied().unzip();
     let mut ensemble = Ensemble::new(systems, states, h)?;
@@ -237,7 +237,7 @@ fn long_formulas_are_taken_apart() -> Result<(), StepError> {
 }
 
 lagrangian! {
-    /// Pushed to where the potential ends: the force has a kink at x = 0, and beyond x = 1 there is no number.
+    /// Driven to the end of the potential: the force has a kink at x = 0, and beyond x = 1 it is NaN.
     pub struct Cliff {
         param a = 1.0;
         coord x;
@@ -270,7 +270,7 @@ fn a_run_ends_where_the_fixed_step_does() -> Result<(), StepError> {
         worst[0] = worst[0].max((state.q - alone.state().q).amax());
         worst[1] = worst[1].max((state.q - converged.q).amax());
     }
-    // Measured: an ulp, even in the last step, whose middle is 4e-4 before the edge.
+    // Measured: an ulp, even in the last step, whose midpoint is 4e-4 before the edge.
     assert!(worst.iter().all(|worst| *worst < 5e-16), "{worst:?}");
     let steps: BTreeSet<u64> = all.iter().filter_map(|outcome| outcome.err()).map(|ended| ended.steps).collect();
     assert!(steps.len() > 20 && all.iter().any(Result::is_ok), "{steps:?}");
@@ -278,7 +278,7 @@ fn a_run_ends_where_the_fixed_step_does() -> Result<(), StepError> {
 }
 
 lagrangian! {
-    /// The same, where a step needs the force at its end and not in its middle.
+    /// The same, with the force at the end of a step instead of the midpoint.
     pub struct Ledge {
         param a = 1.0;
         coord x;
@@ -307,7 +307,7 @@ fn angles_of_many_turns_are_taken_alone() -> Result<(), StepError> {
     let pendulum = Pendulum::default();
     let starts: Vec<_> = spread(3, 2e5, 3e5).map(|q| (pendulum, State::at(&pendulum, 0.0, [q], [1.0]))).collect();
     let [alone, converged] = differences(&starts, 0.01, 100)?;
-    // Measured: 3.8e-13, of angles with an ulp of 3e-11.
+    // Measured: 3.8e-13, for angles with an ulp of 3e-11.
     assert!(alone < 4e-13 && converged < 4e-13, "{alone:e}, {converged:e}");
     Ok(())
 }
@@ -322,7 +322,7 @@ lagrangian! {
     }
 }
 
-/// The results of 300 steps, taken at once or a few at a time.
+/// The results of 300 steps, in one call or in several.
 fn in_parts<S: Batch<N>, const N: usize>(
     starts: &[Start<S, N>],
     h: f64,
@@ -378,7 +378,8 @@ fn what_cannot_be_run_is_refused() {
     }));
 }
 
-/// Runs of any integrator over threads are those that each is alone, bit for bit; one that fails ends with its reason, and the others go on.
+/// Runs of any integrator on threads equal single runs, bit for bit; a failed one ends with its error, and the others
+/// continue.
 #[test]
 fn runs_of_any_integrator_are_what_each_is_alone() {
     let planet = Kepler::default();

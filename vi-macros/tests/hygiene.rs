@@ -1,5 +1,5 @@
-//! Systems in surroundings that get in the way: constants, types, traits and macros of the names that emitted code uses, attributes,
-//! functions, macros. All of this compiles without a warning, and computes what it computes alone.
+//! Systems in hostile surroundings: constants, types, traits and macros with the names used by emitted code,
+//! attributes, functions, macros. Everything compiles without a warning and computes the same as alone.
 
 #![deny(
     warnings,
@@ -18,7 +18,7 @@ use vi_core::lagrangian::Parameters;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, StepError};
 
-/// Nothing that a binding may be named after.
+/// A type that no binding may refer to.
 macro_rules! constants {
     ($($name:ident)*) => { $(const $name: u8 = 0;)* };
 }
@@ -36,7 +36,7 @@ fn run<const N: usize, S: EnergyStepping<N> + Copy>(system: S) -> [SVector<f64, 
     [fixed().expect("fixed steps"), energy().expect("energy-preserving steps")]
 }
 
-/// A system alone, and the same among names that get in its way.
+/// A system alone, and the same among conflicting names.
 macro_rules! alone_and_among {
     ([$($surroundings:tt)*] $($system:tt)*) => {
         mod alone {
@@ -138,7 +138,7 @@ mod types {
     }
 }
 
-/// Names of structs that emitted code uses for something else, by paths.
+/// Names of structs that emitted code uses, by path, for other types.
 mod names {
     macro_rules! systems {
         ($($name:ident)*) => {
@@ -160,7 +160,7 @@ mod names {
 mod attributes {
     use super::{EnergyStepping, Parameters};
 
-    /// What is not there needs no sense.
+    /// A configured-out item needs no meaning.
     #[cfg(any())]
     mod nothing {}
     ::vi_core::lagrangian! {
@@ -215,7 +215,7 @@ fn a_system_stands_in_a_function() {
     assert!((lagrangian - 2.5).abs() < 1e-15, "{lagrangian}");
 }
 
-/// What a macro puts in is one operand.
+/// A macro argument is one operand.
 #[test]
 fn an_expression_of_a_macro_is_one_operand() {
     macro_rules! system {

@@ -1,4 +1,4 @@
-//! What expressions of the language compute, against the same by other means: dual numbers, and formulas by hand.
+//! Expressions of the language against dual numbers and formulas by hand.
 
 #![allow(missing_docs, reason = "a test")]
 
@@ -8,7 +8,7 @@ use vi_core::stepping::{Batch, EnergyStepping};
 use vi_core::{EnergyPreserving, FixedStep, Lagrangian, SVector, Starts, State, lagrangian};
 
 lagrangian! {
-    /// Elastic pendulum whose pivot moves, its bob above a curved ground: positions are named, velocities follow.
+    /// Elastic pendulum with a moving pivot above a curved ground: positions are named, velocities derived.
     struct Driven {
         param m = 1.3, a = 0.4, ω = 2.0, g = 9.81;
         const τ = 5;
@@ -52,12 +52,12 @@ fn dot_is_the_derivative_by_time() {
         }
         assert!(energies.abs() > 0.1 && forces.iter().any(|force| force.abs() > 0.1), "a place where nothing moves");
     }
-    // Measured 2.9e-16, of values between 0.1 and 100.
+    // Measured 2.9e-16, for values between 0.1 and 100.
     assert!(largest < 6e-16, "{largest:e}");
 }
 
 lagrangian! {
-    /// Two masses between walls, by arrays of parameters.
+    /// Two masses between walls, with arrays of parameters.
     #[derive(PartialOrd)]
     struct Listed {
         const N = 2;
@@ -76,7 +76,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// The same by parameters alone.
+    /// The same with scalar parameters only.
     struct Named {
         param m0 = 1.5, m1 = 0.5, k0 = 3.0, k1 = 3.0, k2 = 3.0, c = 0.1, only = 0.7;
         coord x, y;
@@ -87,7 +87,7 @@ lagrangian! {
     }
 }
 
-/// Where 100 steps of both integrators end.
+/// The ends of 100 steps of both integrators.
 fn ends<S: EnergyStepping<2> + Copy>(system: S) -> [SVector<f64, 2>; 2] {
     let (q, v) = ([0.4, -0.7], [0.3, 1.1]);
     let start = State::at(&system, 0.0, q, v);
@@ -148,7 +148,7 @@ lagrangian! {
     }
 }
 
-/// Momentum, force and a step of a long chain by hand, with unlike parameters: the functions of a step are loops.
+/// Momentum, force and a step of a long chain by hand, with unequal parameters: the functions of a step are loops.
 #[test]
 fn every_entry_of_a_long_array_acts_in_its_place() {
     let mut chain = LongListed::default();
@@ -176,12 +176,12 @@ fn every_entry_of_a_long_array_acts_in_its_place() {
     let end = chain.at(0.0, q, v).integrate(FixedStep, h).expect("a start").step().expect("a step").q;
     let by_velocity = Long::from_fn(|i, _| chain.m[i] * (end[i] - q[i]) / h);
     let residual = (by_velocity - force(&((q + end) / 2.0)) * (h / 2.0) - momentum).amax();
-    // Measured 1.3e-14, of momenta up to 17.
+    // Measured 1.3e-14, for momenta up to 17.
     assert!(residual < 3e-14, "{residual:e}");
 }
 
 lagrangian! {
-    /// A pole on a cart that is pushed: the push is a parameter that is zero until a controller sets it.
+    /// A pole on a cart with a push: the push is a parameter that is zero until a controller sets it.
     struct CartPole {
         param M = 1.0, m = 0.2, l = 0.5, g = 9.81;
         param u = 0.0;
@@ -194,7 +194,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Springs between three masses, by an adjacency matrix of which the upper triangle alone is used.
+    /// Springs between three masses, from an adjacency matrix of which only the upper triangle is used.
     struct Graph {
         const N = 3;
         param k[N * N] = 0.0, m[N] = 1.0;
@@ -211,7 +211,7 @@ fn entries_of_a_parameter_may_be_unused() {
     let mut graph = Graph::default();
     assert_eq!(<Graph as Lagrangian<3>>::PARAMETERS.len(), 12);
     let (q, v) = (SVector::from([0.0, 1.0, 3.0]), SVector::zeros());
-    // The spring from 1 to 2 is stretched by 2; k[7] is of the triangle that is not used.
+    // The spring from 1 to 2 is stretched by 2; k[7] is in the unused triangle.
     for (name, stiffness, potential) in [("k[5]", 0.0, 0.0), ("k[5]", 3.0, 6.0), ("k[7]", 5.0, 6.0)] {
         *graph.parameter_mut(name).expect("an entry") = stiffness;
         let found = -graph.lagrangian(0.0, &q, &v);

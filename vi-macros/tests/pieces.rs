@@ -1,4 +1,4 @@
-//! A system in loops, or in pieces, computes what it computes whole, bit by bit.
+//! A system in loops or in pieces computes the same as a whole, bit by bit.
 //!
 //! The attribute `vi_limit` of the struct limits the operations of a function.
 
@@ -7,7 +7,7 @@ use vi_core::node::Node;
 use vi_core::stepping::EnergyStepping;
 use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector};
 
-/// A system whole, and the same system in functions of at most so many operations.
+/// A system as a whole, and the same system with functions of at most this number of operations.
 macro_rules! system {
     ($name:ident, $limit:literal, $($tokens:tt)*) => {
         mod $name {
@@ -37,7 +37,7 @@ system! {
 
 system! {
     chain, 300,
-    /// Pendula in a row, driven: what is the same for all of them is a loop.
+    /// A row of driven pendula: identical terms become a loop.
     pub struct Chain {
         const N = 10;
         param m = 1.2, k = 0.7;
@@ -68,7 +68,7 @@ fn no_function_is_longer_than_the_limit() {
     assert!(loops > 50 && sums > 10 && !text.contains("/// Part "), "{loops} loops, {sums} sums");
 }
 
-/// Bits of everything that the functions of a system give at one place.
+/// Bits of all function values of a system at one state.
 fn bits<const N: usize, S>(system: &S) -> Vec<u64>
 where
     S: Lagrangian<N> + DiscreteLagrangian<N> + EnergyStepping<N>,
@@ -124,7 +124,7 @@ where
 fn the_pieces_compute_what_the_whole_does() {
     let (whole, pieces) = (pendula::Pendula::default(), pendula::cut::Pendula::default());
     assert_eq!(bits(&whole), bits(&pieces));
-    // Another parameter is another result: what is compared is no constant.
+    // Another parameter gives another result, so the compared values are not constant.
     assert_ne!(bits(&pendula::Pendula { k: 0.8, ..whole }), bits(&pieces));
 }
 

@@ -1,18 +1,17 @@
-//! A hunt for steps that are taken and not solved, where motions change suddenly.
+//! Searches for accepted steps that do not satisfy their equations, in motions that change suddenly.
 //!
-//! In: the systems of `sudden` and those of the catalogue, from random starts with random steps. The
-//! residual of each step is computed here, from the node before it and the velocity that was taken, and must be at the floor, row
-//! by row:
+//! In: the systems of `sudden` and of the catalogue, from random states with random steps. The residual of each step is
+//! recomputed here from the previous node and the accepted velocity. It must be at the floor, row by row:
 //!
 //! ```text
 //! |r_i| ≤ 4 ε s_i        s_i the largest of |p0_i| + |p1_i − p0_i|, the sum of the absolute values of the terms of r_i,
-//!                        and what rounding moves r_i by at most, by running error analysis
+//!                        and the rounding bound of r_i from running error analysis
 //! ```
 //!
-//! and the energy itself by its own rounding, which in stiff steps is far below that of the rows.
+//! and the energy by its own rounding, which for stiff steps is far below that of the rows.
 //!
-//! and what the integrator says of it must be that number. That the residual is the one of the slots is for `check::steps` to say,
-//! which runs here first. A motion may end with a typed error; then another one begins.
+//! The residual reported by the integrator must equal this number. `check::steps`, which runs first, verifies that it
+//! is the residual of the slots. A motion may end with a typed error; then another one starts.
 
 mod stages;
 mod sudden;
@@ -27,19 +26,19 @@ use vi_core::{Composition, EnergyPreserving, FixedStep, SVector, Starts, State, 
 
 /// Steps of each system by each integrator.
 const STEPS: usize = 40_000;
-/// Motions of each system by each integrator, at least.
+/// Minimum number of motions of each system with each integrator.
 const MOTIONS: usize = 16;
-/// Motions at most: some starts have no step.
+/// Maximum number of motions: some states have no step.
 const MOST_MOTIONS: usize = 2_000;
-/// Roundings that a solved row may leave. Measured: 3.995, where it is what a step is accepted at.
+/// Maximum residual of a solved row, in roundings. Measured: 3.995, at the acceptance limit.
 const FLOOR: f64 = 4.0;
 
-/// What was found of one system and integrator.
+/// Results for one system and integrator.
 #[derive(Debug, Default)]
 struct Found {
     steps: usize,
     motions: usize,
-    /// Steps whose residual is above the floor of the first two scales: what rounding does is larger there.
+    /// Steps whose residual exceeds the floor of the first two scales, because its rounding is larger.
     by_analysis: usize,
     worst: f64,
 }
@@ -53,7 +52,7 @@ impl Found {
     fn finish(&self, name: &str, integrator: &str) {
         println!("{name}, {integrator}: {self:?}");
         assert!(self.worst <= FLOOR, "{name}, {integrator}: {self:?}");
-        // Something was hunted, and a residual of zero throughout is not one.
+        // The search found steps, and not all residuals are zero.
         assert!(self.steps >= STEPS / 10 && self.worst > 0.1, "{name}, {integrator}: {self:?}");
     }
 }
@@ -63,9 +62,9 @@ impl Found {
 struct Row {
     /// By each of the three scales.
     by: [f64; 3],
-    /// By the larger of the first two in each row.
+    /// With the larger of the first two in each row.
     plain: f64,
-    /// By the largest in each row.
+    /// With the largest in each row.
     worst: f64,
 }
 
@@ -108,17 +107,18 @@ impl Row {
         let own = node.energy.abs() + at.increment.energy.abs() + v.component_mul(&node.p).abs().sum();
         let combined = (at.energy_residual, [own, at.energy_scale, analysis.energy_residual]);
         let mut row = Self::new(momentum.chain([combined]));
-        // The energy itself, e = D1 L_d + g_d⁻ − E0, by its own rounding, or with the momentum rows that are at the first floor: e = c + v·r.
+        // The energy e = D1 L_d + g_d⁻ − E0, relative to its own rounding, or with momentum rows at the first floor: e
+        // = c + v·r.
         let kept = (node.energy + at.increment.energy) + node.energy_low;
         let energy = (system.discrete_energy(node, h, v) - kept).abs() / f64::EPSILON;
         let work = v.component_mul(&at.increment.momentum).abs().sum();
         let of_rows = FLOOR * (own + work);
-        // A rounding of the terms of L is one of this evaluation.
+        // A rounding of the terms of L is also one of this evaluation.
         row.worst = row.worst.max(FLOOR * energy / (of_rows + FLOOR * analysis.energy + at.energy_scale));
         row
     }
 
-    /// Whether the reported residual is this one.
+    /// Whether the reported residual equals this one.
     fn is(&self, reported: f64) -> bool {
         self.by.iter().any(|roundings| (roundings - reported).abs() <= 1e-12 * reported)
     }
@@ -132,7 +132,7 @@ fn start<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>, draw: &mut Se
     (State::at(&scene.system, 0.0, q, v), h)
 }
 
-/// Takes motions of an integrator until there are so many steps; `motion` takes one and gives what was found of each step.
+/// Takes motions of an integrator until there are enough steps; `motion` takes one and reports each step.
 fn hunted<const N: usize, S: FixedStepping<N>>(
     scene: &Scene<S, N>,
     limit: usize,
@@ -200,7 +200,7 @@ fn by_substeps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
                     let increment = scene.system.momentum_residual(&node, h, &v).increment;
                     node.advance(h, &v, &increment);
                 }
-                // The substeps are those that were taken.
+                // The substeps are the accepted ones.
                 assert_eq!(node.state(), run.state());
                 found.steps += 1;
             }
@@ -225,7 +225,7 @@ fn hunt_fixed_steps<const N: usize, S: Checked<N>>(scene: Scene<S, N>) {
 sudden::each_sudden!(hunt, hunt_fixed_steps);
 
 lagrangian! {
-    /// A rod that is a spring of a million to a million million times its weight.
+    /// A rod modelled as a spring of 10^6 to 10^12 times its weight.
     struct Rod {
         param k = 1e12;
         coord x, y;
@@ -234,7 +234,7 @@ lagrangian! {
     }
 }
 
-/// The rows of stiff steps know no more digits than their forces have; the energy does.
+/// The rows of stiff steps are only as accurate as their forces; the energy is more accurate.
 #[test]
 fn stiff_steps_keep_the_energy() {
     let mut worst = 0.0_f64;
@@ -259,11 +259,12 @@ fn stiff_steps_keep_the_energy() {
             worst = worst.max((energy - step.energy).abs());
             steps += 1;
         }
-        // It ends where the rod has swung down and the density vanishes, or where rows and energy are no longer solved at once.
+        // It ends when the rod has swung down and the density vanishes, or when rows and energy no longer converge
+        // together.
         assert!(steps >= 5, "k = {:e}: {steps} steps", system.k);
     }
     println!("energies off by {worst:.1e}");
-    // Measured: 1.5e-14. Before the energy itself was measured: 4.8e-7.
+    // Measured: 1.5e-14. Before the energy had its own test: 4.8e-7.
     assert!(worst <= 3e-14, "{worst:e}");
 }
 

@@ -1,15 +1,15 @@
-//! The same hunt among Gauss steps, in scaled time and energy-preserving ones too.
+//! The same search for Gauss steps, including transformed time and energy-preserving steps.
 //!
-//! In: a step that was taken, by its two nodes. Out: how far its end, and the energy that it keeps, are from those of the exact solution of
-//! its equations from the same node, in roundings. The equations are those of `vi_core::gauss`, solved here by sweeps in numbers of twice the
-//! digits with a tableau of their own,
+//! In: an accepted step, by its two nodes. Out: the differences of its end and of its preserved energy from the exact
+//! solution of its equations from the same node, in roundings. The equations are those of `vi_core::gauss`, solved here
+//! by fixed-point iteration in double-double arithmetic with an independent tableau,
 //!
 //! ```text
 //! T' = g    Q' = g V    P' = g (L_q + f) − (H − E) g_q    E' = g (f·V − L_t) + (H − E) g_t        g = 1, no E, in plain time
 //! ```
 //!
-//! and a rounding is what running error analysis finds that their evaluation in `f64` loses. A step whose stages sweeps do not find is stiff,
-//! and is not judged here: `gauss_stiff` is about those.
+//! A rounding is the rounding bound of their evaluation in `f64` from running error analysis. A step whose stages
+//! fixed-point iteration does not find is stiff and not judged here: see `gauss_stiff`.
 
 use crate::support::Sequence;
 use crate::support::ending::assert_typed;
@@ -22,13 +22,14 @@ use vi_core::real::{Real, Rounded};
 use vi_core::stepping::{Convertible, FixedStepping};
 use vi_core::{EnergyPreservingGauss, Gauss, Method, Run, SVector, Starts, State, StepError, lagrangian};
 
-/// Steps of each system by each integrator that are judged.
+/// Judged steps of each system with each integrator.
 const STEPS: usize = 400;
 const MOTIONS: usize = 20;
 const MOST_MOTIONS: usize = 400;
-/// Roundings by which an end or an energy may be off. Measured: 0.52, of the charged particle's energy-preserving steps of one stage.
+/// Maximum error of an end or an energy, in roundings. Measured: 0.52, for the charged particle with energy-preserving
+/// steps of one stage.
 const FLOOR: f64 = 1.0;
-/// What a step may report. Measured: 3.95, where it is what a step is accepted at.
+/// Maximum reported residual. Measured: 3.95, at the acceptance limit.
 const ACCEPTED: f64 = 4.0;
 
 /// The tableau of S stages.
@@ -75,7 +76,7 @@ impl<const S: usize> Tableau<S> {
     }
 }
 
-/// A stage: where it is, and how that changes.
+/// A stage with its rates.
 #[derive(Clone, Copy)]
 struct Stage<const N: usize, T> {
     q: SVector<T, N>,
@@ -88,7 +89,7 @@ struct Stage<const N: usize, T> {
     power: T,
 }
 
-/// A node with its low parts, in numbers T.
+/// A node with its low parts, in numbers of type T.
 struct Start<const N: usize, T> {
     t: T,
     q: SVector<T, N>,
@@ -108,7 +109,8 @@ impl<const N: usize, T: Real> Start<N, T> {
     }
 }
 
-/// The stage at (t, q, v), what is missing in its momentum from `p`, and M⁻¹ of that; the rates are those of scaled time or of plain time.
+/// The stage at (t, q, v), the residual of its momentum with respect to `p`, and M⁻¹ of that; rates are those of
+/// transformed or plain time.
 fn stage<Y: Collocation<N, T>, T: Real, const N: usize>(
     system: &Y,
     is_scaled: bool,
@@ -125,7 +127,7 @@ fn stage<Y: Collocation<N, T>, T: Real, const N: usize>(
     (Stage { q, v, g, force, energy: g * power + excess * g_dt, hamiltonian: energy, power }, point)
 }
 
-/// The stages of the step of length h, of time or of scaled time, from a node; none where sweeps do not find them.
+/// The stages of a step of length h, in time or transformed time; `None` if fixed-point iteration does not find them.
 fn solved<Y: Collocation<N, Twice>, const N: usize, const S: usize>(
     system: &Y,
     tableau: &Tableau<S>,
@@ -138,7 +140,7 @@ fn solved<Y: Collocation<N, Twice>, const N: usize, const S: usize>(
     let mut stages = [first; S];
     for _ in 0..150 {
         let before = stages;
-        // Σ a_ij x_j, by the stages before.
+        // Σ a_ij x_j, from the previous stages.
         let integral = |i: usize, of: &dyn Fn(&Stage<N, Twice>) -> Twice| {
             Twice::real(h) * (0..S).fold(zero, |sum, j| sum + tableau.a[i][j] * of(&before[j]))
         };
@@ -168,7 +170,7 @@ fn solved<Y: Collocation<N, Twice>, const N: usize, const S: usize>(
     None
 }
 
-/// What was found of a step, in roundings.
+/// Results for a step, in roundings.
 #[derive(Clone, Copy, Debug, Default)]
 struct Off {
     end: f64,
@@ -180,12 +182,12 @@ struct Judge<'a, Y, const N: usize, const S: usize> {
     system: &'a Y,
     tableau: Tableau<S>,
     is_scaled: bool,
-    /// `C_s D_*` of energy-preserving steps; their energy is looked at.
+    /// `C_s D_*` of energy-preserving steps, whose energy is judged.
     shift: Option<f64>,
 }
 
 impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
-    /// How far the step of length h from one node to another is from its equations; none where these are not solved here.
+    /// The difference of a step from its equations; `None` if these are not solved here.
     fn judge(&self, before: &Node<N>, after: &Node<N>, h: f64, v: SVector<f64, N>) -> Option<Off> {
         let exact = self.system.convert::<Twice>();
         let start = Start::<N, Twice>::of(before);
@@ -231,8 +233,8 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
         Some(off)
     }
 
-    /// The stages in numbers that carry a bound of their rounding: of the sums that make positions, of the forces at those, of the velocities
-    /// that follow from the forces, and of the forces once more.
+    /// The stages in numbers with a rounding bound: the sums for positions, the forces there, the resulting velocities,
+    /// and the forces again.
     fn bounded(&self, before: &Node<N>, h: f64, stages: &[Stage<N, Twice>; S]) -> [Stage<N, Rounded>; S] {
         let system = self.system.convert::<Rounded>();
         let start = Start::<N, Rounded>::of(before);
@@ -271,7 +273,8 @@ impl<Y: Convertible<N>, const N: usize, const S: usize> Judge<'_, Y, N, S> {
     }
 }
 
-/// Steps of motions near a scene, each judged; `begin` starts one, `of` tells the length of the step taken last, in the time that it is taken in.
+/// Judges the steps of motions near a scene. `begin` starts a motion; `of` returns the length of its last step, in its
+/// own time.
 fn hunted<M, Y, const N: usize, const S: usize>(
     scene: &Scene<Y, N>,
     name: &str,
@@ -318,7 +321,7 @@ fn hunted<M, Y, const N: usize, const S: usize>(
     println!("{}, {name}, {S} stages: {steps} steps, {left_out} left out, {worst:?}, reported {reported:.2}", Y::NAME);
     assert!(worst.end <= FLOOR && worst.energy <= FLOOR, "{}, {name}, {S} stages: {worst:?}", Y::NAME);
     assert!(reported <= ACCEPTED, "{}, {name}, {S} stages: {reported} reported", Y::NAME);
-    // Something was hunted, and a difference of zero throughout is not one.
+    // The search found steps, and not all differences are zero.
     assert!(
         steps >= STEPS / 4 && left_out <= steps && worst.end > 0.01,
         "{}, {name}: {steps} steps, {worst:?}",
@@ -338,7 +341,7 @@ fn by_energy_preserving_steps<Y, const N: usize, const S: usize>(scene: &Scene<Y
 where
     Y: Convertible<N> + FixedStepping<N> + Collocation<N>,
 {
-    // Large enough for steps to exist anywhere near the scene, and far from what would outweigh the energy.
+    // Large enough for steps near the scene, and small enough for the energy to matter.
     let state = State::at(&scene.system, 0.0, scene.q, scene.v);
     let density = vi_core::gauss::step_density::<_, N, S>(&scene.system, &state).expect("a density");
     let shift = 4.0 * density.abs();
@@ -379,7 +382,7 @@ fn hunt_scaled<Y: Convertible<N> + FixedStepping<N> + TimeScale<N>, const N: usi
 }
 
 lagrangian! {
-    /// A mass that varies, a force that does not rest, and a time scale that depends on all.
+    /// A varying mass, a time-dependent force, and a time scale that depends on everything.
     struct Clocked {
         param m = 1.3, k = 2.1, c = 0.2, b = 0.4;
         coord x, y;

@@ -1,10 +1,10 @@
-//! Systems whose motion changes suddenly: a step is then unlike the steps before it, and their guess of it is wrong.
+//! Systems whose motion changes suddenly: a step then differs from the previous ones, and the prediction is wrong.
 
 use crate::support::scenes::Scene;
 use vi_core::lagrangian;
 
 lagrangian! {
-    /// A weight on a wall that is a twentieth of its fall thick. Convex: every step has one root.
+    /// A weight on a wall with a thickness of a twentieth of its fall. Convex: every step has one root.
     pub(crate) struct Wall {
         param m = 1.0, g = 1.0, k = 50.0;
         coord x;
@@ -14,7 +14,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// The same by the trapezoidal rule, with friction.
+    /// The same with the trapezoidal rule and friction.
     pub(crate) struct RoughWall {
         param m = 1.3, g = 1.1, k = 50.0, c = 0.05;
         coord x;
@@ -25,7 +25,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A weight on a core as hard as that of atoms.
+    /// A weight on a hard atomic core.
     pub(crate) struct HardCore {
         param m = 1.2, g = 0.9, r = 0.1;
         coord x;
@@ -35,7 +35,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Two slopes that meet in a hundredth of their length.
+    /// Two slopes that join within a hundredth of their length.
     pub(crate) struct Valley {
         param m = 1.0, k = 100.0;
         coord x;
@@ -45,7 +45,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// An oscillator in the plane, with a bump that is crossed in less than a step.
+    /// An oscillator in the plane with a bump narrower than a step.
     pub(crate) struct Bump {
         param m = 1.0, k = 1.0, a = 0.1, w = 1e-3;
         coord x, y;
@@ -66,7 +66,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A spring pendulum in polar coordinates, whose angle turns by half a turn where the spring is short.
+    /// A spring pendulum in polar coordinates, whose angle turns by π when the spring is short.
     pub(crate) struct SpringPendulum {
         param m = 1.0, k = 40.0, l = 1.0, g = 9.81;
         coord r, θ;
@@ -76,7 +76,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A mass that is twenty times itself for a moment.
+    /// A mass that briefly becomes twenty times as large.
     pub(crate) struct Puddle {
         param m = 1.2, a = 20.0, w = 0.05, k = 1.4;
         coord x;
@@ -86,7 +86,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// An oscillator that is hit now and then.
+    /// An oscillator with occasional kicks.
     pub(crate) struct Hit {
         param m = 1.1, k = 1.7, a = 30.0, w = 200.0;
         coord x;
@@ -96,7 +96,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A spring with dry friction, nearly.
+    /// A spring with nearly dry friction.
     pub(crate) struct Dry {
         param m = 1.3, k = 2.0, c = 0.3, s = 300.0;
         coord x;
@@ -107,7 +107,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// As fast as light, nearly, between two walls.
+    /// A particle near the speed of light between two walls.
     pub(crate) struct Relativistic {
         param m = 1.0, k = 20.0;
         coord x;
@@ -201,7 +201,7 @@ pub(crate) fn stops() -> Scene<Stops, 5> {
     scene(Stops::default(), [0.1, 0.5, -0.3, 0.2, 0.4], [1.0, -0.7, 0.4, 0.9, -0.5], 0.01)
 }
 
-/// Four links that turn over: its functions are too long to be inlined.
+/// Four rotating links, with functions too long to be inlined.
 pub(crate) fn links() -> Scene<vi_systems::NPendulum, 4> {
     scene(vi_systems::NPendulum::default(), [2.0, 1.5, 2.5, -1.0], [0.0, 3.0, -2.0, 5.0], 0.005)
 }
@@ -213,7 +213,7 @@ pub(crate) fn chain() -> Scene<vi_systems::FpuChain, 16> {
     scene(system, first(1.0), first(2.0), 0.05)
 }
 
-/// One test for every sudden system: `check` is called with its scene, `fixed` with that of a system that has fixed steps alone.
+/// One test for every such system: `check` gets its scene, `fixed` that of a system with fixed steps only.
 macro_rules! each_sudden {
     ($check:path, $fixed:path) => {
         $crate::hunt::sudden::each_sudden! { $check:

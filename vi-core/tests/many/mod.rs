@@ -1,4 +1,4 @@
-//! Right systems of many kinds, with energies from 1e-18 to 1e34, each with a place and the steps that make sense there.
+//! Correct systems of many kinds, with energies from 1e-18 to 1e34, each with a state and suitable steps.
 
 use vi_core::check::Place;
 use vi_core::lagrangian;
@@ -26,7 +26,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Three atoms in the plane that attract and repel each other.
+    /// Three atoms in the plane with attraction and repulsion.
     pub(crate) struct LennardJones {
         param m = 1.0, ε = 1.0, σ = 1.0;
         coord x[3], y[3];
@@ -49,7 +49,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Three pendula, one on the other.
+    /// A triple pendulum.
     pub(crate) struct TriplePendulum {
         param m1 = 1.0, m2 = 0.8, m3 = 0.6, g = 9.81;
         coord a, b, c;
@@ -63,7 +63,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Three bodies that attract each other by gravity, in the plane.
+    /// Three bodies with mutual gravity, in the plane.
     pub(crate) struct ThreeBodies {
         param G = 1.0, m0 = 1.0, m1 = 1.0, m2 = 1.0;
         coord x[3], y[3];
@@ -76,7 +76,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A stiff spring and a soft one.
+    /// A stiff and a soft spring.
     pub(crate) struct Stiff {
         param m = 1.0, k = 1e8, soft = 1.0, b = 3e8;
         coord x, y;
@@ -98,7 +98,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Caldirola and Kanai: friction by a mass that grows in time.
+    /// Caldirola and Kanai: friction by a growing mass.
     pub(crate) struct GrowingMass {
         param m = 1.3, k = 2.0, c = 0.3;
         coord x, y;
@@ -108,7 +108,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A bead on the wire y = a x⁴: a mass that depends on the place; every energy times 1e9.
+    /// A bead on the wire y = a x⁴: a position-dependent mass; every energy times 1e9.
     pub(crate) struct Bead {
         param scale = 1e9, m = 0.7, a = 0.8, g = 9.81;
         coord x;
@@ -119,7 +119,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A dumb-bell of some micrometres in an optical trap, in metres, kilograms and seconds, with an angle beside lengths.
+    /// A dumb-bell of some micrometres in an optical trap, in metres, kilograms and seconds, with an angle and lengths.
     pub(crate) struct Trapped {
         param m = 1e-12, a = 2e-6, k = 3e-6, width = 1.5e-6, torque = 4e-18;
         coord x, y, θ;
@@ -162,7 +162,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Thrown: steps are exact.
+    /// A projectile: steps are exact.
     pub(crate) struct Thrown {
         param m = 2.0, g = 9.81;
         coord x, z;
@@ -182,7 +182,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// Eight masses on nonlinear springs, the ends held and damped, by the explicit rule.
+    /// Eight masses on nonlinear springs with fixed and damped ends, with the explicit rule.
     pub(crate) struct Chain {
         const N = 8;
         param alpha = 0.3, c = 0.1;
@@ -195,7 +195,7 @@ lagrangian! {
     }
 }
 
-/// A system, a state, and the largest step that makes sense there.
+/// A system, a state, and the largest sensible step.
 pub(crate) struct Case<S, const N: usize> {
     pub(crate) system: S,
     pub(crate) place: Place<N>,
@@ -206,7 +206,7 @@ fn case<const N: usize, S: Default>(t: f64, q: [f64; N], v: [f64; N], h: f64) ->
 }
 
 impl<const N: usize, S> Case<S, N> {
-    /// The place with steps from the largest down to 1e-5, and to 1e-5 of the largest.
+    /// The state with steps from the largest down to 1e-5, and to 1e-5 of the largest.
     pub(crate) fn places(&self) -> Vec<Place<N>> {
         let largest = self.place.h;
         let smallest = 1e-5_f64.min(largest * 1e-5);
@@ -286,7 +286,7 @@ pub(crate) fn chain() -> Case<Chain, 8> {
     case(0.2, q, [0.0, 0.1, 0.0, 0.0, -0.2, 0.0, 0.0, 0.1], 0.1)
 }
 
-/// A test for each case, with the checks of its energy-preserving steps, or of its fixed steps where it has no others.
+/// A test for each case, with the checks of its energy-preserving steps, or of its fixed steps if it has no others.
 macro_rules! each_case {
     ($function:path, $energy:path, $fixed:path) => {
         $crate::many::each_case!($function, $energy:

@@ -1,5 +1,5 @@
-//! A right system with one function spoiled, as a wrong generator would print it: in every kind of number. Each file uses its
-//! part of the faults.
+//! A correct system with one wrong function, as a faulty generator would print it, in every numeric type. Each file
+//! uses its part of the faults.
 
 use vi_core::collocation::{Collocation, Point, PointDerivatives};
 use vi_core::lagrangian::Parameters;
@@ -16,22 +16,22 @@ use vi_core::{DiscreteLagrangian, Interval, Lagrangian, SVector, StepError, forw
 /// The damping of [`Fault::Damping`].
 const DAMPING: f64 = 0.01;
 
-/// What is wrong.
+/// The fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fault {
-    /// Nothing.
+    /// No fault.
     None,
     /// The momentum of the first coordinate has the wrong sign.
     Momentum,
     /// The energy is v·p + L.
     Energy,
-    /// The acceleration is a part in a thousand too large.
+    /// The acceleration is 1e-3 too large.
     Acceleration,
     /// A term of the step density is missing.
     StepDensity,
-    /// The step density is a part in a thousand too large.
+    /// The step density is 1e-3 too large.
     Density,
-    /// The discrete Lagrangian is not the one of the slots.
+    /// The discrete Lagrangian differs from that of the slots.
     Ld,
     /// D1 has the wrong sign.
     D1,
@@ -49,41 +49,41 @@ pub(crate) enum Fault {
     GdPlus,
     /// The force is missing in the residual.
     Residual,
-    /// A damping that nobody declared stands in the residual, in its Jacobian and in the gain.
+    /// An undeclared damping in the residual, its Jacobian and the increment.
     Damping,
     /// The rounding is too small.
     Rounding,
-    /// The last entry of the Jacobian is a part in a million too large.
+    /// The last entry of the Jacobian is 1e-6 too large.
     Jacobian,
-    /// The first momentum at a point is a part in a thousand too large.
+    /// The first momentum at a point is 1e-3 too large.
     PointMomentum,
-    /// A damping that nobody declared stands in the force at a point.
+    /// An undeclared damping in the force at a point.
     PointForce,
     /// The power is too large.
     Power,
-    /// The last entry of how L_q + f changes with q is a part in a million too large.
+    /// The last entry of ∂(L_q + f)/∂q is 1e-6 too large.
     PointDerivatives,
-    /// The last entry of how p1 − p0 changes with v is a part in a million too large.
+    /// The last entry of ∂(p1 − p0)/∂v is 1e-6 too large.
     MomentumDerivatives,
-    /// The derivative of p1 − p0 by h has the wrong sign.
+    /// ∂(p1 − p0)/∂h has the wrong sign.
     ExtendedDerivatives,
     /// ∂r/∂h has the wrong sign.
     ResidualDh,
     /// The energy residual lacks the energy of the node.
     EnergyResidual,
-    /// The derivative of the energy row by h has the wrong sign.
+    /// The derivative of the energy row with respect to h has the wrong sign.
     EnergyDh,
-    /// The last momentum gains a little.
+    /// The last momentum increases slightly.
     MomentumGain,
-    /// Every momentum gains a part in a thousand too much.
+    /// Every momentum increment is 1e-3 too large.
     Gain,
-    /// Every momentum loses a part in a million of itself.
+    /// Every momentum decreases by 1e-6 of itself.
     Loss,
-    /// The first momentum gains what depends on the direction of time.
+    /// The increment of the first momentum depends on the direction of time.
     DirectedGain,
-    /// The energy gains.
+    /// The energy increases.
     EnergyGain,
-    /// The discrete energy is a part in a thousand too large.
+    /// The discrete energy is 1e-3 too large.
     DiscreteEnergy,
 }
 
@@ -95,7 +95,7 @@ pub(crate) struct Spoiled<S> {
 }
 
 impl<S> Spoiled<S> {
-    /// What is right, or what the fault makes of it.
+    /// The correct value, or the wrong one if the fault is active.
     fn unless<P>(&self, fault: Fault, right: P, wrong: impl FnOnce(P) -> P) -> P {
         if self.fault == fault { wrong(right) } else { right }
     }

@@ -1,4 +1,4 @@
-//! Systems written by hand, so that the steppers are tested without the generator.
+//! Handwritten systems, so that tests of the steppers do not depend on the generator.
 //!
 //! In: a potential `V(t, q)` and a force `f(t, q, v)` with their derivatives. Out: the system `L = v·v/2 − V` with the
 //! midpoint rule. With everything at `t̄ = t0 + h/2`, `q̄ = q0 + h v/2`:
@@ -39,7 +39,7 @@ pub(crate) struct Fields<const N: usize, T> {
 }
 
 impl<const N: usize, T: Real> Fields<N, T> {
-    /// A potential free of time, without force.
+    /// An autonomous potential without force.
     fn potential(potential: T, magnitude: T, gradient: SVector<T, N>, hessian: SMatrix<T, N, N>) -> Self {
         let (zero, zeros, square) = (T::zero(), SVector::zeros(), SMatrix::zeros());
         Self {
@@ -58,12 +58,12 @@ impl<const N: usize, T: Real> Fields<N, T> {
     }
 }
 
-/// What a system of unit mass is made of.
+/// The parts of a system of unit mass.
 pub(crate) trait Potential<const N: usize, T: Real>: Copy {
     fn fields(&self, t: T, q: &SVector<T, N>, v: &SVector<T, N>) -> Fields<N, T>;
 }
 
-/// What steps can be taken with: in their numbers, and in those that carry a bound of their rounding.
+/// The requirements on such a system: its equations in its own numbers, and in numbers with a rounding bound.
 pub(crate) trait Steppable<const N: usize>: Potential<N, f64> + Potential<N, Rounded> {}
 
 impl<const N: usize, P: Potential<N, f64> + Potential<N, Rounded>> Steppable<N> for P {}
@@ -143,7 +143,7 @@ impl<T: Real> Potential<1, T> for ForcedDuffing {
     }
 }
 
-/// `V = −(1 + cos(2t)/2) cos q` and the force `f = −0.2 q v`: every derivative that the rule can meet.
+/// `V = −(1 + cos(2t)/2) cos q` and the force `f = −0.2 q v`: every derivative in the rule is nonzero.
 #[derive(Clone, Copy)]
 pub(crate) struct PumpedPendulum;
 
@@ -224,7 +224,7 @@ impl<const N: usize, T: Real, P: Potential<N, T>> Lagrangian<N, T> for UnitMass<
     }
 }
 
-/// Middle of an interval: `(h, t̄, q̄, v)`.
+/// Midpoint of an interval: `(h, t̄, q̄, v)`.
 fn middle<const N: usize, T: Real>(interval: &Interval<N, T>) -> (T, T, SVector<T, N>, SVector<T, N>) {
     let (h, half) = (interval.t1 - interval.t0, T::real(0.5));
     let v = (interval.q1 - interval.q0) * h.recip();
@@ -411,8 +411,8 @@ impl<const N: usize, T: Real, P: Potential<N, T> + Potential<N, Rounded>> Energy
     }
 }
 
-/// Position at time `h` of the motion that starts at rest from `q0`: classical Runge–Kutta of order 4 in 1000 steps, so
-/// that its error is below rounding for h ≤ 0.1.
+/// Position at time `h` of the motion from rest at `q0`: classical Runge–Kutta of order 4 in 1000 steps, with an error
+/// below rounding for h ≤ 0.1.
 pub(crate) fn point_after<P: Potential<1, f64>>(potential: &P, q0: f64, h: f64) -> f64 {
     let d = h / 1000.0;
     let a = |q: f64| -potential.fields(0.0, &SVector::repeat(q), &SVector::zeros()).gradient[0];

@@ -1,5 +1,5 @@
-//! No input makes the compiler panic or hang: right systems, mutated token by token, and streams of tokens that never
-//! were a system. What is accepted is Rust, and not endless.
+//! No input makes the compiler panic or hang: correct systems, mutated token by token, and random token streams.
+//! Accepted input expands to Rust of bounded length.
 //!
 //! The inputs are drawn from a fixed sequence, 1000 of them. `VI_INPUTS=1000000 cargo test --release -p vi-codegen
 //! --test arbitrary -- --nocapture` draws more, and names the slowest.
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 const INPUTS: u64 = 1000;
 
-/// Characters that an expansion may have: what is done is bounded, and so is what is printed. Measured: some 5 million.
+/// Maximum characters of an expansion: work is bounded, and so is the output. Measured: some 5 million.
 const LONGEST: usize = 32_000_000;
 
-/// Right systems, which together use every clause and every form of expression.
+/// Correct systems, which together use every clause and every form of expression.
 const SYSTEMS: [&str; 11] = [
     "struct A { param m = 1, k = 2.5e-1; coord x; let v = dot(x); L = m * v^2 / 2 - k * x^2; force x = -0.1 * v; discretize midpoint; }",
     "pub struct B { const N = 3; param a = N / 2; coord q[N], y; let e[i in 1..N] = q[i] - q[i - 1]; L = sum(i in 0..N, dot(q[i])^2) + dot(y)^2 - a * sum(i in 1..N, e[i]^2 * cos(y)); force q[i in 0..2] = sin(t * i); discretize trapezoidal; }",
@@ -28,14 +28,14 @@ const SYSTEMS: [&str; 11] = [
     "struct H { const M = 4; coord u[M]; let a[i in 0..M] = sum(j in 0..i + 1, dot(u[j]) * cos(u[j])); L = sum(i in 0..M, a[i]^2 + dot(u[i])^2); discretize midpoint; }",
 ];
 
-/// Tokens that are put in: all words of the language, and some that are none.
+/// Inserted tokens: all words of the language, and some others.
 const WORDS: &str = "struct const param coord let L force dissipation discretize midpoint trapezoidal Ld fd_minus fd_plus gd_minus \
     gd_plus f h t t0 t1 q0 q1 q x y θ i in dot sum pi sqrt exp ln sin cos tan asin acos atan atan2 sinh cosh tanh abs sign \
     hypot pow self Self r#type fn _ + - * / ^ = ; , : . .. # ! & 0 1 2 3 7 0.5 1e3 1e-3 1e308 1e400 1e-400 0x10 1f64 2x 100 256 257 \
     1000 20000 65536 4294967296 18446744073709551616 99999999999999999999999999999999999999999999999999 1_0 1e-30 2.5e-200 0.1234567890123456789012345678901234567890 \
     if as for max log xdot e λ time constraint 1.5f64 | .. [1,2] [3] m l k \"text\" 'c' b\"b\" true";
 
-/// The next number of a fixed sequence that looks random: a linear congruence (Knuth, MMIX).
+/// The next number of a fixed pseudo-random sequence: a linear congruence (Knuth, MMIX).
 struct Sequence(u64);
 
 impl Sequence {
@@ -51,7 +51,7 @@ impl Sequence {
     }
 }
 
-/// The tokens of a text, without their place in it, so that the places of all texts may be forgotten.
+/// The tokens of a text without spans, so that the spans of all texts can be dropped.
 fn tokens(text: &str) -> Vec<TokenTree> {
     text.parse::<TokenStream>().expect("tokens").into_iter().map(placeless).collect()
 }
@@ -64,7 +64,7 @@ fn placeless(mut token: TokenTree) -> TokenTree {
     token
 }
 
-/// Changes the tokens somewhere: at this level, or inside one of its groups.
+/// Mutates the tokens: at this level, or inside one of its groups.
 fn mutate(tokens: &mut Vec<TokenTree>, words: &[TokenTree], draw: &mut Sequence) {
     let groups: Vec<usize> = (0..tokens.len()).filter(|i| matches!(tokens[*i], TokenTree::Group(_))).collect();
     if !groups.is_empty() && draw.below(8) > 0 {
@@ -89,7 +89,7 @@ fn mutate(tokens: &mut Vec<TokenTree>, words: &[TokenTree], draw: &mut Sequence)
             tokens.swap(place, other);
         }
         3 => tokens[place] = draw.pick(words).clone(),
-        // The grammar stays: a name for a name, a number for a number, an operator for an operator.
+        // Preserves the grammar: a name for a name, a number for a number, an operator for an operator.
         4..=8 => {
             let alike: Vec<&TokenTree> =
                 words.iter().filter(|word| std::mem::discriminant(*word) == std::mem::discriminant(&token)).collect();
@@ -99,7 +99,7 @@ fn mutate(tokens: &mut Vec<TokenTree>, words: &[TokenTree], draw: &mut Sequence)
         }
         9 => tokens.insert(place, draw.pick(words).clone()),
         10 => {
-            // A run of tokens again, elsewhere.
+            // Repeats a run of tokens elsewhere.
             let run: Vec<TokenTree> = tokens[place..tokens.len().min(place + 1 + draw.below(12))].to_vec();
             let target = draw.below(tokens.len());
             tokens.splice(target..target, run);
@@ -108,7 +108,7 @@ fn mutate(tokens: &mut Vec<TokenTree>, words: &[TokenTree], draw: &mut Sequence)
     }
 }
 
-/// The token inside 1 to 200 pairs of delimiters, mostly few.
+/// The token inside 1 to 200 pairs of delimiters, usually few.
 fn nested(mut token: TokenTree, draw: &mut Sequence) -> TokenTree {
     let depth = if draw.below(10) == 0 { draw.below(200) } else { 1 + draw.below(4) };
     let delimiter = *draw.pick(&[Delimiter::Parenthesis, Delimiter::Parenthesis, Delimiter::Bracket, Delimiter::Brace]);
@@ -118,7 +118,7 @@ fn nested(mut token: TokenTree, draw: &mut Sequence) -> TokenTree {
     token
 }
 
-/// Tokens that never were a system, in the body of one or bare.
+/// Random tokens, in the body of a system or bare.
 fn unrelated(words: &[TokenTree], draw: &mut Sequence) -> Vec<TokenTree> {
     let mut some = |length: usize| -> Vec<TokenTree> {
         (0..length)

@@ -1,4 +1,4 @@
-//! Constants of the language become the nearest `f64`, wherever they stand.
+//! Constants of the language become the nearest `f64` at every position.
 
 use vi_codegen::program::FunctionId;
 use vi_codegen::symbol::{Symbol, Variable};
@@ -10,7 +10,7 @@ fn derived(clauses: &str) -> Derived {
     system.and_then(|system| vi_codegen::derive(&system)).unwrap_or_else(|error| panic!("{clauses}: {error}")).own
 }
 
-/// L of a system with this summand, and the kinetic energy, at x = 1 and y = 0 at rest.
+/// L of a system with this summand and the kinetic energy, at x = 1 and y = 0 at rest.
 fn value(summand: &str) -> f64 {
     let derived = derived(&format!("L = dot(x)^2 + dot(y)^2 + {summand};"));
     let function = derived.program.function(FunctionId::Lagrangian).expect("every function is there");
@@ -23,7 +23,7 @@ fn value(summand: &str) -> f64 {
 
 #[test]
 fn a_coefficient_is_the_nearest_number() {
-    // By mpmath, from 30 digits.
+    // From mpmath with 30 digits.
     for (summand, wanted) in [
         ("(sin(10^20 * pi / 3)) * x", -0.866_025_403_784_438_6),
         ("(exp(-800) * 1e300) * x", 3.667_874_584_177_687e-48),
@@ -36,7 +36,7 @@ fn a_coefficient_is_the_nearest_number() {
         ("x * (sqrt(2) - 1)^20 * (y + 1)", 2.210_478_490_342_221_6e-08),
         ("sign(exp(pi) - pi - 20) * x", -1.0),
         ("abs(x * (exp(pi) - pi - 20))", 0.000_900_020_810_524_232_8),
-        // High powers are rounded as they stand.
+        // High powers are rounded as a whole.
         ("(1 + pi / 100)^365 * x", 80_047.751_297_709_21),
         ("(1 + sqrt(2) / 1000)^1000 * x", 4.109_143_054_374_867),
         ("(1 + pi / 100 + sqrt(2))^50 * x", 2.627_441_887_324_360_3e19),
@@ -49,7 +49,7 @@ fn a_coefficient_is_the_nearest_number() {
     }
 }
 
-/// exp(-800) alone is below all numbers, 1e300 times it is not.
+/// exp(-800) alone underflows, 1e300 times it does not.
 #[test]
 fn a_part_out_of_the_range_of_numbers_is_no_mistake() {
     for clauses in [
@@ -64,7 +64,7 @@ fn a_part_out_of_the_range_of_numbers_is_no_mistake() {
 
 #[test]
 fn a_matrix_is_as_regular_as_its_constants() {
-    // The mass of x is 1 − cos(1e-8), and that of y zero but for the rounding of its terms.
+    // The mass of x is 1 − cos(1e-8), and the mass of y is zero up to the rounding of its terms.
     derived("L = dot(x)^2 - cos(1e-8) * dot(x)^2 + dot(y)^2;");
     let zero = "L = dot(x)^2 + sqrt(2) * sqrt(3) * dot(y)^2 - sqrt(6) * dot(y)^2;";
     let tokens = format!("struct System {{ coord x, y; {zero} discretize midpoint; }}").parse().expect("tokens");

@@ -1,25 +1,25 @@
-//! Systems that grow fast: refused when so much was done, not after minutes or gigabytes. What is done is counted, so that the same
-//! system always ends in the same way.
+//! Systems that grow fast are rejected after bounded work, not after minutes or gigabytes. Work is counted, so the
+//! result is reproducible.
 
 use crate::families;
 use vi_codegen::syntax;
 
-/// What the compiler says of a system with these clauses.
-fn said(clauses: &str) -> String {
+/// The message of the compiler for a system with these clauses.
+fn message(clauses: &str) -> String {
     let tokens = format!("struct System {{ {clauses} discretize midpoint; }}").parse().expect("tokens");
     vi_codegen::expand(tokens).to_string()
 }
 
-/// A system that grows fast is refused when so much was done, not after minutes or gigabytes.
+/// Asserts that a fast-growing system is rejected after bounded work.
 fn assert_is_refused(clauses: &str) {
-    let said = said(clauses);
+    let text = message(clauses);
     let refused = ["the expanded system has more than ", "the system takes more than 56000000 steps of algebra"]
         .map(|message| said.matches(message).count());
     assert_eq!(refused.iter().sum::<usize>(), 1, "{clauses:.200}: {said:.200}");
     assert_eq!(said.matches("compile_error").count(), 1, "{clauses:.200}: {said:.600}");
 }
 
-/// Clauses in a row, each made of the one before.
+/// Consecutive clauses, each made of the previous one.
 fn chain(first: &str, count: usize, next: fn(usize) -> String) -> String {
     (1..count).fold(format!("let a0 = {first};"), |clauses, i| clauses + &next(i))
 }
@@ -34,7 +34,7 @@ fn products_that_grow_fast_are_refused() {
 fn chains_that_grow_fast_are_refused() {
     let of_functions = chain("dot(x)", 200, |i| format!("let a{i} = sinh(a{});", i - 1));
     assert_is_refused(&format!("coord x; {of_functions} L = dot(x)^2 + a199;"));
-    // Constants of which thousands of bits are needed.
+    // Constants that need thousands of bits.
     assert_is_refused("coord x; L = dot(x)^2 + sum(i in 1..2000, sin(pi * i * sqrt(2) * sqrt(3) / sqrt(6))) * x;");
     assert_is_refused("coord x; L = dot(x)^2 + sum(i in 1..200, sin(10^1000 + i)) * x;");
 }
@@ -61,7 +61,7 @@ fn systems_of_many_coordinates_that_grow_fast_are_refused() {
 fn what_is_large_and_simple_passes() {
     let of_constants =
         chain("1", 10_000, |i| format!("const c{i} = sin(c{}) + 1;", i - 1)).replace("let a0", "const c0");
-    let said_of_constants = said(&format!("coord x; {of_constants} L = dot(x)^2 + c9999 * x;"));
+    let said_of_constants = message(&format!("coord x; {of_constants} L = dot(x)^2 + c9999 * x;"));
     assert!(!said_of_constants.contains("compile_error"), "{said_of_constants:.200}");
     for clauses in [
         "L = dot(x)^2 + 3^99800 / 3^100000 * x;",
@@ -76,7 +76,7 @@ fn what_is_large_and_simple_passes() {
         "L = dot(x)^2 + sum(i in 0..40000, i) * x;",
         "L = dot(x)^2 + sinh(sinh(sinh(sinh(sinh(sinh(sinh(sinh(sinh(sinh(x))))))))));",
     ] {
-        let said = said(&format!("coord x; {clauses}"));
+        let text = message(&format!("coord x; {clauses}"));
         assert!(!said.contains("compile_error"), "{clauses}: {said:.200}");
     }
     for clauses in [
@@ -94,8 +94,8 @@ fn what_is_large_and_simple_passes() {
     }
 }
 
-/// Chains and pendula, which pass, do so with work to spare: of the chain that which grows with its length, of the pendulum that which
-/// grows with its pairs.
+/// Accepted chains and pendula leave work to spare: the part of the chain that grows with its length, and the part of
+/// the pendulum that grows with its pairs.
 #[test]
 fn the_work_of_families_is_pinned() {
     let work = |text: String| {

@@ -1,10 +1,10 @@
-//! The form of the Jacobian A and of the mass matrix M: what is found about a system, and the types that are emitted.
+//! The form of the Jacobian A and of the mass matrix M: findings about a system, and emitted types.
 
 use crate::families;
 use vi_codegen::findings::Pattern::{self, Banded, Blocks, Dense, Diagonal, Scalar, Tridiagonal};
 use vi_codegen::{derive, items, syntax::parse};
 
-/// What is found about A, and the forms that are emitted.
+/// Findings about A, and emitted forms.
 #[derive(Debug, PartialEq)]
 struct Forms {
     pattern: Pattern,
@@ -50,21 +50,21 @@ fn neighbours() {
         let (_, found) = emitted(&families::chain(length));
         assert_eq!(found, forms(Tridiagonal, true, &jacobian, &mass));
     }
-    // Up to three rows the closed form is used, whatever the pattern.
+    // Up to three rows the closed form is used for every pattern.
     assert_eq!(emitted(&families::chain(3)).1, forms(Tridiagonal, true, "nalgebra::SMatrix<T,3,3>", "Banded<3,1,T>"));
     assert_eq!(emitted(&families::chain(2)).1, forms(Dense, true, "nalgebra::SMatrix<T,2,2>", "Banded<2,1,T>"));
     assert_eq!(
         emitted(&families::chain(1)).1,
         forms(Scalar, true, "nalgebra::SMatrix<T,1,1>", "nalgebra::SMatrix<T,1,1>")
     );
-    // A force by the right neighbour alone: no matrix is its own transpose, and the place on the left is kept.
+    // A force from the right neighbour only: no matrix is symmetric, and the left entry is included.
     let drawn = masses(4, "0", "force q[i in 0..N - 1] = q[i]*q[i + 1];");
     assert_eq!(drawn, forms(Tridiagonal, false, "Tridiagonal<4,T>", "Banded<4,1,T>"));
-    // The chain hangs in its velocities, too.
+    // The chain is coupled in its velocities too.
     let heavy =
         of("const N = 4; coord q[N]; L = dot(q[0])^2 + sum(i in 1..N, (dot(q[i]) - dot(q[i - 1]))^2)/2 - q[0]^2;");
     assert_eq!(heavy, forms(Tridiagonal, true, "Tridiagonal<4,T>", "Tridiagonal<4,T>"));
-    // With Störmer–Verlet, whose equation takes the forces at the start only, nothing is beside the diagonal.
+    // With Störmer–Verlet, whose equation uses the forces at the start only, the matrix is diagonal.
     let verlet = families::chain(6).replace("midpoint", "trapezoidal");
     assert_eq!(emitted(&verlet).1, forms(Diagonal, true, "Banded<6,1,T>", "Banded<6,1,T>"));
 }
@@ -76,7 +76,7 @@ fn neighbours_of_neighbours() {
         let (jacobian, mass) = (format!("Banded<{size},5,T>"), format!("Banded<{size},1,T>"));
         assert_eq!(masses(size, potential, ""), forms(Banded(2), true, &jacobian, &mass));
     }
-    // Less than half of a row is out of the band.
+    // Less than half of a row is outside the band.
     assert_eq!(masses(9, potential, ""), forms(Dense, true, "Symmetric<9,T>", "Banded<9,1,T>"));
     let drawn = masses(10, potential, "force q[0] = q[2]^2;");
     assert_eq!(drawn, forms(Banded(2), false, "Banded<10,5,T>", "Banded<10,1,T>"));
@@ -84,7 +84,7 @@ fn neighbours_of_neighbours() {
 
 #[test]
 fn bodies_that_do_not_touch() {
-    // Two pendula of two links, (u, x) and (v, y), and two of one.
+    // Two pendula with two links, (u, x) and (v, y), and two with one.
     let pair = |x: &str, y: &str| {
         format!("dot({x})^2 + dot({y})^2/2 + dot({x})*dot({y})*cos({x} - {y}) + 2*cos({x}) + cos({y})")
     };
@@ -102,7 +102,7 @@ fn bodies_that_do_not_touch() {
     assert!(all >= 3 && right == all, "{right} of {all}");
     let three = of("coord x, y, z; L = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 - x*z^2 - y^4;");
     assert_eq!(three, forms(Blocks(vec![vec![0, 2], vec![1]]), true, "nalgebra::SMatrix<T,3,3>", "Banded<3,1,T>"));
-    // One alone among others, one row of two.
+    // A single row among others, a row of two.
     let rest = masses(5, "q[1]*q[2]*q[3]*q[4] + q[0]^4", "force q[2] = -q[1]^2;");
     let blocks = Blocks(vec![vec![0], vec![1, 2, 3, 4]]);
     assert_eq!(rest, forms(blocks, false, "Blocks<5,4,T>", "Banded<5,1,T>"));
@@ -112,10 +112,10 @@ fn bodies_that_do_not_touch() {
 #[test]
 fn bodies_that_all_touch() {
     for size in [4, 5] {
-        // A spring between any two.
+        // A spring between each pair.
         let springs = masses(size, "sum(i in 1..N, sum(j in 0..i, (q[i] - q[j])^4))", "");
         assert_eq!(springs, forms(Dense, true, &format!("Symmetric<{size},T>"), &format!("Banded<{size},1,T>")));
-        // A mass that depends on the place: A = M + (h/2) (p_q − p_qᵀ) + …
+        // A position-dependent mass: A = M + (h/2) (p_q − p_qᵀ) + …
         let pendulum = emitted(&families::pendulum(size)).1;
         assert_eq!(
             pendulum,
@@ -126,10 +126,10 @@ fn bodies_that_all_touch() {
         emitted(&families::pendulum(3)).1,
         forms(Dense, false, "nalgebra::SMatrix<T,3,3>", "nalgebra::SMatrix<T,3,3>")
     );
-    // One row that friction draws into.
+    // A row coupled by friction.
     let pulled = masses(4, "(q[0] + q[1] + q[2] + q[3])^4", "force q[0] = -dot(q[1]);");
     assert_eq!(pulled, forms(Dense, false, "nalgebra::SMatrix<T,4,4>", "Banded<4,1,T>"));
-    // A magnetic field: A = 1 ± (h/2) b beside the diagonal.
+    // A magnetic field: A = 1 ± (h/2) b off the diagonal.
     let turning = of("coord x, y; L = (dot(x)^2 + dot(y)^2)/2 + x*dot(y);");
     assert_eq!(turning, forms(Dense, false, "nalgebra::SMatrix<T,2,2>", "Banded<2,1,T>"));
     // A ring closes the corners.

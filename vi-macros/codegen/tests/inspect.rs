@@ -1,4 +1,4 @@
-//! Stages as text, findings, LaTeX, declarations in files, and mistakes at their places.
+//! Stages as text, findings, LaTeX, declarations in files, and mistakes with their lines.
 
 use proc_macro2::TokenStream;
 use vi_codegen::findings::{Dependence, Findings, Pattern};
@@ -31,12 +31,12 @@ fn an_oscillator_is_linear() {
 #[test]
 fn what_the_jacobian_depends_on() {
     let of = |body: &str| findings(body).steps.expect("a rule").jacobian;
-    // A = L_vv + …: by hand, 1; 1 + h²/4; 1 + (h²/4) cos of the time; of x_mid, which takes v.
+    // A = L_vv + …: by hand, 1; 1 + h²/4; 1 + (h²/4) cos of the time; of x_mid, which depends on v.
     assert_eq!(of("coord x; L = dot(x)^2/2; discretize midpoint;"), Dependence::Parameters);
     assert_eq!(of("coord x; L = dot(x)^2/2 - x^2/2; discretize midpoint;"), Dependence::Step);
     assert_eq!(of("coord x; L = dot(x)^2/2 - cos(t)*x^2/2; discretize midpoint;"), Dependence::Node);
     assert_eq!(of("coord x; L = dot(x)^2/2 - x^4/4; discretize midpoint;"), Dependence::Unknown);
-    // Störmer–Verlet is explicit whatever the potential; with friction it is linear; not with a mass that depends on x.
+    // Störmer–Verlet is explicit for any potential; linear with friction; neither with a position-dependent mass.
     assert_eq!(of("coord x; L = dot(x)^2/2 - x^4/4; discretize trapezoidal;"), Dependence::Parameters);
     assert_eq!(of("coord x; L = dot(x)^2/2 - x^4/4; force x = -dot(x); discretize trapezoidal;"), Dependence::Step);
     assert_eq!(of("coord x; L = (1 + x^2)*dot(x)^2/2; discretize trapezoidal;"), Dependence::Unknown);
@@ -75,7 +75,7 @@ fn the_syntax_is_what_was_written() {
 }
 ";
     assert_eq!(text, wanted);
-    // What is shown is read as the same again.
+    // The output parses to the same system.
     for body in [
         OSCILLATOR,
         "const N = 3; coord q[N]; let e[i in 0..N] = q[i]^-(1/2)^2; L = -(-dot(q[0]))^2 - 2*(-3)*sum(i in 0..N, (dot(q[i]) - (1 - 2))^2/(2*3)/4);
@@ -155,7 +155,7 @@ fn an_explanation_is_a_document() {
     assert!(latex.is_ascii(), "only what every engine of LaTeX reads");
 }
 
-/// Braces, `\left` and `\right`, environments and dollars come in pairs.
+/// Checks that braces, `\left` and `\right`, environments and dollars are paired.
 fn balanced(latex: &str) {
     let count = |part: &str| latex.matches(part).count();
     let mut depth = 0_i32;
@@ -216,7 +216,7 @@ fn expressions_in_latex() {
     let mixed = pool.add(third, square);
     let name = |symbol: &&str| (*symbol).to_owned();
     assert_eq!(latex::expression(&pool, mixed, &name), "\\left(x + y\\right)^{2} - \\frac{2 x y}{3}");
-    // Shared ones are longer than any page: no text of an exponential length is made.
+    // Shared expressions exceed any page: no text of exponential length is built.
     let mut deep = x;
     for _ in 0..60 {
         let sine = pool.call(Function::Sin, &[deep]);
@@ -249,7 +249,7 @@ fn every_rule_of_a_list_is_shown_and_gives_the_operations_that_it_gives_alone() 
     ] {
         assert!(rust.contains(shown), "{shown}");
     }
-    // What is continuous is emitted once.
+    // Continuous functions are emitted once.
     assert_eq!((rust.matches("fn acceleration").count(), rust.matches("fn d1_ld").count()), (1, 2));
     let system = tokens("coord x; L = dot(x)^2 - x^2; discretize midpoint, trapezoidal;");
     let explained = explain(system).expect("a right system").text();
@@ -305,7 +305,7 @@ error: `y` has a force but is not a coordinate
     assert!(shown.starts_with(wanted), "{shown}");
 }
 
-/// Of a long line what stands about the token is shown.
+/// For a long line the part around the token is shown.
 #[test]
 fn a_long_line_is_shown_in_part() {
     let said = |names: usize, wrong: &str| {
@@ -316,16 +316,16 @@ fn a_long_line_is_shown_in_part() {
         let tokens = source::declarations(&text).expect("tokens").remove(0);
         report::report("a.rs", &text, &stage(tokens, Stage::Rust).expect_err("wrong"))
     };
-    let shown = said(10_000, "y");
+    let shown = message(10_000, "y");
     let (line, carets) = (shown.lines().nth(3).expect("the line"), shown.lines().nth(4).expect("the carets"));
     assert_eq!((line.chars().count(), carets.chars().count()), ("1 | ".len() + 122, "1 | ".len() + 62));
     assert!(line.starts_with("1 | …") && line.ends_with('…') && carets.ends_with(" ^"), "{shown}");
     assert_eq!(line.chars().nth("1 | ".len() + 61), Some('y'));
-    // A long token is marked as far as it is seen.
-    let shown = said(10_000, &"y".repeat(190));
+    // A long token is marked as far as it is visible.
+    let shown = message(10_000, &"y".repeat(190));
     assert!(shown.lines().skip(2).all(|line| line.chars().count() <= 127), "{shown}");
-    // At the ends of a line there is nothing to leave out.
-    let shown = said(5, "y");
+    // At the ends of a line nothing is omitted.
+    let shown = message(5, "y");
     assert!(!shown.contains('…'), "{shown}");
 }
 

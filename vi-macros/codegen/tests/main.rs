@@ -1,4 +1,4 @@
-//! The tests of the compiler, one program: what they share is compiled once.
+//! The tests of the compiler as one program, so that shared code compiles once.
 
 mod arbitrary;
 mod constants;

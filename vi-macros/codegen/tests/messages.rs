@@ -1,7 +1,7 @@
-//! Every mistake, at the smallest wrong token.
+//! Every mistake, reported at the smallest wrong token.
 //!
-//! Each case is the body of a system in which the wrong token stands between `«` and `»`. The compiler must report
-//! exactly there, with the text given.
+//! Each case is the body of a system with the wrong token between `«` and `»`. The compiler must report exactly there,
+//! with the given text.
 
 use proc_macro2::TokenStream;
 use vi_codegen::syntax;
@@ -15,7 +15,7 @@ fn errors(text: &str) -> Vec<(String, String)> {
     error.into_iter().map(|error| (token(&error), error.to_string())).collect()
 }
 
-/// One case: the marked token is underlined, and the message begins with what is given.
+/// One case: the marked token is underlined, and the message starts with the given text.
 fn case(body: &str, message: &str) {
     let marked = body.split_once('«').and_then(|(_, rest)| rest.split_once('»')).map(|(token, _)| token);
     let text = format!("struct System {{ {} }}", body.replace(['«', '»'], ""));
@@ -34,10 +34,10 @@ fn says(summand: &str, message: &str) {
     case(&format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 * g - {summand}; discretize midpoint;"), message);
 }
 
-/// The rest of a right system.
+/// The rest of a correct system.
 const REST: &str = "coord x; L = dot(x)^2 / 2; discretize midpoint;";
 
-/// One case: a clause before the rest of a right system.
+/// One case: a clause before the rest of a correct system.
 fn clause(clause: &str, message: &str) {
     case(&format!("{clause} {REST}"), message);
 }
@@ -93,12 +93,12 @@ fn time_scales() {
     case(&rest("time_scale = 1 + «y»;"), "`y` is an array");
     case(&rest("param «a» = 1; time_scale = 1 + x^2;"), "the parameter `a` is never used");
     case(&rest("«time_scales» = 1;"), "unknown clause `time_scales`\nhelp: did you mean `time_scale`?");
-    // One that acts there alone acts.
+    // A parameter used only there counts as used.
     let accepted = rest("param a = 1; time_scale = sqrt(a + x^2 + sum(i in 0..2, y[i]^2) + sin(t)^2);");
     assert_eq!(errors(&format!("struct System {{ {accepted} }}")), []);
 }
 
-/// The rest of a right system of three coordinates.
+/// The rest of a correct system with three coordinates.
 const OF_THREE: &str = "L = (dot(x)^2 + dot(y[0])^2 + dot(y[1])^2) / 2; discretize midpoint;";
 
 #[test]
@@ -185,7 +185,7 @@ fn velocities() {
     );
 }
 
-/// The expression is named that has a value but no derivative.
+/// The message names the expression that has a value but no derivative.
 #[test]
 fn derivatives_that_do_not_exist() {
     for (summand, said) in [
@@ -239,7 +239,7 @@ fn constants() {
     case("const a = 1 / «0»; coord x; L = dot(x)^2; discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 / («x» - x); discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 - sin(x / («t» - t)); discretize midpoint;", "division by zero");
-    // Zero but for rounding.
+    // Zero to rounding.
     case("coord x; L = dot(x)^2 - exp(1 / («ln»(2) + ln(3) - ln(6))) * x; discretize midpoint;", "division by zero");
     case("coord x; L = dot(x)^2 - x^2 / («sqrt»(2) * sqrt(3) - sqrt(6)); discretize midpoint;", "division by zero");
     let by_rule = |divisor: &str| {
@@ -339,7 +339,7 @@ fn clauses() {
     case("coord x; L = dot(x)^2 * hypot(x «;» x); discretize midpoint;", "expected an operator, `,` or `)`");
 }
 
-/// Names that hold more than a name.
+/// Names that contain more than one name.
 #[test]
 fn velocities_functions_and_products_in_a_name() {
     says("«v»", "unknown name `v`\nhelp: write `dot(x)` for the velocity of `x`, or name it: `let v = dot(x);`");
@@ -389,7 +389,7 @@ fn other_operators_fields_and_brackets() {
     says("«i» * x", "unknown name `i`\nhelp: an index needs a range, as in `sum(i in 0..3, q[i])`");
 }
 
-/// Definitions as other languages write them.
+/// Definitions in the style of other languages.
 #[test]
 fn other_definitions() {
     clause("const «c»;", "`c` has no value\nhelp: write `c = …`");
@@ -409,7 +409,7 @@ fn other_definitions() {
     clause("«l» = 1;", "unknown clause `l`\nhelp: write `L = …;` for the Lagrangian, `let l = …;` to name a part");
 }
 
-/// Of Rust, of other languages and of paper.
+/// Notation of Rust, of other languages and of mathematics.
 #[test]
 fn habits() {
     says("x.«sin»()", "`.sin(…)`: numbers have no methods\nhelp: write it as a function, `sin(…)`");
@@ -506,7 +506,7 @@ fn habits() {
     );
 }
 
-/// What other tools have and this language has not: the message says so, or what to write.
+/// Features of other tools that this language lacks: the message reports that, or the replacement.
 #[test]
 fn what_is_not_supported_is_said() {
     let delay = "`x` is a coordinate, not a function\nhelp: write `x` for its value at the time `t`, `x * (…)` for a product; delays";
@@ -584,7 +584,7 @@ fn what_is_not_supported_is_said() {
     );
 }
 
-/// What people tried, each with what they are told to write: one message, which alone leads on.
+/// Users' attempts, each with its single message and the correction.
 #[test]
 fn each_mistake_is_told_with_what_to_write() {
     let told = |text: &str, wanted: &str| {
@@ -671,7 +671,7 @@ fn a_missing_semicolon_is_told_where_it_belongs() {
     ] {
         case(body, &format!("`;` is missing after `{after}`\nhelp: every clause ends with `;`"));
     }
-    // The clause behind is read.
+    // The next clause is parsed.
     let found = errors("struct System { coord x L = 1 +; param a = 1 discretize some thing; }");
     let said: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
     assert_eq!(
@@ -759,7 +759,7 @@ fn arrays_of_parameters() {
         "param m[2] = 1.0",
         "param m[N] = [1, N^2]",
         "param a = 2, m[2] = [1, 2,],; let b = a; dissipation = b * dot(x)^2",
-        // Entries that are not used, as of an adjacency matrix.
+        // Unused entries, as in an adjacency matrix.
         "param m[3] = 1",
         "param m[2] = 1, a[9] = 0; let springs = sum(i in 0..3, a[3 * i] * x^2); force x = -springs",
     ] {
@@ -795,7 +795,7 @@ fn arrays_of_parameters() {
     case(&system("param m[2] = 1; let a = dot(«m»[0])"), "`dot(m)`: `m` does not change with time");
     case(&system("param m[2] = 1; const a = «m»[0]"), "`m` is a parameter: it has no value");
     case(&system("param m[2] = 1; force «m»[0] = 1"), "`m` has a force but is not a coordinate");
-    // A wrong array is reported once, whatever is made of it.
+    // A wrong array is reported once, for any use of it.
     case(&system("param m[«3»] = [1, 2]; let a = sum(i in 0..9, m[i])"), "`m` has length 3");
 }
 
@@ -846,7 +846,7 @@ fn dissipation_takes_energy() {
         "c * dot(x)^2 / 2",
         "-d * dot(x)^2",
         "c * (dot(x) - dot(y))^2 / 2",
-        // Relative to a belt, to a wind that changes.
+        // Relative to a belt, to a changing wind.
         "c * (dot(x) - w)^2 / 2",
         "c * (dot(x) - w * sin(t))^4",
         "sum(i in 0..2, sum(j in 0..2, K[2 * i + j] * v[i] * v[j])) / 2",
@@ -855,7 +855,7 @@ fn dissipation_takes_energy() {
         "c * sqrt(dot(x)^2)",
         "c * (dot(x)^2 + dot(y)^2)^(3/4)",
         "c * e * ln(cosh(dot(x) / e))",
-        // Van der Pol's, and others that take and give.
+        // Van der Pol's function, and others that both add and dissipate energy.
         "c * (x^2 - 1) * dot(x)^2 / 2",
         "c * (1 - x^2) * dot(x)^2 / 2",
         "sin(t) * dot(x)^2",
@@ -908,8 +908,8 @@ fn rules() {
     let missing = errors(&format!("struct System {{ {} }}", system(&format!("{ld} {forces}"))));
     assert_eq!(missing.len(), 1, "{missing:?}");
     assert!(missing[0].1.starts_with("the rule has no line `gd_plus`\nhelp: the system has a force"), "{missing:?}");
-    // The work of the force follows from what `Ld` takes of `L`: nothing.
-    // An `Ld` that is wrong says nothing about them.
+    // The work of the force follows from the use of `L` in `Ld`: none.
+    // A wrong `Ld` says nothing about the others.
     for (wrong, said) in [("Ld = «y» * L(t0, q0, q1);", "unknown name `y`"), ("Ld = «q0»;", "a number is needed here")]
     {
         case(&system(wrong), said);
@@ -1022,7 +1022,7 @@ fn every_unknown_name_of_an_expression_is_told() {
         assert!(message.starts_with(&format!("unknown name `{token}`\nhelp: ")), "{message}");
         assert!(token != "mas" || message.ends_with(help), "{message}");
     }
-    // In a sum those of its first term, once.
+    // In a sum, those of its first term, once.
     case("coord x; L = sum(i in 0..5, i * «y» * dot(x)^2); discretize midpoint;", "unknown name `y`");
 }
 
@@ -1061,7 +1061,7 @@ fn depth_and_size_are_bounded() {
     assert!(found[0].1.starts_with("this expression is nested deeper than 100 levels"), "{found:?}");
     let minus = format!("struct System {{ coord x; L = dot(x)^2 + {}x; discretize midpoint; }}", "-".repeat(150));
     assert!(errors(&minus)[0].1.starts_with("this expression is nested deeper"));
-    // A sum of many terms is one level deep, and lets may build on one another.
+    // A sum of many terms is one level deep, and lets may refer to one another.
     let long = format!("struct System {{ coord x; L = dot(x)^2{}; discretize midpoint; }}", " + x".repeat(5000));
     assert_eq!(errors(&long), []);
     let lets = (1..2000).map(|i| format!("let a{i} = sin(a{}) + x;", i - 1)).collect::<Vec<_>>().concat();
@@ -1164,7 +1164,7 @@ fn attributes_of_clauses() {
     );
 }
 
-/// A system that is not there needs no sense; what it becomes is not there either.
+/// A system that is configured out needs no meaning; its expansion is absent too.
 #[test]
 fn conditions_hold_for_all_items() {
     for body in [

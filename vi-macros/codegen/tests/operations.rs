@@ -1,5 +1,5 @@
-//! How many operations the generated functions have, over two families: the numbers are pinned, so that a change of any
-//! stage shows here. The chain grows with its length, the pendulum with the square of its links or a little more.
+//! Pinned operation counts of the generated functions over two families, so that a change of any stage is visible. The
+//! chain grows with its length, the pendulum slightly faster than the square of its links.
 
 use crate::families;
 use crate::families::{LENGTHS, LINKS};
@@ -13,7 +13,7 @@ fn lowered(text: &str) -> Program {
     syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).expect("a right system").own.program
 }
 
-/// Operations of the two functions that a step evaluates in every iteration, and of what measures it.
+/// Operations of the two functions that a step evaluates in every iteration, and of its residual function.
 fn counts(program: &Program) -> [usize; 3] {
     [FunctionId::MomentumEquation, FunctionId::ExtendedSystem, FunctionId::MomentumResidual]
         .map(|id| program.function(id).expect("every function is there").operation_count())
@@ -48,7 +48,7 @@ fn a_longer_chain_has_the_same_loops() {
         }
         (loops.len(), inside, equation.operation_count() - inside)
     });
-    // As many, and as much that is in none: constants, and the ends.
+    // Equal numbers in and outside families: constants, and the ends.
     assert_eq!((short.0, short.2), (long.0, long.2));
     assert_eq!(long, (37, 2315, 45));
 }
@@ -129,7 +129,7 @@ fn sums_of_angles_take_the_signs_that_they_have() {
         let wanted = of_sums + 16.0 * (a + b).cos() + 32.0 * (a - b).cos() + a.sin() + b.cos() + (2.0 * a).sin();
         (found[0] - wanted).abs()
     });
-    // Measured: 1.42e-14, where the terms sum up to 64.
+    // Measured: 1.42e-14, for terms with a sum of up to 64.
     let error = error.fold(0.0, f64::max);
     assert!(error < 1.5e-14, "{error:e}");
     // Of a, of b, of 2a, each once.

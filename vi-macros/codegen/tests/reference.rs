@@ -1,12 +1,12 @@
-//! The mistakes shown in the language reference, `docs/dsl.md`: each block that must not compile fails with the error,
-//! and on the line, that its comment names. (That the other blocks run, and that these fail, the doctests say.)
+//! The mistakes in the language reference `docs/dsl.md`: each block that must not compile fails with the error and on
+//! the line of its comment. (Doctests check that the other blocks run, and that these fail.)
 
 use proc_macro2::TokenStream;
 use vi_codegen::syntax;
 
 const REFERENCE: &str = include_str!("../../../docs/dsl.md");
 
-/// The errors of a system: (line, what is wrong, help).
+/// The errors of a system: (line, error, help).
 fn errors(body: &str) -> Vec<(usize, String, String)> {
     let tokens: TokenStream = body.parse().expect("a block of the reference is made of Rust tokens");
     let result = syntax::parse::system(tokens).and_then(|system| vi_codegen::derive(&system)).map(|_| ());

@@ -1,10 +1,10 @@
-//! A system gets the functions that its clause `discretize` asks for.
+//! A system has the functions that its clause `discretize` requests.
 
 use vi_codegen::program::FunctionId;
 use vi_codegen::syntax::parse;
 use vi_codegen::{Derivations, derive, items, text};
 
-/// A force, a time scale, a cyclic coordinate and a check: everything that may be emitted.
+/// A force, a time scale, a cyclic coordinate and a check: everything that can be emitted.
 const BODY: &str =
     "param m = 1.5, c = 0.1; coord r, φ; L = m * (dot(r)^2 + r^2 * dot(φ)^2) / 2 + sin(t) / r; force r = -c * dot(r);
     time_scale = r^(3/2); check { r = 1, dot(φ) = 1; h = 0.05; }";
@@ -29,7 +29,7 @@ fn without_a_rule_the_functions_of_gauss_steps_are_emitted() {
     {
         assert!(!gauss.split(' ').any(|word| word == what), "{what}");
     }
-    // A force does not keep the symplectic form.
+    // A force destroys the symplectic form.
     assert!(!gauss.contains("gauss_symplecticity"));
     assert_eq!(gauss, emitted("discretize gauss;"));
 }
@@ -61,7 +61,7 @@ fn a_rule_does_not_change_the_functions_of_the_motion() {
 }
 
 #[test]
-fn the_text_of_a_file_opens_with_what_each_method_costs() {
+fn the_text_of_a_file_starts_with_the_cost_of_each_method() {
     let gauss = text(&derived("")).expect("Rust");
     let lines: Vec<&str> = gauss.lines().collect();
     assert!(lines[0].starts_with("// `System`: L = "), "{}", lines[0]);

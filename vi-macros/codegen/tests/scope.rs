@@ -1,11 +1,12 @@
-//! Whatever emitted code binds is first the name of a function, so that no constant around it turns a binding into a pattern.
+//! Every name bound by emitted code is first the name of a function, so that no surrounding constant turns a binding
+//! into a pattern.
 
 use crate::families;
 use std::collections::BTreeSet;
 use syn::visit::{self, Visit};
 use syn::{File, Item, ItemConst, PatIdent, UseRename};
 
-/// The names that are bound, and those that were names of functions before.
+/// The bound names, and the function names before them.
 #[derive(Default)]
 struct Names {
     bound: BTreeSet<String>,

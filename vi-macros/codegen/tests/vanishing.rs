@@ -1,10 +1,10 @@
-//! Which systems take limits of products, and how many derivatives of these vanish too.
+//! The systems whose products have limits, and the number of derivatives that vanish too.
 
 use std::collections::BTreeSet;
 use vi_codegen::program::{FunctionId, Operation};
 use vi_codegen::syntax;
 
-/// The limits in a function of a system: for each how many of its derivatives vanish.
+/// The limits in a function of a system: the number of vanishing derivatives of each.
 fn limits(function: FunctionId, body: &str) -> Vec<u8> {
     let text = format!("struct S {{ {body} discretize midpoint; }}");
     let system = syntax::parse::system(text.parse().expect("tokens")).expect("a system");
@@ -47,7 +47,7 @@ fn a_force_has_the_limits_of_its_products() {
         ("x * y / sqrt(hypot(x, a))", vec![0]),
         ("x * y / sqrt(x^2 * y^2 + x)", vec![]),
         ("x * y / sqrt(x^2 + sign(y)^2)", vec![]),
-        // The sign is zero where it jumps, and nowhere else.
+        // The sign is zero at its jump only.
         ("sign(x) / sqrt(abs(x))", vec![]),
         ("sign(x) * ln(y)", vec![]),
     ] {

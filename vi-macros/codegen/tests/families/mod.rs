@@ -1,7 +1,7 @@
-//! Two families of systems that grow: a chain, whose parts meet only their neighbours, and a pendulum of many links,
-//! whose parts all meet. Each file uses its part of it.
+//! Two growing families of systems: a chain with interactions of neighbours, and a pendulum of many links with
+//! interactions of all pairs. Each file uses its part.
 
-/// A chain of `length` masses on springs as those of Fermi, Pasta, Ulam and Tsingou, its first one fixed to a wall.
+/// A chain of `length` masses with the springs of Fermi, Pasta, Ulam and Tsingou, its first one fixed to a wall.
 pub(crate) fn chain(length: usize) -> String {
     format!(
         "pub struct System {{

@@ -1,4 +1,4 @@
-//! Constants: correctly rounded, against 50 digits by mpmath (`constants.py`).
+//! Constants: correct rounding, against 50 digits of mpmath (`constants.py`).
 
 use std::cmp::Ordering;
 

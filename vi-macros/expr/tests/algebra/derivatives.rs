@@ -16,7 +16,7 @@ type Formula = fn(f64, f64) -> f64;
 
 type Case = (&'static str, Formula, [(f64, f64); 3]);
 
-/// Text, the same in floating point, and points (x, y) away from where the function is not smooth.
+/// Text, the same function in floating point, and points (x, y) at which it is smooth.
 const CASES: [Case; 24] = [
     ("exp(3*x*y/5)", |x, y| (0.6 * x * y).exp(), [(0.3, 1.7), (-1.2, 0.4), (0.9, -1.1)]),
     ("ln(x^2 + 2*y)", |x, y| (x * x + 2.0 * y).ln(), [(0.3, 1.7), (-1.2, 0.4), (2.9, 1.1)]),
@@ -82,7 +82,7 @@ fn every_function_against_central_differences() {
     println!("largest error {worst:e}");
 }
 
-/// The value of each case in floating point, so that `evaluate` is tested apart from derivatives.
+/// The value of each case in floating point tests `evaluate` separately from derivatives.
 #[test]
 fn values() {
     let mut worst: f64 = 0.0;

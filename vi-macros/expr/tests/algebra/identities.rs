@@ -1,10 +1,10 @@
-//! Value and slope where an identity fails that algebra likes to apply: roots of even powers, inverses of periodic functions, signs, powers at zero, large
-//! exponents. Each was wrong in another system of symbolic algebra.
+//! Value and slope where popular identities fail: roots of even powers, inverses of periodic functions, signs, powers
+//! at zero, large exponents. Each was wrong in another computer algebra system.
 
 use crate::Pool;
 use crate::notation::read;
 
-/// A text in x, a place, and by hand the value and the slope there.
+/// A text in x, a point, and by hand the value and the slope there.
 type Row = (&'static str, f64, f64, f64);
 
 /// Value and slope of a text.
@@ -15,7 +15,7 @@ fn found(text: &str, x: f64) -> [f64; 2] {
     pool.evaluate_all(&[expr, slope], &mut |_| x)[..].try_into().expect("two values")
 }
 
-/// Asserts values and slopes, and returns the largest difference, relative where they are above one.
+/// Asserts values and slopes, and returns the largest difference, relative if they exceed one.
 #[track_caller]
 fn compare(rows: &[Row]) -> f64 {
     let mut worst = 0.0_f64;
@@ -115,12 +115,12 @@ fn exponents_beyond_the_integers_of_a_machine() {
     ] {
         let [value, slope] = found(text, x);
         let exact = (power * log).exp();
-        // Parts of what half a rounding of x changes them by: measured 3.3e-3.
+        // Relative to the change by half a rounding of x: measured 3.3e-3.
         let tolerance = 4e-3 * f64::abs(power) * f64::EPSILON / 2.0;
         let errors = [value / exact - 1.0, slope / (power * exact / x) - 1.0];
         assert!(errors.iter().all(|error| error.abs() < tolerance), "{text}: {errors:?}");
     }
-    // An even power of a negative number under its root.
+    // A root of an even power of a negative number.
     let [value, _] = found("(x^4294967296)^(1/4294967296)", -1.000_000_1);
     assert!((value - 1.000_000_1).abs() < 1e-15, "{value}");
 }

@@ -1,4 +1,4 @@
-//! Deep, wide and huge expressions end in a bounded time and without recursion.
+//! Deep, wide and huge expressions end in bounded time and without recursion.
 
 use vi_expr::{Expr, Function, MAX_CHARACTERS, Node, TooLarge};
 
@@ -41,7 +41,7 @@ fn a_hundred_thousand_nodes_deep() {
     let found = pool.evaluate_all(&[expr, derivative, moved], &mut |_| 0.7);
     assert!(slope > 0.1);
     for (found, expected) in found.into_iter().zip([value, slope, value]) {
-        // Measured: 0, since the roundings are the same.
+        // Measured: 0, since the roundings agree.
         assert!((found - expected).abs() <= f64::EPSILON, "{found} instead of {expected}");
     }
     let text = write(&pool, expr);
@@ -97,7 +97,7 @@ fn huge_powers_stay_powers() {
     assert_eq!(write(&pool, expr), "x");
 }
 
-/// Each square doubles the bits: without a bound, 2^(2^60) of them.
+/// Each square doubles the bits: 2^(2^60) of them without a bound.
 #[test]
 fn repeated_squares_are_bounded() {
     let mut pool = Pool::new();
@@ -116,7 +116,7 @@ fn repeated_squares_are_bounded() {
 #[test]
 fn large_numbers_keep_their_value() {
     let mut pool = Pool::new();
-    // Next to 2, of 3172 bits.
+    // Close to 2, with 3172 bits.
     let two = read(&mut pool, "2 + 1/3^1000");
     assert!(pool.as_number(two).is_some());
     let x = read(&mut pool, "x");
@@ -140,7 +140,7 @@ fn expansion_is_bounded() {
         let expr = read(&mut pool, &text);
         assert_eq!(pool.expand(expr), Err(TooLarge::Terms { limit: 50_000 }), "{text}");
     }
-    // A high power of a constant stands as it is.
+    // A high power of a constant stays unexpanded.
     let mut pool = Pool::new();
     let power = read(&mut pool, "(1 + sqrt(2))^1000000000");
     assert_eq!(pool.expand(power), Ok(power));
@@ -176,14 +176,14 @@ fn what_has_no_value_is_not_a_number() {
     assert_eq!(pool.div(one, undefined), undefined);
     assert_eq!(pool.expand(undefined), Ok(undefined));
     assert_eq!(pool.derivative(undefined, &mut |pool, _| pool.zero()), undefined);
-    // A symbol that becomes 0 later is found then.
+    // A symbol that later becomes 0 is then found.
     let x = pool.symbol("x".to_owned());
     let inverse = pool.div(one, x);
     assert!(pool.evaluate(inverse, &mut |_| 0.0).is_infinite());
     assert_eq!(pool.substitute(inverse, &mut |_, _| Some(zero)), undefined);
 }
 
-/// Numbers become floating point rounded once, whatever the size of numerator and denominator.
+/// Numbers become floating point with one rounding, for any size of numerator and denominator.
 #[test]
 fn exact_numbers_round_correctly() {
     let table: [(&str, f64); 7] = [
@@ -203,7 +203,7 @@ fn exact_numbers_round_correctly() {
     }
 }
 
-/// What a pool may do is counted, and ends in the same way every time.
+/// The work of a pool is counted, and ends reproducibly.
 #[test]
 fn work_is_bounded() {
     const LIMIT: usize = 100_000;
@@ -228,7 +228,7 @@ fn work_is_bounded() {
     let message = "the expressions take more than 100000 steps of algebra";
     assert_eq!(TooLarge::Work { limit: LIMIT }.to_string(), message);
 
-    // Whatever is asked then ends at once, and says nothing.
+    // Every later request ends at once without a result.
     let mut pool = Pool::bounded(LIMIT);
     let x = pool.symbol("x".to_owned());
     let sum = pool.add(x, pool.one());
@@ -246,7 +246,7 @@ fn work_is_bounded() {
     assert_eq!(pool.within_work(), Ok(()));
 }
 
-/// A number costs what its digits do: the square of them.
+/// A number costs the square of its digits.
 #[test]
 fn long_numbers_are_work() {
     let work = |count: i64| {
@@ -257,11 +257,11 @@ fn long_numbers_are_work() {
         pool.work() - before
     };
     let (short, long) = (work(100), work(1600));
-    // 1/1 + … + 1/1600 has 4600 bits: 16 times as many terms are some 16³ times as much work.
+    // 1/1 + … + 1/1600 has 4600 bits: 16 times as many terms are about 16³ times as much work.
     assert!(long > 1000 * short, "{short} and {long}");
 }
 
-/// Numbers that differ in their last digits only are found again as fast as short ones.
+/// Numbers that differ in their last digits only are found as fast as short ones.
 #[test]
 fn many_long_numbers_are_told_apart() {
     let mut pool = Pool::new();

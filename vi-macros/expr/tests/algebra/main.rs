@@ -1,10 +1,10 @@
 //! Tests of the symbolic algebra, by kind:
 //!
-//! - `rules`: a table `input => output` of the canonical forms, and what the text of an expression looks like;
+//! - `rules`: a table `input => output` of the canonical forms, and the text of expressions;
 //! - `derivatives`: every function against central differences;
-//! - `random`: random expressions against exact and floating-point dual numbers that know nothing of canonical forms;
+//! - `random`: random expressions against exact and floating-point dual numbers, independent of canonical forms;
 //! - `identities`: value and slope where an identity fails;
-//! - `limits`: deep, wide and huge expressions, and what has no value;
+//! - `limits`: deep, wide and huge expressions, and undefined values;
 //! - `rounding`: errors of values against identities;
 //! - `passes`: substitution, expansion and the queries.
 //!

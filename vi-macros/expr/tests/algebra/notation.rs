@@ -1,10 +1,10 @@
-//! Text to expression, for tables of tests: the notation that `Pool::render` writes.
+//! Parses the notation of `Pool::render`, for tables of tests.
 
 use vi_expr::{Expr, Function, Rational};
 
 use crate::Pool;
 
-/// Reads `text`; symbols are created in alphabetical order at the first call, so that tables do not depend on each other.
+/// Parses `text`; the first call creates the symbols in alphabetical order, so that tables are independent.
 pub(crate) fn read(pool: &mut Pool, text: &str) -> Expr {
     for letter in 'a'..='z' {
         pool.symbol(letter.to_string());
@@ -39,7 +39,7 @@ impl<'a> Reader<'a> {
         word
     }
 
-    /// What may follow the digits of a number: those behind a point, and a power of ten.
+    /// The optional rest of a number: digits after a point, and a power of ten.
     fn scale(&mut self) -> (&'a str, i32) {
         let fraction = if self.take('.') { self.word(|character| character.is_ascii_digit()) } else { "" };
         if !self.take('e') {
@@ -51,7 +51,7 @@ impl<'a> Reader<'a> {
     }
 
     fn sum(&mut self) -> Expr {
-        // A leading minus is that of the whole first term.
+        // A leading minus applies to the whole first term.
         let mut left = if self.take('-') {
             let first = self.product();
             self.pool.neg(first)

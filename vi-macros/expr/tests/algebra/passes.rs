@@ -1,4 +1,4 @@
-//! Substitution, expansion, and what can be asked about an expression.
+//! Substitution, expansion, and queries of an expression.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use vi_expr::{Function, Node};
 use crate::Pool;
 use crate::notation::{read, write};
 
-/// The rules of the midpoint, for which no other simplifier is needed.
+/// The midpoint rule, for which no other simplifier is needed.
 #[test]
 fn a_step_becomes_its_velocity() {
     let table = [
@@ -114,7 +114,7 @@ fn equal_forms_are_one_node() {
     let first = read(&mut pool, "(x + y)*z/2 + sin(x*y)");
     let nodes = pool.len();
     assert_eq!(read(&mut pool, "sin(y*x) - (y + x)*z/-2"), first);
-    // New are -2, the multiple by -1/2, and the sum with it subtracted halfway.
+    // New are -2, the multiple by -1/2, and the sum with it subtracted.
     assert!(pool.len() <= nodes + 3, "{} new nodes", pool.len() - nodes);
 }
 

@@ -1,4 +1,4 @@
-//! Canonical forms, derivatives, substitution and expansion keep the value.
+//! Canonical forms, derivatives, substitution and expansion preserve the value.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ fn by_first_symbol(pool: &mut Pool, expr: Expr) -> Expr {
     pool.derivative(expr, &mut |pool, symbol| if symbol == SYMBOLS[0] { pool.one() } else { pool.zero() })
 }
 
-/// No tolerance: numbers stay exact, so that the value at a rational point is the number itself.
+/// No tolerance: numbers stay exact, so that the value at a rational point is exact.
 #[test]
 fn rational_functions_are_exact() {
     let points = [
@@ -59,7 +59,7 @@ fn functions_keep_value_and_derivative() {
         let tree = Random::new(seed).transcendental(5);
         let mut largest = 0.0;
         let (value, slope) = tree.float(&POINT, &mut largest);
-        // Beyond, rounding alone decides; a NaN is skipped too.
+        // Beyond this, rounding decides; NaN is skipped too.
         if largest.is_nan() || largest > 1e3 {
             continue;
         }
@@ -83,7 +83,7 @@ fn functions_keep_value_and_derivative() {
     assert!(compared > 500 && slopes > 200, "{compared} {slopes}");
 }
 
-/// What is written can be read back, and has the same value. (It need not be the same form: `1/(2*(x + y))` is read as the
+/// Rendered text parses to an expression with the same value. (The form may differ: `1/(2*(x + y))` is read as the
 /// reciprocal of `2*x + 2*y`.)
 #[test]
 fn text_reads_back() {

@@ -1,11 +1,11 @@
-//! Errors of values: never less than what rounding does, and not much more.
+//! Error estimates: never below the actual rounding, and not far above it.
 
 use vi_expr::Rounded;
 
 use crate::Pool;
 use crate::notation::read;
 
-/// Value and error of an expression in x = 0.7, y = 1.1.
+/// Value and error of an expression at x = 0.7, y = 1.1.
 fn rounded(text: &str) -> Rounded {
     let mut pool = Pool::new();
     let expr = read(&mut pool, text);

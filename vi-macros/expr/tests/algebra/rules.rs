@@ -1,9 +1,9 @@
-//! The canonical forms, one rule a line.
+//! The canonical forms, one rule per line.
 
 use crate::Pool;
 use crate::notation::{read, write};
 
-/// Each line: input, and the text of its canonical form. The output read back must be the same expression.
+/// Each line: input, and the text of its canonical form. Parsing the output must give the same expression.
 #[track_caller]
 fn check(table: &str) {
     let mut rows = 0;
@@ -18,7 +18,7 @@ fn check(table: &str) {
     assert!(rows > 3, "a table of rules");
 }
 
-/// Numbers of many digits are written short where that says the same.
+/// Numbers with many digits are short if that is exact.
 #[test]
 fn long_numbers() {
     check(
@@ -184,7 +184,7 @@ fn ramps() {
         ("3*abs(x - y)/2 + 3*(x - y)/2", "(x - y)*(sign(x - y) + 1)*(3/2)"),
         ("z*abs(x*y) - z*x*y", "x*y*z*(sign(x*y) - 1)"),
         ("z*(abs(x + 1) + x + 1)", "z*(x + 1)*(sign(x + 1) + 1)"),
-        // A symbol is as good as it is; the others are no ramps.
+        // A symbol stays unchanged; the others are not ramps.
         ("abs(x) - x", "abs(x) - x"),
         ("abs(x - y) - x - y", "abs(x - y) - x - y"),
         ("abs(x - y) - 2*(x - y)", "abs(x - y) - 2*(x - y)"),
@@ -245,7 +245,7 @@ fn text() {
 }
 
 /// `(b - a)` and `(a - b)` are different factors: only function arguments get a canonical sign, so that velocities keep
-/// the sign in which they are written. Expanding sees that they cancel.
+/// the written sign. Expansion cancels them.
 #[test]
 fn the_sign_of_a_factor_is_kept() {
     let mut pool = Pool::new();

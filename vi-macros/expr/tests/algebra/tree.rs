@@ -1,11 +1,11 @@
-//! Random expressions as plain trees, with values and derivatives by dual numbers: nothing here knows of canonical forms.
+//! Random expressions as plain trees, with values and derivatives by dual numbers, independent of canonical forms.
 
 use num_traits::{One, Signed, Zero};
 use vi_expr::{Expr, Function, Rational};
 
 use crate::{Pool, ratio};
 
-/// Names of the symbols by number; the derivative is by the first.
+/// Names of the symbols by number; derivatives are with respect to the first.
 pub(crate) const SYMBOLS: [&str; 4] = ["x", "y", "z", "w"];
 
 #[derive(Debug)]
@@ -117,7 +117,7 @@ impl Tree {
         operation(pool, left, right)
     }
 
-    /// Exact value and derivative of a rational function; nothing where it divides by 0.
+    /// Exact value and derivative of a rational function; `None` after a division by 0.
     pub(crate) fn exact(&self, point: &[Rational]) -> Option<(Rational, Rational)> {
         Some(match self {
             Self::Number(numerator, denominator) => {
@@ -144,7 +144,7 @@ impl Tree {
         })
     }
 
-    /// Value and derivative in floating point, and in `largest` the largest value or derivative met on the way.
+    /// Value and derivative in floating point; `largest` collects the largest intermediate value or derivative.
     pub(crate) fn float(&self, point: &[f64], largest: &mut f64) -> (f64, f64) {
         let result = match self {
             Self::Number(numerator, denominator) => (f64::from(*numerator) / f64::from(*denominator), 0.0),
@@ -181,7 +181,7 @@ impl Tree {
                 (value, by_first * da + if db == 0.0 { 0.0 } else { by_second * db })
             }
         };
-        // A NaN stays: `max` would drop it.
+        // Keeps NaN, which `max` would drop.
         let size = result.0.abs() + result.1.abs();
         *largest = if size.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(size) };
         result
@@ -196,7 +196,7 @@ fn reciprocal((a, da): &(Rational, Rational)) -> Option<(Rational, Rational)> {
     (!a.is_zero()).then(|| (a.recip(), -da / (a * a)))
 }
 
-/// Value and slopes, written otherwise than in the library where there is another way.
+/// Value and slopes, by another formula than the library if there is one.
 fn call(function: Function, a: f64, b: f64) -> (f64, f64, f64) {
     match function {
         Function::Exp => (a.exp(), a.exp(), 0.0),
