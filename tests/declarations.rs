@@ -7,7 +7,7 @@ use vi_systems::HardDuffing;
 
 /// The findings about a system.
 #[derive(Debug, PartialEq)]
-struct Found {
+struct Declaration {
     name: &'static str,
     coordinates: Vec<&'static str>,
     parameters: Vec<&'static str>,
@@ -16,8 +16,8 @@ struct Found {
     cyclic: Vec<bool>,
 }
 
-fn of<const N: usize, S: Lagrangian<N> + Parameters>(_: &Scene<S, N>) -> Found {
-    Found {
+fn of<const N: usize, S: Lagrangian<N> + Parameters>(_: &Scene<S, N>) -> Declaration {
+    Declaration {
         name: S::NAME,
         coordinates: S::COORDINATES.to_vec(),
         parameters: S::PARAMETERS.to_vec(),
@@ -28,8 +28,8 @@ fn of<const N: usize, S: Lagrangian<N> + Parameters>(_: &Scene<S, N>) -> Found {
 }
 
 /// An autonomous system without force and without cyclic coordinate.
-fn plain(name: &'static str, coordinates: &[&'static str], parameters: &[&'static str]) -> Found {
-    Found {
+fn plain(name: &'static str, coordinates: &[&'static str], parameters: &[&'static str]) -> Declaration {
+    Declaration {
         name,
         coordinates: coordinates.to_vec(),
         parameters: parameters.to_vec(),
@@ -54,21 +54,21 @@ fn each_system_is_what_it_says() {
 #[test]
 fn forces_and_explicit_time_are_found() {
     let oscillator = plain("DampedOscillator", &["x"], &["m", "k", "c"]);
-    assert_eq!(of(&scenes::damped_oscillator()), Found { forced: true, ..oscillator });
+    assert_eq!(of(&scenes::damped_oscillator()), Declaration { forced: true, ..oscillator });
     let hard = plain("HardDuffing", &["x"], &["alpha", "beta", "c", "amplitude", "omega"]);
-    assert_eq!(of(&scenes::hard_duffing()), Found { forced: true, autonomous: false, ..hard });
+    assert_eq!(of(&scenes::hard_duffing()), Declaration { forced: true, autonomous: false, ..hard });
     let double_well = plain("DoubleWellDuffing", &["x"], &["c", "amplitude", "omega"]);
-    assert_eq!(of(&scenes::double_well_duffing()), Found { forced: true, autonomous: false, ..double_well });
+    assert_eq!(of(&scenes::double_well_duffing()), Declaration { forced: true, autonomous: false, ..double_well });
     let parametric = plain("ParametricPendulum", &["θ"], &["epsilon", "omega"]);
-    assert_eq!(of(&scenes::parametric_pendulum()), Found { autonomous: false, ..parametric });
+    assert_eq!(of(&scenes::parametric_pendulum()), Declaration { autonomous: false, ..parametric });
 }
 
 #[test]
 fn cyclic_coordinates_are_found() {
     let pendulum = plain("SphericalPendulum", &["θ", "φ"], &["m", "l", "g"]);
-    assert_eq!(of(&scenes::spherical_pendulum()), Found { cyclic: vec![false, true], ..pendulum });
+    assert_eq!(of(&scenes::spherical_pendulum()), Declaration { cyclic: vec![false, true], ..pendulum });
     let particle = plain("ChargedParticle", &["x", "y", "z"], &["m", "e", "b", "s", "kappa"]);
-    assert_eq!(of(&scenes::charged_particle()), Found { cyclic: vec![false, true, false], ..particle });
+    assert_eq!(of(&scenes::charged_particle()), Declaration { cyclic: vec![false, true, false], ..particle });
 }
 
 #[test]

@@ -176,22 +176,22 @@ impl<const N: usize, S: EnergyStepping<N>> EnergyStepping<N> for Dense<S> {
 const STEPS: usize = 200;
 
 /// The states of an integrator after each step, and its total iterations.
-struct Course<const N: usize> {
+struct StepStates<const N: usize> {
     states: Vec<State<N>>,
     iterations: u32,
 }
 
 /// Fixed steps and energy-preserving ones.
-fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [Course<N>; 2] {
+fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N], h: f64) -> [StepStates<N>; 2] {
     let panic = |error: StepError| -> ! { panic!("{}: {error}", S::NAME) };
     let mut stepper = system.at(0.0, q, v).integrate(FixedStep, h).unwrap_or_else(|error| panic(error));
-    let mut fixed = Course { states: Vec::new(), iterations: 0 };
+    let mut fixed = StepStates { states: Vec::new(), iterations: 0 };
     for _ in 0..STEPS {
         fixed.states.push(stepper.step().unwrap_or_else(|error| panic(error)));
         fixed.iterations += stepper.iterations();
     }
     let mut stepper = EnergyPreserving::from_midpoint(system, 0.0, q, v, h).unwrap_or_else(|error| panic(error));
-    let mut preserving = Course { states: Vec::new(), iterations: 0 };
+    let mut preserving = StepStates { states: Vec::new(), iterations: 0 };
     for _ in 0..STEPS {
         preserving.states.push(stepper.step().unwrap_or_else(|error| panic(error)));
         preserving.iterations += stepper.iterations();
@@ -202,7 +202,7 @@ fn runs<const N: usize, S: EnergyStepping<N>>(system: S, q: [f64; N], v: [f64; N
 /// Steps a system of order 1 and its dense twin; returns the differences and the iterations for fixed and
 /// energy-preserving steps. Energy-preserving steps differ more, because their lengths follow from small energy
 /// differences.
-fn apart<const N: usize, S: EnergyStepping<N>>(system: S, h: f64, form: &str) -> [(f64, u32, u32); 2] {
+fn compare<const N: usize, S: EnergyStepping<N>>(system: S, h: f64, form: &str) -> [(f64, u32, u32); 2] {
     let name = type_name::<S::Jacobian>();
     assert!(name.contains(form), "{}: {name} is not {form}", S::NAME);
     let mut sequence = support::Sequence::new(7);
@@ -224,13 +224,13 @@ fn apart<const N: usize, S: EnergyStepping<N>>(system: S, h: f64, form: &str) ->
 #[test]
 fn every_form_steps_as_the_dense_matrix_does() {
     let all = [
-        apart(Chain::default(), 0.02, "Tridiagonal<5"),
-        apart(FpuChain::default(), 0.05, "Tridiagonal<16"),
-        apart(Springs::default(), 0.02, "Tridiagonal<6"),
-        apart(Beam::default(), 0.02, "Banded<10, 5"),
-        apart(Pendula::default(), 0.02, "Blocks<6, 2"),
-        apart(Cluster::default(), 0.02, "Symmetric<5"),
-        apart(Alone::default(), 0.02, "Banded<5, 1"),
+        compare(Chain::default(), 0.02, "Tridiagonal<5"),
+        compare(FpuChain::default(), 0.05, "Tridiagonal<16"),
+        compare(Springs::default(), 0.02, "Tridiagonal<6"),
+        compare(Beam::default(), 0.02, "Banded<10, 5"),
+        compare(Pendula::default(), 0.02, "Blocks<6, 2"),
+        compare(Cluster::default(), 0.02, "Symmetric<5"),
+        compare(Alone::default(), 0.02, "Banded<5, 1"),
     ];
     for [fixed, preserving] in all {
         // Measured: 2.3e-15 and 7.3e-13 at most.
@@ -246,7 +246,7 @@ fn every_form_steps_as_the_dense_matrix_does() {
 #[test]
 fn pivots_that_are_lost_are_replaced() {
     for corner in [0.0, 1e-14, 1e-16, 1e-17, 1e-20, 1e-100, 1e-300] {
-        let [fixed, preserving] = apart(Swapping { k: 1.2, corner }, 0.02, "Tridiagonal<4");
+        let [fixed, preserving] = compare(Swapping { k: 1.2, corner }, 0.02, "Tridiagonal<4");
         // Measured: 1.1e-16 and 4.1e-13 at most, with twice as many iterations: the prediction does not pivot, so each
         // step iterates.
         assert!(fixed.0 <= 2e-16 && preserving.0 <= 5e-13, "corner {corner:e}: {fixed:?}, {preserving:?}");

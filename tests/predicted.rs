@@ -36,7 +36,7 @@ lagrangian! {
 const STEPS: usize = 2000;
 
 /// The difference of both runs, and the fraction of steps predicted with this number of iterations.
-fn apart<const N: usize, S: FixedStepping<N>>(
+fn differences<const N: usize, S: FixedStepping<N>>(
     system: S,
     (q, v): ([f64; N], [f64; N]),
     h: f64,
@@ -61,14 +61,14 @@ fn apart<const N: usize, S: FixedStepping<N>>(
 #[test]
 fn by_one_newton_step() {
     let all = [
-        apart(DoubleWell { m: 1.3 }, ([0.74], [0.1]), 0.01, 1),
-        apart(DoubleWell { m: 1.3 }, ([0.9], [0.0]), 0.05, 1),
-        apart(Kepler { mu: 1.2 }, ([0.5, 0.0], [0.1, 1.8]), 0.01, 1),
-        apart(DoublePendulum { l2: 0.7, ..DoublePendulum::default() }, ([0.5, 0.6], [0.0, 0.1]), 0.01, 1),
-        apart(SphericalPendulum::default(), ([1.0, 0.2], [0.1, 1.3]), 0.003, 1),
-        apart(ParametricPendulum::default(), ([0.4], [0.1]), 0.02, 1),
-        apart(Breathing::default(), ([0.8], [0.1]), 0.02, 1),
-        apart(Surface::default(), ([0.5, 0.4], [0.3, 0.2]), 0.02, 1),
+        differences(DoubleWell { m: 1.3 }, ([0.74], [0.1]), 0.01, 1),
+        differences(DoubleWell { m: 1.3 }, ([0.9], [0.0]), 0.05, 1),
+        differences(Kepler { mu: 1.2 }, ([0.5, 0.0], [0.1, 1.8]), 0.01, 1),
+        differences(DoublePendulum { l2: 0.7, ..DoublePendulum::default() }, ([0.5, 0.6], [0.0, 0.1]), 0.01, 1),
+        differences(SphericalPendulum::default(), ([1.0, 0.2], [0.1, 1.3]), 0.003, 1),
+        differences(ParametricPendulum::default(), ([0.4], [0.1]), 0.02, 1),
+        differences(Breathing::default(), ([0.8], [0.1]), 0.02, 1),
+        differences(Surface::default(), ([0.5, 0.4], [0.3, 0.2]), 0.02, 1),
     ];
     for (off, predicted) in all {
         // Measured: 3.5e-14 at most, for Kepler, since roundings of p accumulate along the orbit; otherwise 6.1e-15;
@@ -80,8 +80,8 @@ fn by_one_newton_step() {
 #[test]
 fn by_one_matrix() {
     let all = [
-        apart(HarmonicOscillator { k: 1.7, ..HarmonicOscillator::default() }, ([0.8], [0.3]), 0.05, 0),
-        apart(DampedOscillator { m: 1.3, ..DampedOscillator::default() }, ([0.8], [0.3]), 0.05, 0),
+        differences(HarmonicOscillator { k: 1.7, ..HarmonicOscillator::default() }, ([0.8], [0.3]), 0.05, 0),
+        differences(DampedOscillator { m: 1.3, ..DampedOscillator::default() }, ([0.8], [0.3]), 0.05, 0),
     ];
     for (off, predicted) in all {
         // Measured: 3.2e-15 at most.

@@ -309,9 +309,9 @@ fn second_variations_are_differences_of_first_ones() {
 }
 
 /// The squared distances from a trajectory, at every node.
-struct Course;
+struct SquaredDistances;
 
-impl<M: Method<Everything, 2>> Objective<M, Everything, 2> for Course {
+impl<M: Method<Everything, 2>> Objective<M, Everything, 2> for SquaredDistances {
     fn prepare(&self, step: u64, run: &mut Run<M, Everything, 2>) -> Result<(), StepError> {
         #[allow(clippy::cast_precision_loss)] // a few steps
         let step = step as f64;
@@ -336,7 +336,8 @@ fn of_time<const N: usize>() -> Variation<N> {
 #[test]
 fn adjoint_and_tangent_agree() {
     fn worst<M: Differentiable<Everything, 2>>(run: &Run<M, Everything, 2>, steps: u64) -> f64 {
-        let mut all: Vec<_> = [1, 5, 1000].map(|kept| gradient(run, steps, kept, &Course).expect("solvable")).into();
+        let mut all: Vec<_> =
+            [1, 5, 1000].map(|kept| gradient(run, steps, kept, &SquaredDistances).expect("solvable")).into();
         let found = all.pop().expect("three");
         // For any number of stored runs.
         assert!(all.iter().all(|other| *other == found));
@@ -348,12 +349,12 @@ fn adjoint_and_tangent_agree() {
         let mut run = run.clone();
         let mut varied = variations.clone();
         for step in 0..=steps {
-            let slope = Objective::<M, Everything, 2>::slope(&Course, step, &run.state());
+            let slope = Objective::<M, Everything, 2>::slope(&SquaredDistances, step, &run.state());
             for (sum, variation) in forward.iter_mut().zip(&varied) {
                 *sum += slope.of(variation);
             }
             if step < steps {
-                Course.prepare(step, &mut run).expect("regular");
+                SquaredDistances.prepare(step, &mut run).expect("regular");
                 let before = *run.node();
                 run.step().expect("solvable");
                 run.vary(&before, &mut varied).expect("regular");
@@ -378,7 +379,7 @@ fn adjoint_and_tangent_agree() {
     ];
     // 3.6e-16.
     assert!(errors.into_iter().all(|error| error < 2e-15), "{errors:?}");
-    let none = gradient(&system.at_state(start).integrate(FixedStep, 0.1).expect("valid"), 0, 3, &Course)
+    let none = gradient(&system.at_state(start).integrate(FixedStep, 0.1).expect("valid"), 0, 3, &SquaredDistances)
         .expect("nothing to take");
     assert!(none.parameters.is_empty() && (none.start.q - start.q * 2.0).norm() < 1e-15);
 }

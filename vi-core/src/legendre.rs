@@ -131,7 +131,7 @@ struct Momentum<'a, const N: usize, T, S, R, F> {
 }
 
 /// That equation at some velocity.
-struct Evaluated<const N: usize, T, M> {
+struct LegendreEvaluation<const N: usize, T, M> {
     residual: SVector<T, N>,
     mass: M,
     scale: SVector<T, N>,
@@ -145,14 +145,14 @@ where
     F: Fn(&SVector<T, N>) -> M,
 {
     type Unknowns = SVector<T, N>;
-    type Evaluation = Evaluated<N, T, M>;
+    type Evaluation = LegendreEvaluation<N, T, M>;
 
     fn at(&self, v: &SVector<T, N>) -> Self::Evaluation {
         let Self { t, q, p, .. } = self;
         let exact = |number: T| Rounded::exact(number.to_f64());
         let nearest = v.map(|number| Rounded::nearest(number.to_f64()));
         let rounded = self.rounded.momentum(exact(*t), &q.map(exact), &nearest) - p.map(exact);
-        Evaluated {
+        LegendreEvaluation {
             residual: self.system.momentum(*t, q, v) - *p,
             mass: (self.mass)(v),
             scale: rounded.map(|number| T::real(number.ulps())),

@@ -14,7 +14,7 @@ fn kepler(e: f64, h0: f64) -> Run<EnergyPreserving, UnitMass<Kepler>, 2> {
 
 /// Results of a run to the time `end`.
 #[derive(Debug)]
-struct Course {
+struct FallbackSummary {
     steps: u64,
     /// Largest |H − E1| at the midpoints of the intervals: of all, and of the energy-preserving ones.
     energy_error: f64,
@@ -22,7 +22,10 @@ struct Course {
     switches: Switches,
 }
 
-fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, UnitMass<P>, N>, end: f64) -> Course {
+fn run<const N: usize, P: Steppable<N>>(
+    mut integrator: Run<EnergyPreserving, UnitMass<P>, N>,
+    end: f64,
+) -> FallbackSummary {
     let e1 = integrator.last_step().energy;
     let (mut steps, mut fixed_steps, mut energy_error, mut preserved_error) = (0, 0, 0.0_f64, 0.0_f64);
     while integrator.state().t < end {
@@ -42,7 +45,7 @@ fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, Un
         steps += 1;
     }
     assert_eq!(fixed_steps, integrator.switches().fixed_steps);
-    Course { steps, energy_error, preserved_error, switches: integrator.switches() }
+    FallbackSummary { steps, energy_error, preserved_error, switches: integrator.switches() }
 }
 
 #[test]

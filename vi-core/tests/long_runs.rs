@@ -15,7 +15,7 @@ fn double_well(q0: f64, h0: f64) -> Run<EnergyPreserving, UnitMass<DoubleWell>, 
 }
 
 /// Results of a run.
-struct Course {
+struct RunSummary {
     /// Largest |E − E1|, with E at the midpoint of the interval.
     energy_error: f64,
     /// Largest h/h0.
@@ -23,7 +23,10 @@ struct Course {
     iterations: f64,
 }
 
-fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, UnitMass<P>, N>, steps: u32) -> Course {
+fn run<const N: usize, P: Steppable<N>>(
+    mut integrator: Run<EnergyPreserving, UnitMass<P>, N>,
+    steps: u32,
+) -> RunSummary {
     let (e1, h0) = (integrator.last_step().energy, integrator.h());
     let (mut energy_error, mut stretch, mut iterations) = (0.0_f64, 1.0_f64, 0.0);
     for _ in 0..steps {
@@ -33,7 +36,7 @@ fn run<const N: usize, P: Steppable<N>>(mut integrator: Run<EnergyPreserving, Un
         stretch = stretch.max(step.h / h0);
         iterations += f64::from(step.iterations);
     }
-    Course { energy_error, stretch, iterations: iterations / f64::from(steps) }
+    RunSummary { energy_error, stretch, iterations: iterations / f64::from(steps) }
 }
 
 #[test]

@@ -13,7 +13,7 @@
 
 use crate::ended::Ended;
 use crate::layout::{HALF, LaneIndex, Nodes, Row, Rows, WIDTH};
-use crate::pass::{Elapsed, Extrapolate, Fixed, Pass, Verdict};
+use crate::pass::{Elapsed, Extrapolate, Fixed, Pass, Rejections};
 use nalgebra::SVector;
 use vi_core::node::Node;
 use vi_core::stepping::Batch;
@@ -40,7 +40,7 @@ pub(crate) struct Block<S: Batch<N>, const N: usize> {
     velocities: Vec<Box<Rows<N>>>,
     /// Weights of the extrapolation.
     weights: Vec<f64>,
-    verdict: Box<Verdict>,
+    verdict: Box<Rejections>,
     /// Number of trajectories that have not ended.
     running: usize,
     ended: Vec<Option<Ended<N>>>,
@@ -65,7 +65,7 @@ impl<S: Batch<N>, const N: usize> Block<S, N> {
             nodes: [Box::new(Nodes::zeros()), Box::new(Nodes::zeros())],
             velocities: vec![Box::new(Rows::zeros()); depth + 1],
             weights: Vec::new(),
-            verdict: Box::new(Verdict { refused: Row::filled(0), running: Row::filled(0) }),
+            verdict: Box::new(Rejections { refused: Row::filled(0), running: Row::filled(0) }),
             running: count,
             ended: vec![None; count],
         };

@@ -60,7 +60,7 @@ impl Elapsed {
 
 /// The trajectories rejected by a pass.
 #[derive(Clone, Debug)]
-pub(crate) struct Verdict {
+pub(crate) struct Rejections {
     /// All bits one if the trajectory was rejected, otherwise zero.
     pub(crate) refused: Row<u64>,
     /// All bits one if the trajectory exists and has not ended.
@@ -109,7 +109,7 @@ impl<const N: usize, const FUSED: bool, S: FixedStepping<N, Lane<FUSED>>> Trajec
         lane: LaneIndex,
         after: &mut Nodes<N>,
         velocity: &mut Rows<N>,
-        verdict: &mut Verdict,
+        verdict: &mut Rejections,
     ) -> u64 {
         let kept = AGAIN && verdict.refused.get(lane) == 0;
         let mut node = self.node;
@@ -134,7 +134,7 @@ pub(crate) struct Pass<'a, S: Batch<N>, const N: usize, const AGAIN: bool> {
     pub(crate) before: &'a Nodes<N>,
     pub(crate) after: &'a mut Nodes<N>,
     pub(crate) velocity: &'a mut Rows<N>,
-    pub(crate) verdict: &'a mut Verdict,
+    pub(crate) verdict: &'a mut Rejections,
 }
 
 impl<S: Batch<N>, const N: usize, const AGAIN: bool> Loop for Pass<'_, S, N, AGAIN> {
@@ -157,7 +157,7 @@ fn pass<S: Batch<N>, const N: usize, const FUSED: bool, const AGAIN: bool>(
     before: &Nodes<N>,
     after: &mut Nodes<N>,
     velocity: &mut Rows<N>,
-    verdict: &mut Verdict,
+    verdict: &mut Rejections,
 ) -> bool {
     let mut any = 0;
     for index in 0..HALF {

@@ -49,7 +49,7 @@ where
     S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
 {
     fn entry(&self, about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Entry {
-        Entry::with_gauss_alone::<S, N>(about, q, v, h)
+        Entry::with_gauss_only::<S, N>(about, q, v, h)
     }
 }
 

@@ -281,7 +281,7 @@ fn wrong_input_is_one_line_and_status_2() {
         (&["work-precision", "kepler", "--q", "1"], "give 2 finite coordinates (--q), not [1.0]"),
         (
             &["work-precision", "kepler", "--rival", "runs/pendulum.csv"],
-            "the runs of a rival on kepler stand in kepler.csv, not in runs/pendulum.csv",
+            "the runs of kepler must be in the file kepler.csv, not in runs/pendulum.csv",
         ),
         (
             &["run", "double-well", "--steps", "1", "--start", "points"],
@@ -351,7 +351,7 @@ fn a_run_that_rounding_or_a_disk_would_swallow_is_refused() {
         (
             &["run", "kepler", "--h", "1e-100", "--steps", "3"],
             "the first step of h = 1e-100 changes neither q = [0.4, 0.0] nor p = [0.0, 2.0] in double precision, although \
-             v = [0.0, 2.0]; give a larger --h, or a start and parameters with a regular mass matrix",
+             v = [0.0, 2.0]; use a larger --h, or a start and parameters with a regular mass matrix",
         ),
         // Gigabytes without permission: 1e9 rows of 6 numbers of 19 bytes, 1e7 rows of 36 numbers of 8 bytes.
         (
@@ -525,14 +525,14 @@ fn steps_with_a_shift_keep_an_energy_of_their_own() {
     };
     // Predicted by docs/theory.md, section 5: H by 1.21e-8, E by 4.08e-8. Measured E': 2.2e-16.
     let [total, discrete, shifted] = [3, 4, 5].map(swing);
-    println!("H swings by {total:e}, E by {discrete:e}, E' by {shifted:e}");
+    println!("H deviates by {total:e}, E by {discrete:e}, E' by {shifted:e}");
     assert!((total / 1.21e-8 - 1.0).abs() < 0.01 && (discrete / 4.08e-8 - 1.0).abs() < 0.01, "{total:e}, {discrete:e}");
     assert!(shifted < 5e-16, "{shifted:e}");
     // The order of the stages without a shift: E is conserved, and H is closer to it.
     let (_, csv, _) =
         lab(&["run", "kepler", "--method", "energy", "--stages", "3", "--h", "0.05", "--q", "0.7,0", "--v", "0,1.36"]);
     assert!(
-        csv.contains("\n# method: energy, 3 stages, h = 0.05,") && csv.contains("that ends there, none before"),
+        csv.contains("\n# method: energy, 3 stages, h = 0.05,") && csv.contains("that ends there, empty before"),
         "{csv}"
     );
     let rows: Vec<Vec<&str>> =
@@ -601,13 +601,13 @@ fn an_interrupted_run_leaves_whole_rows() {
             let Output { status: ended, stderr, .. } = child.wait_with_output().expect("the command ends");
             let errors = String::from_utf8(stderr).expect("text");
             assert_eq!(ended.code(), Some(status), "{errors}");
-            let said = errors.lines().last().expect("a line that says how far the run came");
-            assert!(said.starts_with(&format!("error: interrupted by {name} after ")), "{errors}");
+            let diagnostic = errors.lines().last().expect("a line that says how far the run came");
+            assert!(diagnostic.starts_with(&format!("error: interrupted by {name} after ")), "{errors}");
             let bytes = fs::read(file).expect("the output");
             let rows = if file == &npy { array(&bytes, 8) } else { rows(&String::from_utf8(bytes).expect("text")) };
             assert!(rows.len() > 900 && rows.iter().all(|row| row.len() == 8));
             let last = rows.last().expect("rows")[0];
-            assert!(said.contains(&format!(" steps at t = {last}; ")), "{said} {last}");
+            assert!(diagnostic.contains(&format!(" steps at t = {last}; ")), "{diagnostic} {last}");
             fs::remove_file(file).expect("the file can be removed");
         }
         let mut child = start(&run);
@@ -709,13 +709,13 @@ fn output_that_nobody_reads_is_status_141() {
 #[test]
 fn a_run_of_days_says_so() {
     let mut child = start(&["run", "pendulum", "--steps", "1e14", "--every", "1e13"]);
-    let mut said = String::new();
-    BufReader::new(child.stderr.take().expect("messages")).read_line(&mut said).expect("a line");
+    let mut diagnostic = String::new();
+    BufReader::new(child.stderr.take().expect("messages")).read_line(&mut diagnostic).expect("a line");
     send("-INT", &child);
     let Output { status, stdout, .. } = child.wait_with_output().expect("the command ends");
     assert!(
-        said.starts_with("at the rate of its first second, this run takes ") && said.contains(" more days"),
-        "{said}"
+        diagnostic.starts_with("at the rate of its first second, this run takes ") && diagnostic.contains(" more days"),
+        "{diagnostic}"
     );
     let rows = rows(&String::from_utf8(stdout).expect("text"));
     assert_eq!((status.code(), rows.len()), (Some(130), 2), "the first node and the last");
@@ -829,8 +829,11 @@ fn every_method_is_compared_and_a_run_that_ends_says_why() {
         assert_eq!(ended, if method == "energy-preserving" { of.len() } else { 0 }, "{method}");
     }
     let page = fs::read_to_string(out.join("index.html")).expect("the page");
-    let said = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step leads forward from t = ";
-    assert!(page.contains(said) && page.contains("(debug build") | page.contains("(release build"), "the page says so");
+    let diagnostic = "All 9 runs of energy-preserving ended early; at h₀ = 0.0050: no energy-preserving step leads forward from t = ";
+    assert!(
+        page.contains(diagnostic) && page.contains("(debug build") | page.contains("(release build"),
+        "the page says so"
+    );
     fs::remove_dir_all(out).expect("the folder can be removed");
 }
 

@@ -35,7 +35,7 @@ const FLOOR: f64 = 4.0;
 
 /// Results for one system and integrator.
 #[derive(Debug, Default)]
-struct Found {
+struct SearchResult {
     steps: usize,
     motions: usize,
     /// Steps whose residual exceeds the floor of the first two scales, because its rounding is larger.
@@ -43,7 +43,7 @@ struct Found {
     worst: f64,
 }
 
-impl Found {
+impl SearchResult {
     fn add(&mut self, row: &Row) {
         self.by_analysis += usize::from(row.plain > FLOOR);
         self.worst = self.worst.max(row.worst);
@@ -136,9 +136,9 @@ fn start<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>, draw: &mut Se
 fn hunted<const N: usize, S: FixedStepping<N>>(
     scene: &Scene<S, N>,
     limit: usize,
-    mut motion: impl FnMut(State<N>, f64, usize, &mut Found),
-) -> Found {
-    let (mut found, mut draw) = (Found::default(), Sequence::new(5));
+    mut motion: impl FnMut(State<N>, f64, usize, &mut SearchResult),
+) -> SearchResult {
+    let (mut found, mut draw) = (SearchResult::default(), Sequence::new(5));
     while found.steps < limit && found.motions < MOST_MOTIONS {
         let (state, h) = start(scene, &mut draw);
         motion(state, h, limit / MOTIONS, &mut found);
@@ -205,7 +205,7 @@ fn by_substeps<const N: usize, S: FixedStepping<N>>(scene: &Scene<S, N>) {
                 found.steps += 1;
             }
         });
-        let found = Found { steps: found.steps * scheme.weights.len(), ..found };
+        let found = SearchResult { steps: found.steps * scheme.weights.len(), ..found };
         found.finish(S::NAME, scheme.name);
     }
 }

@@ -16,8 +16,8 @@ use super::comparison::Comparison;
 use super::ladder::REACH;
 use super::length;
 use super::report::{CheckFailure, Report};
-use super::sample::Course;
-use super::steps::{SOLVED, Slots};
+use super::sample::SampledMotion;
+use super::steps::{SOLVED, SlotValues};
 use super::subject::{EnergyChecked, Place, STEPS};
 use crate::lagrangian::Lagrangian;
 use crate::method::EnergyPreserving;
@@ -33,7 +33,7 @@ use crate::state::State;
 /// nothing to preserve.
 pub fn energy<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) -> Result<Report, CheckFailure> {
     let check = Comparison::new(S::NAME, "energy");
-    let longest = Course::from(system, place, &check)?.h;
+    let longest = SampledMotion::from(system, place, &check)?.h;
     let (mut h, mut met) = (place.h, String::new());
     loop {
         let rounding = length::at_start(system, place, h);
@@ -76,7 +76,7 @@ fn along_run<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>) 
         let mean = Bounded { value: f64::midpoint(carried, step.energy), error: left };
         let found = bounded.energy(Bounded::once(t), &once(&q), &exact(&v)).of(system.energy(t, &q, &v));
         check.number("energy at the midpoint", found, mean)?;
-        let slots = Slots::between(system, &before, &State { t: step.t, q: step.q, p: step.p });
+        let slots = SlotValues::between(system, &before, &State { t: step.t, q: step.q, p: step.p });
         check.number("E1", Bounded { value: step.energy, error: left }, slots.energy_after)?;
         if S::AUTONOMOUS && !S::FORCED {
             check.number("E1 - E0", Bounded::exact(step.energy - carried), Bounded::exact(0.0))?;

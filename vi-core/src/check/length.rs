@@ -33,7 +33,7 @@ pub(super) const FINE: f64 = 1e-6;
 
 /// The step density of a step, and the part of itself by which its length may be wrong.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Solved {
+pub(super) struct SolvedLength {
     pub(super) density: Bounded,
     pub(super) length: f64,
 }
@@ -44,7 +44,7 @@ pub(super) fn solved<const N: usize, S: EnergyChecked<N>>(
     node: &Node<N, Bounded>,
     h: f64,
     v: &SVector<f64, N>,
-) -> Option<Solved> {
+) -> Option<SolvedLength> {
     let h = Bounded::exact(h);
     let equations = system.steps::<Bounded>().extended_system(node, h, &exact(v));
     let ExtendedSystem { momentum, residual_dh, energy_residual, energy_dv, energy_dh } = equations;
@@ -55,7 +55,7 @@ pub(super) fn solved<const N: usize, S: EnergyChecked<N>>(
     let length = change.most() / h.value.abs();
     // Nothing is known of it where S may be zero.
     let length = if length.is_nan() { f64::INFINITY } else { length };
-    Some(Solved { density: schur * Bounded::exact(-4.0), length })
+    Some(SolvedLength { density: schur * Bounded::exact(-4.0), length })
 }
 
 /// The rounding of the first interval of length h, of which the place is the middle.

@@ -18,7 +18,7 @@ use super::comparison::Comparison;
 use super::ladder::{Law, Measured};
 use super::motion::Motion;
 use super::report::{CheckFailure, Report};
-use super::sample::Course;
+use super::sample::SampledMotion;
 use super::subject::{Checked, MotionChecked, Place, STEPS};
 use crate::error::StepError;
 use crate::lagrangian::Lagrangian;
@@ -51,7 +51,7 @@ pub(super) fn judged<const N: usize, S: MotionChecked<N>, M: Method<Y, N>, Y: La
     order: u32,
     begin: impl Fn(State<N>, f64) -> Result<Run<M, Y, N>, StepError>,
 ) -> Result<Report, CheckFailure> {
-    let course = Course::from(system, place, check)?;
+    let course = SampledMotion::from(system, place, check)?;
     if !course.accelerates() {
         return Err(check.vacuous("nothing accelerates, and steps of any rule are exact; choose another place"));
     }

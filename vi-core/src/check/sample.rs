@@ -1,6 +1,6 @@
 //! Where formulas are compared: states about the motion from a place, with parameters about the given ones.
 //!
-//! In: a system and a [`Place`]. Out: the [`Course`] of the motion, whose time scale is the system's and not that of the
+//! In: a system and a [`Place`]. Out: the [`SampledMotion`] of the motion, whose time scale is the system's and not that of the
 //! place's h; and samples about it, of which no coordinate, velocity or parameter has a value that could hide a term, as
 //! zero and one can. A formula holds for every h. At a step that is a part of the time scale its terms are of like size,
 //! however small the place's h is; with h itself a term of order h² would lie below the rounding of the others.
@@ -45,14 +45,14 @@ pub(super) struct Sample<S, const N: usize> {
 
 /// The motion from a place, until it has turned: at least over [`STEPS`] steps of the place's length, and as far beyond as
 /// it can be followed.
-pub(super) struct Course<const N: usize> {
+pub(super) struct SampledMotion<const N: usize> {
     /// States at equal times.
     pub(super) states: Vec<Motion<N>>,
     /// A step of which [`STEPS`] are all of it.
     pub(super) h: f64,
 }
 
-impl<const N: usize> Course<N> {
+impl<const N: usize> SampledMotion<N> {
     /// The course of the motion from a place.
     ///
     /// # Errors
@@ -163,25 +163,25 @@ impl<const N: usize> Course<N> {
 /// The samples about the motion from a place.
 ///
 /// # Errors
-/// Those of [`Course::from`].
+/// Those of [`SampledMotion::from`].
 pub(super) fn samples<const N: usize, S: MotionChecked<N>>(
     system: &S,
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    Ok(Course::from(system, place, check)?.samples(system, Sample::has_values))
+    Ok(SampledMotion::from(system, place, check)?.samples(system, Sample::has_values))
 }
 
 /// The same samples, where a step from each has values too.
 ///
 /// # Errors
-/// Those of [`Course::from`].
+/// Those of [`SampledMotion::from`].
 pub(super) fn step_samples<const N: usize, S: Checked<N>>(
     system: &S,
     place: &Place<N>,
     check: &Comparison,
 ) -> Result<Vec<Sample<S, N>>, CheckFailure> {
-    Ok(Course::from(system, place, check)?.samples(system, Sample::has_step))
+    Ok(SampledMotion::from(system, place, check)?.samples(system, Sample::has_step))
 }
 
 /// The largest distances from the first of these vectors, entry by entry.

@@ -16,7 +16,7 @@ use super::comparison::Comparison;
 use super::ladder::{Law, Measured};
 use super::length;
 use super::report::{CheckFailure, Report};
-use super::sample::Course;
+use super::sample::SampledMotion;
 use super::subject::{EnergyChecked, Place, STEPS};
 use crate::error::StepError;
 use crate::method::EnergyPreserving;
@@ -42,7 +42,7 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
     if S::FORCED {
         return Err(check.not_applicable("the law is one of systems without a force"));
     }
-    let course = Course::from(system, place, &check)?;
+    let course = SampledMotion::from(system, place, &check)?;
     let density = density(system, &(place.t, place.q, place.v)).map_err(|error| check.step(error))?;
     if !density.is_seen() {
         return Err(check.vacuous("the step density is zero at this place; choose another"));
@@ -73,7 +73,7 @@ pub fn step_law<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N
 /// Whether the step density keeps its sign and size along the motion over the time of a ladder: where it comes near zero
 /// steps grow without bound, and nothing falls with h².
 fn is_even<const N: usize, S: EnergyChecked<N>>(system: &S, place: &Place<N>, h: f64) -> Result<bool, StepError> {
-    let states = Course::over(system, place, h, u32::MAX)?.states;
+    let states = SampledMotion::over(system, place, h, u32::MAX)?.states;
     let densities = states.iter().map(|state| system.step_density(state.t, &state.q, &state.v));
     let densities = densities.collect::<Result<Vec<f64>, _>>()?;
     let mut ratios = densities.iter().filter_map(|density| densities.first().map(|first| density / first));

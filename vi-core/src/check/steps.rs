@@ -48,7 +48,7 @@ pub fn steps<const N: usize, S: Checked<N>>(system: &S, place: &Place<N>) -> Res
     for _ in 0..TAKEN {
         let before = run.state();
         let after = run.step().map_err(|error| check.step(error))?;
-        let slots = Slots::between(system, &before, &after);
+        let slots = SlotValues::between(system, &before, &after);
         let (node, v) = (Node::new(before, 0.0), run.v());
         let left = system.momentum_rounding(&node, place.h, &v) * (SOLVED * f64::EPSILON);
         let known = |p: &SVector<f64, N>| p.zip_map(&left, |p, left| Bounded { value: p, error: left });
@@ -122,13 +122,13 @@ pub(super) fn ends<const N: usize>(
 }
 
 /// What the slots say of the step between two states.
-pub(super) struct Slots<const N: usize> {
+pub(super) struct SlotValues<const N: usize> {
     momentum_before: SVector<Bounded, N>,
     momentum_after: SVector<Bounded, N>,
     pub(super) energy_after: Bounded,
 }
 
-impl<const N: usize> Slots<N> {
+impl<const N: usize> SlotValues<N> {
     pub(super) fn between<S: Checked<N>>(system: &S, before: &State<N>, after: &State<N>) -> Self {
         let bounded = system.steps::<Bounded>();
         let ends = Interval { t0: before.t, q0: before.q, t1: after.t, q1: after.q };

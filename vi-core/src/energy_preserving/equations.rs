@@ -184,7 +184,7 @@ struct Extended<'a, const N: usize, T, S> {
 }
 
 /// The equations at a trial, with what their rounding is measured in.
-struct Evaluated<const N: usize, T, J> {
+struct RowEvaluation<const N: usize, T, J> {
     trial: VelocityStep<N, T>,
     system: ExtendedSystem<N, T, J>,
     measured: ExtendedResidual<N, T>,
@@ -193,11 +193,11 @@ struct Evaluated<const N: usize, T, J> {
 
 impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extended<'_, N, T, S> {
     type Unknowns = VelocityStep<N, T>;
-    type Evaluation = Evaluated<N, T, S::Jacobian>;
+    type Evaluation = RowEvaluation<N, T, S::Jacobian>;
 
     fn at(&self, trial: &VelocityStep<N, T>) -> Self::Evaluation {
         let (node, VelocityStep { v, h }) = (self.node, trial);
-        Evaluated {
+        RowEvaluation {
             trial: *trial,
             system: self.system.extended_system(node, *h, v),
             measured: self.system.extended_residual(node, *h, v),
@@ -206,7 +206,7 @@ impl<const N: usize, T: Scalar, S: EnergyStepping<N, T>> Equations<T> for Extend
     }
 
     fn roundings(&self, of: &Self::Evaluation, scales: &Self::Evaluation) -> [f64; 2] {
-        let Evaluated { trial, measured, .. } = of;
+        let RowEvaluation { trial, measured, .. } = of;
         let scale = &scales.scale;
         let combined = roundings(measured.energy_residual, scale.energy_residual);
         let energy = roundings(energy_residual(measured, &trial.v), scale.energy);

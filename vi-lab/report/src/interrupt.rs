@@ -33,7 +33,7 @@ pub const SIGNALS: [Signal; 2] =
 #[derive(Debug, Default)]
 pub struct Interrupt {
     /// One plus the index in [`SIGNALS`] of the received signal; zero until then.
-    came: Arc<AtomicUsize>,
+    received: Arc<AtomicUsize>,
 }
 
 impl Interrupt {
@@ -41,7 +41,7 @@ impl Interrupt {
     ///
     /// # Errors
     /// The error of the operating system.
-    pub fn heed() -> io::Result<Self> {
+    pub fn install() -> io::Result<Self> {
         let interrupt = Self::default();
         let is_second = Arc::new(AtomicBool::new(false));
         for (index, signal) in SIGNALS.into_iter().enumerate() {
@@ -49,7 +49,7 @@ impl Interrupt {
             // The order matters: at the first signal the flag is still zero.
             flag::register_conditional_shutdown(number, i32::from(signal.exit_status()), Arc::clone(&is_second))?;
             flag::register(number, Arc::clone(&is_second))?;
-            flag::register_usize(number, Arc::clone(&interrupt.came), index + 1)?;
+            flag::register_usize(number, Arc::clone(&interrupt.received), index + 1)?;
         }
         Ok(interrupt)
     }
@@ -57,7 +57,7 @@ impl Interrupt {
     /// The received signal.
     #[must_use]
     pub fn signal(&self) -> Option<Signal> {
-        let place = self.came.load(Ordering::Relaxed).checked_sub(1)?;
+        let place = self.received.load(Ordering::Relaxed).checked_sub(1)?;
         SIGNALS.get(place).copied()
     }
 }

@@ -11,7 +11,7 @@ use vi_core::stepping::EnergyStepping;
 use vi_core::{SVector, StepError};
 
 /// A kind of system.
-pub trait Kind<S, const N: usize>: Send + Sync + 'static {
+pub trait SystemKind<S, const N: usize>: Send + Sync + 'static {
     /// Whether it has a rule.
     const HAS_RULE: bool;
 
@@ -37,9 +37,9 @@ pub enum ByRule {}
 
 /// A system without a rule.
 #[derive(Clone, Copy, Debug)]
-pub enum GaussAlone {}
+pub enum GaussOnly {}
 
-impl<S: EnergyStepping<N>, const N: usize> Kind<S, N> for ByRule {
+impl<S: EnergyStepping<N>, const N: usize> SystemKind<S, N> for ByRule {
     const HAS_RULE: bool = true;
 
     fn begin<'a>(
@@ -59,7 +59,7 @@ impl<S: EnergyStepping<N>, const N: usize> Kind<S, N> for ByRule {
     }
 }
 
-impl<S: Lagrangian<N>, const N: usize> Kind<S, N> for GaussAlone {
+impl<S: Lagrangian<N>, const N: usize> SystemKind<S, N> for GaussOnly {
     const HAS_RULE: bool = false;
 
     fn begin<'a>(

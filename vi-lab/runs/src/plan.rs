@@ -34,7 +34,7 @@ pub enum Method {
 /// time.
 pub const STAGES: [usize; 2] = [4, 8];
 /// The default number of stages: the most accurate steps for their time, for errors below 1e-6.
-pub const USUAL_STAGES: usize = 8;
+pub const DEFAULT_STAGES: usize = 8;
 
 /// Numbers of stages of energy-preserving Gauss steps: with more, rounding hides their length.
 pub const ENERGY_STAGES: [usize; 3] = [1, 2, 3];

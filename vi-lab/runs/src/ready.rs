@@ -3,7 +3,7 @@
 //! In: the systems of `vi_systems`. Out: a list of type-erased [`Entry`] values. Here the compiler instantiates all
 //! code that is generic over systems, once per system.
 
-use crate::kind::{ByRule, GaussAlone};
+use crate::kind::{ByRule, GaussOnly};
 use crate::system::{self, System};
 use vi_core::collocation::Collocation;
 use vi_core::lagrangian::Parameters;
@@ -40,11 +40,11 @@ impl Entry {
 
     /// The same for a system without a rule, which has Gauss methods only.
     #[must_use]
-    pub fn with_gauss_alone<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
+    pub fn with_gauss_only<S, const N: usize>(about: &'static str, q: [f64; N], v: [f64; N], h: f64) -> Self
     where
         S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
     {
-        Self { system: system::erased::<S, GaussAlone, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
+        Self { system: system::erased::<S, GaussOnly, N>(), about, q: q.to_vec(), v: v.to_vec(), h }
     }
 }
 

@@ -119,12 +119,12 @@ impl<S: Lagrangian<N>, const N: usize> ODE<f64, Phase<N>> for Equations<'_, S> {
 }
 
 /// Passes on every accepted step, and stores the last.
-struct Watch<'a, const N: usize> {
+struct StepObserver<'a, const N: usize> {
     last: Motion<N>,
     show: &'a mut dyn FnMut(&Motion<N>),
 }
 
-impl<const N: usize> Solout<f64, Phase<N>> for Watch<'_, N> {
+impl<const N: usize> Solout<f64, Phase<N>> for StepObserver<'_, N> {
     fn solout<I: Interpolation<f64, Phase<N>> + ?Sized>(
         &mut self,
         t: f64,
@@ -155,7 +155,7 @@ pub fn motion<S: Lagrangian<N>, const N: usize>(
 ) -> Result<Motion<N>, Ended> {
     let equations = Equations { system, evaluations, failure: Cell::new(None) };
     let mut solver = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(usize::MAX);
-    let mut watch = Watch { last: *start, show };
+    let mut watch = StepObserver { last: *start, show };
     let solved = solve_ode(&mut solver, &equations, start.t, end, &Phase::of(start), &mut watch).map(drop);
     let last = watch.last;
     match (solved, equations.failure.get()) {

@@ -7,8 +7,8 @@
 //! by rounding.
 
 use crate::counting::Counting;
-use crate::kind::Kind;
-use crate::plan::{Method, Plan, Shift, Start, USUAL_STAGES};
+use crate::kind::SystemKind;
+use crate::plan::{DEFAULT_STAGES, Method, Plan, Shift, Start};
 use crate::start;
 use core::cell::Cell;
 use vi_core::collocation::Collocation;
@@ -219,7 +219,7 @@ pub struct ShiftedEnergy {
 /// # Errors
 /// The error of the integrators for the initial state. [`StepError::InvalidInput`] for wrong numbers of coordinates or
 /// velocities, and for stages that are not built in: 4 and 8 for Gauss steps, 1 to 3 for energy-preserving ones.
-pub fn begin<'a, S, K: Kind<S, N>, const N: usize>(
+pub fn begin<'a, S, K: SystemKind<S, N>, const N: usize>(
     system: S,
     plan: &Plan,
     evaluations: &'a Cell<u64>,
@@ -235,7 +235,7 @@ where
         Method::Fixed | Method::Suzuki4 | Method::KahanLi6 | Method::KahanLi8 => {
             K::begin(system, plan, (q, v), evaluations)
         }
-        Method::Gauss => match (plan.stages.unwrap_or(USUAL_STAGES), plan.dtau) {
+        Method::Gauss => match (plan.stages.unwrap_or(DEFAULT_STAGES), plan.dtau) {
             (4, None) => gauss::<S, N, 4>(system, state, plan.h, evaluations),
             (8, None) => gauss::<S, N, 8>(system, state, plan.h, evaluations),
             (4, Some(dtau)) => scaled::<S, N, 4>(system, state, dtau, evaluations),

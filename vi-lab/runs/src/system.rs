@@ -5,7 +5,7 @@
 //! any number of charts.
 
 use crate::exponents::{self, Exponents};
-use crate::kind::Kind;
+use crate::kind::SystemKind;
 use crate::plan::{ENERGY_STAGES, PhasePoint, Plan};
 use crate::rival::{self, Ended};
 use crate::simulation::{self, Simulation, vector};
@@ -86,14 +86,14 @@ struct Typed<S, K, const N: usize>(S, PhantomData<K>);
 
 /// The system `S` with its default parameters.
 #[must_use]
-pub fn erased<S, K: Kind<S, N>, const N: usize>() -> Box<dyn System>
+pub fn erased<S, K: SystemKind<S, N>, const N: usize>() -> Box<dyn System>
 where
     S: Collocation<N> + Convertible<N> + Parameters + Default + Send + Sync + 'static,
 {
     Box::new(Typed::<S, K, N>(S::default(), PhantomData))
 }
 
-impl<S, K: Kind<S, N>, const N: usize> System for Typed<S, K, N>
+impl<S, K: SystemKind<S, N>, const N: usize> System for Typed<S, K, N>
 where
     S: Collocation<N> + Convertible<N> + Parameters + Send + Sync + 'static,
 {

@@ -199,8 +199,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Input(format!("the first node, at t = {}, is after --until", short(simulation.t()))));
     }
     let mut sinks = sinks(&request)?;
-    let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
-    let mut course = Course::new(&request, extent, &mut sinks);
+    let interrupt = Interrupt::install().map_err(|error| Failure::file("signals", error))?;
+    let mut course = RunLoop::new(&request, extent, &mut sinks);
     let outcome = course.follow(simulation.as_mut(), &|| interrupt.signal());
     if let Some(note) = course.note() {
         // Standard error may be closed; the rows are complete.
@@ -229,7 +229,7 @@ fn sinks(request: &Request) -> Result<Vec<Box<dyn Sink>>, Failure> {
 }
 
 /// A run in progress.
-struct Course<'a> {
+struct RunLoop<'a> {
     request: &'a Request,
     extent: Extent,
     /// Destinations of rows.
@@ -243,7 +243,7 @@ struct Course<'a> {
     first_lost: Option<StepError>,
 }
 
-impl<'a> Course<'a> {
+impl<'a> RunLoop<'a> {
     /// A run at its start.
     fn new(request: &'a Request, extent: Extent, sinks: &'a mut [Box<dyn Sink>]) -> Self {
         Self { request, extent, sinks, steps: 0, rows: 0, written: 0, lost: 0, first_lost: None }
@@ -384,9 +384,9 @@ mod tests {
 
     /// Stores the rows.
     #[derive(Clone, Default)]
-    struct Kept(Rc<RefCell<Vec<Row>>>);
+    struct StoredRows(Rc<RefCell<Vec<Row>>>);
 
-    impl Sink for Kept {
+    impl Sink for StoredRows {
         fn write(&mut self, row: &Row) -> Result<(), Failure> {
             self.0.borrow_mut().push(row.clone());
             Ok(())
@@ -403,9 +403,9 @@ mod tests {
         let arguments = Arguments { target, steps: Some(9), every: Some(every), ..Arguments::default() };
         let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
-        let kept = Kept::default();
+        let kept = StoredRows::default();
         let mut sinks: [Box<dyn Sink>; 1] = [Box::new(kept.clone())];
-        let mut course = Course::new(&request, extent, &mut sinks);
+        let mut course = RunLoop::new(&request, extent, &mut sinks);
         let failure =
             course.follow(&mut Ending { t: 0.0, fourth, lost: f64::INFINITY }, signal).expect_err("the run ends early");
         (failure, kept.0.borrow().iter().map(|row| row.t).collect())
@@ -431,7 +431,7 @@ mod tests {
         let request = Request::of(&arguments).unwrap_or_else(|failure| panic!("{failure}"));
         let extent = Extent::of(&request).unwrap_or_else(|failure| panic!("{failure}"));
         let note = |lost| {
-            let mut course = Course::new(&request, extent, &mut []);
+            let mut course = RunLoop::new(&request, extent, &mut []);
             course.follow(&mut Ending { t: 0.0, fourth: Ok(()), lost }, &|| None).expect("three steps");
             course.note()
         };

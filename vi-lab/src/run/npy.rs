@@ -5,7 +5,7 @@
 //! run ends.
 
 use super::{BLOCK, Request, Sink, energies, method};
-use crate::npy::{ROOM, head};
+use crate::npy::{HEADER_BYTES, head};
 use crate::place;
 use serde_json::json;
 use std::fs::File;
@@ -42,7 +42,7 @@ impl Npy {
     /// Writes the block, then the number of rows in the header.
     fn flush(&mut self) -> Result<(), Failure> {
         let width = wide(8 * self.columns);
-        let end = wide(ROOM) + self.rows * width;
+        let end = wide(HEADER_BYTES) + self.rows * width;
         let rows = self.rows + wide(self.block.len()) / width;
         let written = put(&mut self.file, end, &self.block);
         if let Err(error) = written.and_then(|()| put(&mut self.file, 0, &head(rows, self.columns))) {

@@ -19,7 +19,7 @@ use vi_runs::simulation::{Row, Simulation};
 use vi_runs::system::System;
 
 /// Default number of steps.
-const USUAL_STEPS: u64 = 1000;
+const DEFAULT_STEPS: u64 = 1000;
 /// Maximum number of steps over which a shift is measured.
 const MEASURED_STEPS: f64 = 1e4;
 
@@ -481,7 +481,7 @@ fn length(steps: Option<u64>, until: Option<f64>, plan: &Plan) -> Result<Length,
         }
         (None, Some(until)) => check_direction(plan, until).map(|()| Length::Until(until)),
         (Some(_), Some(_)) => Err(Failure::Input("give either --steps or --until, not both".to_owned())),
-        (None, None) => Ok(Length::Steps(USUAL_STEPS)),
+        (None, None) => Ok(Length::Steps(DEFAULT_STEPS)),
     }
 }
 
@@ -620,7 +620,7 @@ mod tests {
 
     #[test]
     fn a_system_without_a_rule_gets_the_names_of_its_methods() {
-        let system = vi_runs::ready::Entry::with_gauss_alone::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
+        let system = vi_runs::ready::Entry::with_gauss_only::<Alone, 1>("a spring", [1.0], [0.0], 0.01).system;
         let of = |method, stages| {
             let arguments = Arguments { method: Some(method), stages, ..arguments("kepler") };
             check_rule(system.as_ref(), method, &Options::of(&arguments, &Scene::default()))

@@ -29,13 +29,13 @@ pub(crate) fn wanted(text: &str) -> Result<Wanted, String> {
 
 /// Parses the shift in a scene.
 pub(super) fn of_scene<'de, D: Deserializer<'de>>(entry: D) -> Result<Option<Wanted>, D::Error> {
-    entry.deserialize_any(Entry).map(Some)
+    entry.deserialize_any(ShiftVisitor).map(Some)
 }
 
 /// Parser of a shift.
-struct Entry;
+struct ShiftVisitor;
 
-impl Visitor<'_> for Entry {
+impl Visitor<'_> for ShiftVisitor {
     type Value = Wanted;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

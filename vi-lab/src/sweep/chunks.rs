@@ -291,9 +291,9 @@ mod tests {
     use super::*;
 
     /// A folder for one test, removed on drop.
-    struct Place(PathBuf);
+    struct TestFolder(PathBuf);
 
-    impl Place {
+    impl TestFolder {
         fn new(name: &str) -> Self {
             let place = Self(std::env::temp_dir().join(format!("vi-lab-{name}-{}", std::process::id())));
             let _ = fs::remove_dir_all(&place.0);
@@ -310,7 +310,7 @@ mod tests {
         }
     }
 
-    impl Drop for Place {
+    impl Drop for TestFolder {
         fn drop(&mut self) {
             let _ = fs::remove_dir_all(&self.0);
         }
@@ -349,7 +349,7 @@ mod tests {
 
     #[test]
     fn chunks_are_there_once_they_are_whole() {
-        let place = Place::new("chunks");
+        let place = TestFolder::new("chunks");
         let chunks = place.chunks();
         assert_eq!((chunks.description.chunks(), chunks.description.runs(&(1..3))), (3, 2..5));
         write(&chunks, 2);
@@ -383,7 +383,7 @@ mod tests {
 
     #[test]
     fn two_processes_that_write_one_chunk_leave_it_whole() {
-        let place = Place::new("two");
+        let place = TestFolder::new("two");
         let chunks = place.chunks();
         write(&chunks, 1);
         let alone = fs::read(chunks.path(1)).expect("the chunk");
@@ -400,7 +400,7 @@ mod tests {
 
     #[test]
     fn a_chunk_that_was_changed_is_refused() {
-        let place = Place::new("changed");
+        let place = TestFolder::new("changed");
         let chunks = place.chunks();
         write(&chunks, 0);
         write(&chunks, 1);
@@ -456,7 +456,7 @@ mod tests {
 
     #[test]
     fn another_sweep_and_a_process_that_must_be_alone_are_refused() {
-        let place = Place::new("other");
+        let place = TestFolder::new("other");
         let refusal = |description: &Description, is_alone| place.resume(description, is_alone).err();
         let locked = Some("another process uses FOLDER; wait for it".to_owned());
         let chunks = place.chunks();
@@ -477,7 +477,7 @@ mod tests {
 
     #[test]
     fn descriptions_that_no_sweep_has_are_refused() {
-        let place = Place::new("descriptions");
+        let place = TestFolder::new("descriptions");
         drop(place.chunks());
         let path = place.0.join(DESCRIPTION);
         let good = fs::read_to_string(&path).expect("the description");

@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// # Errors
 /// [`Failure::Interrupted`] after a signal, [`Failure::File`] if a chunk cannot be written.
 pub(super) fn work(study: Study, chunks: &Arc<Chunks>, numbers: &Range<u64>) -> Result<(), Failure> {
-    let interrupt = Interrupt::heed().map_err(|error| Failure::file("signals", error))?;
+    let interrupt = Interrupt::install().map_err(|error| Failure::file("signals", error))?;
     let (all, mut done) = (numbers.end - numbers.start, 0);
     let mut progress = Progress::new(all);
     let (sender, results) = mpsc::channel();

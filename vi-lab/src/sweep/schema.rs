@@ -21,12 +21,12 @@ pub(super) struct Schema {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Column {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: ColumnKind,
 }
 
 /// The kind of the numbers in a column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Kind {
+pub(super) enum ColumnKind {
     /// Numbers; NaN if there is none.
     Number,
     /// Whole numbers below [`MOST`].
@@ -37,15 +37,15 @@ pub(super) enum Kind {
 
 impl Column {
     pub(super) fn number(name: impl Into<String>) -> Self {
-        Self { name: name.into(), kind: Kind::Number }
+        Self { name: name.into(), kind: ColumnKind::Number }
     }
 
     pub(super) fn count(name: &str) -> Self {
-        Self { name: name.to_owned(), kind: Kind::Count }
+        Self { name: name.to_owned(), kind: ColumnKind::Count }
     }
 
     pub(super) fn words(name: &str, words: &[&str]) -> Self {
-        Self { name: name.to_owned(), kind: Kind::Words(words.iter().map(|&word| word.to_owned()).collect()) }
+        Self { name: name.to_owned(), kind: ColumnKind::Words(words.iter().map(|&word| word.to_owned()).collect()) }
     }
 }
 
@@ -63,11 +63,11 @@ impl Schema {
             }
             // Writing to a string cannot fail.
             let _ = match &column.kind {
-                Kind::Number if number.is_nan() => Ok(()),
-                Kind::Number => write!(text, "{number:?}"),
+                ColumnKind::Number if number.is_nan() => Ok(()),
+                ColumnKind::Number => write!(text, "{number:?}"),
                 // Without a decimal point.
-                Kind::Count => write!(text, "{number}"),
-                Kind::Words(words) => text.write_str(&csv_field(word(words, *number))),
+                ColumnKind::Count => write!(text, "{number}"),
+                ColumnKind::Words(words) => text.write_str(&csv_field(word(words, *number))),
             };
         }
         text.push('\n');
@@ -91,7 +91,7 @@ impl Schema {
     }
 }
 
-impl Kind {
+impl ColumnKind {
     /// The number of an entry.
     #[allow(clippy::cast_precision_loss)] // counts and indices below 2^53
     fn read(&self, entry: &str) -> Option<f64> {

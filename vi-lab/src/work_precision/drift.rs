@@ -52,7 +52,7 @@ impl Drift {
 }
 
 /// Running maximum of the error.
-struct Watch<'a> {
+struct MaximumError<'a> {
     system: &'a dyn System,
     reference: Option<&'a Reference<'a>>,
     initial: f64,
@@ -60,7 +60,7 @@ struct Watch<'a> {
     worst: Vec<(f64, f64)>,
 }
 
-impl Watch<'_> {
+impl MaximumError<'_> {
     fn see(&mut self, t: f64, energy: f64) -> Result<(), Ended> {
         let expected = match self.reference {
             None => self.initial,
@@ -98,7 +98,7 @@ pub(super) fn all(
     let settings = stepping.map(|method| (method, h * method.parts() as f64));
     let drifts = settings.chain(TOLERANCES.map(|tolerance| (Method::Rival, tolerance))).map(|(method, setting)| {
         progress.advance_by(1);
-        let mut watch = Watch { system, reference, initial, largest: 0.0, worst: Vec::new() };
+        let mut watch = MaximumError { system, reference, initial, largest: 0.0, worst: Vec::new() };
         let evaluations = Cell::new(0);
         let task = Task { start, end: long, method, setting };
         let ended = match task.plan() {
@@ -114,7 +114,7 @@ pub(super) fn all(
 }
 
 /// Runs one of this project's integrators to the end, and shows the energy on the way.
-fn run(task: &Task<'_>, plan: &Plan, evaluations: &Cell<u64>, watch: &mut Watch<'_>) -> Result<(), Ended> {
+fn run(task: &Task<'_>, plan: &Plan, evaluations: &Cell<u64>, watch: &mut MaximumError<'_>) -> Result<(), Ended> {
     let count = task.steps();
     let samples = if watch.reference.is_some() { REFERENCE_SAMPLES } else { SAMPLES };
     let between = (count / samples).max(1);
@@ -145,7 +145,7 @@ fn uncounted<R>(evaluations: &Cell<u64>, value: impl FnOnce() -> R) -> R {
 }
 
 /// Runs DOP853 to the end, and shows the energy of every step.
-fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut Watch<'_>) -> Result<(), Ended> {
+fn run_rival(task: &Task<'_>, evaluations: &Cell<u64>, watch: &mut MaximumError<'_>) -> Result<(), Ended> {
     let system = watch.system;
     let mut seen = Ok(());
     let mut see = |t: f64, energy: f64| {

@@ -277,7 +277,7 @@ fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::reference::Agreement;
-    use super::super::study::Run;
+    use super::super::study::TimedRun;
     use super::*;
     use vi_core::StepError;
     use vi_runs::rival::Ended;
@@ -286,7 +286,7 @@ mod tests {
     fn findings() -> Findings {
         let point = |error, seconds| Point { error, evaluations: Some(100), seconds, median: 2.0 * seconds };
         let error = StepError::NoForwardStep { t: 1.0, h: 0.1, excess: 0.0, density: -1.0 };
-        let run = |setting, outcome| Run { method: Method::ENERGY, setting, outcome };
+        let run = |setting, outcome| TimedRun { method: Method::ENERGY, setting, outcome };
         Findings {
             until: 10.0,
             agreement: Agreement { composed: 1e-15, h: 0.1, rival: 1e-15 },
@@ -322,7 +322,7 @@ mod tests {
     fn why_nothing_can_be_compared_is_said() {
         let found = findings();
         assert_eq!(found.uncompared(), None);
-        let without = |is_kept: fn(&Run) -> bool| Findings {
+        let without = |is_kept: fn(&TimedRun) -> bool| Findings {
             runs: found.runs.iter().filter(|run| is_kept(run)).cloned().collect(),
             ..found.clone()
         };

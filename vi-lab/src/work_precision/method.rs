@@ -109,7 +109,7 @@ pub(super) struct Task<'a> {
 
 /// Time, coordinates and momenta at the end of a run.
 #[derive(Clone, Debug)]
-pub(super) struct Reached {
+pub(super) struct FinalState {
     /// Time.
     pub(super) t: f64,
     /// Coordinates.
@@ -140,14 +140,14 @@ impl Task<'_> {
     ///
     /// # Errors
     /// The reason why the end was not reached.
-    pub(super) fn reached(&self, system: &dyn System, evaluations: &Cell<u64>) -> Result<Reached, Ended> {
+    pub(super) fn reached(&self, system: &dyn System, evaluations: &Cell<u64>) -> Result<FinalState, Ended> {
         let reached = if let Some(plan) = self.plan() {
             let mut run = system.begin(&plan, evaluations)?;
             self.follow(run.as_mut())?;
-            Reached { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }
+            FinalState { t: run.t(), q: run.q().to_vec(), p: run.p().to_vec() }
         } else {
             let at = system.rival(self.start, self.end, self.setting, evaluations, None)?;
-            Reached { t: at.t, p: system.momentum(&at)?, q: at.q }
+            FinalState { t: at.t, p: system.momentum(&at)?, q: at.q }
         };
         let is_finite = reached.q.iter().chain(&reached.p).all(|entry| entry.is_finite());
         if is_finite { Ok(reached) } else { Err(Ended::NonFinite) }

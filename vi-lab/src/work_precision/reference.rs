@@ -9,7 +9,7 @@
 //! solution
 //! ```
 
-use super::method::{Method, Reached, Task};
+use super::method::{FinalState, Method, Task};
 use core::cell::Cell;
 use vi_runs::plan::PhasePoint;
 use vi_runs::rival::Ended;
@@ -79,7 +79,7 @@ impl<'a> Reference<'a> {
     ///
     /// # Errors
     /// As [`Reference::at`].
-    pub(super) fn error(&self, state: &Reached) -> Result<f64, Ended> {
+    pub(super) fn error(&self, state: &FinalState) -> Result<f64, Ended> {
         let expected = self.at(state.t)?;
         let p = self.system.momentum(&expected)?;
         let error_q = distance(&state.q, &expected.q) / self.largest_q;

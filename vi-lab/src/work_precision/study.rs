@@ -31,7 +31,7 @@ pub(super) struct Findings {
     /// Accuracy of the reference there.
     pub(super) agreement: Agreement,
     /// Every run.
-    pub(super) runs: Vec<Run>,
+    pub(super) runs: Vec<TimedRun>,
     /// Energy errors over the long time.
     pub(super) drifts: Vec<Drift>,
     /// Whether the energy is conserved, so that the long time is long.
@@ -42,7 +42,7 @@ pub(super) struct Findings {
 
 /// One run.
 #[derive(Clone, Debug)]
-pub(super) struct Run {
+pub(super) struct TimedRun {
     /// The method.
     pub(super) method: Method,
     /// Length of its step, or its tolerance.
@@ -122,7 +122,7 @@ pub(super) fn findings(entry: &Entry, quick: bool, progress: &mut Progress) -> R
         for setting in settings(method, until, finest) {
             progress.advance_by(1);
             let task = Task { start: &start, end: until, method, setting };
-            runs.push(Run { method, setting, outcome: untimed(system, &task, &reference) });
+            runs.push(TimedRun { method, setting, outcome: untimed(system, &task, &reference) });
         }
     }
     time(system, &start, until, &mut runs, if quick { 1 } else { ROUNDS }, progress);
@@ -157,7 +157,14 @@ fn untimed(system: &dyn System, task: &Task<'_>, reference: &Reference<'_>) -> R
 }
 
 /// Times every completed run in rounds: a temporary disturbance of the machine then affects all runs alike.
-fn time(system: &dyn System, start: &PhasePoint, end: f64, runs: &mut [Run], rounds: u32, progress: &mut Progress) {
+fn time(
+    system: &dyn System,
+    start: &PhasePoint,
+    end: f64,
+    runs: &mut [TimedRun],
+    rounds: u32,
+    progress: &mut Progress,
+) {
     let mut times = vec![Vec::new(); runs.len()];
     for _ in 0..rounds {
         for (run, times) in runs.iter().zip(&mut times) {

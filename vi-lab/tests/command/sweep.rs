@@ -67,9 +67,9 @@ impl Folder {
     /// A successful sweep of its scene, or of a shard.
     fn sweep(&self, output: &str, shard: &[&str]) -> String {
         let (scene, output) = (self.scene(), self.at(output));
-        let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
+        let (status, diagnostic, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), shard].concat());
         assert_eq!((status, errors.as_str()), (Some(0), ""));
-        said
+        diagnostic
     }
 
     /// Whether the tables of a sweep of `MIXED` equal those of an undivided one.
@@ -93,8 +93,8 @@ impl Folder {
     fn refused(&self, entries: &str, arguments: &[&str]) -> String {
         fs::write(self.scene(), format!("system = \"kepler\"\n{entries}")).expect("a scene");
         let (scene, output) = (self.scene(), self.at("refused.csv"));
-        let (status, said, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), arguments].concat());
-        assert_eq!((status, said.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
+        let (status, diagnostic, errors) = lab(&[["sweep", &scene, "-o", &output].as_slice(), arguments].concat());
+        assert_eq!((status, diagnostic.as_str(), errors.lines().count()), (Some(2), "", 1), "{errors}");
         errors.trim_end().replace(&self.at(""), "").replace("error: ", "")
     }
 }
@@ -152,8 +152,8 @@ samples = 1e15
 #[test]
 fn shards_are_the_whole_byte_for_byte() {
     let folder = Folder::new("shards", MIXED);
-    let said = folder.sweep("whole.csv", &[]);
-    assert!(said.contains("whole.csv: 48 runs, 12 did not reach their end"), "{said}");
+    let diagnostic = folder.sweep("whole.csv", &[]);
+    assert!(diagnostic.contains("whole.csv: 48 runs, 12 did not reach their end"), "{diagnostic}");
     folder.sweep("whole.npy", &[]);
     assert!(!folder.0.join("whole.csv.part").exists(), "its rows stand in tables");
     for count in [1, 2, 7, 100] {
@@ -488,8 +488,8 @@ fn a_chunk_that_was_changed_is_named_and_made_again() {
         fs::write(&path, bad).expect("the chunk is written");
         let expected = (Some(2), format!("error: {part}/7.csv, line {line}: {what}; {remedy}\n"));
         assert_eq!(folder.merge(&[part], "a.csv"), expected);
-        let (status, said, errors) = lab(&["sweep", &folder.scene(), "-o", &folder.at("a.csv")]);
-        assert_eq!((status, errors.replace(&folder.at(""), "")), expected, "{said}");
+        let (status, diagnostic, errors) = lab(&["sweep", &folder.scene(), "-o", &folder.at("a.csv")]);
+        assert_eq!((status, errors.replace(&folder.at(""), "")), expected, "{diagnostic}");
         assert!(!folder.0.join("a.csv").exists() && !folder.has_temporary());
     }
     // Files that are not chunks of this sweep are rejected and rewritten, as are missing ones.
@@ -519,7 +519,7 @@ fn chunks_that_do_not_belong_together_are_refused() {
     let remedy = "remove other.part, and run `vi-lab sweep` again";
     for (parts, message) in [
         (vec![first, second], format!("{second} belongs to another sweep than {first}: {other}")),
-        (vec![first], "runs are missing: chunk 0 of 10 is missing, runs 0 to 0; `vi-lab sweep` computes it".to_owned()),
+        (vec![first], "chunk 0 of 10 is missing, runs 0 to 0; `vi-lab sweep` computes it".to_owned()),
         (
             vec!["other.part"],
             format!("other.part/sweep.json does not describe a sweep of this version of vi-lab; {remedy}"),
@@ -579,7 +579,7 @@ fn wrong_sweeps_are_one_line_and_status_2() {
         (&format!("{over}keep = []\n"), "`keep` is empty; remove it to keep the end of each run"),
         (
             &format!("{over}section = {{ coordinate = \"z\" }}\n"),
-            "the section is of a coordinate that there is not, `z`; there are x, y",
+            "the section names the unknown coordinate `z`; the coordinates are x, y",
         ),
         (
             &format!("{over}section = {{ coordinate = \"x\", period = 1.0 }}\n"),
@@ -617,8 +617,8 @@ fn wrong_sweeps_are_one_line_and_status_2() {
 fn values_that_no_run_can_have_are_recorded() {
     let scene = "system = \"kepler\"\nuntil = 1.0\n[sweep]\nover = [\n    { name = \"h\", values = [0.01, 0.0, -0.01, 1e-300] },\n    { name = \"x\", values = [0.4, 0.0] },\n]\n";
     let folder = Folder::new("values", scene);
-    let said = folder.sweep("values.csv", &[]);
-    assert!(said.contains("8 runs, 7 did not reach their end"), "{said}");
+    let diagnostic = folder.sweep("values.csv", &[]);
+    assert!(diagnostic.contains("8 runs, 7 did not reach their end"), "{diagnostic}");
     let text = folder.text("values.csv");
     let endings: Vec<&str> =
         text.lines().filter(|line| !line.starts_with('#')).skip(1).filter_map(|line| line.split(',').nth(3)).collect();

@@ -24,7 +24,7 @@ const OTHER_SIGN: &str =
     "reverse its sign, as in `c * dot(x)^2 / 2` with a positive `c`; a driving force belongs in `force x = …;`";
 
 /// Correction of an expression without a derivative.
-const OTHERWISE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";
+const NO_DERIVATIVE: &str = "its derivative divides by zero, or takes the logarithm of zero or of a negative number, for every state; rewrite the expression";
 
 /// Why an expression cannot use a declared name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -485,7 +485,7 @@ impl Message {
             Self::Habit(habit) => habit.help(),
             Self::NotDecimal => "write integers and decimals, as in `2`, `0.5` or `1.6e-19`".to_owned(),
             Self::NumberRange => "choose other units".to_owned(),
-            Self::NoDerivative { .. } => OTHERWISE.to_owned(),
+            Self::NoDerivative { .. } => NO_DERIVATIVE.to_owned(),
             Self::CoefficientRange => "choose other units, or smaller exponents".to_owned(),
             Self::TooDeep { .. } => "name parts of it with `let`".to_owned(),
             Self::TooLong { .. } => "write repeated terms with arrays and `sum`".to_owned(),

@@ -14,9 +14,9 @@ fn message(clauses: &str) -> String {
 fn assert_is_refused(clauses: &str) {
     let text = message(clauses);
     let refused = ["the expanded system has more than ", "the system takes more than 56000000 steps of algebra"]
-        .map(|message| said.matches(message).count());
-    assert_eq!(refused.iter().sum::<usize>(), 1, "{clauses:.200}: {said:.200}");
-    assert_eq!(said.matches("compile_error").count(), 1, "{clauses:.200}: {said:.600}");
+        .map(|message| text.matches(message).count());
+    assert_eq!(refused.iter().sum::<usize>(), 1, "{clauses:.200}: {text:.200}");
+    assert_eq!(text.matches("compile_error").count(), 1, "{clauses:.200}: {text:.600}");
 }
 
 /// Consecutive clauses, each made of the previous one.
@@ -77,7 +77,7 @@ fn what_is_large_and_simple_passes() {
         "L = dot(x)^2 + sinh(sinh(sinh(sinh(sinh(sinh(sinh(sinh(sinh(sinh(x))))))))));",
     ] {
         let text = message(&format!("coord x; {clauses}"));
-        assert!(!said.contains("compile_error"), "{clauses}: {said:.200}");
+        assert!(!text.contains("compile_error"), "{clauses}: {text:.200}");
     }
     for clauses in [
         "L = dot(x)^2 + 2^2^2^2^2 * x;",
@@ -89,8 +89,8 @@ fn what_is_large_and_simple_passes() {
         "L = dot(x)^2 + (x / 1e20)^20;",
     ] {
         let tokens = format!("struct System {{ coord x; {clauses} discretize midpoint; }}").parse().expect("tokens");
-        let said = vi_codegen::expand(tokens).to_string();
-        assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{clauses}: {said:.200}");
+        let text = vi_codegen::expand(tokens).to_string();
+        assert!(text.contains("the equations have a coefficient outside the range of `f64`"), "{clauses}: {text:.200}");
     }
 }
 

@@ -308,7 +308,7 @@ error: `y` has a force but is not a coordinate
 /// For a long line the part around the token is shown.
 #[test]
 fn a_long_line_is_shown_in_part() {
-    let said = |names: usize, wrong: &str| {
+    let message = |names: usize, wrong: &str| {
         let terms = " + x".repeat(names);
         let text = format!(
             "lagrangian! {{ struct A {{ coord x; L = dot(x)^2{terms} + {wrong}{terms}; discretize midpoint; }} }}"

@@ -72,6 +72,6 @@ fn a_matrix_that_is_singular_everywhere_is_found() {
         "coord x, y; L = dot(x)^2 / dot(y);",
     ] {
         let text = message(clauses).unwrap_or_else(|| panic!("{clauses} is accepted"));
-        assert!(said.starts_with("the mass matrix ∂²L/∂v² is singular for every state\nhelp: "), "{clauses}: {said}");
+        assert!(text.starts_with("the mass matrix ∂²L/∂v² is singular for every state\nhelp: "), "{clauses}: {text}");
     }
 }

@@ -22,11 +22,11 @@ fn case(body: &str, message: &str) {
     let found = errors(&text);
     let wanted = marked.unwrap_or("System");
     assert_eq!(found.len(), 1, "{text}\n{found:#?}");
-    let (token, said) = &found[0];
-    assert_eq!(token, wanted, "{text}\n{said}");
-    assert!(said.starts_with(message), "{text}\nsays: {said}\nnot:  {message}");
-    assert!(said.contains("\nhelp: "), "{said}");
-    println!("{text}\n    at `{token}`: {said}\n");
+    let (token, diagnostic) = &found[0];
+    assert_eq!(token, wanted, "{text}\n{diagnostic}");
+    assert!(diagnostic.starts_with(message), "{text}\nsays: {diagnostic}\nnot:  {message}");
+    assert!(diagnostic.contains("\nhelp: "), "{diagnostic}");
+    println!("{text}\n    at `{token}`: {diagnostic}\n");
 }
 
 /// One case: a summand of L.
@@ -188,7 +188,7 @@ fn velocities() {
 /// The message names the expression that has a value but no derivative.
 #[test]
 fn derivatives_that_do_not_exist() {
-    for (summand, said) in [
+    for (summand, diagnostic) in [
         (
             "0^dot(x)",
             "`pow(0, dot(x))` has no derivative with respect to `dot(x)`\nhelp: its derivative divides by zero",
@@ -197,7 +197,7 @@ fn derivatives_that_do_not_exist() {
         ("x * (-2)^t", "`pow(-2, t)` has no derivative with respect to `t`"),
         ("asin(x / sqrt(x^2))", "`asin(x/sqrt(x^2))` has no derivative with respect to `x`"),
     ] {
-        case(&format!("coord x; «L» = dot(x)^2 / 2 - {summand}; discretize midpoint;"), said);
+        case(&format!("coord x; «L» = dot(x)^2 / 2 - {summand}; discretize midpoint;"), diagnostic);
     }
     case(
         "coord «x»; L = dot(x)^2 / 2; force x = x + (-1)^dot(x); discretize midpoint;",
@@ -587,7 +587,7 @@ fn what_is_not_supported_is_said() {
 /// Users' attempts, each with its single message and the correction.
 #[test]
 fn each_mistake_is_told_with_what_to_write() {
-    let told = |text: &str, wanted: &str| {
+    let assert_help = |text: &str, wanted: &str| {
         let found = errors(&format!("struct System {{ {text} }}"));
         let messages: Vec<&str> = found.iter().map(|(_, message)| message.as_str()).collect();
         let [message] = messages[..] else { panic!("{text}: {messages:#?}") };
@@ -632,7 +632,7 @@ fn each_mistake_is_told_with_what_to_write() {
         ("mm * x", "declare it with `param`, `const`, `coord`, or an earlier `let`"),
         ("gravity * x", "declare it with `param`, `const`, `coord`, or an earlier `let`"),
     ] {
-        told(
+        assert_help(
             &format!("param m = 1, g = 2; coord x; L = m * dot(x)^2 / 2 - g * x - {written}; discretize midpoint;"),
             wanted,
         );
@@ -651,10 +651,10 @@ fn each_mistake_is_told_with_what_to_write() {
         ("order = 4;", "`integrate(Gauss::<S>, h)`"),
         ("h = 0.01;", "`system.at(t, q, v).integrate(FixedStep, h)`"),
     ] {
-        told(&format!("{written} {REST}"), wanted);
+        assert_help(&format!("{written} {REST}"), wanted);
     }
     for rule in ["Gauss", "gauss(4)", "order = 4", "rk4"] {
-        told(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`integrate(Gauss::<S>, h)`");
+        assert_help(&format!("coord x; L = dot(x)^2 / 2; discretize {rule};"), "`integrate(Gauss::<S>, h)`");
     }
 }
 
@@ -673,9 +673,9 @@ fn a_missing_semicolon_is_told_where_it_belongs() {
     }
     // The next clause is parsed.
     let found = errors("struct System { coord x L = 1 +; param a = 1 discretize some thing; }");
-    let said: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
+    let diagnostic: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
     assert_eq!(
-        said,
+        diagnostic,
         [
             "`;` is missing after `x`",
             "expected a number, a name or `(`",
@@ -910,9 +910,10 @@ fn rules() {
     assert!(missing[0].1.starts_with("the rule has no line `gd_plus`\nhelp: the system has a force"), "{missing:?}");
     // The work of the force follows from the use of `L` in `Ld`: none.
     // A wrong `Ld` says nothing about the others.
-    for (wrong, said) in [("Ld = «y» * L(t0, q0, q1);", "unknown name `y`"), ("Ld = «q0»;", "a number is needed here")]
+    for (wrong, diagnostic) in
+        [("Ld = «y» * L(t0, q0, q1);", "unknown name `y`"), ("Ld = «q0»;", "a number is needed here")]
     {
-        case(&system(wrong), said);
+        case(&system(wrong), diagnostic);
     }
     let missing = errors(&format!("struct System {{ {} }}", system("Ld = (q1 - q0) * (q1 - q0) / (2 * h);")));
     assert_eq!(missing.len(), 4, "{missing:?}");
@@ -957,9 +958,9 @@ fn checks() {
     case(&system("check { x = 1 «{»} h = 1; }"), "expected an operator, `,` or `;`");
     case(&system("check «;»"), "expected `{` and a place");
     let two = errors(&format!("struct System {{ {} }}", system("check { y = 1; z = 2; }")));
-    let said: Vec<&str> = two.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
+    let diagnostic: Vec<&str> = two.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
     let nor = |name: &str| format!("`{name}` is neither a coordinate nor a parameter");
-    assert_eq!(said, ["the check has no step".to_owned(), nor("y"), nor("z")]);
+    assert_eq!(diagnostic, ["the check has no step".to_owned(), nor("y"), nor("z")]);
 }
 
 /// Parameters beside coordinates.
@@ -998,7 +999,7 @@ fn several_mistakes_are_reported_at_once() {
     let found = errors("struct System { parm a = 1; coord x L = 1; force y 2; }");
     assert_eq!(found.len(), 3, "{found:?}");
     let found = errors("struct System { param t = 1; coord x; L = a * dot(b)^2; force y = c; discretize some; }");
-    let said: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
+    let diagnostic: Vec<&str> = found.iter().map(|(_, message)| message.lines().next().unwrap_or_default()).collect();
     let wanted = [
         "the name `t` is reserved",
         "unknown name `a`",
@@ -1007,7 +1008,7 @@ fn several_mistakes_are_reported_at_once() {
         "`y` has a force but is not a coordinate",
         "unknown rule `some`",
     ];
-    assert_eq!(said, wanted);
+    assert_eq!(diagnostic, wanted);
 }
 
 #[test]
@@ -1047,11 +1048,11 @@ fn what_builds_on_a_mistake_is_none() {
 
 #[test]
 fn what_surrounds_a_system() {
-    let said = |text: &str| errors(text).into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; ");
-    assert!(said("").starts_with("expected `struct Name { … }`"), "{}", said(""));
-    assert!(said("enum A {}").starts_with("expected `struct Name { … }`"));
-    assert!(said("struct A;").starts_with("expected `{` and the clauses"));
-    assert!(said(&format!("struct A {{ {REST} }} struct B;")).starts_with("unexpected text after the system"));
+    let diagnostic = |text: &str| errors(text).into_iter().map(|(_, message)| message).collect::<Vec<_>>().join("; ");
+    assert!(diagnostic("").starts_with("expected `struct Name { … }`"), "{}", diagnostic(""));
+    assert!(diagnostic("enum A {}").starts_with("expected `struct Name { … }`"));
+    assert!(diagnostic("struct A;").starts_with("expected `{` and the clauses"));
+    assert!(diagnostic(&format!("struct A {{ {REST} }} struct B;")).starts_with("unexpected text after the system"));
 }
 
 #[test]
@@ -1110,15 +1111,15 @@ fn delimiters_around_a_clause_are_bounded_too() {
 
 #[test]
 fn names_and_attributes_of_a_struct() {
-    let said = |text: &str| errors(text);
+    let diagnostic = |text: &str| errors(text);
     for name in ["T", "W", "f64", "bool", "str", "usize"] {
-        let found = said(&format!("struct {name} {{ {REST} }}"));
+        let found = diagnostic(&format!("struct {name} {{ {REST} }}"));
         let wanted = format!("the name `{name}` is reserved\nhelp: generated code uses this type; choose another name");
         assert_eq!(found, [(name.to_owned(), wanted)]);
     }
     // Reserved words of one edition or another.
-    assert!(said(&format!("struct gen {{ {REST} }}"))[0].1.starts_with("the name `gen` is reserved"));
-    assert!(said(&format!("struct r#match {{ {REST} }}"))[0].1.starts_with("the name `r#match` is reserved"));
+    assert!(diagnostic(&format!("struct gen {{ {REST} }}"))[0].1.starts_with("the name `gen` is reserved"));
+    assert!(diagnostic(&format!("struct r#match {{ {REST} }}"))[0].1.starts_with("the name `r#match` is reserved"));
     for word in ["type", "async", "dyn", "_"] {
         let text = format!("param «{word}» = 1.0; coord x; L = dot(x)^2; discretize midpoint;");
         case(&text, &format!("the name `{word}` is reserved\nhelp: choose another name"));
@@ -1127,7 +1128,7 @@ fn names_and_attributes_of_a_struct() {
     case(&format!("param «r#gen» = 1; {REST}"), "the name `r#gen` is reserved");
 
     for derived in ["Clone", "Copy", "Debug", "Default", "PartialEq"] {
-        let found = said(&format!("#[derive(PartialOrd, core::any::{derived})] struct System {{ {REST} }}"));
+        let found = diagnostic(&format!("#[derive(PartialOrd, core::any::{derived})] struct System {{ {REST} }}"));
         let wanted =
             format!("every system implements `{derived}`\nhelp: remove `{derived}`; other traits may be derived");
         assert_eq!(found, [(derived.to_owned(), wanted)]);
@@ -1136,7 +1137,7 @@ fn names_and_attributes_of_a_struct() {
         ["#[derive(PartialOrd, Eq)] #[derive(Hash)]", "#[cfg(test)] #[allow(x)] #[doc = \"x\"]", "/// x\n"]
     {
         assert_eq!(
-            said(&format!(
+            diagnostic(&format!(
                 "{attributes} struct System {{ #[doc(alias = \"a\")] #[allow(b)] param a = 1; coord x; L = a * dot(x)^2; discretize midpoint; }}"
             )),
             []
@@ -1228,8 +1229,8 @@ fn numbers_of_any_length_are_read() {
 #[test]
 fn coefficients_are_numbers() {
     let tokens = "struct System { coord x; L = dot(x)^1e308; discretize midpoint; }".parse().expect("tokens");
-    let said = vi_codegen::expand(tokens).to_string();
-    assert!(said.contains("the equations have a coefficient outside the range of `f64`"), "{said}");
+    let diagnostic = vi_codegen::expand(tokens).to_string();
+    assert!(diagnostic.contains("the equations have a coefficient outside the range of `f64`"), "{diagnostic}");
 }
 
 /// Numbers of many digits are short in messages and in documentation.
@@ -1240,8 +1241,8 @@ fn long_numbers_are_short_in_words() {
         "`dot(1e150)`: `1e150` does not change with time",
     );
     let text = "struct System { param k = 1e150, c = 0.1e-200; coord x; L = dot(x)^2 - k * 1e150 * x^2 - c * x^4; discretize midpoint; }";
-    let said = vi_codegen::expand(text.parse().expect("tokens")).to_string();
-    let words: Vec<&str> = said.split('"').skip(1).step_by(2).collect();
+    let diagnostic = vi_codegen::expand(text.parse().expect("tokens")).to_string();
+    let words: Vec<&str> = diagnostic.split('"').skip(1).step_by(2).collect();
     for part in ["Parameter `k`, 1e150 by default.", "Parameter `c`, 1e-201 by default.", "1e150*k*x^2"] {
         assert!(words.iter().any(|text| text.contains(part)), "{part}: {words:?}");
     }

@@ -34,7 +34,7 @@ pub(super) struct Area {
 }
 
 /// The frame of a chart: its axes, its plot area, its margins.
-struct Place {
+struct Frame {
     x: Ruler,
     y: Ruler,
     area: Area,
@@ -67,7 +67,7 @@ impl Chart {
         let y = self.y.ruler(placed.iter().flat_map(ordinates));
         let area = self.area(&x, &y);
         let drawn: Vec<Drawn<'_>> = placed.into_iter().map(|drawn| thinned(&drawn, &x, &y, area)).collect();
-        let place = Place { x, y, area, margins: MARGINS };
+        let place = Frame { x, y, area, margins: MARGINS };
         Figure { name: self.name, svg: self.svg(&drawn, &place, map), csv: self.csv(&drawn) }
     }
 
@@ -83,7 +83,7 @@ impl Chart {
             y = y.widened_to(unit * area.height);
         }
         let drawn: Vec<Drawn<'_>> = placed.iter().map(|drawn| thinned(drawn, &x, &y, area)).collect();
-        self.svg(&drawn, &Place { x, y, area, margins }, None)
+        self.svg(&drawn, &Frame { x, y, area, margins }, None)
     }
 
     /// The points inside the axes.
@@ -117,8 +117,8 @@ impl Chart {
         Area { width: scale * width, height: scale * height }
     }
 
-    fn svg(&self, drawn: &[Drawn<'_>], place: &Place, map: Option<Vec<LegendEntry>>) -> String {
-        let Place { x, y, area, margins } = place;
+    fn svg(&self, drawn: &[Drawn<'_>], place: &Frame, map: Option<Vec<LegendEntry>>) -> String {
+        let Frame { x, y, area, margins } = place;
         let grid = map.is_none();
         let series = drawn.iter().filter_map(|drawn| legend_entry(drawn.series));
         let legend = map.into_iter().flatten().chain(series).collect();

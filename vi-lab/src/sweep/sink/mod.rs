@@ -8,7 +8,7 @@
 mod parquet;
 
 use super::chunks::Description;
-use super::schema::{Kind, Schema};
+use super::schema::{ColumnKind, Schema};
 use crate::npy;
 use crate::place::{self, Temporary, beside};
 use serde_json::{Map, Value, json};
@@ -31,12 +31,12 @@ pub(super) struct Target<'a> {
     path: PathBuf,
     description: &'a Description,
     schema: &'a Schema,
-    sink: Sink,
+    sink: TableSink,
     temporary: Temporary,
 }
 
 /// The file of a format.
-enum Sink {
+enum TableSink {
     Csv(BufWriter<File>),
     /// With the number of rows so far.
     Npy(BufWriter<File>, u64),
@@ -92,15 +92,15 @@ impl<'a> Target<'a> {
                         writeln!(buffer, "# {name}: {fact}")?;
                     }
                     writeln!(buffer, "# runs: {}\n{}", description.items, schema.heading())?;
-                    Sink::Csv(buffer)
+                    TableSink::Csv(buffer)
                 }
                 Format::Npy => {
                     // The number of rows is known at the end. Every header has the same length.
                     buffer.write_all(&npy::head(0, schema.columns.len()))?;
-                    Sink::Npy(buffer, 0)
+                    TableSink::Npy(buffer, 0)
                 }
                 #[cfg(feature = "parquet")]
-                Format::Parquet => Sink::Parquet(Box::new(parquet::Parquet::begin(file, description, schema)?)),
+                Format::Parquet => TableSink::Parquet(Box::new(parquet::Parquet::begin(file, description, schema)?)),
             };
             Ok((temporary, sink))
         });
@@ -114,17 +114,17 @@ impl<'a> Target<'a> {
     /// [`Failure::File`] if it cannot be written.
     pub(super) fn write(&mut self, row: &[f64]) -> Result<(), Failure> {
         let written = match &mut self.sink {
-            Sink::Csv(file) => {
+            TableSink::Csv(file) => {
                 let mut text = String::new();
                 self.schema.write(row, &mut text);
                 file.write_all(text.as_bytes())
             }
-            Sink::Npy(file, rows) => {
+            TableSink::Npy(file, rows) => {
                 *rows += 1;
                 row.iter().try_for_each(|number| file.write_all(&number.to_le_bytes()))
             }
             #[cfg(feature = "parquet")]
-            Sink::Parquet(file) => file.write(row),
+            TableSink::Parquet(file) => file.write(row),
         };
         written.map_err(|error| Failure::file(&self.path, error))
     }
@@ -137,8 +137,8 @@ impl<'a> Target<'a> {
         let Self { path, description, schema, sink, temporary } = self;
         let finish = || -> io::Result<()> {
             let file = match sink {
-                Sink::Csv(file) => file.into_inner()?,
-                Sink::Npy(file, rows) => {
+                TableSink::Csv(file) => file.into_inner()?,
+                TableSink::Npy(file, rows) => {
                     let mut file = file.into_inner()?;
                     file.rewind()?;
                     file.write_all(&npy::head(rows, schema.columns.len()))?;
@@ -146,7 +146,7 @@ impl<'a> Target<'a> {
                     file
                 }
                 #[cfg(feature = "parquet")]
-                Sink::Parquet(file) => file.finish()?,
+                TableSink::Parquet(file) => file.finish()?,
             };
             file.sync_all()
         };
@@ -163,7 +163,7 @@ fn legend(description: &Description, schema: &Schema) -> String {
     let columns: Vec<&str> = schema.columns.iter().map(|column| column.name.as_str()).collect();
     let mut words = Map::new();
     for column in &schema.columns {
-        if let Kind::Words(list) = &column.kind {
+        if let ColumnKind::Words(list) = &column.kind {
             words.insert(column.name.clone(), json!(list));
         }
     }

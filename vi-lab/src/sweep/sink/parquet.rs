@@ -1,7 +1,7 @@
 //! A table as Parquet: numbers as doubles, counts as integers, words as text; the facts are file metadata.
 
 use super::super::chunks::Description;
-use super::super::schema::{Column, Kind, Schema, word};
+use super::super::schema::{Column, ColumnKind, Schema, word};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -42,15 +42,15 @@ impl Parquet {
             let numbers = self.rows.iter().skip(index).step_by(self.columns.len()).copied();
             let Some(mut writer) = group.next_column()? else { break };
             match &column.kind {
-                Kind::Number => {
+                ColumnKind::Number => {
                     writer.typed::<DoubleType>().write_batch(&numbers.collect::<Vec<_>>(), None, None)?;
                 }
                 #[allow(clippy::cast_possible_truncation)] // counts below 2^53
-                Kind::Count => {
+                ColumnKind::Count => {
                     let counts: Vec<i64> = numbers.map(|number| number as i64).collect();
                     writer.typed::<Int64Type>().write_batch(&counts, None, None)?;
                 }
-                Kind::Words(words) => {
+                ColumnKind::Words(words) => {
                     let texts: Vec<ByteArray> = numbers.map(|number| ByteArray::from(word(words, number))).collect();
                     writer.typed::<ByteArrayType>().write_batch(&texts, None, None)?;
                 }
@@ -88,9 +88,9 @@ impl Parquet {
 fn message_type(schema: &Schema) -> Result<TypePtr, ParquetError> {
     let field = |column: &Column| {
         let (physical, logical) = match column.kind {
-            Kind::Number => (Physical::DOUBLE, None),
-            Kind::Count => (Physical::INT64, None),
-            Kind::Words(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            ColumnKind::Number => (Physical::DOUBLE, None),
+            ColumnKind::Count => (Physical::INT64, None),
+            ColumnKind::Words(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
         };
         let builder = Type::primitive_type_builder(&column.name, physical);
         builder.with_repetition(Repetition::REQUIRED).with_logical_type(logical).build().map(Arc::new)

@@ -15,7 +15,7 @@ pub mod system;
 
 pub use continuous::{Continuous, PointDerivatives, TimeScale};
 pub use fields::Fields;
-pub use slots::Slots;
+pub use slots::SlotDerivatives;
 pub use step::Equations;
 
 use crate::model::Model;
@@ -39,7 +39,7 @@ pub struct ByRule {
     /// The built-in rule that equals the system's rule, whether named or written out.
     pub rule: Option<&'static NamedRule>,
     /// L_d, its slot derivatives, discrete forces and powers.
-    pub slots: Slots,
+    pub slots: SlotDerivatives,
     /// The equations of a step in the unknowns `(v, h)`.
     pub equations: Equations,
 }

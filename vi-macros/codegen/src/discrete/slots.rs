@@ -17,7 +17,7 @@ use crate::symbol::Symbol;
 use vi_expr::{Expr, Pool, TooLarge};
 
 /// The discrete system in its slots.
-pub struct Slots {
+pub struct SlotDerivatives {
     /// Where L and f are evaluated, in the slots t0, q0, t1, q1 and h.
     pub points: Vec<Point>,
     /// L_d.
@@ -40,7 +40,7 @@ pub(super) fn slots(
     fields: &mut Fields,
     model: &Model,
     rule: &Rule,
-) -> Result<Slots, TooLarge> {
+) -> Result<SlotDerivatives, TooLarge> {
     let dimension = model.dimension();
     let arguments = Arguments::of(pool, &rule.points);
     let mut derivative = |pool: &mut Pool<Symbol>, slot: Symbol| {
@@ -65,5 +65,5 @@ pub(super) fn slots(
     let gd_minus = inline(pool, gd_minus)?;
     let gd_plus = inline(pool, gd_plus)?;
     let forces = DiscreteForces { fd_minus, fd_plus, gd_minus, gd_plus };
-    Ok(Slots { points: rule.points.clone(), ld, d1_ld, d2_ld, d3_ld, d4_ld, forces })
+    Ok(SlotDerivatives { points: rule.points.clone(), ld, d1_ld, d2_ld, d3_ld, d4_ld, forces })
 }

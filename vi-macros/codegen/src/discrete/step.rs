@@ -14,7 +14,7 @@
 //! q0, v and h.
 
 use super::fields::{Arguments, Changes, Fields, Variables, changes};
-use super::slots::Slots;
+use super::slots::SlotDerivatives;
 use crate::limits::bounded;
 use crate::model::Point;
 use crate::symbol::{Symbol, Variable};
@@ -62,7 +62,11 @@ pub struct Equations {
 }
 
 /// Derives the equations of a step.
-pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Slots) -> Result<Equations, TooLarge> {
+pub(super) fn equations(
+    pool: &mut Pool<Symbol>,
+    fields: &mut Fields,
+    slots: &SlotDerivatives,
+) -> Result<Equations, TooLarge> {
     let dimension = slots.d2_ld.len();
     let points: Vec<Point> = slots.points.iter().map(|point| at_node(pool, point)).collect();
     let velocities: Vec<Expr> = (0..dimension).map(|i| pool.symbol(Symbol::StepVelocity(i))).collect();
@@ -106,9 +110,10 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
     let in_rows_of = |expr: &Expr| Row::new(pool, fields, *expr, points.len());
     let increments: Vec<Row> = momentum_increment.iter().chain([&energy_increment]).map(in_rows_of).collect();
     let mut gain = |pool: &mut Pool<Symbol>, by: Symbol| by_unknown(pool, fields, &arguments, &increments, &by);
-    let gain_by_coordinates = (0..dimension).map(|j| gain(pool, Symbol::Q0(j))).collect::<Result<Vec<Column>, _>>()?;
+    let gain_by_coordinates =
+        (0..dimension).map(|j| gain(pool, Symbol::Q0(j))).collect::<Result<Vec<DerivativeColumn>, _>>()?;
     let gain_by_velocities =
-        (0..dimension).map(|j| gain(pool, Symbol::StepVelocity(j))).collect::<Result<Vec<Column>, _>>()?;
+        (0..dimension).map(|j| gain(pool, Symbol::StepVelocity(j))).collect::<Result<Vec<DerivativeColumn>, _>>()?;
     let gain_by_step = gain(pool, Symbol::Step)?;
 
     Ok(Equations {
@@ -134,7 +139,7 @@ pub(super) fn equations(pool: &mut Pool<Symbol>, fields: &mut Fields, slots: &Sl
 }
 
 /// Transposes the momentum part of the columns of a matrix.
-fn in_rows(columns: &[Column]) -> Vec<Vec<Expr>> {
+fn in_rows(columns: &[DerivativeColumn]) -> Vec<Vec<Expr>> {
     (0..columns.len()).map(|row| columns.iter().map(|column| column.momentum[row]).collect()).collect()
 }
 
@@ -181,7 +186,7 @@ fn at_node(pool: &mut Pool<Symbol>, point: &Point) -> Point {
 }
 
 /// p1 − p0, expanded.
-fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr>, TooLarge> {
+fn momentum_increment(pool: &mut Pool<Symbol>, slots: &SlotDerivatives) -> Result<Vec<Expr>, TooLarge> {
     let gain = |i: usize| [slots.d2_ld[i], slots.d4_ld[i], slots.forces.fd_minus[i], slots.forces.fd_plus[i]];
     (0..slots.d2_ld.len())
         .map(|i| {
@@ -192,7 +197,7 @@ fn momentum_increment(pool: &mut Pool<Symbol>, slots: &Slots) -> Result<Vec<Expr
 }
 
 /// Derivatives of the momentum rows and of one energy row with respect to one variable.
-struct Column {
+struct DerivativeColumn {
     momentum: Vec<Expr>,
     energy: Expr,
 }
@@ -228,7 +233,7 @@ fn by_unknown(
     arguments: &[Arguments],
     rows: &[Row],
     unknown: &Symbol,
-) -> Result<Column, TooLarge> {
+) -> Result<DerivativeColumn, TooLarge> {
     bounded(pool)?;
     let direct = |pool: &mut Pool<Symbol>, symbol: &Symbol| {
         if symbol == unknown { pool.one() } else { pool.zero() }
@@ -241,7 +246,7 @@ fn by_unknown(
         momentum.push(pool.expand(slope)?);
     }
     let energy = momentum.pop().unwrap_or(pool.zero());
-    Ok(Column { momentum, energy })
+    Ok(DerivativeColumn { momentum, energy })
 }
 
 /// `row − v·column`, expanded.

@@ -6,7 +6,7 @@ use super::continuous::{Continuous, TimeScale};
 use super::fields::Fields;
 use super::forces::discrete_forces;
 use super::interval::in_step;
-use super::slots::Slots;
+use super::slots::SlotDerivatives;
 use super::{ByRule, DiscreteSystem, continuous, slots, step};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
@@ -111,7 +111,7 @@ fn is_same_rule(
 }
 
 /// Reports an L_d that does not depend on one end of its interval: it defines no equations of a step.
-fn check_slots_used(pool: &Pool<Symbol>, rule: &Rule, slots: &Slots) -> Result<()> {
+fn check_slots_used(pool: &Pool<Symbol>, rule: &Rule, slots: &SlotDerivatives) -> Result<()> {
     let none = |derivatives: &[Expr]| derivatives.iter().all(|derivative| pool.is_zero(*derivative));
     let each: [(&'static str, &[Expr]); 4] =
         [("t0", &[slots.d1_ld]), ("q0", &slots.d2_ld), ("t1", &[slots.d3_ld]), ("q1", &slots.d4_ld)];

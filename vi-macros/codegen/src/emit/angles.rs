@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use vi_expr::Function as Elementary;
 
 /// Maximum number of angles in a group: the `f64` lanes of a 256-bit register, the widest of common processors.
-const TOGETHER: usize = 4;
+const GROUP: usize = 4;
 
 /// The groups of angles of a function.
 #[derive(Default)]
@@ -36,7 +36,7 @@ impl Angles {
             }
         }
         let groups: Vec<Vec<OperationId>> =
-            angles.chunks(TOGETHER).filter(|group| group.len() > 1).map(<[OperationId]>::to_vec).collect();
+            angles.chunks(GROUP).filter(|group| group.len() > 1).map(<[OperationId]>::to_vec).collect();
         let of = groups.iter().zip(0..).flat_map(|(group, number)| group.iter().map(move |angle| (*angle, number)));
         Self { of: of.collect(), groups }
     }

@@ -5,12 +5,12 @@
 //! over the coordinates ([`Loops`]). If it is still too long, all results get names and [`pieces`] compute them.
 
 use super::angles::Angles;
-use super::entries::Entry;
+use super::entries::ResultEntry;
 use super::folds::FoldText;
 use super::formula::{Formula, LINE};
-use super::loops::{Loops, Member, Writing as Loop, Written};
+use super::loops::{LoopContext, Loops, Member, PrintedLoops};
 use super::names::Names;
-use super::pieces::{Statement, Writing, pieces};
+use super::pieces::{PieceContext, Statement, pieces};
 use crate::model::Model;
 use crate::program::{Function, Operation, OperationId, Results};
 use crate::symbol::{Symbol, Variable};
@@ -24,7 +24,7 @@ pub(super) struct Body {
     /// The statements before the results.
     pub(super) statements: TokenStream,
     /// The results.
-    pub(super) results: Results<Entry>,
+    pub(super) results: Results<ResultEntry>,
     /// Names of the input components that the body reads.
     pub(super) inputs: BTreeMap<Symbol, Ident>,
     /// Names of the vectors that the body reads as a whole, keyed by component 0.
@@ -133,7 +133,8 @@ impl<'a> Printer<'a> {
         }
         let before = self.statements(None, usize::MAX);
         let (vectors, singles) = (&self.vectors, &self.written);
-        let Written { statements, members, folds } = loops.write(Loop { vectors, singles, names: &mut self.names });
+        let PrintedLoops { statements, members, folds } =
+            loops.write(LoopContext { vectors, singles, names: &mut self.names });
         self.statements.clear();
         self.written.extend(members.iter().map(|(id, member)| (*id, member.array.entry(None, member.place))));
         (self.members, self.folds) = (members, folds);
@@ -300,7 +301,7 @@ impl Printer<'_> {
             self.inputs.keys().filter_map(|symbol| operations.find(&Operation::Input(symbol.clone()))).collect();
         let results = self.function.results.entries().copied().collect();
         let (system, function) = (&self.model.name, self.function.id.name());
-        let writing = Writing { inputs, results, system, function, prelude, named: &self.named };
+        let writing = PieceContext { inputs, results, system, function, prelude, named: &self.named };
         let pieces = pieces(&self.statements, limit, &writing, &mut self.names);
         self.written.extend(pieces.results.into_iter().map(|(id, place)| (id, Formula::atom(place, 0))));
         pieces.statements
@@ -313,9 +314,9 @@ impl Printer<'_> {
         })
     }
 
-    fn result(&self, id: OperationId) -> Entry {
+    fn result(&self, id: OperationId) -> ResultEntry {
         let (formula, member) = (self.operand(id), self.members.get(&id).cloned());
-        Entry { id, formula, member, zero: self.function.operations.as_constant(id) == Some(0.0) }
+        ResultEntry { id, formula, member, zero: self.function.operations.as_constant(id) == Some(0.0) }
     }
 }
 

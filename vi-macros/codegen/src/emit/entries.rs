@@ -24,7 +24,7 @@ use std::ops::Range;
 const LEAST: usize = 8;
 
 /// One result.
-pub(super) struct Entry {
+pub(super) struct ResultEntry {
     pub(super) id: OperationId,
     pub(super) formula: Formula,
     /// Its position in the array of a loop.
@@ -33,7 +33,7 @@ pub(super) struct Entry {
     pub(super) zero: bool,
 }
 
-impl Entry {
+impl ResultEntry {
     /// The loop counter for the arrays that contain such results.
     pub(super) fn counter(&self) -> Option<&Ident> {
         self.member.as_ref().map(|member| &member.counter)
@@ -57,7 +57,7 @@ impl Entry {
     }
 }
 
-impl ToTokens for Entry {
+impl ToTokens for ResultEntry {
     fn to_tokens(&self, tokens: &mut TokenStream) {
         self.formula.tokens().to_tokens(tokens);
     }
@@ -65,10 +65,10 @@ impl ToTokens for Entry {
 
 /// A part of a row: a result, or zero.
 #[derive(Clone, Copy)]
-pub(super) struct Part<'a>(Option<&'a Entry>);
+pub(super) struct Part<'a>(Option<&'a ResultEntry>);
 
-impl<'a> From<Option<&'a Entry>> for Part<'a> {
-    fn from(entry: Option<&'a Entry>) -> Self {
+impl<'a> From<Option<&'a ResultEntry>> for Part<'a> {
+    fn from(entry: Option<&'a ResultEntry>) -> Self {
         Self(entry)
     }
 }
@@ -109,7 +109,7 @@ pub(super) fn array(
 ) -> TokenStream {
     let counter = rows.iter().flatten().find_map(|part| part.0?.counter());
     let runs = if counter.is_some() { runs(rows) } else { Vec::new() };
-    let Some(counter) = counter.filter(|_| runs.iter().any(Run::is_loop)) else {
+    let Some(counter) = counter.filter(|_| runs.iter().any(RowBlock::is_loop)) else {
         let rows = rows.iter().map(|row| form(&texts(row)));
         return quote!([#(#rows),*]);
     };
@@ -133,21 +133,21 @@ fn texts(row: &[Part]) -> Vec<TokenStream> {
 }
 
 /// Consecutive rows.
-struct Run {
+struct RowBlock {
     rows: Range<usize>,
     /// Whether each part advances from row to row.
     moves: Vec<bool>,
 }
 
-impl Run {
+impl RowBlock {
     fn is_loop(&self) -> bool {
         self.rows.len() >= LEAST
     }
 }
 
 /// Splits rows into runs whose parts advance alike.
-fn runs(rows: &[Vec<Part>]) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
+fn runs(rows: &[Vec<Part>]) -> Vec<RowBlock> {
+    let mut runs: Vec<RowBlock> = Vec::new();
     for (place, row) in rows.iter().enumerate() {
         let above = place.checked_sub(1).map(|above| &rows[above]).filter(|above| above.len() == row.len());
         let moves = above.and_then(|above| row.iter().zip(above).map(|(part, above)| part.follows(*above)).collect());
@@ -155,7 +155,7 @@ fn runs(rows: &[Vec<Part>]) -> Vec<Run> {
             (Some(run), Some(moves)) if run.rows.len() == 1 || run.moves == moves => {
                 (run.rows.end, run.moves) = (place + 1, moves);
             }
-            _ => runs.push(Run { rows: place..place + 1, moves: Vec::new() }),
+            _ => runs.push(RowBlock { rows: place..place + 1, moves: Vec::new() }),
         }
     }
     runs

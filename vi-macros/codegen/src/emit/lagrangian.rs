@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::body::{Body, VelocityFrom, body, state_parts};
-use super::entries::{self, Entry};
+use super::entries::{self, ResultEntry};
 use super::matrix::matrix;
 use crate::model::{Coordinate, Parameter};
 use crate::program::{FunctionId, Output};
@@ -95,7 +95,7 @@ impl Source<'_> {
 }
 
 /// The vector of one group of results; inference supplies its type.
-pub(super) fn vector_of(entries: &[Entry]) -> TokenStream {
+pub(super) fn vector_of(entries: &[ResultEntry]) -> TokenStream {
     let entries = entries::of(entries.iter().map(|entry| Some(entry).into()));
     quote!(::vi_core::SVector::from(#entries))
 }

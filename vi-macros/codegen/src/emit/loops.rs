@@ -41,7 +41,7 @@ pub(super) struct Loops<'a> {
 }
 
 /// Context for printing loops.
-pub(super) struct Writing<'a, 'n> {
+pub(super) struct LoopContext<'a, 'n> {
     /// Names of the input vectors, keyed by component 0.
     pub(super) vectors: &'a BTreeMap<Symbol, Ident>,
     /// Formulas of operations outside families.
@@ -50,7 +50,7 @@ pub(super) struct Writing<'a, 'n> {
 }
 
 /// The printed loops: their statements, and the positions of members read elsewhere.
-pub(super) struct Written {
+pub(super) struct PrintedLoops {
     pub(super) statements: TokenStream,
     pub(super) members: BTreeMap<OperationId, Member>,
     /// Folds over members, keyed by their last operation: the initial value, and the text without it.
@@ -106,7 +106,7 @@ impl<'a> Loops<'a> {
     }
 
     /// Prints the loops.
-    pub(super) fn write(&self, writing: Writing) -> Written {
+    pub(super) fn write(&self, writing: LoopContext) -> PrintedLoops {
         let counter = writing.names.counter();
         let mut lines = Lines { loops: self, writing, counter, arrays: BTreeMap::new() };
         let statements = (0..self.families.members.len()).map(|family| lines.line(family)).collect();
@@ -121,7 +121,7 @@ impl<'a> Loops<'a> {
             Some((*id, (fold.start, fold.text(counter, &term))))
         };
         let folds = self.folds.iter().filter_map(fold).collect();
-        Written { statements, members: arrays.iter().flat_map(member).collect(), folds }
+        PrintedLoops { statements, members: arrays.iter().flat_map(member).collect(), folds }
     }
 
     /// The family of the cosines for a family of sines, and vice versa.
@@ -164,7 +164,7 @@ impl Array {
 /// The lines of the loops.
 struct Lines<'a, 'n> {
     loops: &'a Loops<'a>,
-    writing: Writing<'a, 'n>,
+    writing: LoopContext<'a, 'n>,
     counter: Ident,
     arrays: BTreeMap<usize, Array>,
 }

@@ -1,13 +1,13 @@
 //! Matrices in the form of their zero pattern, as `vi_core::linear` solves them.
 
-use super::entries::{self, Entry, Part, array};
+use super::entries::{self, Part, ResultEntry, array};
 use super::formula::zero;
 use crate::findings::{CLOSED, Pattern};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 /// Type and value of the matrix with these rows of results.
-pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
+pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<ResultEntry>]) -> (TokenStream, TokenStream) {
     let size = Literal::usize_unsuffixed(rows.len());
     match pattern {
         Pattern::Diagonal => banded(rows, 0),
@@ -24,11 +24,11 @@ pub(super) fn matrix(pattern: &Pattern, symmetric: bool, rows: &[Vec<Entry>]) ->
 }
 
 /// The entry at this row and column; zero outside the matrix.
-fn entry(rows: &[Vec<Entry>], row: usize, column: Option<usize>) -> Part<'_> {
+fn entry(rows: &[Vec<ResultEntry>], row: usize, column: Option<usize>) -> Part<'_> {
     column.and_then(|column| rows.get(row)?.get(column)).into()
 }
 
-fn tridiagonal(rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
+fn tridiagonal(rows: &[Vec<ResultEntry>]) -> (TokenStream, TokenStream) {
     let size = Literal::usize_unsuffixed(rows.len());
     let diagonal =
         |column: &dyn Fn(usize) -> Option<usize>| entries::of((0..rows.len()).map(|row| entry(rows, row, column(row))));
@@ -40,7 +40,7 @@ fn tridiagonal(rows: &[Vec<Entry>]) -> (TokenStream, TokenStream) {
     )
 }
 
-fn banded(rows: &[Vec<Entry>], width: usize) -> (TokenStream, TokenStream) {
+fn banded(rows: &[Vec<ResultEntry>], width: usize) -> (TokenStream, TokenStream) {
     let places = 2 * width + 1;
     let (size, diagonals) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(places));
     let band = |row: usize| (0..places).map(|place| entry(rows, row, (row + place).checked_sub(width))).collect();
@@ -50,7 +50,7 @@ fn banded(rows: &[Vec<Entry>], width: usize) -> (TokenStream, TokenStream) {
     (quote!(::vi_core::linear::Banded<#size, #diagonals, T>), quote!(::vi_core::linear::Banded { rows: #bands }))
 }
 
-fn in_blocks(rows: &[Vec<Entry>], blocks: &[Vec<usize>]) -> (TokenStream, TokenStream) {
+fn in_blocks(rows: &[Vec<ResultEntry>], blocks: &[Vec<usize>]) -> (TokenStream, TokenStream) {
     let largest = blocks.iter().map(Vec::len).max().unwrap_or(1);
     let (size, width) = (Literal::usize_unsuffixed(rows.len()), Literal::usize_unsuffixed(largest));
     let block_rows = (0..rows.len()).map(|row| {
@@ -69,7 +69,7 @@ fn in_blocks(rows: &[Vec<Entry>], blocks: &[Vec<usize>]) -> (TokenStream, TokenS
 }
 
 /// Omits entries that are identically zero.
-fn dense(rows: &[Vec<Entry>], symmetric: bool) -> (TokenStream, TokenStream) {
+fn dense(rows: &[Vec<ResultEntry>], symmetric: bool) -> (TokenStream, TokenStream) {
     let size = Literal::usize_unsuffixed(rows.len());
     let assignments = rows.iter().zip(0_usize..).flat_map(|(row, i)| {
         row.iter().zip(0_usize..).filter(|(entry, _)| !entry.zero).map(move |(entry, j)| {

@@ -37,7 +37,7 @@ pub(super) struct Statement {
 }
 
 /// Context for printing pieces.
-pub(super) struct Writing<'a> {
+pub(super) struct PieceContext<'a> {
     /// The inputs, vector by vector, and the results, row by row: copies to and from arrays are then fast.
     pub(super) inputs: Vec<OperationId>,
     pub(super) results: Vec<OperationId>,
@@ -88,7 +88,7 @@ impl Places {
 }
 
 /// Splits the statements into functions of at most `limit` operations with unused names.
-pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, names: &mut Names) -> Pieces {
+pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &PieceContext, names: &mut Names) -> Pieces {
     let cuts = cuts(statements, limit);
     let (inputs, values) = places(statements, writing, &cuts);
     let (system, prelude, name_of) = (writing.system, writing.prelude, |id| writing.named.get(id));
@@ -139,7 +139,7 @@ pub(super) fn pieces(statements: &[Statement], limit: usize, writing: &Writing, 
 }
 
 /// Positions of the inputs, and of the values that leave their piece, results first.
-fn places(statements: &[Statement], writing: &Writing, cuts: &[Range<usize>]) -> (Places, Places) {
+fn places(statements: &[Statement], writing: &PieceContext, cuts: &[Range<usize>]) -> (Places, Places) {
     let mut piece_of = BTreeMap::new();
     for (cut, piece) in cuts.iter().zip(0_usize..) {
         let binds = statements[cut.clone()].iter().flat_map(|statement| &statement.binds);

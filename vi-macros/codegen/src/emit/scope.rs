@@ -10,14 +10,14 @@ use quote::quote;
 use vi_expr::Distinct;
 
 /// Names per line.
-const TOGETHER: usize = 3;
+const NAMES_PER_LINE: usize = 3;
 
 /// The implementations in their scope.
 pub(super) fn scope(attributes: &[&syn::Attribute], implementations: &TokenStream) -> TokenStream {
     let mut names = Distinct::default();
     bound(implementations.clone(), &mut names);
     let names: Vec<Ident> = names.into_iter().collect();
-    let lines = names.chunks(TOGETHER).map(|names| quote!(use ::core::convert::{#(identity as #names),*};));
+    let lines = names.chunks(NAMES_PER_LINE).map(|names| quote!(use ::core::convert::{#(identity as #names),*};));
     quote! {
         #(#attributes)*
         #[allow(clippy::all, clippy::pedantic, deprecated, non_snake_case, unused_imports, unused_parens, unused_variables)]

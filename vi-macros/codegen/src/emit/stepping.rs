@@ -2,7 +2,7 @@
 
 use super::Steps;
 use super::body::{Body, VelocityFrom, part, parts};
-use super::entries::Entry;
+use super::entries::ResultEntry;
 use super::lagrangian::{step_density, vector_of};
 use super::matrix::matrix;
 use crate::model::Model;
@@ -117,7 +117,7 @@ fn node_parts(body: &Body, model: &Model) -> TokenStream {
 }
 
 /// The fields of `MomentumEquation`, and the form of A.
-fn momentum_fields(source: &Steps, results: &Results<Entry>) -> (TokenStream, TokenStream) {
+fn momentum_fields(source: &Steps, results: &Results<ResultEntry>) -> (TokenStream, TokenStream) {
     let residual = vector_of(results.vector(Output::Residual));
     let rows = results.matrix(Output::Jacobian);
     let (form, jacobian) = matrix(&source.findings.pattern, source.findings.symmetric, rows);
@@ -141,7 +141,7 @@ fn method(
     id: FunctionId,
     formula: &str,
     output: &TokenStream,
-    value: impl FnOnce(&Results<Entry>) -> TokenStream,
+    value: impl FnOnce(&Results<ResultEntry>) -> TokenStream,
 ) -> Option<TokenStream> {
     let (dimension, model) = (source.dimension(), source.model);
     let (body, documentation) = source.documented(id, formula, VelocityFrom::Argument)?;
@@ -192,7 +192,7 @@ fn momentum_residual(source: &Steps) -> Option<TokenStream> {
 }
 
 /// The fields of `MomentumDerivatives`, and the form of all matrices except A.
-fn momentum_derivatives_of(source: &Steps, results: &Results<Entry>) -> (TokenStream, TokenStream) {
+fn momentum_derivatives_of(source: &Steps, results: &Results<ResultEntry>) -> (TokenStream, TokenStream) {
     let (_, residual_dv) =
         matrix(&source.findings.pattern, source.findings.symmetric, results.matrix(Output::Jacobian));
     let of = |output| matrix(&source.findings.step_derivatives, false, results.matrix(output));

@@ -5,7 +5,7 @@
 use super::explanation::{Line, Section};
 use super::name;
 use crate::Derived;
-use crate::discrete::{Equations, Slots};
+use crate::discrete::{Equations, SlotDerivatives};
 use crate::model::{DiscreteForces, Point};
 use crate::symbol::Symbol;
 
@@ -44,7 +44,7 @@ fn at(derived: &Derived, index: usize, point: &Point) -> Vec<Line> {
         .collect()
 }
 
-fn derivatives(derived: &Derived, of: &Slots) -> Vec<Line> {
+fn derivatives(derived: &Derived, of: &SlotDerivatives) -> Vec<Line> {
     let mut lines =
         vec![Line::equation(derived, ("L_d", "L_d"), of.ld), Line::equation(derived, ("D1 L_d", "D_1 L_d"), of.d1_ld)];
     lines.extend(Line::equations(derived, ("(D2 L_d)", "(D_2 L_d)"), &of.d2_ld));

@@ -8,7 +8,7 @@ use super::Parameter;
 use super::context::Context;
 use super::force::{self, Entries};
 use crate::messages::Message;
-use crate::syntax::{self, Definition, Entry};
+use crate::syntax::{self, CheckEntry, Definition};
 
 /// A state and a step, in the units of the system.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub(super) fn check_state(
     for other in others {
         context.errors.at(other.span, &Message::SecondCheck);
     }
-    let is_step = |entry: &Entry| plain(entry) && entry.definition.name == "h";
+    let is_step = |entry: &CheckEntry| plain(entry) && entry.definition.name == "h";
     let last = first.entries.iter().rposition(is_step);
     let h = last.and_then(|last| first.entries.get(last)).map(|entry| step(context, &entry.definition));
     if h.is_none() {
@@ -79,7 +79,7 @@ pub(super) fn check_state(
     })
 }
 
-fn plain(entry: &Entry) -> bool {
+fn plain(entry: &CheckEntry) -> bool {
     !entry.velocity && entry.definition.indices.is_none()
 }
 
@@ -93,7 +93,12 @@ fn step(context: &mut Context, written: &Definition) -> f64 {
 }
 
 /// Sets the entries of one line; returns whether one of them was set before.
-fn fill(context: &mut Context, Entry { velocity, definition }: &Entry, of: &[Parameter], given: &mut Given) -> bool {
+fn fill(
+    context: &mut Context,
+    CheckEntry { velocity, definition }: &CheckEntry,
+    of: &[Parameter],
+    given: &mut Given,
+) -> bool {
     let is_parameter = |known: &str| of.iter().any(|parameter| parameter.name == known);
     let other = |Context { scope, pool, .. }: &Context, name: String| {
         if *velocity {

@@ -8,7 +8,7 @@ use super::results::{FunctionId, Output, Results};
 use super::rounding_scale::rounding_scale;
 use super::verify::{self, Expressions};
 use super::{Function, Program, vanishing};
-use crate::discrete::{ByRule, Continuous, DiscreteSystem, Fields, Slots, TimeScale};
+use crate::discrete::{ByRule, Continuous, DiscreteSystem, Fields, SlotDerivatives, TimeScale};
 use crate::limits::bounded;
 use crate::messages::{Message, error};
 use crate::model::{Model, Point};
@@ -196,7 +196,7 @@ fn vector(value: &[Expr]) -> Vec<(Output, Vec<Vec<Expr>>)> {
     vec![(Output::Value, vec![value.to_vec()])]
 }
 
-fn slots(assembly: &mut Assembly, of: &Slots) -> Assembled {
+fn slots(assembly: &mut Assembly, of: &SlotDerivatives) -> Assembled {
     let functions: [(FunctionId, &[Expr]); 9] = [
         (FunctionId::Ld, &[of.ld]),
         (FunctionId::D1Ld, &[of.d1_ld]),

@@ -26,7 +26,7 @@ pub(super) const ALL: u8 = u8::MAX;
 
 /// How an expression depends on the state.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Change {
+enum StateDependence {
     /// Made of numbers and parameters.
     Constant,
     /// It jumps, and is constant elsewhere.
@@ -37,7 +37,7 @@ enum Change {
 /// Properties of an expression that hold in every product.
 #[derive(Clone, Copy)]
 struct Nature {
-    change: Change,
+    change: StateDependence,
     /// It may be infinite at a finite state.
     singular: bool,
     /// It contains a jump.
@@ -45,7 +45,7 @@ struct Nature {
 }
 
 /// Properties assumed by default.
-const LEAST_KNOWN: Nature = Nature { change: Change::Varying, singular: true, jumps: true };
+const LEAST_KNOWN: Nature = Nature { change: StateDependence::Varying, singular: true, jumps: true };
 
 /// A product of powers.
 type Factors = Vec<(Expr, Rational)>;
@@ -111,7 +111,7 @@ impl Known {
         factors.len() > 1
             && factors.iter().any(|(base, exponent)| {
                 let Nature { change, singular, .. } = self.nature(pool, *base);
-                singular || exponent.is_negative() && change == Change::Varying
+                singular || exponent.is_negative() && change == StateDependence::Varying
             })
     }
 
@@ -134,7 +134,7 @@ impl Known {
     }
 
     fn nature_by_operands(&self, pool: &Pool<Symbol>, expr: Expr) -> Nature {
-        let mut nature = Nature { change: Change::Constant, singular: false, jumps: false };
+        let mut nature = Nature { change: StateDependence::Constant, singular: false, jumps: false };
         let node = pool.node(expr);
         node.each_child(|child| {
             let of = self.natures.get(child).unwrap_or(&LEAST_KNOWN);
@@ -142,13 +142,13 @@ impl Known {
             nature.singular |= of.singular;
             nature.jumps |= of.jumps;
         });
-        let is_varying = |base: &Expr| self.natures.get(*base).is_some_and(|of| of.change == Change::Varying);
+        let is_varying = |base: &Expr| self.natures.get(*base).is_some_and(|of| of.change == StateDependence::Varying);
         match node {
             Node::Symbol(Symbol::Parameter { .. }) | Node::Number(_) | Node::Pi | Node::Sum(_) => {}
-            Node::Symbol(_) => nature.change = Change::Varying,
+            Node::Symbol(_) => nature.change = StateDependence::Varying,
             Node::Call(Function::Sign, _) => {
-                let change = nature.change.min(Change::Stepwise);
-                nature = Nature { change, singular: false, jumps: change == Change::Stepwise };
+                let change = nature.change.min(StateDependence::Stepwise);
+                nature = Nature { change, singular: false, jumps: change == StateDependence::Stepwise };
             }
             Node::Call(function, _) => {
                 nature.singular |= matches!(function, Function::Ln | Function::Pow);
@@ -217,7 +217,7 @@ impl Analysis<'_> {
     /// Base and exponent of a power whose exponent may be negative.
     fn pole(&mut self, power: Expr, exponent: &Rational) -> Option<Pole> {
         let Nature { change, jumps, .. } = self.known.nature(self.pool, power);
-        if change < Change::Varying || jumps {
+        if change < StateDependence::Varying || jumps {
             return None;
         }
         if exponent.is_negative() {
@@ -226,7 +226,7 @@ impl Analysis<'_> {
         }
         let Node::Call(Function::Pow, arguments) = self.pool.node(power) else { return None };
         let [base, inner] = arguments[..] else { return None };
-        if self.known.nature(self.pool, inner).change > Change::Constant {
+        if self.known.nature(self.pool, inner).change > StateDependence::Constant {
             return None;
         }
         let zeros = self.zeros(base)?;
@@ -313,7 +313,7 @@ impl Analysis<'_> {
             Node::Call(Function::Abs | Function::Hypot, arguments) => {
                 for argument in arguments {
                     match self.known.nature(self.pool, argument).change {
-                        Change::Constant => zeros.fixed.push(argument),
+                        StateDependence::Constant => zeros.fixed.push(argument),
                         _ => zeros.vanishing.push((argument, one.clone())),
                     }
                 }
@@ -339,7 +339,8 @@ impl Analysis<'_> {
         coefficient: &Rational,
         depth: u32,
     ) -> Option<()> {
-        let is_fixed = |(base, _): &(Expr, Rational)| self.known.nature(self.pool, *base).change == Change::Constant;
+        let is_fixed =
+            |(base, _): &(Expr, Rational)| self.known.nature(self.pool, *base).change == StateDependence::Constant;
         let (fixed, moving): (Factors, Factors) = factors.iter().cloned().partition(is_fixed);
         let has_parameters = !fixed.is_empty();
         if moving.len() > 1 || moving.iter().any(|(_, exponent)| !exponent.is_positive()) {
@@ -421,7 +422,7 @@ impl Analysis<'_> {
             return Vec::new();
         }
         let is_step = |(base, exponent): &&(Expr, Rational)| {
-            exponent.is_positive() && self.known.nature(self.pool, *base).change == Change::Stepwise
+            exponent.is_positive() && self.known.nature(self.pool, *base).change == StateDependence::Stepwise
         };
         let steps: Vec<Expr> = factors.iter().filter(is_step).map(|(base, _)| *base).collect();
         steps.into_iter().filter_map(|step| self.zero_between_jumps(step)).collect()

@@ -126,11 +126,11 @@ pub struct Check {
     /// The location of the word `check`.
     pub span: Span,
     /// The entries, in order; the last plain `h` is the step.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<CheckEntry>,
 }
 
 /// One entry of a check.
-pub struct Entry {
+pub struct CheckEntry {
     /// Whether it is written `dot(…)`.
     pub velocity: bool,
     /// The name, its index and the value.

@@ -6,8 +6,8 @@
 use super::expression::DEPTH;
 use super::unexpected;
 use super::{
-    CLAUSES, Check, Coordinate, Default, Definition, Discretization, Entry, Expression, Indices, Kind, Parameter, Rule,
-    System,
+    CLAUSES, Check, CheckEntry, Coordinate, Default, Definition, Discretization, Expression, Indices, Kind, Parameter,
+    Rule, System,
 };
 use crate::habits::Habit;
 use crate::messages::{Errors, Message, bounded, error, nearest};
@@ -319,10 +319,10 @@ fn check(span: Span, input: ParseStream) -> Result<Check> {
 }
 
 /// `x = 1`, `q[i in 0..8] = 1`, `dot(x) = 1` or `dot(q[0]) = 1`
-fn entry(input: ParseStream) -> Result<Entry> {
+fn entry(input: ParseStream) -> Result<CheckEntry> {
     let velocity = input.peek(syn::Ident) && input.peek2(syn::token::Paren);
     if !velocity {
-        return Ok(Entry { velocity, definition: indexed(input, &[])? });
+        return Ok(CheckEntry { velocity, definition: indexed(input, &[])? });
     }
     let dot = name(input)?;
     if dot != "dot" {
@@ -334,7 +334,7 @@ fn entry(input: ParseStream) -> Result<Entry> {
     if !inner.is_empty() {
         return Err(error(inner.span(), &Message::Expected { what: "`)`" }));
     }
-    Ok(Entry { velocity, definition: Definition { indices, ..value_of(name, input, Vec::new())? } })
+    Ok(CheckEntry { velocity, definition: Definition { indices, ..value_of(name, input, Vec::new())? } })
 }
 
 /// One or more items, separated by commas; a trailing comma is allowed.
